@@ -19,8 +19,7 @@ import numpy as np
 
 from yehu_server.core.physics import layout
 from yehu_server.core.physics.power import TABLES as POWER_TABLES
-from yehu_server.live.osc.part_status import PART_STATUS
-from yehu_server.live.osc.status import STATUS
+from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE
 from yehu_server.scores.gesture import CONTROLS

@@ -36,7 +36,7 @@ class NoiseTape:
         return noise
 
     def taped(self, start: int) -> tuple[int, np.ndarray]:
-        """See `yehu_server.live.audio.recorder.Tape`."""
+        """See `yehu_server.core.engine.ensemble.Ensemble`."""
         played = self._played
         begin = max(start, len(played) - KEPT_FRAMES)
         return begin, played[begin:]

@@ -23,8 +23,7 @@ import yehu_server
 from yehu_server.cli import _parser, main
 from yehu_server.live.addresses import HTTP_ADDRESS, OSC_ADDRESS
 from yehu_server.live.osc.call_table import CALLS, PREFIX
-from yehu_server.live.osc.part_status import PART_STATUS
-from yehu_server.live.osc.status import STATUS
+from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.params.table import TABLE, UNIT
 
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -26,8 +26,7 @@ from yehu_server.errors import OutputError
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.osc import clients, handler, schedule
-from yehu_server.live.osc.part_status import PART_STATUS
-from yehu_server.live.osc.status import STATUS
+from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.live.server import Server
 from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import SLOT

@@ -7,7 +7,6 @@ from collections import Counter
 import pytest
 from wire import Ear
 
-from yehu_server.live.osc import clients as clients_module
 from yehu_server.live.osc import subscriptions as listener_module
 from yehu_server.live.osc.clients import (
     MOST_KNOWN,
@@ -16,7 +15,9 @@ from yehu_server.live.osc.clients import (
     SLICE_S,
     Clients,
 )
+from yehu_server.live.osc.status import STATUS_PREFIX
 from yehu_server.live.osc.subscriptions import MOST_SENT
+from yehu_server.params.table import UNIT
 
 
 class Values:
@@ -458,8 +459,7 @@ def test_a_flush_takes_no_longer_for_addresses_that_do_not_change(
     play(100)
     ear.heard()
     parsed = []
-    for module in (clients_module, listener_module):
-        monkeypatch.setattr(module, "split_group", parsed.append)
+    monkeypatch.setattr(listener_module, "split_group", parsed.append)
     play(100)
     values.now["/b"] = 1.0
     play(100)
@@ -476,3 +476,12 @@ def test_who_has_nothing_to_hear_is_forgotten(clients, play, ear):
     assert len(clients._clients) == 4
     play(4000)
     assert [peer.port for peer in clients._clients] == [3]
+
+
+@pytest.mark.parametrize("form", ["", UNIT, STATUS_PREFIX])
+def test_whatever_one_is_subscribed_to_one_is_sent_changes(clients, ear, still_time, form):
+    assert not clients.is_subscribed(ear)
+    clients.subscribe(ear, 10.0, form)
+    assert clients.is_subscribed(ear)
+    still_time.now += 11.0
+    assert not clients.is_subscribed(ear)

@@ -11,8 +11,7 @@ from wire import f32
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.live.osc import handler
 from yehu_server.live.osc.packets import pack
-from yehu_server.live.osc.part_status import PART_STATUS
-from yehu_server.live.osc.status import STATUS
+from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.live.part_addresses import OF_PARTS, group
 from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, is_listenable, node_at
 from yehu_server.params.preset_file import Preset

@@ -73,7 +73,11 @@ class Housekeeper:
     def is_subscribed(self, peer) -> bool:
         return peer in self.hearing
 
-    def gone(self, peer) -> None:
+    @property
+    def clients(self):
+        return self
+
+    def forget(self, peer) -> None:
         self.gone_peers.append(peer)
 
     @property

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import ipaddress
-import os
 import re
 import socket
 from collections.abc import Iterable
@@ -101,13 +100,6 @@ def lan_interface() -> ipaddress.IPv4Interface:
 def format_address(host: str, port: int) -> str:
     """Host and port as text that `parse_address` reads."""
     return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
-
-
-def why(error: OSError) -> str:
-    """The system's own words for why an address cannot be used."""
-    if isinstance(error, socket.gaierror) or error.errno is None:
-        return error.strerror or str(error)
-    return os.strerror(error.errno)
 
 
 def parse_address(text: str, default_host: str, default_port: int) -> Address:

@@ -107,9 +107,11 @@ class Server:
             self.osc = OscPorts(*options.osc, options.allowed, self.handler)
             undo.callback(self.osc.stop)
             self.pages = self._pages()
-            undo.callback(self._close, self.pages)
+            if self.pages is not None:
+                undo.callback(self.pages.stop)
             self.web = self._web()
-            undo.callback(self._close, self.web)
+            if self.web is not None:
+                undo.callback(self.web.stop)
             if options.capture is not None:
                 for instrument in self.ensemble.instruments:
                     instrument.report_wishes()
@@ -195,11 +197,6 @@ class Server:
             lambda: None if self.pages is None else self.pages.port,
         )
         return WebServer(self.options.http, self.osc, self.handler.clients, sources)
-
-    @staticmethod
-    def _close(service: WebServer | Pages | None) -> None:
-        if service is not None:
-            service.stop()
 
     def start(self) -> None:
         """Start to play.

@@ -11,10 +11,9 @@ from yehu_server.live.audio.output import Output
 from yehu_server.live.audio.recordings import Recordings
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.part_status import PartSources, read_part_status
 from yehu_server.live.osc.peers import WebTraffic
 from yehu_server.live.osc.sockets import OscPorts
-from yehu_server.live.osc.status import StatusSources, read_status
+from yehu_server.live.osc.status import PartSources, StatusSources, read_part_status, read_status
 from yehu_server.live.part_addresses import part_of
 from yehu_server.live.web.query import Snapshot
 from yehu_server.live.web.server import WebServer

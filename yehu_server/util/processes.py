@@ -125,20 +125,17 @@ class Child:
     def _listen(self) -> None:
         try:
             for line in self._lines(self._process.stdout):
-                self._read(line)
+                try:
+                    message = json.loads(line)
+                except ValueError:
+                    log.debug("%s: %s", self._name, line.rstrip())
+                else:
+                    self._dispatch(message)
         except (OSError, MemoryError):  # it could not be read any more
             self._process.kill()
         self._process.wait()
         self._hang_up()
         self._dispatch({"event": "gone"})
-
-    def _read(self, line: str) -> None:
-        try:
-            message = json.loads(line)
-        except ValueError:
-            log.debug("%s: %s", self._name, line.rstrip())
-        else:
-            self._dispatch(message)
 
     def _dispatch(self, message: Message) -> None:
         try:
@@ -159,18 +156,12 @@ class Child:
                     yield line.decode(errors="replace")
 
 
-def _claim_stdout() -> int:
-    """Keep what libraries print apart from the events."""
-    channel = os.dup(1)
-    os.dup2(2, 1)
-    return channel
-
-
 class Parent:
     """The parent, seen from the helper process."""
 
     def __init__(self) -> None:
-        self._channel = _claim_stdout()
+        self._channel = os.dup(1)
+        os.dup2(2, 1)  # what libraries print is no event
         self._sending = threading.Lock()
 
     def tell(self, event: str, **details: Any) -> None:

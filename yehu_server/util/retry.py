@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
+import socket
 import threading
 import time
 from collections.abc import Callable
@@ -21,7 +22,9 @@ SHORTAGES = (OSError, MemoryError, RuntimeError)  # of files, of memory, of thre
 
 
 def why(error: BaseException) -> str:
-    """The reason of an error, for a message."""
+    """The reason of an error, for a message: the system's own words where it has some."""
+    if isinstance(error, socket.gaierror):
+        return error.strerror or str(error)
     if isinstance(error, OSError) and error.errno is not None:
         return os.strerror(error.errno)
     return str(error) or type(error).__name__

@@ -131,8 +131,9 @@ class Output:
         self._found: Message | None = None
         self._clock: SilentClock | None = None
         self._ensemble: Ensemble | None = None
-        self._thread = threading.Thread(target=self._supervise, name="audio", daemon=True)
         self._ending = threading.Event()
+        turns = (self._follow, self._ending, 0.0, "audio", changed)
+        self._thread = threading.Thread(target=run_forever, args=turns, name="audio", daemon=True)
         self._awake = AwakeTime()
         self._heart = (0, 0.0)  # number of callbacks, and the awake time of the last one
         self._refused = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)  # the device refuses
@@ -149,11 +150,11 @@ class Output:
         DeviceError
             Where a named device is not there.
         """
+        rate = self._options.rate or NULL_RATE
         if self._options.device == NULL:
             self.state.problem = "asked for silence"
-            return self._options.rate or NULL_RATE
         if self._child is None:
-            return self._options.rate or NULL_RATE
+            return rate
         event = self._await({"found", "missing", "failed", "gone"}, "the sound system")
         if event["event"] == "found":
             self._found = event
@@ -162,7 +163,7 @@ class Output:
         if self._options.device is not None:
             self._drop_child()
             raise DeviceError(self.state.problem)
-        return self._options.rate or NULL_RATE
+        return rate
 
     def begin(self, ensemble: Ensemble) -> None:
         """Start to play an ensemble that lies in ``memory``.
@@ -282,9 +283,6 @@ class Output:
         self._events = queue.Queue()  # its last events are ignored
         if child is not None:
             child.stop() if gently else child.kill()
-
-    def _supervise(self) -> None:
-        run_forever(self._follow, self._ending, 0.0, "audio", self._changed)
 
     def _follow(self) -> None:
         """Handle an event of the device's process, or its silence."""

@@ -5,40 +5,18 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 
+from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
 from yehu_server.util.files import create, discard
-from yehu_server.util.sound_file import DEFAULT_SUBTYPES, Samples, SoundWriter, format_of
+from yehu_server.util.sound_file import DEFAULT_SUBTYPES, SoundWriter, format_of
 from yehu_server.util.wav_stream import BYTES
 
 EVERY_S = 0.05
 CHANNELS = 2  # left and right
 ROOM_S = 1.0  # a recording begins only if so much fits on the disk
-
-
-class Tape(Protocol):
-    """What plays, and keeps the last seconds of it."""
-
-    @property
-    def rate(self) -> float:
-        """Frames in a second."""
-
-    @property
-    def frame(self) -> int:
-        """The next frame to play."""
-
-    def taped(self, start: int) -> tuple[int, Samples]:
-        """The samples that were played from a frame on.
-
-        Returns
-        -------
-        frame : int
-            The first frame returned: a later one where `start` is no longer kept.
-        samples : ndarray [shape=(frames, CHANNELS), float32]
-        """
 
 
 class Recorder:
@@ -62,7 +40,7 @@ class Recorder:
 
     def __init__(
         self,
-        tape: Tape,
+        tape: Ensemble,
         target: Path,
         start: int,
         on_message: Callable[[str], None],

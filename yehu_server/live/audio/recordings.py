@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
-from yehu_server.live.audio.recorder import Recorder, Tape
+from yehu_server.live.audio.recorder import Recorder
 from yehu_server.util.files import inside
 
 ENDINGS = (".wav", ".flac")
@@ -23,7 +24,7 @@ class Recordings:
         Called with a line when a recording begins or ends.
     """
 
-    def __init__(self, tape: Tape, folder: Path, on_message: Callable[[str], None]) -> None:
+    def __init__(self, tape: Ensemble, folder: Path, on_message: Callable[[str], None]) -> None:
         self._tape = tape
         self._folder = folder
         self._on_message = on_message

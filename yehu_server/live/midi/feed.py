@@ -10,7 +10,7 @@ import struct
 import threading
 from collections.abc import Mapping, Sequence
 from ctypes import c_int64
-from typing import Any, Protocol
+from typing import Any
 
 from yehu_server.core.midi.packing import packed
 from yehu_server.live.midi.routes import Router
@@ -18,13 +18,6 @@ from yehu_server.live.midi.routes import Router
 PORTS = 16  # inputs that are open at a time
 ENTRY = struct.Struct("@qqqdd")  # of a ring: time (ns), kind, index, value, other
 STATUS, CHANNEL, SYSTEM = 0x80, 0x0F, 0xF0
-
-
-class Ring(Protocol):
-    """Where the messages for a part go."""
-
-    def post(self, time_ns: int, kind: int, index: int) -> bool:
-        """Add an event with the time at which it arrived; return whether there was room."""
 
 
 class SharedRing:
@@ -46,7 +39,10 @@ class SharedRing:
         self._order = threading.Lock()
 
     def post(self, time_ns: int, kind: int, index: int) -> bool:
-        """Add an event; it is dropped and counted where the ring is full."""
+        """Add an event with the time at which it arrived; return whether there was room.
+
+        It is dropped and counted where there was none.
+        """
         posted = self._posted.value
         if posted - self._drained.value >= self._size:
             self._dropped.value += 1
@@ -70,7 +66,7 @@ class MidiFeed:
 
     Parameters
     ----------
-    rings : sequence of Ring
+    rings : sequence of SharedRing
         Of each part.
     message, disconnect : int
         Kinds of the events (``midi.events``): a message, and that a port is gone.
@@ -80,7 +76,7 @@ class MidiFeed:
 
     def __init__(
         self,
-        rings: Sequence[Ring],
+        rings: Sequence[SharedRing],
         router: Router,
         *,
         message: int,

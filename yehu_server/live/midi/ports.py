@@ -116,8 +116,15 @@ class MidiPorts:
             self._child.send("hear", hear=any(player.listens for player in self._players))
 
     def _ended(self, by_itself: bool) -> None:
-        if by_itself:
-            self._let_go()
+        """End the notes of all ports, whose process is gone."""
+        if not (by_itself and self._connected):
+            return
+        for port in self._connected:
+            for part in self._router.parts_of(port):
+                player = self._players[part]
+                player.end_port_notes(self._numbers[port], frame=player.frame_of())
+        self._on_message(f"MIDI: {', '.join(self._connected)} gone; notes are ended")
+        self._connected.clear()
 
     def _on_event(self, event: Message) -> None:
         kind = event["event"]
@@ -169,13 +176,3 @@ class MidiPorts:
             message = mido.Message.from_bytes(data)
             for part in self._router.parts_of(port, getattr(message, "channel", None)):
                 self._players[part].learn_from_message(message, self._numbers[port])
-
-    def _let_go(self) -> None:
-        """End the notes of all ports, whose process is gone."""
-        for port in self._connected:
-            for part in self._router.parts_of(port):
-                player = self._players[part]
-                player.end_port_notes(self._numbers[port], frame=player.frame_of())
-        if self._connected:
-            self._on_message(f"MIDI: {', '.join(self._connected)} gone; notes are ended")
-        self._connected.clear()

@@ -53,28 +53,17 @@ def _of(address: str, name: str) -> Argument:
 
 NOTE = Argument("note", lo=0.0, hi=127.0, unit="MIDI note")
 SECONDS = Argument("seconds", lo=0.0, hi=LONGEST_SUBSCRIPTION_S, unit="s")
-NAME = Argument("name", "s")
+VELOCITY = Argument("velocity", lo=0.0, hi=127.0)
+ADDRESS, NAME = Argument("address", "s"), Argument("name", "s")
 FROM, TO = Argument("from", "s"), Argument("to", "s")
 AMOUNT = Argument("amount", lo=0.0, hi=1.0)
 
 CALLS: tuple[Call, ...] = (
-    Call(
-        "/note",
-        "Begins a note; velocity 0 ends it.",
-        (NOTE, Argument("velocity", lo=0.0, hi=127.0)),
-    ),
+    Call("/note", "Begins a note; velocity 0 ends it.", (NOTE, VELOCITY)),
     Call("/note/off", "Ends a note.", (NOTE,)),
     Call("/pitch", "Slides the finger to a pitch: the sounding note's, or the next.", (NOTE,)),
-    Call(
-        "/bend",
-        "Slides the finger away from the note.",
-        (_of("/playing/bend", "semitones"),),
-    ),
-    Call(
-        "/press",
-        "How hard the finger presses the string.",
-        (_of("/playing/press", "newtons"),),
-    ),
+    Call("/bend", "Slides the finger away from the note.", (_of("/playing/bend", "semitones"),)),
+    Call("/press", "How hard the finger presses the string.", (_of("/playing/press", "newtons"),)),
     Call(
         "/bow",
         "Draws the bow by hand; no speed and no force lifts it.",
@@ -89,7 +78,7 @@ CALLS: tuple[Call, ...] = (
     Call(
         "/get",
         "Sends the value of a parameter, or a status value.",
-        (Argument("address", "s"),),
+        (ADDRESS,),
         is_for_all=True,
     ),
     Call("/params", "Sends all parameters: value, range, default, unit, meaning."),
@@ -108,9 +97,9 @@ CALLS: tuple[Call, ...] = (
     Call(
         "/learn",
         "Binds the controller that is moved next to a parameter; without one, ends learning.",
-        (Argument("address", "s"),),
+        (ADDRESS,),
     ),
-    Call("/unlearn", "Forgets what was learned for a parameter.", (Argument("address", "s"),)),
+    Call("/unlearn", "Forgets what was learned for a parameter.", (ADDRESS,)),
     Call("/bindings", "Sends all bindings: source, target, span, curve, place, value."),
     Call("/record/start", "Records into the recordings folder.", (NAME,), is_for_all=True),
     Call("/record/stop", "Ends the recording.", is_for_all=True),

@@ -6,13 +6,13 @@ import contextlib
 import socket
 import time
 from collections.abc import Iterator
-from types import TracebackType
 from typing import Self
 
 from yehu_server.errors import DeviceError, RefusedError
-from yehu_server.live.addresses import Address, format_address, why
+from yehu_server.live.addresses import Address, format_address
 from yehu_server.live.osc.packets import Message, PacketError, pack, unpack
 from yehu_server.params.table import PREFIX
+from yehu_server.util.retry import why
 
 ANSWERS_WITHIN_S = 2.0
 DATAGRAM_BYTES = 1 << 16
@@ -39,12 +39,7 @@ class OscClient:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._socket.close()
 
     def send(self, address: str, *arguments: float | str) -> None:

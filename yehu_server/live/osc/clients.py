@@ -19,8 +19,9 @@ from yehu_server.live.osc.subscriptions import (
     Status,
     Subscriber,
     Values,
+    topic_of,
 )
-from yehu_server.live.part_addresses import FIRST, split_group
+from yehu_server.live.part_addresses import FIRST
 
 FLUSH_S = 1.0 / 60.0  # between rounds of sending
 SLICE_S = 0.0005  # of a round, after which other messages are handled
@@ -47,11 +48,10 @@ class Clients:
     """
 
     def __init__(self, values: Values, prefix: str, status: Status = lambda _group: {}) -> None:
-        self._values = values
         self.prefix = prefix
-        self._status = status
         self._clients: dict[Peer, Subscriber] = {}
         self._publisher = ChangePublisher(values, status, prefix)
+        self.read = self._publisher.read
         self._round: Iterator[None] | None = None  # what is left of a round
         self._flushed = 0.0  # when it began
         self._swept = 0.0
@@ -91,7 +91,7 @@ class Clients:
             return
         client = self._client(peer)
         if client.muted_until <= time.monotonic():
-            client.to_send.update((address, split_group(address)[0]) for address in addresses)
+            client.to_send.update((address, topic_of(address)) for address in addresses)
             self._is_waiting = True
 
     def mute(self, peer: Peer, seconds: float) -> None:
@@ -113,30 +113,23 @@ class Clients:
             if len(hosts) >= MOST_SUBSCRIBERS or hosts.count(peer.host) >= MOST_OF_A_HOST:
                 return False
         self._is_waiting = True
+        topic = addressed
         if form == STATUS_PREFIX:
-            client.status_subscribed[addressed] = now + seconds
-            names = self._status(addressed)
-            sent = (addressed + STATUS_PREFIX + name for name in names)
-            client.to_send.update(dict.fromkeys(sent, addressed))
-            return True
-        client.subscribed[addressed] = now + seconds, form
-        values = self._values(addressed)
-        sent = (addressed + address + form for address in values)
-        client.to_send.update(dict.fromkeys(sent, addressed))
+            topic, form = addressed + STATUS_PREFIX, ""
+        client.subscribed[topic] = now + seconds, form
+        sent = (addressed + address + form for address in self.read(topic))
+        client.to_send.update(dict.fromkeys(sent, topic))
         return True
 
     def unsubscribe(self, peer: Peer) -> None:
         """End a peer's subscriptions."""
-        client = self._client(peer)
-        client.subscribed.clear()
-        client.status_subscribed.clear()
+        self._client(peer).subscribed.clear()
 
     def listen(self, peer: Peer, address: str) -> None:
         """Send a peer the value at an address (without the prefix) now, and whenever it changes."""
         client = self._client(peer)
-        addressed, among = client.among(address)
-        among.setdefault(addressed, set()).add(address)
-        client.to_send[address] = addressed
+        topic = client.to_send[address] = topic_of(address)
+        client.listens.setdefault(topic, set()).add(address)
         self._is_waiting = True
 
     def ignore(self, peer: Peer, address: str) -> None:
@@ -146,9 +139,7 @@ class Clients:
     def is_subscribed(self, peer: Peer) -> bool:
         """Whether a peer is sent changes of values."""
         client = self._clients.get(peer)
-        if client is None:
-            return False
-        return bool(client.listens or client.watches or client.forms(time.monotonic()))
+        return client is not None and client.is_watching(time.monotonic())
 
     def forget(self, peer: Peer) -> None:
         """Drop a peer that has hung up."""
@@ -176,10 +167,7 @@ class Clients:
     @property
     def _is_watched(self) -> bool:
         now = time.monotonic()
-        return any(
-            client.subscribes(now) or client.listens or client.watches
-            for client in self._clients.values()
-        )
+        return any(client.is_watching(now) for client in self._clients.values())
 
     def wait_s(self) -> float | None:
         """Seconds until the next flush; None where there is nothing to send."""

@@ -1,4 +1,4 @@
-"""What the OSC calls of all parts share: the clients, and the server's services beside playing."""
+"""What the OSC calls of a part share: its player, its addresses, the server's services."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from typing import Protocol
 
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.limits import TokenBucket
+from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.request import Request
+from yehu_server.params.table import PREFIX
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 
@@ -60,3 +62,29 @@ class CallContext:
     tree_changed: Callable[[str], None]  # announces a change of the tree, below each group
     remap: Callable[[LivePlayer, ControllerMapping], None]  # a player and its like
     saves: TokenBucket = field(default_factory=lambda: TokenBucket(SAVES_A_SECOND, SAVES_AT_ONCE))
+
+
+class PlayerCalls:
+    """Calls of a player at a group of addresses.
+
+    Attributes
+    ----------
+    by_address : dict
+        What carries out each address after the group; each raises YehuError where it refuses.
+    """
+
+    def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
+        self._player = player
+        self._addressed = addressed
+        self._prefix = PREFIX + addressed
+        self._context = context
+        self._clients, self._services = context.clients, context.services
+        self.by_address: dict[str, Act] = {}
+
+    def _send(self, peer: Peer, address: str, *arguments: float | str) -> None:
+        """Send a peer an answer of the group."""
+        peer.send(pack(self._prefix + address, *arguments))
+
+    def _send_error(self, peer: Peer, address: str, reason: str) -> None:
+        """Tell a peer why a call of the group was refused."""
+        self._context.send_error(peer, self._prefix + address, reason)

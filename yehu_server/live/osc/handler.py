@@ -9,19 +9,21 @@ import logging
 import time
 from collections.abc import Callable, Iterator, Sequence
 from collections.abc import Mapping as Values
+from functools import cache, partial
 
 from yehu_server.errors import YehuError
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.context import Act, CallContext, ServerServices
 from yehu_server.live.osc.fair_queue import FairQueue
-from yehu_server.live.osc.names import fitting, near, parameter_of, readable, value_at
+from yehu_server.live.osc.names import fitting, near, parameter_of, readable
 from yehu_server.live.osc.packets import Message, PacketError, answer, pack, steps, unpack
 from yehu_server.live.osc.part_calls import PartCalls, port_of, within_an_hour
 from yehu_server.live.osc.patterns import is_pattern
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
-from yehu_server.live.osc.status import STATUS_PREFIX, Counts
+from yehu_server.live.osc.status import Counts
+from yehu_server.live.osc.subscriptions import own_address, topic_of
 from yehu_server.live.part_addresses import (
     FIRST,
     PART,
@@ -32,7 +34,7 @@ from yehu_server.live.part_addresses import (
     part_of,
     split_group,
 )
-from yehu_server.params.table import BY_ADDRESS, PREFIX, UNIT
+from yehu_server.params.table import BY_ADDRESS, PREFIX, UNIT, read
 from yehu_server.playing.live_player import Arrivals, LivePlayer
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import is_own
@@ -40,10 +42,6 @@ from yehu_server.playing.sources import is_own
 log = logging.getLogger(__name__)
 
 DUE_AT_ONCE = 1024  # scheduled messages taken up at a time
-
-
-class UnknownError(Exception):
-    """An unknown address; a near one is looked for only where the error is sent."""
 
 
 class OscHandler:
@@ -64,14 +62,8 @@ class OscHandler:
         self._due: FairQueue[bytes] = FairQueue(self._act_on_due)
         self._tags = TagClock(players[0])
         self._arrivals = Arrivals(players[0].frame_of, players[0].instrument.rate)
-        context = CallContext(
-            self.clients,
-            services,
-            self._send_error,
-            self._drop_scheduled,
-            self._tree_changed,
-            self._remap,
-        )
+        told = self._send_error, self._drop_scheduled, self._tree_changed, self._remap
+        context = CallContext(self.clients, services, *told)
         self._groups = {FIRST: players[0]}
         self._groups |= {group(part): player for part, player in enumerate(players)}
         self._calls: dict[str, Act] = {
@@ -117,7 +109,7 @@ class OscHandler:
     # -- packets -----------------------------------------------------------------------------
 
     def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
-        """See `sockets.Handler`: a message is a step."""
+        """Handle a packet in steps, between which others may be handled: a message is a step."""
         now, frame = time.time(), self._arrivals.frame_of(arrived_ns)
         is_late = False
         try:
@@ -149,7 +141,7 @@ class OscHandler:
         yield from self._act(message, peer, frame)
 
     def tick(self) -> None:
-        """See `sockets.Handler`."""
+        """Do what is due."""
         # Early enough to be there when the device asks for their frames.
         self._schedule.ahead_s = AHEAD_S + self._players[0].delay / self._players[0].instrument.rate
         for due_s, packet, peer in self._schedule.due(DUE_AT_ONCE):
@@ -158,34 +150,22 @@ class OscHandler:
         self.clients.flush()
 
     def wait_s(self) -> float | None:
-        """See `sockets.Handler`."""
+        """Seconds until `tick` has something to do; None where it has nothing."""
         if self._due:
             return 0.0
-        waits = [
-            wait for wait in (self._schedule.wait_s(), self.clients.wait_s()) if wait is not None
-        ]
-        return min(waits, default=None)
-
-    def is_subscribed(self, peer: Peer) -> bool:
-        """See `sockets.Handler`."""
-        return self.clients.is_subscribed(peer)
-
-    def gone(self, peer: Peer) -> None:
-        """See `sockets.Handler`."""
-        self.clients.forget(peer)
+        waits = self._schedule.wait_s(), self.clients.wait_s()
+        return min((wait for wait in waits if wait is not None), default=None)
 
     def _act(self, message: Message, peer: Peer, frame: int) -> Iterator[None]:
         call = Request(message.arguments, message.payload, peer, frame)
         try:
             actions = self._actions(message.address)
-        except UnknownError:
-            self._send_error(
-                peer, message.address, lambda: near(message.address, len(self._players))
-            )
-            return
         except YehuError as error:
             self._send_error(peer, message.address, str(error))
             return
+        if not actions:  # a near address is looked for only where the error is sent
+            unknown = partial(near, message.address, len(self._players))
+            self._send_error(peer, message.address, unknown)
         for action in actions:  # one refusal does not stop the others that match a pattern
             try:
                 action(call)
@@ -194,6 +174,7 @@ class OscHandler:
             yield
 
     def _actions(self, address: str) -> list[Act]:
+        """What carries out the calls at an address; none where it is unknown."""
         known = address.removeprefix(PREFIX)
         if address in self._answers:
             return [self._answers[address]]
@@ -207,7 +188,7 @@ class OscHandler:
         if is_pattern(address):
             found = fitting(address, (*self._addresses, *own))
             return [own.get(one) or self._calls[one.removeprefix(PREFIX)] for one in found]
-        raise UnknownError
+        return []
 
     def _own(self) -> dict[str, Act]:
         """Actions for addresses that mappings bind; without a part, of the first part that does."""
@@ -262,15 +243,11 @@ class OscHandler:
         else:
             addresses = [self._found(wanted)]
         call.check_peer()
-        known: dict[tuple[str, bool], Values[str, float | str]] = {}
+        read_topic = cache(self.clients.read)
         for address in addresses:
-            addressed, own = split_group(address)
-            is_status = own.startswith(STATUS_PREFIX)
-            if (addressed, is_status) not in known:
-                source = self._states if is_status else self._values
-                known[addressed, is_status] = source(addressed)
-            values = known[addressed, is_status]
-            call.peer.send(pack(PREFIX + address, value_at(values, own)))
+            topic = topic_of(address)
+            value = read(read_topic(topic), own_address(address, topic))
+            call.peer.send(pack(PREFIX + address, value))
 
     def _found(self, address: str) -> str:
         """The address of a parameter; raises ParameterError, with a similar one if there is one."""

@@ -7,8 +7,7 @@ from collections.abc import Callable
 from functools import partial
 
 from yehu_server.errors import ParameterError, YehuError
-from yehu_server.live.osc.context import CallContext
-from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.context import CallContext, PlayerCalls
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.request import Request
 from yehu_server.live.part_addresses import check_own, split_group
@@ -23,26 +22,16 @@ PATIENCE_S = 60.0  # to wait for something to be moved
 NOT_MOVED = -1.0
 
 
-class LearnCalls:
-    """Carries out ``/learn``, ``/unlearn`` and ``/bindings``, at a group of addresses.
+class LearnCalls(PlayerCalls):
+    """Carries out ``/learn``, ``/unlearn`` and ``/bindings``.
 
     What is learned is learned by the mapping: all parts that use it have it.
-
-    Attributes
-    ----------
-    by_address : dict
-        The function that carries out each call; each raises YehuError where it refuses.
     """
 
     def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
-        self._player = player
-        self._addressed = addressed
-        self._prefix = PREFIX + addressed
-        self._services = context.services
-        self._send_error = context.send_error
-        self._remap = context.remap
+        super().__init__(player, addressed, context)
         self._wants = 0  # number of requests, so that what is found for an earlier one is ignored
-        self.by_address: dict[str, Callable[[Request], None]] = {
+        self.by_address = {
             "/learn": self._learn,
             "/unlearn": self._unlearn,
             "/bindings": self._bindings,
@@ -53,7 +42,7 @@ class LearnCalls:
         self._wants += 1
         self._player.listen(None)
         if not call.arguments or list(call.arguments) == [None]:
-            call.peer.send(pack(f"{self._prefix}/learning", ""))
+            self._send(call.peer, "/learning", "")
             return
         address, soft = call.word_and_flag()
         target = self._target(address, "learn one")
@@ -61,55 +50,52 @@ class LearnCalls:
 
         def found(source: LearnedSource) -> None:
             if wants == self._wants and time.monotonic() <= until:
-                learn_it = partial(self._found, call.peer, target, source, soft=soft)
-                self._services.run_in_background(learn_it)
+                learned = partial(self._learned, call.peer, target, source, soft=soft)
+                self._write(call.peer, "/learn", learned)
 
         self._player.listen(found)
-        call.peer.send(pack(f"{self._prefix}/learning", self._prefix + target))
+        self._send(call.peer, "/learning", self._prefix + target)
 
-    def _found(self, peer: Peer, target: str, source: LearnedSource, *, soft: bool) -> None:
-        """Write what was found to the user's file; aside, as a disk may be slow."""
-        try:
-            mapping, path = learn.learn(self._player.mapping, target, source, soft=soft)
-        except YehuError as error:
-            reason = str(error)
-            self._services.call_soon(
-                lambda: self._send_error(peer, f"{self._prefix}/learn", reason)
-            )
-            return
-        learnt = (self._prefix + target, source.source, str(path))
+    def _write(self, peer: Peer, address: str, write: Callable[[], Callable[[], None]]) -> None:
+        """Write the user's file aside, as a disk may be slow; then call what `write` returns."""
+
+        def aside() -> None:
+            try:
+                then = write()
+            except YehuError as error:
+                then = partial(self._send_error, peer, address, str(error))
+            self._services.call_soon(then)
+
+        self._services.run_in_background(aside)
+
+    def _learned(
+        self, peer: Peer, target: str, source: LearnedSource, *, soft: bool
+    ) -> Callable[[], None]:
+        mapping, path = learn.learn(self._player.mapping, target, source, soft=soft)
 
         def take() -> None:
             self._take(mapping)
             self._services.log(f"{source.source} moves {target} from now on ({path})")
-            peer.send(pack(f"{self._prefix}/learned", *learnt))
+            self._send(peer, "/learned", self._prefix + target, source.source, str(path))
 
-        self._services.call_soon(take)
+        return take
 
     def _unlearn(self, call: Request) -> None:
         target = self._target(call.word(), "forget one")
-        self._services.run_in_background(lambda: self._forget(call.peer, target))
+        self._write(call.peer, "/unlearn", partial(self._unlearned, call.peer, target))
 
-    def _forget(self, peer: Peer, target: str) -> None:
-        """Remove what moves a target from the user's file; aside, as a disk may be slow."""
-        try:
-            mapping, count = learn.unlearn(self._player.mapping, target)
-        except YehuError as error:
-            reason = str(error)
-            self._services.call_soon(
-                lambda: self._send_error(peer, f"{self._prefix}/unlearn", reason)
-            )
-            return
+    def _unlearned(self, peer: Peer, target: str) -> Callable[[], None]:
+        mapping, count = learn.unlearn(self._player.mapping, target)
 
         def take() -> None:
             if count:
                 self._take(mapping)
-            peer.send(pack(f"{self._prefix}/unlearned", self._prefix + target, count))
+            self._send(peer, "/unlearned", self._prefix + target, count)
 
-        self._services.call_soon(take)
+        return take
 
     def _take(self, mapping: Mapping) -> None:
-        self._remap(self._player, mapping)
+        self._context.remap(self._player, mapping)
         self._services.tree_changed("/")
 
     def _bindings(self, call: Request) -> None:
@@ -122,8 +108,8 @@ class LearnCalls:
                 bend_range = self._player.value("/playing/bend_range")
                 ends = (bind.semitones(0.0, bend_range), bind.semitones(1.0, bend_range))
             row = (bind.source, self._prefix + bind.target, *ends, bind.curve_name)
-            call.peer.send(pack(f"{self._prefix}/binding", *row, "; ".join(bind.terms), at, value))
-        call.peer.send(pack(f"{self._prefix}/bindings", len(rows)))
+            self._send(call.peer, "/binding", *row, "; ".join(bind.terms), at, value)
+        self._send(call.peer, "/bindings", len(rows))
 
     def _target(self, address: str, what: str) -> str:
         """An address of the part as the parameter table has it; raises where it is no free one."""

@@ -9,7 +9,8 @@ import struct
 import sys
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.addresses import format_address, why
+from yehu_server.live.addresses import format_address
+from yehu_server.util.retry import why
 
 BUFFER_BYTES = 32 << 20  # asked for; the system may grant less
 DATAGRAM_BYTES = 1 << 14  # longer ones are dropped: a few would fill the system's buffer

@@ -4,26 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from collections.abc import Mapping as Values
-from typing import Any
 
 from yehu_server.errors import ParameterError, RefusedError, YehuError, did_you_mean
-from yehu_server.live.osc.part_status import PART_STATUS
 from yehu_server.live.osc.patterns import PatternError, matches
-from yehu_server.live.osc.status import STATUS, STATUS_PREFIX, as_argument
+from yehu_server.live.osc.status import PART_STATUS, STATUS, STATUS_PREFIX
 from yehu_server.live.part_addresses import PART_PARAMS, check_own, check_part, split_group
-from yehu_server.params.table import PREFIX, TABLE, UNIT, find, read
+from yehu_server.params.table import PREFIX, TABLE, UNIT, find
 
 NAMES = [row.name for row in STATUS]
 PART_NAMES = [row.name for row in PART_STATUS]
 LONGEST_PATTERN = 256
-
-
-def value_at(values: Values[str, Any], address: str) -> float | str:
-    """A value of a group: of the status, or of a parameter."""
-    if address.startswith(STATUS_PREFIX):
-        return as_argument(values[address.removeprefix(STATUS_PREFIX)])
-    return read(values, address)
 
 
 def readable(groups: Iterable[str]) -> Iterator[str]:

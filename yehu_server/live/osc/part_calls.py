@@ -2,53 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from functools import partial
 
 from yehu_server.errors import RefusedError
 from yehu_server.live.osc.call_table import LONGEST_SUBSCRIPTION_S
-from yehu_server.live.osc.context import Act, CallContext
+from yehu_server.live.osc.context import CallContext, PlayerCalls
 from yehu_server.live.osc.learn_calls import LearnCalls
-from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.preset_calls import PresetCalls
 from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import PART_PARAMS, part_of
 from yehu_server.params.spec import Param
-from yehu_server.params.table import PREFIX, TABLE, UNIT
+from yehu_server.params.table import TABLE, UNIT
 from yehu_server.playing.live_player import LivePlayer
 
 SUBSCRIBED_S = 60.0
 
 
-class PartCalls:
-    """Carries out the calls of a part, and sets its parameters.
-
-    Parameters
-    ----------
-    addressed : str
-        The group of addresses (``parts``) that it has.
-
-    Attributes
-    ----------
-    by_address : dict
-        What carries out each address after the group; each raises YehuError where it refuses.
-    """
+class PartCalls(PlayerCalls):
+    """Carries out the calls of a part, and sets its parameters."""
 
     def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
-        self._player = player
-        self._addressed = addressed
-        self._prefix = PREFIX + addressed
-        self._clients = context.clients
-        self._services = context.services
-        self._drop_scheduled = context.drop_scheduled
+        super().__init__(player, addressed, context)
         self._params = PART_PARAMS if addressed else TABLE
-        self.by_address: dict[str, Act] = {
+        self.by_address = {
             "/note": self._note,
             "/note/off": self._note_off,
             "/pitch": self._pitch,
-            "/bend": lambda call: self._set(call, "/playing/bend"),
-            "/press": lambda call: self._set(call, "/playing/press"),
+            "/bend": partial(self._set, address="/playing/bend"),
+            "/press": partial(self._set, address="/playing/press"),
             "/bow": self._bow,
             "/release": self._release,
             "/panic": self._panic,
@@ -56,16 +40,16 @@ class PartCalls:
             "/params": self._send_params,
             "/status": self._status,
             "/subscribe": self._subscribe,
-            "/subscribe/unit": lambda call: self._subscribe(call, UNIT),
-            "/subscribe/status": lambda call: self._subscribe(call, STATUS_PREFIX),
+            "/subscribe/unit": partial(self._subscribe, form=UNIT),
+            "/subscribe/status": partial(self._subscribe, form=STATUS_PREFIX),
         }
         self.by_address |= PresetCalls(player, addressed, context).by_address
         self.by_address |= LearnCalls(player, addressed, context).by_address
         for param in self._params:
-            self.by_address[param.address] = self._setter(param.address)
-            self.by_address[param.address + UNIT] = self._unit_setter(param)
+            self.by_address[param.address] = partial(self._set, address=param.address)
+            self.by_address[param.address + UNIT] = partial(self._set_unit, param=param)
 
-    def echo(self, peer: Peer, addresses: Iterable[str]) -> None:
+    def _echo(self, peer: Peer, addresses: Iterable[str]) -> None:
         """Send a peer the values that it has set, of those that the part has."""
         own = {param.address for param in self._params}
         told = [self._addressed + one for one in addresses if one.removesuffix(UNIT) in own]
@@ -73,21 +57,15 @@ class PartCalls:
 
     # -- parameters --------------------------------------------------------------------------
 
-    def _setter(self, address: str) -> Act:
-        return lambda call: self._set(call, address)
-
     def _set(self, call: Request, address: str) -> None:
         (value,) = call.numbers(1)
         self._player.write(address, value, frame=call.frame)
         self._clients.echo(call.peer, [self._addressed + address])
 
-    def _unit_setter(self, param: Param) -> Act:
-        def set_unit(call: Request) -> None:
-            (unit,) = call.numbers(1)
-            self._player.write(param.address, param.from_unit(unit), frame=call.frame)
-            self._clients.echo(call.peer, [self._addressed + param.address + UNIT])
-
-        return set_unit
+    def _set_unit(self, call: Request, param: Param) -> None:
+        (unit,) = call.numbers(1)
+        self._player.write(param.address, param.from_unit(unit), frame=call.frame)
+        self._clients.echo(call.peer, [self._addressed + param.address + UNIT])
 
     def _send_params(self, call: Request) -> None:
         call.check_peer()
@@ -95,8 +73,8 @@ class PartCalls:
         for param in self._params:
             value = values[param.address]
             row = (self._prefix + param.address, value, param.lo, param.hi, param.default)
-            call.peer.send(pack(f"{self._prefix}/param", *row, param.unit, param.doc))
-        call.peer.send(pack(f"{self._prefix}/params", len(self._params)))
+            self._send(call.peer, "/param", *row, param.unit, param.doc)
+        self._send(call.peer, "/params", len(self._params))
 
     # -- playing -----------------------------------------------------------------------------
 
@@ -116,33 +94,30 @@ class PartCalls:
     def _bow(self, call: Request) -> None:
         speed, force = call.numbers(2)
         self._player.draw(speed, force, frame=call.frame)
-        self.echo(call.peer, ["/bow/speed", "/bow/force"])
+        self._echo(call.peer, ["/bow/speed", "/bow/force"])
 
     def _release(self, call: Request) -> None:
         self._player.release(frame=call.frame)
 
     def _panic(self, call: Request) -> None:
-        self._drop_scheduled(self._addressed)
+        self._context.drop_scheduled(self._addressed)
         self._player.panic(frame=call.frame)
 
     def _reset(self, call: Request) -> None:
-        self._drop_scheduled(self._addressed)
+        self._context.drop_scheduled(self._addressed)
         self._player.reset(frame=call.frame)
-        self.echo(call.peer, [param.address for param in self._params])
+        self._echo(call.peer, [param.address for param in self._params])
 
     # -- services ----------------------------------------------------------------------------
 
     def _status(self, call: Request) -> None:
         call.check_peer()
-        for address, value in self._states():
-            call.peer.send(pack(address, as_argument(value)))
-
-    def _states(self) -> Iterator[tuple[str, float | str]]:
-        values = self._services.status()
-        if self._addressed:
-            values = self._services.part_status(part_of(self._addressed))
-        for name, value in values.items():
-            yield f"{self._prefix}{STATUS_PREFIX}{name}", value
+        services = self._services
+        status = (
+            services.part_status(part_of(self._addressed)) if self._addressed else services.status()
+        )
+        for name, value in status.items():
+            self._send(call.peer, STATUS_PREFIX + name, as_argument(value))
 
     def _subscribe(self, call: Request, form: str = "") -> None:
         numbers = call.numbers(0, 2)
@@ -150,7 +125,7 @@ class PartCalls:
         peer = call.peer.at(port_of(numbers[1])) if len(numbers) == 2 else call.peer
         if not self._clients.subscribe(peer, seconds, form, self._addressed):
             raise RefusedError("there are too many subscribers")
-        peer.send(pack(f"{self._prefix}/subscribed", seconds))
+        self._send(peer, "/subscribed", seconds)
 
 
 def within_an_hour(seconds: float) -> float:

@@ -1,42 +1,24 @@
 """Match OSC address patterns: ``* ? [a-z] [!a-z] {this,that}`` ([OSC] section on matching).
 
 All positions in the address that a piece of the pattern can reach are followed at once, so that
-no pattern takes longer than its length times the address's.
+no pattern takes longer than its length times the address's: a regular expression may take for ever.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 
 SPECIAL = frozenset("*?[{")
+_PIECES = re.compile(r"(\*+)|(\?)|\[(!?)([^]]*)\]|\{([^}]*)\}|([^*?[{]+)|(.)", re.DOTALL)
+_RANGES = re.compile(r"(.)-(.)|(.)", re.DOTALL)
+
+Piece = Callable[[set[int], str], set[int]]  # the positions after it, from those before it
 
 
 class PatternError(ValueError):
     """A pattern with an unclosed bracket."""
-
-
-@dataclass(frozen=True)
-class One:
-    """One character of a set."""
-
-    fits: Callable[[str], bool]
-
-
-@dataclass(frozen=True)
-class AnyNumber:
-    """Any number of characters within a part of the address."""
-
-
-@dataclass(frozen=True)
-class Either:
-    """One of several words."""
-
-    words: tuple[str, ...]
-
-
-Piece = One | AnyNumber | Either
 
 
 def is_pattern(address: str) -> bool:
@@ -54,18 +36,32 @@ def matches(pattern: str, address: str) -> bool:
     """
     places = {0}
     for piece in _pieces(pattern):
-        places = _after(piece, places, address)
+        places = piece(places, address)
         if not places:
             return False
     return len(address) in places
 
 
-def _after(piece: Piece, places: set[int], address: str) -> set[int]:
-    """Positions in the address after `piece`, from all positions before it."""
-    if isinstance(piece, Either):
-        return {at + len(w) for at in places for w in piece.words if address.startswith(w, at)}
-    if isinstance(piece, One):
-        return {at + 1 for at in places if at < len(address) and piece.fits(address[at])}
+@lru_cache(maxsize=256)
+def _pieces(pattern: str) -> tuple[Piece, ...]:
+    """The pieces of a pattern; raises PatternError."""
+    return tuple(map(_piece, _PIECES.finditer(pattern)))
+
+
+def _piece(found: re.Match[str]) -> Piece:
+    stars, question, negated, members, words, plain, unclosed = found.groups()
+    if unclosed:
+        raise PatternError(f"{unclosed} is never closed")
+    if stars:
+        return _any_number
+    if question:
+        return _one_of("", is_negated=True)
+    if members is not None:
+        return _one_of(members, is_negated=bool(negated))
+    return _either([plain] if words is None else words.split(","))
+
+
+def _any_number(places: set[int], address: str) -> set[int]:
     reached: set[int] = set()
     for at in sorted(places):
         if at not in reached:  # else an earlier position has reached all that this one would
@@ -74,58 +70,17 @@ def _after(piece: Piece, places: set[int], address: str) -> set[int]:
     return reached
 
 
-@lru_cache(maxsize=256)
-def _pieces(pattern: str) -> tuple[Piece, ...]:
-    """The pieces of a pattern; raises PatternError."""
-    pieces: list[Piece] = []
-    at = 0
-    while at < len(pattern):
-        char = pattern[at]
-        if char == "*":
-            if not pieces or not isinstance(pieces[-1], AnyNumber):  # "**" is "*"
-                pieces.append(AnyNumber())
-        elif char == "?":
-            pieces.append(One(lambda c: c != "/"))
-        elif char == "[":
-            end = _closing(pattern, at, "]")
-            pieces.append(One(_set(pattern[at + 1 : end])))
-            at = end
-        elif char == "{":
-            end = _closing(pattern, at, "}")
-            pieces.append(Either(tuple(pattern[at + 1 : end].split(","))))
-            at = end
-        else:
-            end = _end_of_plain(pattern, at)
-            pieces.append(Either((pattern[at:end],)))
-            at = end - 1
-        at += 1
-    return tuple(pieces)
-
-
-def _end_of_plain(pattern: str, at: int) -> int:
-    """Position after the characters that stand for themselves."""
-    while at < len(pattern) and pattern[at] not in SPECIAL:
-        at += 1
-    return at
-
-
-def _closing(pattern: str, at: int, bracket: str) -> int:
-    end = pattern.find(bracket, at + 1)
-    if end < 0:
-        raise PatternError(f"{pattern[at]} is never closed")
-    return end
-
-
-def _set(text: str) -> Callable[[str], bool]:
-    negated, text = (True, text[1:]) if text.startswith("!") else (False, text)
-    ranges = []
-    at = 0
-    while at < len(text):
-        is_range = text[at + 1 : at + 2] == "-" and at + 2 < len(text)
-        ranges.append((text[at], text[at + 2] if is_range else text[at]))
-        at += 3 if is_range else 1
+def _one_of(members: str, *, is_negated: bool) -> Piece:
+    """One character of a set; never a slash."""
+    ranges = [(lo or one, hi or one) for lo, hi, one in _RANGES.findall(members)]
 
     def fits(char: str) -> bool:
-        return char != "/" and any(lo <= char <= hi for lo, hi in ranges) != negated
+        return char != "/" and any(lo <= char <= hi for lo, hi in ranges) != is_negated
 
-    return fits
+    return lambda places, address: {at + 1 for at in places if fits(address[at : at + 1] or "/")}
+
+
+def _either(words: list[str]) -> Piece:
+    return lambda places, address: {
+        at + len(word) for at in places for word in words if address.startswith(word, at)
+    }

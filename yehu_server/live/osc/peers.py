@@ -28,10 +28,6 @@ class Peer(Protocol):
     """A sender of OSC, which can be answered."""
 
     @property
-    def name(self) -> str:
-        """Host and port, for display."""
-
-    @property
     def host(self) -> str:
         """IP address of the host."""
 
@@ -84,11 +80,6 @@ class UdpPeer:
     address: Address
     traffic: Traffic = field(compare=False)
     buckets: Sequence[TokenBucket] = field(compare=False)
-
-    @property
-    def name(self) -> str:
-        """See `Peer`."""
-        return f"{self.address[0]}:{self.address[1]}"
 
     @property
     def host(self) -> str:

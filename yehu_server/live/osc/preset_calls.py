@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 from yehu_server.errors import PresetError, shortened
-from yehu_server.live.osc.context import CallContext
-from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.context import CallContext, PlayerCalls
 from yehu_server.live.osc.request import Request
 from yehu_server.live.part_addresses import OF_PARTS, PLAIN
 from yehu_server.params.preset_file import Preset, morph
@@ -16,25 +15,13 @@ from yehu_server.params.table import PREFIX
 from yehu_server.playing.live_player import LivePlayer
 
 
-class PresetCalls:
-    """Carries out the calls under ``/preset``, of a player at a group of addresses.
-
-    Attributes
-    ----------
-    by_address : dict
-        The function that carries out each call; each raises YehuError where it refuses.
-    """
+class PresetCalls(PlayerCalls):
+    """Carries out the calls under ``/preset``."""
 
     def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
-        self._player = player
+        super().__init__(player, addressed, context)
         self._presets = player.presets
-        self._addressed = addressed
-        self._clients = context.clients
-        self._send_error = context.send_error
-        self._tree_changed = context.tree_changed
-        self._prefix = PREFIX + addressed
-        self._saves = context.saves
-        self.by_address: dict[str, Callable[[Request], None]] = {
+        self.by_address = {
             "/preset/load": self._load,
             "/preset/morph": self._morph,
             "/preset/save": self._save,
@@ -45,9 +32,9 @@ class PresetCalls:
     def _load(self, call: Request) -> None:
         preset = self._presets.load(call.word())
         self._set(call, "/preset/load", preset.values)
-        call.peer.send(pack(f"{self._prefix}/preset/loaded", preset.name))
+        self._send(call.peer, "/preset/loaded", preset.name)
         for remark in preset.remarks():
-            self._send_error(call.peer, f"{self._prefix}/preset/load", remark)
+            self._send_error(call.peer, "/preset/load", remark)
 
     def _set(self, call: Request, address: str, values: Mapping[str, float]) -> None:
         """Set values of presets, but those that all parts share in the first part alone."""
@@ -58,9 +45,7 @@ class PresetCalls:
         self._clients.echo(call.peer, [self._addressed + one for one in own if one in known])
         if shared:
             which = f"{', '.join(shared)}: one for all parts, left out; "
-            self._send_error(
-                call.peer, self._prefix + address, f"{which}{PREFIX}{address} sets what all share"
-            )
+            self._send_error(call.peer, address, f"{which}{PREFIX}{address} sets what all share")
 
     def _morph(self, call: Request) -> None:
         if len(call.arguments) != 3:
@@ -74,28 +59,28 @@ class PresetCalls:
 
     def _save(self, call: Request) -> None:
         name = call.word()
-        if not self._saves.takes(time.monotonic()):
+        if not self._context.saves.takes(time.monotonic()):
             raise PresetError("presets are saved too often; try again in a second")
         self._presets.save(name, self._player.sound())
         self._announce()
-        call.peer.send(pack(f"{self._prefix}/preset/saved", name))
+        self._send(call.peer, "/preset/saved", name)
 
     def _announce(self) -> None:
         """Announce that there are other presets."""
         self._player.know_programs()
-        self._tree_changed("/preset")
+        self._context.tree_changed("/preset")
 
     def _delete(self, call: Request) -> None:
         name = call.word()
         self._presets.delete(name)
         self._announce()
-        call.peer.send(pack(f"{self._prefix}/preset/deleted", name))
+        self._send(call.peer, "/preset/deleted", name)
 
     def _list(self, call: Request) -> None:
         presets, errors = self._presets.all()
         for preset in presets:
             row = (preset.name, preset.program or 0, shortened(preset.about))
-            call.peer.send(pack(f"{self._prefix}/preset", *row))
-        call.peer.send(pack(f"{self._prefix}/presets", len(presets)))
+            self._send(call.peer, "/preset", *row)
+        self._send(call.peer, "/presets", len(presets))
         for error in errors:
-            self._send_error(call.peer, f"{self._prefix}/preset/list", str(error))
+            self._send_error(call.peer, "/preset/list", str(error))

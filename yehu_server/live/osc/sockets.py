@@ -19,12 +19,12 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from functools import lru_cache
-from typing import Protocol
 
 from yehu_server.live.addresses import Address, Allowed, is_here
 from yehu_server.live.osc.datagrams import datagrams
 from yehu_server.live.osc.fair_queue import FairQueue
 from yehu_server.live.osc.framing import FramingError
+from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.listening import DATAGRAM_BYTES, open_both, widen
 from yehu_server.live.osc.peers import (
     TO_A_HOST,
@@ -52,25 +52,6 @@ WARN_AGAIN_S = 1.0
 LONGEST_WAIT_S = 0.5
 
 
-class Handler(Protocol):
-    """Handles packets; called from the sockets' thread."""
-
-    def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
-        """Handle a packet in steps, between which other packets may be handled."""
-
-    def tick(self) -> None:
-        """Do what is due."""
-
-    def wait_s(self) -> float | None:
-        """Seconds until `tick` has something to do; None where it has nothing."""
-
-    def is_subscribed(self, peer: Peer) -> bool:
-        """Whether a peer is sent changes of values."""
-
-    def gone(self, peer: Peer) -> None:
-        """Drop a peer that has hung up."""
-
-
 class OscPorts:
     """A UDP and a TCP port, and the thread that serves them.
 
@@ -80,7 +61,7 @@ class OscPorts:
         Where the address is in use or not this machine's.
     """
 
-    def __init__(self, host: str, port: int, allowed: Allowed, handler: Handler) -> None:
+    def __init__(self, host: str, port: int, allowed: Allowed, handler: OscHandler) -> None:
         self.traffic = Traffic()
         self._allowed = allowed
         self._handler = handler
@@ -218,7 +199,7 @@ class OscPorts:
         """Drop a peer that hung up, once all of its packets are handled."""
         if isinstance(peer, TcpPeer):
             peer.finish()
-        self._handler.gone(peer)
+        self._handler.clients.forget(peer)
         yield
 
     def _serve(self, key: selectors.SelectorKey, events: int) -> None:
@@ -307,7 +288,7 @@ class OscPorts:
         is_quiet = (
             time.monotonic() - peer.last_packet_s > longest_s and not peer.has_pending_packets
         )
-        return is_quiet and not self._handler.is_subscribed(peer)
+        return is_quiet and not self._handler.clients.is_subscribed(peer)
 
     def _read_stream(self, peer: TcpPeer) -> None:
         if peer.has_pending_packets:  # the sender waits; nothing is lost

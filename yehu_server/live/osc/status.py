@@ -1,33 +1,37 @@
-"""The one table of status values: name, kind, meaning, unit, and how each is read.
+"""The tables of status values: name, kind, meaning, unit, and how each is read.
 
 OSC, OSCQuery, the metrics, the status line of `serve` and docs/osc.md take them from here.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
-
-from yehu_server.live.osc.part_status import PART_ROWS, Kind, PartSources, decibels
+from enum import Enum
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
     from yehu_server.core.engine.ensemble import Ensemble
+    from yehu_server.core.engine.instrument import Instrument
+    from yehu_server.live.audio.output import OutputState
     from yehu_server.live.midi.ports import MidiPorts
     from yehu_server.live.osc.peers import Traffic, WebTraffic
     from yehu_server.playing.delay import Delay
+    from yehu_server.playing.live_player import LivePlayer
 
 STATUS_PREFIX = "/status/"  # before the names, in addresses
 INT_MAX = (1 << 31) - 1
+SILENT_DB = -120.0
 
 
-class OutputState(Protocol):
-    """See ``live.audio.output.OutputState``."""
+class Kind(Enum):
+    """Kind of a status value."""
 
-    device: str | None
-    latency_ms: float
-    losses: int
-    problem: str
+    TEXT = "text"
+    GAUGE = "gauge"  # a number that may rise and fall
+    COUNTER = "counter"  # a number that only grows
 
 
 @dataclass
@@ -39,6 +43,15 @@ class Counts:
     errors: int = 0  # wrong types, unknown addresses, refused calls
     late_bundles: int = 0
     scheduled: int = 0
+
+
+@dataclass(frozen=True)
+class PartSources:
+    """What the status values of a part are read from."""
+
+    player: LivePlayer
+    instruments: Sequence[Instrument]  # one, or those of a section
+    meters: Sequence[Any]  # of each: a record of dtype telemetry.METERS
 
 
 @dataclass(frozen=True)
@@ -60,278 +73,183 @@ class StatusSources:
     uptime_s: float
 
 
-@dataclass(frozen=True)
-class StatusValue:
-    """A row of the table."""
+S = TypeVar("S")
+V = TypeVar("V", float, float | str)
 
-    name: str
+
+@dataclass(frozen=True)
+class StatusValue(Generic[S, V]):
+    """A row of a table."""
+
     kind: Kind
+    name: str
     doc: str
-    read: Callable[[StatusSources], float | str]
+    read: Callable[[S], V]
     unit: str = "1"
 
 
-TEXT, GAUGE, COUNTER = Kind.TEXT, Kind.GAUGE, Kind.COUNTER
+PartValue = StatusValue[PartSources, float]
+AnyValue = StatusValue[StatusSources, float | str]
+
+_part_gauge, _part_counter = (partial(PartValue, kind) for kind in (Kind.GAUGE, Kind.COUNTER))
+_text, _gauge, _counter = (partial(AnyValue, kind) for kind in Kind)
 
 
-def _count(name: str) -> Callable[[StatusSources], int]:
-    """Read a whole number of the callback's meters, which the first instrument has."""
-    return lambda now: int(now.parts[0].meters[0][name])
+def decibels(amplitude: float) -> float:
+    """An amplitude relative to full scale in dB, at least `SILENT_DB`."""
+    return 20.0 * math.log10(max(amplitude, 10.0 ** (SILENT_DB / 20.0)))
 
 
-def _number(name: str) -> Callable[[StatusSources], float]:
-    """Read another number of the callback's meters."""
-    return lambda now: float(now.parts[0].meters[0][name])
+def _pitch(part: PartSources) -> float:
+    pitch = part.player.pitch
+    return -1.0 if pitch is None else pitch
+
+
+def _level(name: str) -> Callable[[PartSources], float]:
+    """Read the largest amplitude of a part's instruments, in decibels."""
+    return lambda part: decibels(max(float(meters[name]) for meters in part.meters))
+
+
+def _sum(name: str) -> Callable[[PartSources], int]:
+    """Add up a whole number of the meters of a part's instruments."""
+    return lambda part: sum(int(meters[name]) for meters in part.meters)
+
+
+# Of each part.
+PART_STATUS: tuple[PartValue, ...] = (
+    _part_gauge("note", "Pitch that sounds, of a note or of a bow drawn by hand; -1 for none.",
+        _pitch, "MIDI note"),
+    _part_gauge("keys", "Number of keys that are held.", lambda p: p.player.keys),
+    _part_gauge("bow_speed", "Speed of the bow; the sign is its direction.",
+        lambda p: p.player.value("/bow/speed"), "m/s"),
+    _part_gauge("bow_side", "String that the bow is on: 1 inner (F4), -1 outer (C5), 0 for none.",
+        lambda p: p.player.value("/bow/side")),
+    _part_gauge("peak_db", "Peak before the stage, of a sixtieth of a second, dBFS.",
+        _level("peak"), "dB"),
+    _part_gauge("rms_db", "Level before the stage, of a sixtieth of a second, dBFS.",
+        _level("rms"), "dB"),
+    _part_counter("applied_events", "Events (moves of bow or finger) that reached the model.",
+        _sum("applied")),
+    _part_counter("late_events", "Events that came after their frame.", _sum("late_events")),
+    _part_counter("dropped_events", "Events dropped because the ring was full.",
+        lambda p: sum(one.dropped_events for one in p.instruments)),
+    _part_gauge("waiting_events", "Events that wait for their frame.", _sum("waiting")),
+    _part_counter("unconverged_solves", "Friction solves that did not converge.",
+        _sum("unconverged")),
+    _part_counter("lost_states",
+        "Number of times the model lost its state and was put back to rest.", _sum("lost")),
+)  # fmt: skip
+_OF_PARTS = {row.name: row for row in PART_STATUS}
+
+
+def _of_first(name: str) -> AnyValue:
+    """The status value of the first part."""
+    row = _OF_PARTS[name]
+    return AnyValue(row.kind, name, row.doc, lambda s: row.read(s.parts[0]), row.unit)
+
+
+def _of_all(name: str) -> AnyValue:
+    """The sum of a status value of all parts."""
+    row = _OF_PARTS[name]
+    return AnyValue(row.kind, name, row.doc, lambda s: sum(map(row.read, s.parts)), row.unit)
+
+
+def _meter(name: str) -> Callable[[StatusSources], float]:
+    """Read a number of the callback's meters, which the first instrument has."""
+    return lambda s: s.parts[0].meters[0][name].item()
 
 
 def _count_of_midi(name: str) -> Callable[[StatusSources], int]:
     """Add up a count of what the parts were sent."""
-    return lambda now: sum(int(part.instruments[0].midi[name]) for part in now.parts)
+    return lambda s: sum(int(part.instruments[0].midi[name]) for part in s.parts)
 
 
-def _of_parts(name: str) -> StatusValue:
-    """The status value of all parts that is the sum of theirs, or the first one's."""
-    row = PART_ROWS[name]
-
-    def read(now: StatusSources) -> float:
-        counted = now.parts if row.is_sum else now.parts[:1]
-        values = [row.read(part) for part in counted]
-        return sum(values[1:], values[0])
-
-    return StatusValue(row.name, row.kind, row.doc, read, row.unit)
-
-
-STATUS: tuple[StatusValue, ...] = (
-    StatusValue(
-        "device",
-        TEXT,
-        "Device that plays, or silent clock.",
-        lambda now: now.output.device or "silent clock",
-    ),
-    StatusValue(
-        "problem",
-        TEXT,
-        "Why no device plays; empty where one does.",
-        lambda now: now.output.problem,
-    ),
-    StatusValue("rate", GAUGE, "Sample rate of the device.", lambda now: now.ensemble.rate, "Hz"),
-    StatusValue(
-        "blocksize",
-        GAUGE,
-        "Frames computed at a time, as set by --blocksize.",
-        lambda now: now.blocksize,
-    ),
-    StatusValue(
-        "period",
-        GAUGE,
-        "Largest number of frames that the device asks for at once.",
-        lambda now: now.delay.period,
-    ),
-    StatusValue(
-        "latency_ms",
-        GAUGE,
-        "Latency that the device reports.",
-        lambda now: now.output.latency_ms,
-        "ms",
-    ),
-    StatusValue(
-        "delay_ms",
-        GAUGE,
-        "Delay from a message to its sound, without the device's latency.",
-        lambda now: 1e3 * now.parts[0].player.delay / now.ensemble.rate,
-        "ms",
-    ),
-    StatusValue("uptime_s", GAUGE, "Time since the start.", lambda now: now.uptime_s, "s"),
-    StatusValue("frame", COUNTER, "Frames played since the start.", _count("frame")),
-    StatusValue(
-        "peak_db",
-        GAUGE,
-        "Peak of the last sixtieth of a second, dBFS.",
-        lambda now: decibels(now.ensemble.level[0]),
-        "dB",
-    ),
-    StatusValue(
-        "rms_db",
-        GAUGE,
-        "Level of the last sixtieth of a second, dBFS.",
-        lambda now: decibels(now.ensemble.level[1]),
-        "dB",
-    ),
-    StatusValue("parts", GAUGE, "Number of parts.", lambda now: len(now.parts)),
-    _of_parts("note"),
-    _of_parts("bow_speed"),
-    _of_parts("bow_side"),
-    StatusValue(
-        "load",
-        GAUGE,
-        "CPU time of the callback divided by its deadline, mean of a second.",
-        _number("load"),
-    ),
-    StatusValue("worst_load", GAUGE, "The same, largest since the start.", _number("worst_load")),
-    StatusValue(
-        "missed_deadlines",
-        COUNTER,
-        "Callbacks that took more CPU time than their deadline.",
-        _count("missed"),
-    ),
-    StatusValue(
-        "late_callbacks",
-        COUNTER,
-        "Requests of the device that came two periods late or more.",
-        _count("late_callbacks"),
-    ),
-    StatusValue("underruns", COUNTER, "Under-runs that the device reported.", _count("underruns")),
-    StatusValue(
-        "device_losses",
-        COUNTER,
-        "Number of times the device disappeared.",
-        lambda now: now.output.losses,
-    ),
-    _of_parts("applied_events"),
-    _of_parts("late_events"),
-    _of_parts("dropped_events"),
-    _of_parts("waiting_events"),
-    _of_parts("unconverged_solves"),
-    _of_parts("lost_states"),
-    StatusValue("osc_packets", COUNTER, "OSC packets received.", lambda now: now.osc.packets),
-    StatusValue(
-        "osc_messages",
-        COUNTER,
-        "OSC messages received.",
-        lambda now: now.messages.messages,
-    ),
-    StatusValue(
-        "osc_malformed",
-        COUNTER,
-        "Packets that are not OSC.",
-        lambda now: now.messages.malformed,
-    ),
-    StatusValue(
-        "osc_errors",
-        COUNTER,
-        "Messages that could not be carried out.",
-        lambda now: now.messages.errors,
-    ),
-    StatusValue(
-        "osc_refused",
-        COUNTER,
-        "Packets of senders that are not allowed, and refused connections.",
-        lambda now: now.osc.refused,
-    ),
-    StatusValue(
-        "osc_dropped",
-        COUNTER,
-        "Packets dropped by the system because its buffer was full.",
-        lambda now: now.osc.kernel_drops,
-    ),
-    StatusValue(
-        "osc_excess",
-        COUNTER,
-        "Packets dropped because their sender had too many waiting.",
-        lambda now: now.osc.excess,
-    ),
-    StatusValue(
-        "osc_unsent",
-        COUNTER,
-        "Answers dropped because they were too many, or not read.",
-        lambda now: now.osc.unsent,
-    ),
-    StatusValue(
-        "osc_failures",
-        COUNTER,
+STATUS: tuple[AnyValue, ...] = (
+    _text("device", "Device that plays, or silent clock.",
+        lambda s: s.output.device or "silent clock"),
+    _text("problem", "Why no device plays; empty where one does.", lambda s: s.output.problem),
+    _gauge("rate", "Sample rate of the device.", lambda s: s.ensemble.rate, "Hz"),
+    _gauge("blocksize", "Frames computed at a time, as set by --blocksize.", lambda s: s.blocksize),
+    _gauge("period", "Largest number of frames that the device asks for at once.",
+        lambda s: s.delay.period),
+    _gauge("latency_ms", "Latency that the device reports.", lambda s: s.output.latency_ms, "ms"),
+    _gauge("delay_ms", "Delay from a message to its sound, without the device's latency.",
+        lambda s: 1e3 * s.parts[0].player.delay / s.ensemble.rate, "ms"),
+    _gauge("uptime_s", "Time since the start.", lambda s: s.uptime_s, "s"),
+    _counter("frame", "Frames played since the start.", _meter("frame")),
+    _gauge("peak_db", "Peak of the last sixtieth of a second, dBFS.",
+        lambda s: decibels(s.ensemble.level[0]), "dB"),
+    _gauge("rms_db", "Level of the last sixtieth of a second, dBFS.",
+        lambda s: decibels(s.ensemble.level[1]), "dB"),
+    _gauge("parts", "Number of parts.", lambda s: len(s.parts)),
+    _of_first("note"),
+    _of_first("bow_speed"),
+    _of_first("bow_side"),
+    _gauge("load", "CPU time of the callback divided by its deadline, mean of a second.",
+        _meter("load")),
+    _gauge("worst_load", "The same, largest since the start.", _meter("worst_load")),
+    _counter("missed_deadlines", "Callbacks that took more CPU time than their deadline.",
+        _meter("missed")),
+    _counter("late_callbacks", "Requests of the device that came two periods late or more.",
+        _meter("late_callbacks")),
+    _counter("underruns", "Under-runs that the device reported.", _meter("underruns")),
+    _counter("device_losses", "Number of times the device disappeared.", lambda s: s.output.losses),
+    _of_all("applied_events"),
+    _of_all("late_events"),
+    _of_all("dropped_events"),
+    _of_all("waiting_events"),
+    _of_all("unconverged_solves"),
+    _of_all("lost_states"),
+    _counter("osc_packets", "OSC packets received.", lambda s: s.osc.packets),
+    _counter("osc_messages", "OSC messages received.", lambda s: s.messages.messages),
+    _counter("osc_malformed", "Packets that are not OSC.", lambda s: s.messages.malformed),
+    _counter("osc_errors", "Messages that could not be carried out.", lambda s: s.messages.errors),
+    _counter("osc_refused", "Packets of senders that are not allowed, and refused connections.",
+        lambda s: s.osc.refused),
+    _counter("osc_dropped", "Packets dropped by the system because its buffer was full.",
+        lambda s: s.osc.kernel_drops),
+    _counter("osc_excess", "Packets dropped because their sender had too many waiting.",
+        lambda s: s.osc.excess),
+    _counter("osc_unsent", "Answers dropped because they were too many, or not read.",
+        lambda s: s.osc.unsent),
+    _counter("osc_failures",
         "Messages that met a defect of the server; please report it, with the log.",
-        lambda now: now.osc.failures,
-    ),
-    StatusValue(
-        "osc_buffer_bytes",
-        GAUGE,
-        "Size of the system's buffer for packets.",
-        lambda now: now.osc.buffer_bytes,
-        "bytes",
-    ),
-    StatusValue(
-        "osc_connections",
-        GAUGE,
-        "Number of TCP connections for OSC.",
-        lambda now: now.osc.connections,
-    ),
-    StatusValue(
-        "osc_subscribers",
-        GAUGE,
-        "Number of subscribers.",
-        lambda now: now.subscribers,
-    ),
-    StatusValue(
-        "scheduled",
-        GAUGE,
-        "Messages that wait for their time tag.",
-        lambda now: now.scheduled,
-    ),
-    StatusValue(
-        "late_bundles",
-        COUNTER,
-        "Bundles that came after their time tag.",
-        lambda now: now.messages.late_bundles,
-    ),
-    StatusValue(
-        "midi_ports",
-        TEXT,
-        "Names of connected MIDI inputs.",
-        lambda now: "; ".join(now.midi.connected) if now.midi else "",
-    ),
-    StatusValue(
-        "midi_connected",
-        GAUGE,
-        "Number of connected MIDI inputs.",
-        lambda now: len(now.midi.connected) if now.midi else 0,
-    ),
-    StatusValue(
-        "midi_messages",
-        COUNTER,
-        "MIDI messages that parts received.",
-        _count_of_midi("messages"),
-    ),
-    StatusValue(
-        "midi_malformed",
-        COUNTER,
-        "Damaged MIDI messages that parts received.",
-        _count_of_midi("malformed"),
-    ),
-    StatusValue(
-        "http_requests",
-        COUNTER,
-        "HTTP requests received, with those for WebSockets.",
-        lambda now: now.web.requests,
-    ),
-    StatusValue(
-        "http_refused",
-        COUNTER,
-        "Requests refused because they were not allowed, or too many.",
-        lambda now: now.web.refused,
-    ),
-    StatusValue(
-        "http_failures",
-        COUNTER,
-        "Requests that met a defect of the server.",
-        lambda now: now.web.failures,
-    ),
-    StatusValue(
-        "http_unsent",
-        COUNTER,
-        "Messages dropped because a WebSocket read too slowly.",
-        lambda now: now.web.unsent,
-    ),
-    StatusValue(
-        "web_sockets", GAUGE, "Number of open WebSockets.", lambda now: now.web.web_sockets
-    ),
-    StatusValue("recording", TEXT, "Names of the files being recorded.", lambda now: now.recording),
-)
-STATUS_ADDRESSES = frozenset(STATUS_PREFIX + row.name for row in STATUS)
+        lambda s: s.osc.failures),
+    _gauge("osc_buffer_bytes", "Size of the system's buffer for packets.",
+        lambda s: s.osc.buffer_bytes, "bytes"),
+    _gauge("osc_connections", "Number of TCP connections for OSC.", lambda s: s.osc.connections),
+    _gauge("osc_subscribers", "Number of subscribers.", lambda s: s.subscribers),
+    _gauge("scheduled", "Messages that wait for their time tag.", lambda s: s.scheduled),
+    _counter("late_bundles", "Bundles that came after their time tag.",
+        lambda s: s.messages.late_bundles),
+    _text("midi_ports", "Names of connected MIDI inputs.",
+        lambda s: "; ".join(s.midi.connected) if s.midi else ""),
+    _gauge("midi_connected", "Number of connected MIDI inputs.",
+        lambda s: len(s.midi.connected) if s.midi else 0),
+    _counter("midi_messages", "MIDI messages that parts received.", _count_of_midi("messages")),
+    _counter("midi_malformed", "Damaged MIDI messages that parts received.",
+        _count_of_midi("malformed")),
+    _counter("http_requests", "HTTP requests received, with those for WebSockets.",
+        lambda s: s.web.requests),
+    _counter("http_refused", "Requests refused because they were not allowed, or too many.",
+        lambda s: s.web.refused),
+    _counter("http_failures", "Requests that met a defect of the server.",
+        lambda s: s.web.failures),
+    _counter("http_unsent", "Messages dropped because a WebSocket read too slowly.",
+        lambda s: s.web.unsent),
+    _gauge("web_sockets", "Number of open WebSockets.", lambda s: s.web.web_sockets),
+    _text("recording", "Names of the files being recorded.", lambda s: s.recording),
+)  # fmt: skip
 
 
-def read_status(now: StatusSources) -> dict[str, float | str]:
+def read_status(sources: StatusSources) -> dict[str, float | str]:
     """All status values, by name, in the table's order."""
-    return {row.name: row.read(now) for row in STATUS}
+    return {row.name: row.read(sources) for row in STATUS}
+
+
+def read_part_status(part: PartSources) -> dict[str, float]:
+    """All status values of a part, by name, in the table's order."""
+    return {row.name: row.read(part) for row in PART_STATUS}
 
 
 def as_argument(value: float | str) -> float | str:

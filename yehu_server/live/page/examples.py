@@ -28,15 +28,14 @@ def write_capture_headers(folder: Path) -> list[Path]:
         Where one cannot be written.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    return [_write(folder / f"{rate:.0f}.json", rate) for rate in RATES]
-
-
-def _write(path: Path, rate: float) -> Path:
-    spec = Style().spec(rate, calibration_for(rate))
-    header = header_of(SessionStart((spec,), has_room=True))
-    header["build"] |= PROCESSOR
-    write_text(path, json.dumps(header, separators=(",", ":")))
-    return path
+    written = []
+    for rate in RATES:
+        spec = Style().spec(rate, calibration_for(rate))
+        header = header_of(SessionStart((spec,), has_room=True))
+        header["build"] |= PROCESSOR
+        written.append(folder / f"{rate:.0f}.json")
+        write_text(written[-1], json.dumps(header, separators=(",", ":")))
+    return written
 
 
 # The mappings that they were written for, as the README plays them.

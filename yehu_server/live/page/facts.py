@@ -140,7 +140,7 @@ def tunings() -> dict[str, Any]:
         found[scale.stem] = tuning(read_tuning(scale))
         for keyboard in maps:
             with suppress(ParameterError):  # the scale is not one for this map
-                found[_name(scale, keyboard)] = tuning(read_tuning(scale, keyboard))
+                found[f"{scale.stem}, {keyboard.stem}"] = tuning(read_tuning(scale, keyboard))
     return found
 
 
@@ -148,10 +148,6 @@ def tuning(one: Tuning) -> dict[str, Any]:
     """A tuning: the pitch of each key at the usual A4, or None where each sounds its own number."""
     keys = None if one.keys is None else [one.pitch(float(key), STANDARD_A4) for key in KEYS]
     return {"name": one.name, "keys": keys}
-
-
-def _name(scale: Path, keyboard: Path) -> str:
-    return f"{scale.stem}, {keyboard.stem}"
 
 
 HEAD = "// Written by `python -m yehu_server.live.page`; changes are lost.\n"

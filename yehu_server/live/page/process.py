@@ -22,7 +22,7 @@ from yehu_server.live.addresses import Allowed
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.page.site import HEADERS, Site
 from yehu_server.live.page.sockets import MOST_PAGES, PageSockets
-from yehu_server.live.web.guard import own_names, refusal
+from yehu_server.live.web.guard import check, own_names
 from yehu_server.util.processes import Child, Message, Parent
 
 NICE = 5  # after the processes that play
@@ -97,18 +97,11 @@ class Pages:
             raise
 
     async def _respond(self, request: web.Request) -> web.StreamResponse:
-        if request.remote is None or request.remote not in self._allowed:
-            raise web.HTTPForbidden(text="this address is not allowed\n")
-        headers = request.headers
-        reason = refusal(headers.getall("Host", []), headers.getall("Origin", []), self._names)
-        if reason:
-            raise web.HTTPForbidden(text=f"{reason}\n")
-        if request.method not in {"GET", "HEAD"}:
-            raise web.HTTPMethodNotAllowed(request.method, ("GET", "HEAD"))
+        check(request, self._allowed, self._names)
         serve = {SOCKET: self._sockets.serve_page, SOUND: self._sockets.serve_listener}
         if request.path not in serve:
             return self._site.answer(request)
-        if headers.get("Upgrade", "").lower() != "websocket":
+        if request.headers.get("Upgrade", "").lower() != "websocket":
             raise web.HTTPUpgradeRequired(text="for WebSockets\n")
         if self._sockets.count >= MOST_PAGES:
             raise web.HTTPServiceUnavailable(text="there are too many pages\n")

@@ -12,7 +12,9 @@ import socket
 from collections.abc import Sequence
 from urllib.parse import urlsplit
 
-from yehu_server.live.addresses import is_here
+from aiohttp import web
+
+from yehu_server.live.addresses import Allowed, is_here
 
 LONGEST_NAME = 300
 PORTS = {"http": 80, "https": 443}  # by scheme, where an origin names none
@@ -39,6 +41,29 @@ def refusal(hosts: Sequence[str], origins: Sequence[str], names: frozenset[str])
     if not is_ours or not (host in names or is_here(host)):
         return "requests of foreign pages are refused"
     return ""
+
+
+def check(request: web.Request, allowed: Allowed, names: frozenset[str]) -> None:
+    """Refuse a request that is not allowed by its sender, its headers or its method.
+
+    Raises
+    ------
+    web.HTTPException
+        Where it is refused.
+    """
+    if request.remote is None or request.remote not in allowed:
+        raise web.HTTPForbidden(text="this address is not allowed\n")
+    headers = request.headers
+    try:
+        "".join((request.path, *headers.values())).encode()
+    except UnicodeEncodeError:  # surrogates, which cannot be sent back
+        refused = web.HTTPBadRequest(text="not UTF-8\n")
+        refused.force_close()
+        raise refused from None
+    if reason := refusal(headers.getall("Host", []), headers.getall("Origin", []), names):
+        raise web.HTTPForbidden(text=f"{reason}\n")
+    if request.method not in {"GET", "HEAD"}:
+        raise web.HTTPMethodNotAllowed(request.method, ("GET", "HEAD"))
 
 
 def _place(text: str, port: int = 0) -> tuple[str, int]:

@@ -9,8 +9,7 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metri
 from prometheus_client.exposition import choose_encoder
 from prometheus_client.registry import Collector
 
-from yehu_server.live.osc.part_status import PART_STATUS, Kind
-from yehu_server.live.osc.status import STATUS
+from yehu_server.live.osc.status import PART_STATUS, STATUS, Kind
 from yehu_server.live.part_addresses import FIRST, group
 from yehu_server.live.web.query import Snapshot
 

@@ -14,8 +14,14 @@ from typing import Any
 
 from yehu_server.errors import ParameterError
 from yehu_server.live.osc.call_table import CALLS, Argument, Call
-from yehu_server.live.osc.part_status import PART_STATUS, PartValue
-from yehu_server.live.osc.status import STATUS, STATUS_PREFIX, StatusValue, as_argument
+from yehu_server.live.osc.status import (
+    PART_STATUS,
+    STATUS,
+    STATUS_PREFIX,
+    AnyValue,
+    PartValue,
+    as_argument,
+)
 from yehu_server.live.part_addresses import (
     FIRST,
     OF_PARTS,
@@ -130,19 +136,6 @@ def find(root: Node, path: str) -> Node | None:
     return node
 
 
-def host_info(name: str, osc: tuple[str, int], web: tuple[str, int]) -> dict[str, Any]:
-    """The server's HOST_INFO: its name, extensions and addresses."""
-    return {
-        "NAME": name,
-        "EXTENSIONS": EXTENSIONS,
-        "OSC_IP": osc[0],
-        "OSC_PORT": osc[1],
-        "OSC_TRANSPORT": "UDP",
-        "WS_IP": web[0],
-        "WS_PORT": web[1],
-    }
-
-
 def _put(root: Node, address: str, described: Node) -> None:
     """Add a node, and the containers above it that are missing."""
     node, path = root, ""
@@ -154,29 +147,29 @@ def _put(root: Node, address: str, described: Node) -> None:
 
 
 def _of_param(param: Param, addressed: str, snapshot: Callable[[str], Snapshot]) -> Node:
-    return {
-        "ACCESS": READ_WRITE,
-        "TYPE": "f",
-        "VALUE": [_json(snapshot(addressed).values[param.address])],
-        "RANGE": [{"MIN": param.lo, "MAX": param.hi}],
-        "CLIPMODE": ["both"],
-        "DESCRIPTION": f"{param.doc} At {AS_UNIT[1:]} below, the same as 0 to 1.",
-    } | _units([param.unit])
+    value = snapshot(addressed).values[param.address]
+    doc = f"{param.doc} At {AS_UNIT[1:]} below, the same as 0 to 1."
+    return _of_number(value, param.lo, param.hi, doc) | _units([param.unit])
 
 
 def _of_unit(param: Param, addressed: str, snapshot: Callable[[str], Snapshot]) -> Node:
+    value = param.to_unit(snapshot(addressed).values[param.address])
+    return _of_number(value, 0.0, 1.0, f"{param.doc} As 0 to 1.")
+
+
+def _of_number(value: float, lo: float, hi: float, doc: str) -> Node:
     return {
         "ACCESS": READ_WRITE,
         "TYPE": "f",
-        "VALUE": [_json(param.to_unit(snapshot(addressed).values[param.address]))],
-        "RANGE": [{"MIN": 0.0, "MAX": 1.0}],
+        "VALUE": [_json(value)],
+        "RANGE": [{"MIN": lo, "MAX": hi}],
         "CLIPMODE": ["both"],
-        "DESCRIPTION": f"{param.doc} As 0 to 1.",
+        "DESCRIPTION": doc,
     }
 
 
 def _of_status(
-    row: StatusValue | PartValue, addressed: str, snapshot: Callable[[str], Snapshot]
+    row: AnyValue | PartValue, addressed: str, snapshot: Callable[[str], Snapshot]
 ) -> Node:
     value = as_argument(snapshot(addressed).status[row.name])
     described = {"ACCESS": READ, "TYPE": _type(value), "VALUE": [_json(value)]}

@@ -19,17 +19,18 @@ from urllib.parse import urlsplit
 from aiohttp import web
 
 from yehu_server.errors import DeviceError, one_line
-from yehu_server.live.addresses import Address, Allowed, format_address, plain, why
+from yehu_server.live.addresses import Address, Allowed, format_address, plain
 from yehu_server.live.osc.call_table import Call
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.peers import WebTraffic
 from yehu_server.live.osc.sockets import OscPorts
 from yehu_server.live.web import query
-from yehu_server.live.web.guard import own_names, refusal
+from yehu_server.live.web.guard import check, own_names
 from yehu_server.live.web.loops import LoopThread
 from yehu_server.live.web.metrics import Metrics
 from yehu_server.live.web.web_sockets import WebSockets
 from yehu_server.params.table import PREFIX
+from yehu_server.util.retry import why
 
 log = logging.getLogger(__name__)
 
@@ -162,7 +163,9 @@ class WebServer:
             raise web.HTTPInternalServerError from None
 
     async def _respond(self, request: web.Request) -> web.StreamResponse:
-        self._check(request)
+        check(request, self._allowed, self._names)
+        if (request.content_length or 0) > BODY_BYTES:
+            raise web.HTTPRequestEntityTooLarge(BODY_BYTES, request.content_length or 0)
         if request.headers.get("Upgrade", "").lower() == "websocket":
             if self.traffic.web_sockets >= MOST_WEB_SOCKETS:
                 raise web.HTTPServiceUnavailable(text="there are too many WebSockets\n")
@@ -183,22 +186,6 @@ class WebServer:
             link = "" if page_port is None else PANEL
             return _html(PAGE.format(panel=link, parameters=PARAMETERS, prefix=PREFIX))
         return self._query(request)
-
-    def _check(self, request: web.Request) -> None:
-        if request.remote is None or request.remote not in self._allowed:
-            raise web.HTTPForbidden(text="this address is not allowed\n")
-        headers = request.headers
-        if not all(map(_is_text, (request.path, *headers.values()))):
-            refused = web.HTTPBadRequest(text="not UTF-8\n")
-            refused.force_close()
-            raise refused
-        reason = refusal(headers.getall("Host", []), headers.getall("Origin", []), self._names)
-        if reason:
-            raise web.HTTPForbidden(text=f"{reason}\n")
-        if request.method not in {"GET", "HEAD"}:
-            raise web.HTTPMethodNotAllowed(request.method, ("GET", "HEAD"))
-        if (request.content_length or 0) > BODY_BYTES:
-            raise web.HTTPRequestEntityTooLarge(BODY_BYTES, request.content_length or 0)
 
     def _query(self, request: web.Request) -> web.Response:
         """Answer with a node, or with some of its attributes."""
@@ -222,7 +209,15 @@ class WebServer:
         reached = plain(request.get_extra_info("sockname", (self.host, self.port))[0])
         is_anywhere = ipaddress.ip_address(plain(self._osc.host)).is_unspecified
         osc_host = reached if is_anywhere else self._osc.host
-        return query.host_info(NAME, (osc_host, self._osc.port), (reached, self.port))
+        return {
+            "NAME": NAME,
+            "EXTENSIONS": query.EXTENSIONS,
+            "OSC_IP": osc_host,
+            "OSC_PORT": self._osc.port,
+            "OSC_TRANSPORT": "UDP",
+            "WS_IP": reached,
+            "WS_PORT": self.port,
+        }
 
     def _parameters(self) -> web.Response:
         file = self._sources.folder / PARAMETERS
@@ -252,15 +247,6 @@ def listen(what: str, host: str, port: int) -> socket.socket:
 def _with_port(host: str, port: int) -> str:
     """The host of a request's header Host, which was checked, with another port."""
     return format_address(urlsplit(f"//{host}").hostname or "", port)
-
-
-def _is_text(received: str) -> bool:
-    """Whether a received text was UTF-8; otherwise it has surrogates, which cannot be sent back."""
-    try:
-        received.encode()
-    except UnicodeEncodeError:
-        return False
-    return True
 
 
 def _reads_html(request: web.Request) -> bool:

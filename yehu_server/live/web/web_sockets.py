@@ -37,7 +37,6 @@ class WebPeer:
 
     def __init__(self, host: str, loop: asyncio.AbstractEventLoop, traffic: WebTraffic) -> None:
         self.host = host
-        self.name = f"{host} (WebSocket)"
         self._loop = loop
         self._traffic = traffic
         self._turn = threading.Lock()

@@ -31,8 +31,8 @@ from yehu_server.core.player.bowing import (
 )
 from yehu_server.lab.plot.axes import LABELS
 from yehu_server.lab.plot.cells import limit_lines, regime_patches
-from yehu_server.lab.plot.study import draw_limits_over, draw_map
-from yehu_server.lab.plot.sweep_maps import map_of
+from yehu_server.lab.plot.study import draw_limits_over
+from yehu_server.lab.plot.sweep_maps import draw_map, map_of
 from yehu_server.lab.sweeps.result import Result
 from yehu_server.lab.sweeps.running import sweep
 from yehu_server.lab.sweeps.study import study_of
@@ -102,7 +102,7 @@ def draw(axes: Any, found: Result, x: str, at: dict[str, int]) -> None:
     cells = map_of(found, found.grid("regime"), x, "force", at)
     draw_map(axes, found, x, "force", cells, "regime")
     draw_limits_over(axes, found, found.study(), x, "force", at)
-    axes.set_xlabel(LABELS[x])
+    axes.set(xlabel=LABELS[x], ylabel="")
     shares = np.bincount(cells.astype(int).ravel(), minlength=len(found.regimes)) / cells.size
     words = [
         f"{name} {100 * share:.0f}"

@@ -1,7 +1,7 @@
 """Build the instrument for pages and for C programs, in a process of its own.
 
 numba compiles for one processor in a process, so another one's code is made in another process:
-`python -m yehu_server.ahead`.
+`python -m yehu_server.ahead.build`.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str =
     YehuError
         Where something is missing to build with, or the folder cannot be written.
     """
-    command = [sys.executable, "-m", "yehu_server.ahead", what, str(folder), cpu]
+    command = [sys.executable, "-m", "yehu_server.ahead.build", what, str(folder), cpu]
     command += [f"{rate!r}" for rate in rates]
     environment = {**os.environ, "NUMBA_CPU_NAME": cpu, "NUMBA_CPU_FEATURES": ""}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603 - our own
@@ -93,3 +93,12 @@ def _written(path: Path, content: bytes) -> Path:
     with replacing(path) as partial:
         partial.write_bytes(content)
     return path
+
+
+if __name__ == "__main__":
+    try:
+        _what, _folder, _cpu, *_rates = sys.argv[1:]
+        for _path in build_here(_what, Path(_folder), _cpu, [float(rate) for rate in _rates]):
+            sys.stdout.write(f"{_path}\n")
+    except YehuError as error:
+        sys.exit(str(error))

@@ -12,7 +12,6 @@ from yehu_server.errors import YehuError
 
 PAGE_LINKERS = ("wasm-ld", *(f"wasm-ld-{version}" for version in range(22, 13, -1)))
 LIBRARY_LINKERS = ("cc", "gcc", "clang")
-PAGE_BYTES = 65536  # of WebAssembly's memory
 STACK_BYTES = 1 << 18
 
 

@@ -107,14 +107,13 @@ def _fit(arguments: argparse.Namespace) -> int:
     # Before NumPy is loaded: threads would only wait for each other, since matrices are small.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from yehu_server.lab.body import fit
-    from yehu_server.lab.body.body_file import body_file_of, check_ending, check_targets
+    from yehu_server.lab.body.body_file import body_file_of, check_targets
     from yehu_server.lab.plot.body import write_picture
     from yehu_server.lab.plot.png import check_picture
     from yehu_server.util.files import check_distinct
 
     measurements = [*arguments.measurements, *arguments.radiation]
     outputs = {"-o": arguments.output}
-    check_ending(arguments.output)
     if body_file_of(arguments.output) != arguments.output:
         outputs["the body file"] = body_file_of(arguments.output)
     if arguments.plot is not None:

@@ -96,14 +96,14 @@ def perform(task: Task, report_progress: ProgressCallback) -> Done:
 
 def _keep_failure(task: Task, line: Line) -> None:
     """Keep that a score cannot be played: another try would end alike, unless it is another."""
-    from yehu_server.rendering.build_records import hash_of, keep_failure, make_folder_for
+    from yehu_server.rendering.build_records import hash_of, keep, make_folder_for
 
     found = hash_of(task.entry.source)
     if not found or not task.key.endswith(found):
         return
     with contextlib.suppress(OutputError):
         make_folder_for(task.entry.target)
-        keep_failure(task.entry.target, task.key, line)
+        keep(task.entry.target, task.key, (), (), line)
 
 
 def _made(task: Task, report_progress: ProgressCallback) -> Done:

@@ -105,9 +105,9 @@ def _check(arguments: argparse.Namespace) -> str:
     instrument_of(arguments)
     style_of(arguments)
     if arguments.plot is not None:
-        from yehu_server.lab.plot.axes import check_matplotlib
+        from yehu_server.util.extras import need
 
-        check_matplotlib("--plot")
+        need("matplotlib", "--plot", "plots")
     return str(form)
 
 

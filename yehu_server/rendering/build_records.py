@@ -114,7 +114,7 @@ def make_folder_for(target: Path) -> None:
 def keep(
     target: Path, key: str, read: Iterable[Path], results: Iterable[Path], line: Record
 ) -> None:
-    """Write the record of results that are in their places.
+    """Write the record of results that are in their places, or that there can be none.
 
     Parameters
     ----------
@@ -125,36 +125,17 @@ def keep(
     results : iterable of Path
         The target, and what was made beside it.
     line : dict
-        What may be told of them again.
+        What may be told of them again; it has an `error` where there can be no result, which
+        holds as long as the key is the same.
     """
-    record = {
-        "key": key,
-        "read": {str(path.absolute()): hash_of(path) for path in read},
-        "results": {_beside(target, path): _result(path) for path in results},
-        "line": line,
-    }
+    made = {}
+    for path in results:
+        status = path.stat()
+        facts = {"size": status.st_size, "mtime_ns": status.st_mtime_ns, "hash": hash_of(path)}
+        made[_beside(target, path)] = facts
+    inputs = {str(path.absolute()): hash_of(path) for path in read}
+    record = {"key": key, "read": inputs, "results": made, "line": line}
     write_text(record_of(target), json.dumps(record) + "\n")
-
-
-def keep_failure(target: Path, key: str, error: Record) -> None:
-    """Write that there can be no result, as long as the key is the same.
-
-    Parameters
-    ----------
-    error : dict
-        What may be told of it again; it has an `error`.
-    """
-    record = {"key": key, "read": {}, "results": {}, "line": error}
-    write_text(record_of(target), json.dumps(record) + "\n")
-
-
-def _result(path: Path) -> Record:
-    status = path.stat()
-    return {
-        "size": status.st_size,
-        "mtime_ns": status.st_mtime_ns,
-        "hash": hash_of(path),
-    }
 
 
 def up_to_date(
@@ -168,7 +149,7 @@ def up_to_date(
         The target, and what is wanted beside it.
     """
     try:
-        record = json.loads(read_text(record_of(target), MOST_RECORD_BYTES))
+        record = _read(target)
         line: Record = record["line"]
         made = record["results"]
         wanted = {} if "error" in line else {_beside(target, path): path for path in results}
@@ -183,10 +164,14 @@ def up_to_date(
     return line if is_current and isinstance(line, dict) else None
 
 
+def _read(target: Path) -> Any:
+    return json.loads(read_text(record_of(target), MOST_RECORD_BYTES))
+
+
 def previous_line(target: Path) -> Record:
     """The manifest line of a result, up to date or not; empty if there is none."""
     try:
-        line = json.loads(read_text(record_of(target), MOST_RECORD_BYTES))["line"]
+        line = _read(target)["line"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return {}
     return line if isinstance(line, dict) else {}
@@ -207,18 +192,12 @@ def _beside(target: Path, path: Path) -> str:
 
 def clear_work(folders: Iterable[Path]) -> None:
     """Remove what processes that were killed left half made; nobody may be making any."""
-    for path in _leftovers(folders):
-        with contextlib.suppress(OSError):
-            path.unlink()
-
-
-def _leftovers(folders: Iterable[Path]) -> Iterator[Path]:
     for folder in folders:
-        try:
-            files = list((folder / HIDDEN).iterdir())
-        except OSError:
-            continue
-        yield from (file for file in files if file.suffix != ".json" and file.name != LOCK)
+        with contextlib.suppress(OSError):
+            for file in list((folder / HIDDEN).iterdir()):
+                if file.suffix != ".json" and file.name != LOCK:
+                    with contextlib.suppress(OSError):
+                        file.unlink()
 
 
 LOCK = "lock"

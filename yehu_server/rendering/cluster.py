@@ -22,6 +22,7 @@ from typing import Any, Self
 from yehu_server.errors import YehuError
 from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.workers import Event, Perform
+from yehu_server.util.extras import need
 from yehu_server.util.files import read_text, why
 
 PORT = 8786  # Dask's own choice
@@ -92,7 +93,7 @@ class Cluster:
         setup: Callable[[], object] | None = None,
         warn: Callable[[str], None] = lambda _line: None,
     ) -> None:
-        check_installed()
+        need("distributed", "--dask", "cluster")
         self.address = scheduler_address(address)
         self._setup, self._warn = cluster_worker.packed_setup(setup), warn
         self._client: Any = None
@@ -156,7 +157,8 @@ class Cluster:
             while True:
                 if time.monotonic() - looked >= LOOK_EVERY_S:
                     threads = self._reached(self._client.nthreads)
-                    room, looked = _room(len(threads)), time.monotonic()
+                    room = max(FEWEST_JOBS, JOBS_PER_THREAD * len(threads))
+                    looked = time.monotonic()
                     if not threads and not is_told:
                         self._warn(f"{self.address}: no worker is left; waiting for one")
                     is_told = not threads
@@ -179,25 +181,14 @@ class Cluster:
         self, name: str, perform: Perform, numbered: Iterable[tuple[int, Any]]
     ) -> list[tuple[int, Any]]:
         """Send some jobs off at once, as cheap as one; return their numbers and futures."""
-        numbers, packs = [], []
-        for job, task in numbered:
-            numbers.append(job)
-            packs.append(cluster_worker.packed(perform, task, self._setup))
-        keys = [f"{name}-{job}" for job in numbers]
-        futures = (
-            self._reached(
-                self._client.map,
-                cluster_worker.do,
-                packs,
-                code=self._code,
-                key=keys,
-                pure=False,
-                retries=0,
-            )
-            if keys
-            else []
-        )
-        return list(zip(numbers, futures, strict=True))
+        jobs = dict(numbered)
+        packs = [cluster_worker.packed(perform, task, self._setup) for task in jobs.values()]
+        if not jobs:
+            return []
+        keys = [f"{name}-{job}" for job in jobs]
+        more = {"code": self._code, "key": keys, "pure": False, "retries": 0}
+        futures = self._reached(self._client.map, cluster_worker.do, packs, **more)
+        return list(zip(jobs, futures, strict=True))
 
     def _results(self, ended: queue.SimpleQueue[Any]) -> Iterator[tuple[Any, Any]]:
         """Wait for a moment; return the futures that have ended, and their results."""
@@ -269,25 +260,6 @@ class Cluster:
             return call(*arguments, **named)
         except (OSError, TimeoutError, CancelledError, RuntimeError) as error:
             raise YehuError(f"{self.address}: the scheduler is lost") from error
-
-
-def check_installed() -> None:
-    """Check that Dask is there.
-
-    Raises
-    ------
-    YehuError
-        Where it is not.
-    """
-    try:
-        import distributed  # noqa: F401
-    except ImportError:
-        raise YehuError("--dask needs Dask: pip install yehu-server[cluster]") from None
-
-
-def _room(threads: int) -> int:
-    """Number of jobs in flight, for so many workers."""
-    return max(FEWEST_JOBS, JOBS_PER_THREAD * threads)
 
 
 def _hush() -> None:

@@ -5,6 +5,7 @@ The tree is kept: ``songs/a.mid`` becomes ``songs/a.wav``.
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -70,22 +71,19 @@ def tree_of(folder: Path, output: Path, ending: str) -> Tree:
     """
     problems: list[tuple[str, str]] = []
     skipped: list[tuple[str, str]] = []
-    names = []
     try:
-        for name in _walk(folder, output, problems, skipped):
-            names.append(name)
-            if len(names) > MOST_SCORES:
-                raise ScoreError(f"{folder}: has more than {MOST_SCORES} scores")
+        walk = _walk(folder, output, problems, skipped)
+        names = sorted(itertools.islice(walk, MOST_SCORES + 1))
     except OSError as error:
         raise ScoreError(f"{folder}: cannot be read: {why(error)}") from error
-    names.sort()
+    if len(names) > MOST_SCORES:
+        raise ScoreError(f"{folder}: has more than {MOST_SCORES} scores")
     targets = _targets(names, ending)
-    entries = []
-    for name in names:
-        if name in targets:
-            entries.append(Entry(name, folder / name, output / targets[name]))
-        else:
-            problems.append((name, "another score is rendered to a file of this name"))
+    taken = "another score is rendered to a file of this name"
+    problems += [(name, taken) for name in names if name not in targets]
+    entries = (
+        Entry(name, folder / name, output / targets[name]) for name in names if name in targets
+    )
     return Tree(tuple(entries), tuple(sorted(problems)), tuple(sorted(skipped)))
 
 
@@ -148,22 +146,14 @@ def _targets(names: list[str], ending: str) -> dict[str, str]:
     """
     taken: set[str] = set()
     targets: dict[str, str] = {}
-
-    def take(name: str, target: str) -> bool:
-        if target.casefold() in taken:
-            return False
-        taken.add(target.casefold())
-        targets[name] = target
-        return True
-
-    late = [name for name in sorted(names, key=_rank) if not take(name, _stem(name) + ending)]
-    for name in late:
-        take(name, name + ending)
+    ranked = sorted(names, key=_rank)
+    stems = [(name, os.path.splitext(name)[0]) for name in ranked]  # noqa: PTH122 - no Path
+    for name, stem in (*stems, *zip(ranked, ranked, strict=True)):
+        target = stem + ending
+        if name not in targets and target.casefold() not in taken:
+            taken.add(target.casefold())
+            targets[name] = target
     return targets
-
-
-def _stem(name: str) -> str:
-    return os.path.splitext(name)[0]  # noqa: PTH122 - a Path changes some names
 
 
 def _rank(name: str) -> tuple[int, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -91,13 +91,5 @@ class Options:
 
     def solo(self, score: Score) -> Part:
         """The part of one instrument that plays a score alone."""
-        return Part(
-            score,
-            name=score.name,
-            style=self.style,
-            channels=self.channels,
-            phrasing=self.phrasing,
-            quantities=self.quantities,
-            calibration=self.calibration,
-            gain_db=self.gain_db,
-        )
+        own = {each.name for each in fields(Part)} & {each.name for each in fields(self)}
+        return Part(score, score.name, **{name: getattr(self, name) for name in own})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -51,20 +52,16 @@ class PartPlayer:
     def play_before(self, end: int) -> None:
         """Post what happens before a frame, except what was posted already."""
         number, event = self._next
-        while event is not None:
-            frame = self.instruments[0].frames(event.time_s * 1e3)
-            if frame >= end:
-                break
+        while event and (frame := self.instruments[0].frames(event.time_s * 1e3)) < end:
             self._receive(number, event, frame)
             number, event = next(self._events, END)
         self._next = number, event
 
     def finish(self, frame: int) -> None:
         """Post what is left, and end all notes, at the last frame of the score."""
-        number, event = self._next
-        while event is not None:
-            self._receive(number, event, frame)
-            number, event = next(self._events, END)
+        for number, event in itertools.chain([self._next], self._events):
+            if event is not None:
+                self._receive(number, event, frame)
         self._next = END
         self.midi.end_all(frame=frame)
 

@@ -25,7 +25,6 @@ from yehu_server.util.wav_stream import WavStream, check_shape, encoded
 PIPE = Path("-")  # known by its identity: a file may have that name too
 FORMATS = ("wav", "raw")
 UNKNOWN = struct.pack("<I", 0xFFFFFFFF)
-SIGPIPE = 13
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
 

@@ -65,8 +65,7 @@ class PlotData:
         self._frames += len(sound)
         self._asked_at.append(self._frames / self.rate)
         self._asked.append(tuple(math.nan if each is None else each for each in asked))
-        mono = sound if sound.ndim == 1 else sound.mean(axis=1)
-        self._add(mono)
+        self._add(sound if sound.ndim == 1 else sound.mean(axis=1))
 
     def finish(self) -> None:
         """Measure the last half window, which silence follows."""

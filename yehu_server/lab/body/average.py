@@ -9,10 +9,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body.curve import Curve, as_db, running_median, to_mobility
+from yehu_server.lab.body.curve import Curve, Floats, as_db, running_median, to_mobility
 from yehu_server.lab.body.tap import BEFORE_S, Tap, pulse
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 ENOUGH_TAPS = 3
 ROLLED_OFF_DB = 25.0  # below its largest: the hammer excites no more
@@ -97,11 +95,8 @@ def _h1(frequency_hz: Any, forces: Any, spectra: Any) -> Curve:
 def _hit_alone(force: Floats) -> Floats:
     """The force of the hit, and zero where the hammer does not touch."""
     first, end = pulse(force)
-    touched = end - first
-    alone = np.zeros_like(force)
-    start, stop = max(0, first - touched), min(len(force), end + touched)
-    alone[start:stop] = force[start:stop]
-    return alone
+    touched, place = end - first, np.arange(len(force))
+    return np.where((place >= first - touched) & (place < end + touched), force, 0.0)
 
 
 def _spectrum(tap: Tap, what: str, length: int) -> Any:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,18 +17,14 @@ import numpy as np
 from yehu_server.core.physics.quantities import Body, measured_body, read_body
 from yehu_server.core.physics.radiation import response
 from yehu_server.errors import MeasurementError, OutputError
-from yehu_server.lab.body.curve import Curve
+from yehu_server.lab.body.curve import Complexes, Curve, Floats
 from yehu_server.lab.body.measurement import Measurement
 from yehu_server.lab.body.modes import Modes
 from yehu_server.util import __version__
 from yehu_server.util.documents import Document
 from yehu_server.util.files import check_target, replacing
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Complexes = np.ndarray[Any, np.dtype[np.complex128]]
-
 FORMAT = "yehu-server body"  # in the files that `save` writes, which it may replace
-GROUP = 1.0 / 250.0  # of the frequency: lines that are kept as one
 DIGITS = 7
 
 
@@ -69,7 +65,9 @@ class Fit:
     @property
     def modes(self) -> Modes:
         """The bridge modes, as arrays."""
-        return modes_of(self.body)
+        mass, omega = np.array(self.body.mass), np.array(self.body.omega)
+        damping = np.array(self.body.damping) / (2.0 * mass * omega)
+        return Modes(np.array(self.body.frequency_hz), damping, 1.0 / mass)
 
     def admittance(self, frequency_hz: Floats) -> Complexes:
         """Velocity per force (s/kg) of the fitted modes at frequencies [shape=(lines,)]."""
@@ -77,10 +75,15 @@ class Fit:
 
     def radiation(self, frequency_hz: Floats) -> Complexes:
         """Pressure per force (Pa/N) of the fitted sections at frequencies [shape=(lines,)]."""
-        return radiation_of(self.body, np.asarray(frequency_hz, np.float64))
+        body, at_hz = self.body, np.asarray(frequency_hz, np.float64)
+        sections = np.array(body.sections).reshape(-1, 4)
+        gains = np.array([body.direct_gain])
+        return np.asarray(response(sections, gains, body.radiation_rate, at_hz))
 
     def save(self, target: Path, *, overwrite: bool = False) -> tuple[Path, ...]:
-        """Write an instrument file (.toml) with its body file, or a body file (.json) alone.
+        """Write a body file (.json), or an instrument file (.toml) and its body file beside it.
+
+        An instrument file that names the body already is left as it is.
 
         Returns
         -------
@@ -91,58 +94,14 @@ class Fit:
         OutputError
             Where they cannot be written, or other files are in their place.
         """
-        return save(self, Path(target), overwrite=overwrite)
-
-
-def modes_of(body: Body) -> Modes:
-    """The bridge modes of a body, as arrays."""
-    mass, omega = np.array(body.mass), np.array(body.omega)
-    return Modes(
-        np.array(body.frequency_hz), np.array(body.damping) / (2.0 * mass * omega), 1.0 / mass
-    )
-
-
-def radiation_of(body: Body, frequency_hz: Floats) -> Complexes:
-    """Pressure per force (Pa/N) of a body's sections at frequencies [shape=(lines,)]."""
-    sections = np.array(body.sections).reshape(-1, 4)
-    values = response(sections, np.array([body.direct_gain]), body.radiation_rate, frequency_hz)
-    return np.asarray(values)
-
-
-def save(fit: Fit, target: Path, *, overwrite: bool = False) -> tuple[Path, ...]:
-    """Write a body file (.json), or an instrument file (.toml) and its body file beside it.
-
-    An instrument file that names the body already is left as it is.
-
-    Returns
-    -------
-    written : tuple of Path
-
-    Raises
-    ------
-    OutputError
-        Where they cannot be written, or other files are in their place.
-    """
-    check_ending(target)
-    body_file = body_file_of(target)
-    check_targets(target, overwrite=overwrite)
-    _write(body_file, as_text(fit), overwrite=overwrite)
-    if target == body_file or names_body(target, body_file):
-        return (body_file,)
-    _write(target, _instrument(fit, body_file), overwrite=overwrite)
-    return (target, body_file)
-
-
-def check_ending(target: Path) -> None:
-    """Check that a name ends as an instrument file's or a body file's.
-
-    Raises
-    ------
-    OutputError
-        Where it does not.
-    """
-    if target.suffix.lower() not in (".toml", ".json"):
-        raise OutputError(f"{target}: name an instrument file, .toml, or a body file, .json")
+        target = Path(target)
+        check_targets(target, overwrite=overwrite)
+        body_file = body_file_of(target)
+        _write(body_file, as_text(self), overwrite=overwrite)
+        if target == body_file or names_body(target, body_file):
+            return (body_file,)
+        _write(target, _instrument(self, body_file), overwrite=overwrite)
+        return (target, body_file)
 
 
 def body_file_of(target: Path) -> Path:
@@ -152,13 +111,15 @@ def body_file_of(target: Path) -> Path:
 
 
 def check_targets(target: Path, *, overwrite: bool = False) -> None:
-    """Check that `save` may write.
+    """Check that `Fit.save` may write.
 
     Raises
     ------
     OutputError
-        Where it may not.
+        Where it may not, or the name ends otherwise than an instrument or body file's.
     """
+    if target.suffix.lower() not in (".toml", ".json"):
+        raise OutputError(f"{target}: name an instrument file, .toml, or a body file, .json")
     body_file = body_file_of(target)
     for path in {target, body_file}:
         check_target(path)
@@ -204,13 +165,7 @@ def as_text(fit: Fit) -> str:
             "sections": [list(section) for section in body.sections],
             "direct_gain": body.direct_gain,
         },
-        "fit": {
-            "band_hz": list(fit.band_hz),
-            "admittance_db": None if fit.admittance_db is None else asdict(fit.admittance_db),
-            "radiation_db": None if fit.radiation_db is None else asdict(fit.radiation_db),
-            "warnings": list(fit.warnings),
-            "sources": list(measured.sources),
-        },
+        "fit": quality_of(fit),
         "measured": {
             "admittance": _columns(measured.admittance),
             "radiation": _columns(measured.radiation),
@@ -218,6 +173,17 @@ def as_text(fit: Fit) -> str:
     }
     text = json.dumps(data, indent=1, allow_nan=False)
     return re.sub(r"\[\s+([-+\d.eE,\s]+?)\s+\]", _in_a_line, text) + "\n"
+
+
+def quality_of(fit: Fit) -> dict[str, Any]:
+    """How a fit went, as JSON values."""
+    return {
+        "band_hz": list(fit.band_hz),
+        "admittance_db": fit.admittance_db and asdict(fit.admittance_db),
+        "radiation_db": fit.radiation_db and asdict(fit.radiation_db),
+        "warnings": list(fit.warnings),
+        "sources": list(fit.measurement.sources),
+    }
 
 
 def read_fit(path: Path) -> Fit:
@@ -294,20 +260,17 @@ def _columns(curve: Curve | None) -> dict[str, Any] | None:
     """A curve as lists of numbers, lines averaged that lie closer than can be drawn."""
     if curve is None:
         return None
-    number = np.floor(np.log(curve.frequency_hz) / GROUP).astype(int)
-    _, first = np.unique(number, return_index=True)
-    counts = np.diff(np.append(first, len(number)))
+    drawn = curve.grouped()
 
-    def grouped(values: Any) -> list[float]:
-        means = np.add.reduceat(values, first) / counts
-        return [float(f"{value:.{DIGITS}g}") for value in means]
+    def rounded(values: Any) -> list[float]:
+        return [float(f"{value:.{DIGITS}g}") for value in values]
 
     return {
-        "taps": curve.taps,
-        "frequency_hz": grouped(curve.frequency_hz),
-        "real": grouped(curve.values.real),
-        "imag": grouped(curve.values.imag),
-        "coherence": None if curve.coherence is None else grouped(curve.coherence),
+        "taps": drawn.taps,
+        "frequency_hz": rounded(drawn.frequency_hz),
+        "real": rounded(drawn.values.real),
+        "imag": rounded(drawn.values.imag),
+        "coherence": None if drawn.coherence is None else rounded(drawn.coherence),
     }
 
 
@@ -331,7 +294,7 @@ def _curve(data: Any) -> Curve | None:
 def _differences(data: Any) -> Differences | None:
     if data is None:
         return None
-    return Differences(float(data["rms"]), float(data["most"]), float(data["scatter"]))
+    return Differences(*(float(data[each.name]) for each in fields(Differences)))
 
 
 def _in_a_line(values: re.Match[str]) -> str:

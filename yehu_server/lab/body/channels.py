@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from yehu_server.errors import MeasurementError
+from yehu_server.lab.body.curve import Floats
 from yehu_server.lab.body.tap import QUANTITIES
 
 SKIPPED = "none"
@@ -16,13 +18,6 @@ UNITS = {
     "acceleration": {"m/s2": 1.0, "m/s^2": 1.0, "g": 9.80665},
     "displacement": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
     "pressure": {"pa": 1.0, "mpa": 1e-3},
-}
-UNIT_NAMES = {
-    "force": "N",
-    "velocity": "m/s",
-    "acceleration": "m/s²",
-    "displacement": "m",
-    "pressure": "Pa",
 }
 
 
@@ -65,6 +60,15 @@ def check_channels(channels: list[Channel], where: str) -> None:
     for name in names:
         if names.count(name) > 1:
             raise MeasurementError(f"{where}: {name} is given twice")
+
+
+def by_quantity(channels: Sequence[Channel], values: Floats) -> dict[str, Floats]:
+    """The values of each quantity, in SI units, of columns [shape=(samples, channels)]."""
+    return {
+        channel.quantity: values[:, i] * channel.scale
+        for i, channel in enumerate(channels)
+        if channel.quantity != SKIPPED
+    }
 
 
 def _scale(name: str, text: str) -> float:

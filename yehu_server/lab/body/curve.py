@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +23,7 @@ OTHER_NAMES = {
     "displacement": "receptance",
     "pressure": RADIATION,
 }
+GROUP = 1.0 / 250.0  # of the frequency: lines that are taken as one
 AROUND = 25  # lines to each side, over which scatter is measured
 
 
@@ -39,9 +41,22 @@ class Curve:
 
     def within(self, lo_hz: float, hi_hz: float) -> Curve:
         """The lines from one frequency to another."""
-        inside = (self.frequency_hz >= lo_hz) & (self.frequency_hz <= hi_hz)
-        coherence = None if self.coherence is None else self.coherence[inside]
-        return Curve(self.frequency_hz[inside], self.values[inside], coherence, self.taps)
+        return self.at((self.frequency_hz >= lo_hz) & (self.frequency_hz <= hi_hz))
+
+    def at(self, lines: Any) -> Curve:
+        """Some lines, by their places or a mask."""
+        return self._each(lambda values: values[lines])
+
+    def grouped(self) -> Curve:
+        """The means of neighbouring lines, as many as are neither heard nor seen apart."""
+        number = np.floor(np.log(self.frequency_hz) / GROUP).astype(int)
+        _, first = np.unique(number, return_index=True)
+        counts = np.diff(np.append(first, len(number)))
+        return self._each(lambda values: np.add.reduceat(values, first) / counts)
+
+    def _each(self, change: Callable[[Any], Any]) -> Curve:
+        coherence = None if self.coherence is None else change(self.coherence)
+        return Curve(change(self.frequency_hz), change(self.values), coherence, self.taps)
 
     @property
     def deviation(self) -> Floats:
@@ -63,6 +78,14 @@ def running_median(values: Floats, around: int = AROUND) -> Floats:
     padded = np.pad(values, around, mode="reflect")
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * around + 1)
     return np.asarray(np.median(windows, axis=1))
+
+
+def interpolated(at_hz: Floats, frequency_hz: Floats, values: Complexes, **ends: float) -> Any:
+    """Values between frequencies; beyond them the outermost, or as `numpy.interp` is told."""
+    real, imag = (
+        np.interp(at_hz, frequency_hz, part, **ends) for part in (values.real, values.imag)
+    )
+    return real + 1j * imag
 
 
 def to_mobility(

@@ -15,9 +15,7 @@ from yehu_server.lab.body.curve import Curve, as_db
 from yehu_server.lab.body.measurement import HIGHEST_HZ, LOWEST_HZ, Measurement
 from yehu_server.lab.body.modes import Modes, Problem
 from yehu_server.lab.body.search import Search
-from yehu_server.lab.body.sections import Sections, fit_sections
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+from yehu_server.lab.body.sections import fit_sections
 
 RATE = 44100.0  # of the radiation's sections; at others the model moves them
 FLOOR = 0.005  # relative error of an admittance that does not matter: 0.04 dB
@@ -78,9 +76,18 @@ def fit(
         warnings.append("no admittance was measured: the bridge is the shipped yehu's")
     if within.radiation is not None:
         fitted = fit_sections(within.radiation, sections, RATE)
-        body = replace(body, **_as_fields(fitted))
-        within = replace(within, radiation=_without(within.radiation, fitted.delay_s))
-        radiation_db = differences(within.radiation, fitted.response)  # type: ignore[arg-type]
+        sections_of = tuple(tuple(row) for row in fitted.coefficients.tolist())
+        body = replace(
+            body,
+            radiation_rate=fitted.rate,
+            sections=sections_of,
+            direct_gain=fitted.direct_gain,
+        )
+        # As if the microphone had been nearer.
+        sooner = np.exp(2j * np.pi * within.radiation.frequency_hz * fitted.delay_s)
+        radiation = replace(within.radiation, values=within.radiation.values * sooner)
+        within = replace(within, radiation=radiation)
+        radiation_db = differences(radiation, fitted.response)
         warnings += _poor(radiation_db, "radiation")
     else:
         warnings.append("no radiation was measured: the sound is radiated as by the shipped yehu")
@@ -130,19 +137,6 @@ def _in_band(curve: Curve | None, band: tuple[float, float], what: str) -> Curve
             f"{what}: {len(found.values)} lines from {lo:g} to {hi:g} Hz are too few to fit"
         )
     return found
-
-
-def _without(curve: Curve, delay_s: float) -> Curve:
-    """The curve as if the microphone had been nearer."""
-    return replace(curve, values=curve.values * np.exp(2j * np.pi * curve.frequency_hz * delay_s))
-
-
-def _as_fields(fitted: Sections) -> dict[str, Any]:
-    return {
-        "radiation_rate": fitted.rate,
-        "sections": tuple(tuple(row) for row in fitted.coefficients.tolist()),
-        "direct_gain": fitted.direct_gain,
-    }
 
 
 def _doubts(modes: Modes, off: Differences) -> list[str]:

@@ -12,7 +12,7 @@ from yehu_server.errors import MeasurementError
 from yehu_server.lab.body import tap_files, universal
 from yehu_server.lab.body.average import KIND, Averaged, average_taps
 from yehu_server.lab.body.channels import parse_channels
-from yehu_server.lab.body.curve import KINDS, RADIATION, Curve, to_mobility
+from yehu_server.lab.body.curve import KINDS, RADIATION, Curve, interpolated, to_mobility
 from yehu_server.lab.body.plausible import check_admittance, check_radiation
 from yehu_server.lab.body.tables import Response, read_table
 from yehu_server.lab.body.tap import Tap
@@ -93,12 +93,6 @@ def read(
     return replace(measured, sources=tuple(path.name for path in (*paths, *radiation)))
 
 
-def average(taps: Sequence[Tap], responses: Sequence[Response] = ()) -> Measurement:
-    """Average taps and responses that are in memory; see `read`."""
-    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # they are refused later
-        return _together(taps, responses)
-
-
 def _read_all(
     paths: Iterable[Path], channels: str | None, kind: str | None
 ) -> tuple[list[Tap], list[Response]]:
@@ -112,8 +106,7 @@ def _read_all(
         elif ending in tap_files.ENDINGS:
             found = tap_files.read_recording(path, told)
         elif ending in (".csv", ".txt", ".tsv"):
-            table = read_table(path, told, kind)
-            found = table if isinstance(table, list) else [table]
+            found = read_table(path, told, kind)
         else:
             raise MeasurementError(f"{path}: not a sound file, .csv or .uff")
         taps += [entry for entry in found if isinstance(entry, Tap)]
@@ -127,8 +120,9 @@ def _pressure_alone(tap: Tap) -> Tap:
     return replace(tap, responses={"pressure": tap.responses["pressure"]})
 
 
-def _together(taps: Sequence[Tap], responses: Sequence[Response]) -> Measurement:
-    """Average taps and responses, and check what they give."""
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")  # they are refused later
+def average(taps: Sequence[Tap], responses: Sequence[Response] = ()) -> Measurement:
+    """Average taps and responses that are in memory, and check what they give; see `read`."""
     averaged = average_taps(taps) if taps else Averaged(None, None, HIGHEST_HZ, ())
     warnings = list(averaged.warnings)
     highest = averaged.highest_hz
@@ -181,9 +175,7 @@ def _mean(one: Curve | None, other: Curve) -> Curve:
     if len(inside.values) < 20:
         raise MeasurementError("responses of different bands cannot be averaged")
     hz = inside.frequency_hz
-    again = np.interp(hz, other.frequency_hz, other.values.real) + 1j * np.interp(
-        hz, other.frequency_hz, other.values.imag
-    )
+    again = interpolated(hz, other.frequency_hz, other.values)
     taps = one.taps + other.taps
     values = (inside.values * one.taps + again * other.taps) / taps
     return Curve(hz, values, inside.coherence, taps)

@@ -12,12 +12,10 @@ needs are inner products of a few columns, which are taken once a step.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Complexes = np.ndarray[Any, np.dtype[np.complex128]]
+from yehu_server.lab.body.curve import Complexes, Floats
 
 
 @dataclass(frozen=True)

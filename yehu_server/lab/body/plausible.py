@@ -12,11 +12,9 @@ from typing import Any
 import numpy as np
 
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body.curve import KINDS, Curve, to_mobility
-from yehu_server.lab.body.extra import need
+from yehu_server.lab.body.curve import KINDS, Curve, Floats, to_mobility
 from yehu_server.lab.body.modes import mode_columns, stacked
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+from yehu_server.util.extras import need
 
 DOUBTFUL = 0.97  # share of the real part that is above zero
 LINES = 300  # of the measurement, that are looked at
@@ -39,7 +37,7 @@ def check_admittance(curve: Curve, kind: str) -> list[str]:
     MeasurementError
         Where it is none: of another kind, of the wrong sign, in other units.
     """
-    need("scipy", "body")
+    need("scipy", "the body workshop", "body")
     _check_numbers(curve, "admittance")
     misfit, other, sign = _likeliest(curve, kind)
     if (other, sign) != (kind, 1.0):

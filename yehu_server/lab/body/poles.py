@@ -6,10 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.lab.body.extra import need
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Complexes = np.ndarray[Any, np.dtype[np.complex128]]
+from yehu_server.lab.body.curve import Complexes, Floats, interpolated
+from yehu_server.util.extras import need
 
 HIGHEST_ORDER = 40  # of the polynomials; each order gives candidates
 MOST_LINES = 4000  # of the even grid that the method needs
@@ -40,23 +38,15 @@ def starting_poles(frequency_hz: Floats, mobility: Complexes) -> tuple[Floats, F
     2003), as sdypy-EMA has it. It wants an even grid, so an uneven one is interpolated. Poles of
     different orders that agree are given once.
     """
-    need("sdypy.EMA", "body")
+    need("sdypy.EMA", "the body workshop", "body")
     from sdypy.EMA import Model
 
     lo, hi = float(frequency_hz[0]), float(frequency_hz[-1])
     lines = min(MOST_LINES, max(len(frequency_hz), 4 * HIGHEST_ORDER))
     grid = np.linspace(lo, hi, lines)
-    even = np.interp(grid, frequency_hz, mobility.real) + 1j * np.interp(
-        grid, frequency_hz, mobility.imag
-    )
-    model = Model(
-        even[np.newaxis],
-        grid,
-        lower=lo,
-        upper=hi,
-        pol_order_high=HIGHEST_ORDER,
-        frf_form="mobility",
-    )
+    even = interpolated(grid, frequency_hz, mobility)[np.newaxis]
+    form: Any = {"pol_order_high": HIGHEST_ORDER, "frf_form": "mobility"}
+    model = Model(even, grid, lower=lo, upper=hi, **form)
     model.get_poles(method="lscf", show_progress=False)
     found_hz = np.concatenate([np.asarray(row).real for row in model.pole_freq])
     damping = np.concatenate([np.asarray(row).real for row in model.pole_xi])

@@ -8,15 +8,13 @@ further mode fits nothing but noise.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
-from yehu_server.lab.body.extra import need
+from yehu_server.lab.body.curve import Floats
 from yehu_server.lab.body.modes import Modes, Problem, Step, look
 from yehu_server.lab.body.poles import LEAST_DAMPING, MOST_DAMPING, starting_poles
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+from yehu_server.util.extras import need
 
 HIGHEST_HZ = 9500.0  # the model's modes lie below 0.45 of the lowest sample rate, 22.05 kHz
 BELOW, ABOVE = 0.1, 3.0  # of the band's ends: how far outside modes may stand for those beyond
@@ -32,7 +30,7 @@ class Search:
     """The search for one measured admittance."""
 
     def __init__(self, problem: Problem) -> None:
-        need("scipy", "body")
+        need("scipy", "the body workshop", "body")
         self.problem = problem
         self.wanted = problem.wanted
         lo, hi = float(problem.frequency_hz[0]), float(problem.frequency_hz[-1])

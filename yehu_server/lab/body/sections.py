@@ -7,22 +7,17 @@ are found by vector fitting; then the error is evened out over the band.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body.curve import Curve, as_db
+from yehu_server.lab.body.curve import Complexes, Curve, Floats, as_db, interpolated
 from yehu_server.lab.body.vector_fitting import LOWEST_HZ, Lines, moved, numerators
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Complexes = np.ndarray[Any, np.dtype[np.complex128]]
 
 ROUNDS, FEW_ROUNDS = 20, 4
 EVENING = 8  # rounds in which weight goes to where the error is large
 ENOUGH, PATIENCE = 0.99, 3  # an error as much smaller is progress; rounds without that
 LATER, STEP = 4, 0.4  # onsets that are tried after the first; periods of the highest frequency
-GROUP = 1.0 / 250.0  # of the frequency: lines that are averaged before the fit
 START_DAMPING = 0.02
 FLOOR, NOISE = 0.02, 4.0  # errors that do not matter: relative, and in deviations
 OUTSIDE, OUTSIDE_LINES = 0.15, 60  # weight of silence outside the band, and at how many places
@@ -94,7 +89,7 @@ class _Tried:
 def _fitted(curve: Curve, delay_s: float, poles: Complexes, rate: float, rounds: int) -> _Tried:
     """The best of some rounds that begin with given poles."""
     steady = curve.values * np.exp(2j * np.pi * curve.frequency_hz * delay_s)
-    grouped = _grouped(Curve(curve.frequency_hz, steady))
+    grouped = Curve(curve.frequency_hz, steady).grouped()
     if len(grouped.values) < 2 * len(poles):
         raise MeasurementError(
             f"radiation: {len(grouped.values)} lines are too few for {len(poles)} sections"
@@ -156,17 +151,6 @@ def _with_silence(curve: Curve, rate: float) -> tuple[Lines, Floats]:
     return lines, matters
 
 
-def _grouped(curve: Curve) -> Curve:
-    """Average neighbouring lines, as many as the ear does not tell apart."""
-    number = np.floor(np.log(curve.frequency_hz) / GROUP).astype(int)
-    _, first = np.unique(number, return_index=True)
-    counts = np.diff(np.append(first, len(number)))
-    return Curve(
-        np.add.reduceat(curve.frequency_hz, first) / counts,
-        np.asarray(np.add.reduceat(curve.values, first) / counts),
-    )
-
-
 def _delay(curve: Curve) -> float:
     """How long (s) sound is on its way: when the impulse response begins.
 
@@ -175,9 +159,7 @@ def _delay(curve: Curve) -> float:
     """
     step = float(np.median(np.diff(curve.frequency_hz)))
     even = np.arange(0.0, curve.frequency_hz[-1], step)
-    values = np.interp(even, curve.frequency_hz, curve.values.real, left=0.0) + 1j * np.interp(
-        even, curve.frequency_hz, curve.values.imag, left=0.0
-    )
+    values = interpolated(even, curve.frequency_hz, curve.values, left=0.0)
     inside = even >= curve.frequency_hz[0]
     values[inside] *= np.hanning(int(inside.sum()))
     envelope = np.abs(np.fft.ifft(values, 8 * len(values)))

@@ -7,15 +7,13 @@ rate, and both channels go through the same low-pass filter, as in a recording i
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from yehu_server.core.physics.quantities import Body, measured_body
-from yehu_server.lab.body.extra import need
+from yehu_server.lab.body.curve import Floats
 from yehu_server.lab.body.tap import Tap
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+from yehu_server.util.extras import need
 
 OVER = 8  # samples computed for one that is kept
 BEFORE_S = 0.02  # silence before the hit
@@ -46,7 +44,7 @@ def made_taps(
     newtons, contact_s : float
         Peak of the force (N), and how long the hammer touches (s); a little different each time.
     """
-    need("scipy", "body")
+    need("scipy", "the body workshop", "body")
     body = body or measured_body()
     random = np.random.default_rng(seed)
     taps = []

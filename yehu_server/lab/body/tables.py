@@ -14,12 +14,16 @@ from typing import Any
 import numpy as np
 
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body.channels import SKIPPED, Channel, check_channels, parse_heading
-from yehu_server.lab.body.curve import KINDS, OTHER_NAMES, RADIATION, Curve
+from yehu_server.lab.body.channels import (
+    SKIPPED,
+    Channel,
+    by_quantity,
+    check_channels,
+    parse_heading,
+)
+from yehu_server.lab.body.curve import KINDS, OTHER_NAMES, RADIATION, Curve, Floats
 from yehu_server.lab.body.tap import Tap, cut
 from yehu_server.util.files import read_text, why
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 LEAST_LINES = 20
 UNEVEN = 1e-3  # relative: how much steps of time may differ
@@ -35,7 +39,7 @@ class Response:
 
 def read_table(
     path: Path, channels: Sequence[Channel] | None, kind: str | None
-) -> list[Tap] | Response:
+) -> list[Tap] | list[Response]:
     """Read a table: the taps in it, or a response over frequency.
 
     Parameters
@@ -114,16 +118,11 @@ def _taps(
         raise MeasurementError(
             f"{path}: has {len(headings) - 1} columns beside the time, not {len(channels)} as told"
         )
-    named = {
-        channel.quantity: numbers[:, i] * channel.scale
-        for i, channel in enumerate(channels, start=1)
-        if channel.quantity != SKIPPED
-    }
     rate = (len(numbers) - 1) / float(numbers[-1, 0] - numbers[0, 0])
-    return cut(rate, named, path.name)
+    return cut(rate, by_quantity(channels, numbers[:, 1:]), path.name)
 
 
-def _response(path: Path, headings: list[str], numbers: Floats, kind: str | None) -> Response:
+def _response(path: Path, headings: list[str], numbers: Floats, kind: str | None) -> list[Response]:
     words = [re.findall(r"[a-zμµ²]+", heading.lower()) for heading in headings]
     kind = kind or kind_in(" ".join(headings))
     if kind is None:
@@ -136,7 +135,7 @@ def _response(path: Path, headings: list[str], numbers: Floats, kind: str | None
     else:
         values = _polar(path, at, numbers)
     coherence = numbers[:, at["coherence"]].clip(0.0, 1.0) if "coherence" in at else None
-    return Response(rising(Curve(numbers[:, 0], values, coherence), str(path)), kind)
+    return [Response(rising(Curve(numbers[:, 0], values, coherence), str(path)), kind)]
 
 
 def _polar(path: Path, at: dict[str, int], numbers: Floats) -> Any:
@@ -176,9 +175,7 @@ def rising(curve: Curve, where: str) -> Curve:
         Where two lines have one frequency, or too few are left.
     """
     order = np.argsort(curve.frequency_hz, kind="stable")
-    order = order[curve.frequency_hz[order] > 0.0]
-    coherence = None if curve.coherence is None else curve.coherence[order]
-    found = Curve(curve.frequency_hz[order], curve.values[order], coherence, curve.taps)
-    if len(order) < LEAST_LINES or np.diff(found.frequency_hz).min() <= 0.0:
+    found = curve.at(order[curve.frequency_hz[order] > 0.0])
+    if len(found.values) < LEAST_LINES or np.diff(found.frequency_hz).min() <= 0.0:
         raise MeasurementError(f"{where}: too few lines, or two at one frequency")
     return found

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from yehu_server.errors import MeasurementError
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+from yehu_server.lab.body.curve import Floats
 
 # What a channel may be; all but the force are responses.
 RESPONSES = ("velocity", "acceleration", "displacement", "pressure")
@@ -102,13 +100,11 @@ def _hits(force: Floats, rate: float) -> list[int]:
 
 def _looked_at(tap: Tap) -> Tap:
     """The tap with what is wrong with it."""
-    faults = []
-    for what, values in (("force", tap.force), *tap.responses.items()):
-        if is_clipped(values):
-            faults.append(f"its {what} is clipped")
+    signals = {"force": tap.force, **tap.responses}
+    faults = [f"its {what} is clipped" for what in signals if is_clipped(signals[what])]
     if _bounced(tap.force):
         faults.append("the hammer hit twice")
-    return Tap(tap.rate, tap.force, tap.responses, tap.name, tuple(faults))
+    return replace(tap, faults=tuple(faults))
 
 
 def is_clipped(values: Floats) -> bool:
@@ -116,11 +112,8 @@ def is_clipped(values: Floats) -> bool:
     for signed in (values, -values):
         top = signed.max()
         flat = signed >= top - EQUAL * abs(top)
-        run = longest = 0
-        for is_flat in flat[max(0, int(flat.argmax()) - 1) :][:4096]:
-            run = run + 1 if is_flat else 0
-            longest = max(longest, run)
-        if top > 0.0 and longest >= FLAT:
+        near = flat[max(0, int(flat.argmax()) - 1) :][:4096]
+        if top > 0.0 and np.convolve(near, np.ones(FLAT)).max() >= FLAT:
             return True
     return False
 

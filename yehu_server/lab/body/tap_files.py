@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body.channels import SKIPPED, Channel
+from yehu_server.lab.body.channels import Channel, by_quantity
 from yehu_server.lab.body.tap import QUANTITIES, Tap, cut
 from yehu_server.util.files import anything, make_folder, nothing, replacing, why
 
@@ -51,12 +51,7 @@ def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
         )
     if len(channels) != count:
         raise MeasurementError(f"{path}: has {count} channels, not {len(channels)} as told")
-    named = {
-        channel.quantity: np.ascontiguousarray(samples[:, i]) * channel.scale
-        for i, channel in enumerate(channels)
-        if channel.quantity != SKIPPED
-    }
-    return cut(float(rate), named, path.name)
+    return cut(float(rate), by_quantity(channels, samples), path.name)
 
 
 SUBTYPE = "PCM_24"

@@ -12,9 +12,9 @@ import numpy as np
 
 from yehu_server.errors import MeasurementError
 from yehu_server.lab.body.curve import RADIATION, Curve
-from yehu_server.lab.body.extra import need
 from yehu_server.lab.body.tables import Response, rising
 from yehu_server.lab.body.tap import Tap, cut
+from yehu_server.util.extras import need
 from yehu_server.util.files import read_bytes, why
 
 ENDINGS = (".uff", ".unv", ".uf", ".bunv")
@@ -53,7 +53,7 @@ def read_universal(path: Path, kind: str | None) -> list[Tap] | list[Response]:
 
 
 def _sets(path: Path) -> list[dict[str, Any]]:
-    need("pyuff", "body")
+    need("pyuff", "the body workshop", "body")
     import pyuff
 
     try:
@@ -113,12 +113,16 @@ def _responses(
             raise MeasurementError(
                 f"{path}: does not tell what its responses are; name it by --kind"
             )
-        if its_kind != RADIATION and not _is_driving_point(entry):
-            skipped += 1
-            continue
         # Units of response over force; those of pressure are force over length squared.
-        scale = length ** (-2.0) if its_kind == RADIATION else length / force
-        values: Any = np.asarray(entry["data"], np.complex128) * scale * _direction(entry, its_kind)
+        scale = length ** (-2.0)
+        if its_kind != RADIATION:
+            to, by = int(entry.get("rsp_dir", 0)), int(entry.get("ref_dir", 0))
+            if entry.get("rsp_node") != entry.get("ref_node") or abs(to) != abs(by):
+                skipped += 1
+                continue
+            is_opposed = to * by < 0  # hammer and sensor point against each other
+            scale = -length / force if is_opposed else length / force
+        values: Any = np.asarray(entry["data"], np.complex128) * scale
         coherence = _coherence(entry, sets)
         curve = Curve(np.asarray(entry["x"], np.float64), values, coherence)
         if not np.isfinite(curve.values).all():
@@ -129,19 +133,6 @@ def _responses(
             f"{path}: none of its {skipped} responses was measured where the hammer struck"
         )
     return found
-
-
-def _is_driving_point(entry: dict[str, Any]) -> bool:
-    same_node = entry.get("rsp_node") == entry.get("ref_node")
-    return bool(
-        same_node and abs(int(entry.get("rsp_dir", 0))) == abs(int(entry.get("ref_dir", 0)))
-    )
-
-
-def _direction(entry: dict[str, Any], kind: str) -> float:
-    """-1 where hammer and sensor point against each other."""
-    opposed = int(entry.get("rsp_dir", 0)) * int(entry.get("ref_dir", 0)) < 0
-    return -1.0 if opposed and kind != RADIATION else 1.0
 
 
 def _coherence(entry: dict[str, Any], sets: list[dict[str, Any]]) -> Any:

@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Complexes = np.ndarray[Any, np.dtype[np.complex128]]
+from yehu_server.lab.body.curve import Complexes, Floats
 
 NARROWEST_HZ, LOWEST_HZ = 2.0, 20.0  # half a section's bandwidth, and its frequency, at least
 

@@ -13,7 +13,7 @@ from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.lab.dataset.draws import (
     Distribution,
-    UniformReal,
+    Uniform,
     chance,
     read_distribution,
     shares_of,
@@ -165,42 +165,29 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
 def _draws(table: Fields, kind: str) -> dict[str, Distribution]:
     known = STROKES if kind == "strokes" else NOTES
     draws: dict[str, Distribution] = {
-        name: UniformReal(default, default)
+        name: Uniform(default, default)
         for name, (default, _, _) in known.items()
         if default is not None
     }
 
     def draw(name: str, entry: Any) -> Distribution:
-        lo, hi = _bounds(name, kind, known)
+        if kind == "notes" and name.startswith("/playing/"):
+            param = find(name)
+            lo, hi = param.lo, param.hi
+        elif name in known:
+            _, lo, hi = known[name]
+        else:
+            more = ", or an address of /playing" if kind == "notes" else ""
+            hint = did_you_mean(name, known)
+            raise ParameterError(f"unknown entry{hint} (known: {', '.join(known)}{more})")
         found = read_distribution(entry)
-        least, most = found.ends
-        if not lo <= least <= most <= hi:
-            raise ParameterError(f"{least:g} to {most:g} is not within {lo:g} to {hi:g}")
+        if not lo <= found.lo <= found.hi <= hi:
+            raise ParameterError(f"{found.lo:g} to {found.hi:g} is not within {lo:g} to {hi:g}")
         if name in COUNTS and not found.is_whole:
             raise ParameterError('whole numbers only, such as spacing = "whole"')
         return found
 
     return draws | table.each(draw)
-
-
-def _bounds(
-    name: str, kind: str, known: Mapping[str, tuple[float | None, float, float]]
-) -> tuple[float, float]:
-    """The bounds of a value.
-
-    Raises
-    ------
-    ParameterError
-        Where there is no such value.
-    """
-    if name in known:
-        return known[name][1:]
-    if kind == "notes" and name.startswith("/playing/"):
-        param = find(name)
-        return param.lo, param.hi
-    more = ", or an address of /playing" if kind == "notes" else ""
-    hint = did_you_mean(name, known)
-    raise ParameterError(f"unknown entry{hint} (known: {', '.join(known)}{more})")
 
 
 def _splits(table: Fields) -> tuple[tuple[str, float], ...]:

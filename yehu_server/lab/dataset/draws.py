@@ -10,10 +10,11 @@ from __future__ import annotations
 import bisect
 import hashlib
 import itertools
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
-from typing import Any, Protocol
+from typing import Any
 
 from yehu_server.errors import ParameterError
 from yehu_server.util.documents import Fields
@@ -28,42 +29,16 @@ def chance(seed: int, number: int, name: str) -> float:
     return (int.from_bytes(digest[:8], "big") >> 11) / 2**53
 
 
-class Distribution(Protocol):
-    """How a value is drawn."""
-
-    def value(self, share: float) -> float:
-        """The value for a number drawn from 0 to below 1."""
-        ...
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """The least and the largest value."""
-        ...
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether all values are whole numbers."""
-        ...
-
-
 @dataclass(frozen=True)
-class UniformReal:
-    """Even from one number to another, by their difference or by their ratio."""
+class Distribution(ABC):
+    """How a value is drawn: from one number to another."""
 
     lo: float
     hi: float
-    by_ratio: bool = False
 
+    @abstractmethod
     def value(self, share: float) -> float:
         """The value for a number drawn from 0 to below 1."""
-        if self.by_ratio:
-            return float(self.lo * (self.hi / self.lo) ** share)
-        return self.lo + (self.hi - self.lo) * share
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """The least and the largest value."""
-        return self.lo, self.hi
 
     @property
     def is_whole(self) -> bool:
@@ -72,29 +47,27 @@ class UniformReal:
 
 
 @dataclass(frozen=True)
-class UniformInteger:
-    """Each whole number from one to another alike."""
+class Uniform(Distribution):
+    """Even by the difference ("even") or the ratio ("ratio"), or each "whole" number alike."""
 
-    lo: int
-    hi: int
+    spacing: str = "even"
 
     def value(self, share: float) -> float:
         """The value for a number drawn from 0 to below 1."""
-        return float(self.lo + int(share * (self.hi - self.lo + 1)))
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """The least and the largest value."""
-        return float(self.lo), float(self.hi)
+        if self.spacing == "whole":
+            return self.lo + int(share * (self.hi - self.lo + 1))
+        if self.spacing == "ratio":
+            return float(self.lo * (self.hi / self.lo) ** share)
+        return self.lo + (self.hi - self.lo) * share
 
     @property
     def is_whole(self) -> bool:
         """Whether all values are whole numbers."""
-        return True
+        return self.spacing == "whole" or super().is_whole
 
 
 @dataclass(frozen=True)
-class Choice:
+class Choice(Distribution):
     """One of some numbers, by their weights."""
 
     values: tuple[float, ...]
@@ -106,24 +79,17 @@ class Choice:
         return self.values[min(place, len(self.values) - 1)]
 
     @property
-    def ends(self) -> tuple[float, float]:
-        """The least and the largest value."""
-        return min(self.values), max(self.values)
-
-    @property
     def is_whole(self) -> bool:
         """Whether all values are whole numbers."""
         return all(value == int(value) for value in self.values)
 
 
 @dataclass(frozen=True)
-class Normal:
+class Normal(Distribution):
     """Normally distributed, without what is beyond two ends."""
 
     mean: float
     deviation: float
-    lo: float
-    hi: float
 
     def value(self, share: float) -> float:
         """The value for a number drawn from 0 to below 1."""
@@ -131,16 +97,6 @@ class Normal:
         below, upto = normal.cdf(self.lo), normal.cdf(self.hi)
         drawn = min(max(below + (upto - below) * share, 1e-12), 1.0 - 1e-12)
         return min(max(normal.inv_cdf(drawn), self.lo), self.hi)
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """The least and the largest value."""
-        return self.lo, self.hi
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether all values are whole numbers."""
-        return False
 
 
 def read_distribution(entry: Any) -> Distribution:
@@ -153,11 +109,13 @@ def read_distribution(entry: Any) -> Distribution:
     """
     if not isinstance(entry, Mapping):
         value = number(entry)
-        return UniformReal(value, value)
+        return Uniform(value, value)
     table, names = Fields(entry), entry.keys()
     if "choose" in names and names <= {"choose", "weights"}:
         values = table.need("choose", numbers)
-        return Choice(tuple(values), table.read("weights", _weights, _even(values), len(values)))
+        even = shares_of([1.0] * len(values))
+        upto = table.read("weights", _weights, even, len(values))
+        return Choice(min(values), max(values), tuple(values), upto)
     if names == set(NORMAL):
         return _normal(*(table.need(name, number) for name in NORMAL))
     if not {"from", "to"} <= names <= {"from", "to", "spacing"}:
@@ -177,23 +135,17 @@ def _normal(mean: float, deviation: float, lo: float, hi: float) -> Normal:
         raise ParameterError("deviation above 0, and from below to")
     if not NormalDist(mean, deviation).cdf(hi) > NormalDist(mean, deviation).cdf(lo):
         raise ParameterError("nothing is drawn so far from the mean")
-    return Normal(mean, deviation, lo, hi)
+    return Normal(lo, hi, mean, deviation)
 
 
-def _between(lo: float, hi: float, spacing: str) -> UniformReal | UniformInteger:
+def _between(lo: float, hi: float, spacing: str) -> Uniform:
     if lo > hi:
         raise ParameterError("from is above to")
-    if spacing == "whole":
-        if lo != int(lo) or hi != int(hi):
-            raise ParameterError("from and to are whole numbers")
-        return UniformInteger(int(lo), int(hi))
+    if spacing == "whole" and (lo != int(lo) or hi != int(hi)):
+        raise ParameterError("from and to are whole numbers")
     if spacing == "ratio" and lo <= 0.0:
         raise ParameterError("by ratio, from is above 0")
-    return UniformReal(lo, hi, by_ratio=spacing == "ratio")
-
-
-def _even(values: Sequence[float]) -> tuple[float, ...]:
-    return shares_of([1.0] * len(values))
+    return Uniform(lo, hi, spacing)
 
 
 def _weights(value: Any, count: int) -> tuple[float, ...]:

@@ -11,6 +11,7 @@ from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.sound import HOP_S, Sound
 from yehu_server.rendering.build_records import hash_of
 from yehu_server.scores.gesture import CONTROLS
+from yehu_server.util.files import replacing
 
 WIDTH = 8  # digits of a number in a name
 Line = dict[str, Any]
@@ -30,17 +31,17 @@ def write_sound(folder: Path, description: Description, number: int, sound: Soun
     OutputError
         Where they cannot be written.
     """
-    from yehu_server.util.files import replacing
     from yehu_server.util.sound_file import sound_file
 
-    audio, arrays = (folder / name for name in names_of(description, number))
+    names = names_of(description, number)
+    audio, arrays = (folder / name for name in names)
     with sound_file(audio, round(description.rate), "wav", "float") as file:
         file.write(sound.audio)
     with replacing(arrays) as partial, partial.open("wb") as file:
         np.savez(file, allow_pickle=False, **_arrays(description, sound))
     return {
-        "file": names_of(description, number)[0],
-        "arrays": names_of(description, number)[1],
+        "file": names[0],
+        "arrays": names[1],
         "number": number,
         "split": description.split(number),
         "hash": hash_of(audio),

@@ -14,7 +14,7 @@ from yehu_server.lab.dataset.files import Line, names_of, write_sound
 from yehu_server.rendering import build_records
 from yehu_server.rendering.build_records import write_manifest
 from yehu_server.rendering.workers import Event, ProgressCallback
-from yehu_server.util.files import make_folder
+from yehu_server.util.files import make_folder, replacing
 
 TOGETHER = 16  # sounds that are made, and kept in the records, as one
 
@@ -165,8 +165,6 @@ def make_all(
 def received(part: Part, made: Made) -> Sequence[Line]:
     """Put files that have travelled in their places, and keep a record where all is well."""
     for name, data in made.files:
-        from yehu_server.util.files import replacing
-
         make_folder((part.folder / name).parent)
         with replacing(part.folder / name) as partial:
             partial.write_bytes(data)

@@ -20,6 +20,7 @@ from yehu_server.playing.wishes import Key
 Array = Any
 
 LONGEST_S = 600.0
+OF_NOTES = ("pitch", "velocity", "length", "gap")  # drawn for each
 SHORTEST_S = 0.02  # from one beginning to the next
 
 
@@ -33,9 +34,7 @@ def melody(description: Description, number: int) -> Sound:
     """
     rate = description.rate
     drawn: dict[str, Any] = {
-        name: value
-        for name, value in description.drawn(number).items()
-        if name not in ("pitch", "velocity", "length", "gap")
+        name: value for name, value in description.drawn(number).items() if name not in OF_NOTES
     }
     drawn["notes"] = _written(description, number, int(drawn["notes"]))
     _, calibration = calibrated(description)
@@ -65,21 +64,11 @@ def _written(description: Description, number: int, count: int) -> list[dict[str
     notes = []
     begin = 0.0
     for place in range(count):
-        draw = {
-            name: description.draw(number, name, place)
-            for name in ("pitch", "velocity", "length", "gap")
-        }
-        end = begin + draw["length"]
-        notes.append(
-            {
-                "pitch": draw["pitch"],
-                "velocity": draw["velocity"],
-                "begin": begin,
-                "end": end,
-                "length": draw["length"],
-            }
-        )
-        begin = max(end + draw["gap"], begin + SHORTEST_S)
+        pitch, velocity, length, gap = (description.draw(number, name, place) for name in OF_NOTES)
+        end = begin + length
+        drawn = {"pitch": pitch, "velocity": velocity}
+        notes.append(drawn | {"begin": begin, "end": end, "length": length})
+        begin = max(end + gap, begin + SHORTEST_S)
     return notes
 
 

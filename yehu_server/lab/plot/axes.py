@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.errors import ParameterError
+from yehu_server.util.extras import need
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,6 +21,7 @@ COLOURS = {
     "raucous": "#b5402a",
     "aperiodic": "#5a4a6f",
 }
+ABOVE: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": 5, "frameon": False}
 LABELS = {
     "force": "bow force, N",
     "position": "bow position β",
@@ -39,27 +41,6 @@ LABELS = {
 }
 
 
-def check_matplotlib(what: str) -> None:
-    """Check that pictures can be drawn.
-
-    Parameters
-    ----------
-    what : str
-        What needs them, for the message.
-
-    Raises
-    ------
-    ParameterError
-        Where matplotlib is missing.
-    """
-    try:
-        import matplotlib as mpl  # noqa: F401
-    except ImportError:
-        raise ParameterError(
-            f"{what} needs matplotlib: install yehu-server[plots], the extra for pictures"
-        ) from None
-
-
 def axes_of(ax: Any) -> Axes:
     """Return the axes to draw into: those given, or matplotlib's current ones.
 
@@ -68,7 +49,7 @@ def axes_of(ax: Any) -> Axes:
     ParameterError
         Where matplotlib is missing, or `ax` is something else.
     """
-    check_matplotlib("yehu.plot")
+    need("matplotlib", "yehu.plot", "plots")
     from matplotlib.axes import Axes
 
     if ax is None:

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.lab.body.body_file import Differences, Fit
+from yehu_server.lab.body.body_file import Fit
 from yehu_server.lab.body.curve import Curve, as_db
+from yehu_server.lab.body.report import lines_of
 from yehu_server.lab.plot import png
+from yehu_server.lab.plot.axes import ABOVE
 
 SIZE = (15.0, 9.5)  # inches
 MEASURED, FITTED, LEFT = "0.55", "#c03a2b", "#1f5fa8"
@@ -54,9 +56,7 @@ def _draw(figure: Any, fit: Fit) -> None:
     _draw_left(panels["left"], fit)
     for name in ROWS:
         _scale(panels[name], fit.band_hz, is_last=name == ROWS[-1])
-    panels["admittance"].legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False
-    )
+    panels["admittance"].legend(**ABOVE)
     panels["admittance"].set_title(_title(fit), loc="left", fontsize=10.5)
     _write_table(panels["table"], fit)
     if fit.warnings:
@@ -86,14 +86,12 @@ def _draw_left(axes: Any, fit: Fit) -> None:
         (fit.measurement.admittance, fit.admittance, LEFT, "admittance"),
         (fit.measurement.radiation, fit.radiation, "#e08a00", "radiation"),
     )
-    drawn_any = False
     for curve, fitted, colour, label in rows:
         if curve is not None:
             off = as_db(fitted(curve.frequency_hz)) - as_db(curve.values)
             axes.plot(curve.frequency_hz, off, color=colour, lw=0.8, label=label)
-            drawn_any = True
     axes.set(ylim=(-RESIDUAL_DB, RESIDUAL_DB), ylabel="fitted less\nmeasured, dB")
-    if drawn_any:
+    if axes.lines:
         axes.legend(loc="upper left", ncols=2, frameon=False, fontsize=8.5)
 
 
@@ -117,25 +115,18 @@ def _scale(axes: Any, band_hz: tuple[float, float], *, is_last: bool) -> None:
 
 
 def _write_table(axes: Any, fit: Fit) -> None:
-    from yehu_server.lab.body.report import lines_of
-
     axes.axis("off")
-    rows = lines_of(fit)
-    modes = rows[: 1 + len(fit.body.mass)]
+    modes = lines_of(fit)[: 1 + len(fit.body.mass)]
     told = [f"{len(fit.body.mass)} bridge modes", f"{len(fit.body.sections)} sections of radiation"]
     for what, off in (("admittance", fit.admittance_db), ("radiation", fit.radiation_db)):
         if off is not None:
-            told += ["", *_describe(what, off)]
+            told += [
+                f"\n{what}, fitted less measured:",
+                f"  {off.rms:.2f} dB rms, {off.most:.1f} dB at most",
+                f"  the measurement scatters by {off.scatter:.2f} dB",
+            ]
     text = "\n".join([*modes, "", *told])
     axes.text(0.0, 1.0, text, family="monospace", fontsize=9.0, va="top", transform=axes.transAxes)
-
-
-def _describe(what: str, off: Differences) -> list[str]:
-    return [
-        f"{what}, fitted less measured:",
-        f"  {off.rms:.2f} dB rms, {off.most:.1f} dB at most",
-        f"  the measurement scatters by {off.scatter:.2f} dB",
-    ]
 
 
 def _title(fit: Fit) -> str:

@@ -34,11 +34,8 @@ def is_log(values: Array, spread: str = "") -> bool:
         return False
     if len(values) > 2 and _is_even(np.diff(values)):
         return False
-    return bool(values[-1] > WIDE * values[0] or (len(values) > 2 and _is_even(_ratios(values))))
-
-
-def _ratios(values: Array) -> Array:
-    return np.diff(np.log(values))
+    is_even = len(values) > 2 and _is_even(np.diff(np.log(values)))
+    return bool(values[-1] > WIDE * values[0] or is_even)
 
 
 def _is_even(steps: Array) -> bool:

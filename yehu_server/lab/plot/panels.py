@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.lab.plot import png
+from yehu_server.lab.plot.axes import ABOVE
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.rendering.plot_data import PlotData
 
@@ -18,7 +19,6 @@ LEVEL, PEAK, HEARD, ASKED = "#1f5fa8", "#9db8d6", "#1f5fa8", "#e08a00"
 MANY = 16  # notes, of which not all names have room
 OVER_SPECTRUM = "#5ad1ff"
 GRID: Any = {"axis": "y", "color": "0.9", "lw": 0.6}
-ABOVE: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": 2, "frameon": False}
 
 
 def draw_level(axes: Any, watch: PlotData) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.errors import OutputError, one_line
-from yehu_server.lab.plot.axes import check_matplotlib
+from yehu_server.util.extras import need
 from yehu_server.util.files import anything, check_free, check_target, replacing, why
 
 SOFTWARE = "yehu-server"  # named in a picture, which may therefore be replaced
@@ -31,7 +31,7 @@ def check_picture(target: Path, what: str, *, overwrite: bool = False) -> None:
     OutputError
         Where it may not, or its name ends otherwise than in .png.
     """
-    check_matplotlib(what)
+    need("matplotlib", what, "plots")
     if target.suffix.lower() != ".png":
         raise OutputError(f"{target}: a picture is a .png file")
     check_target(target)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from yehu_server.errors import ParameterError
-from yehu_server.lab.plot.axes import axes_of
+from yehu_server.lab.plot.axes import ABOVE, axes_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,13 +16,6 @@ if TYPE_CHECKING:
 INNER, OUTER, FINGER, BOW = "#1f5fa8", "0.35", "#c03a2b", "#e08a00"
 LEAST_FORCE = 1e-3  # N; below, bow and fingers are lifted
 MM = 1e3
-ABOVE: Any = {
-    "loc": "lower right",
-    "bbox_to_anchor": (1.0, 1.0),
-    "ncols": 5,
-    "frameon": False,
-    "fontsize": "small",
-}
 
 
 def strings(simulation: Any, time: float, *, ax: Axes | None = None) -> Axes:
@@ -71,15 +64,12 @@ def strings(simulation: Any, time: float, *, ax: Axes | None = None) -> Axes:
     places = np.atleast_1d(arrays["finger_position"][at])
     is_down = presses > LEAST_FORCE
     if is_down.any():
-        shape = arrays["string_1"][row]
-        heights = np.interp(places[is_down], arrays["x_1"], MM * shape)
+        heights = np.interp(places[is_down], arrays["x_1"], MM * arrays["string_1"][row])
         axes.plot(places[is_down], heights, "o", color=FINGER, ms=10, mfc="none", label="finger")
     if abs(arrays["bow_force"][at]) > LEAST_FORCE:
         axes.axvline(arrays["bow_position"][at], color=BOW, lw=1.2, label="bow")
     axes.plot(simulation.meta["bridge_x_m"], 0.0, "k^", ms=7, label="bridge")
     axes.set(xlabel="m from the loop", ylabel="mm")
     axes.text(0.02, 0.95, f"{times[row]:.4g} s", transform=axes.transAxes, va="top")
-    axes.legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, frameon=False, fontsize="small"
-    )
+    axes.legend(**ABOVE, fontsize="small")
     return axes

@@ -12,16 +12,8 @@ import numpy as np
 
 from yehu_server.lab.plot import png
 from yehu_server.lab.plot.axes import LABELS
-from yehu_server.lab.plot.cells import (
-    draw_cells,
-    draw_limits,
-    is_log,
-    limit_lines,
-    regime_colours,
-    regime_patches,
-    set_scale,
-)
-from yehu_server.lab.plot.sweep_maps import ALONG, FORCE, PERIOD_COLOURS, PERIODS, map_of, spread_of
+from yehu_server.lab.plot.cells import draw_limits, limit_lines, regime_patches, set_scale
+from yehu_server.lab.plot.sweep_maps import ALONG, FORCE, PERIODS, draw_map, is_log_along, map_of
 from yehu_server.lab.sweeps.limits import limits_of
 from yehu_server.lab.sweeps.result import Result
 from yehu_server.lab.sweeps.study import Study
@@ -77,6 +69,7 @@ def write_picture(
                 image = draw_map(axes, result, x, y, map_of(result, grid, x, y, at), what)
                 draw_limits_over(axes, result, study, x, y, at)
             axes.set_title(title_of(result, at), fontsize="small")
+            axes.set(xlabel="", ylabel="")
         for axes in panels.flat[max(0, len(maps) - across) : len(maps)]:
             axes.set_xlabel(LABELS.get(x, x))
         for axes in panels[:, 0]:
@@ -158,18 +151,6 @@ def limits_along(
     return places, lower, upper
 
 
-def draw_map(axes: Any, result: Result, x: str, y: str, cells: Array, what: str) -> Any:
-    """Draw the cells of one map of a column; return the image."""
-    options: dict[str, Any] = {"cmap": "viridis_r"}
-    if what == "regime":
-        options = regime_colours(result.regimes)
-    elif what == "helmholtz_s":
-        options = PERIOD_COLOURS
-    across, up = result.axes[x], result.axes[y]
-    log = is_log(across, spread_of(result, x)), is_log(up, spread_of(result, y))
-    return draw_cells(axes, across, up, cells, log=log, **options)
-
-
 def draw_limits_over(
     axes: Any, result: Result, study: Study, x: str, y: str, at: Mapping[str, int]
 ) -> None:
@@ -184,6 +165,6 @@ def draw_limits_over(
 
 def _draw_line(axes: Any, result: Result, x: str, values: Array, what: str) -> None:
     axes.plot(result.axes[x], values, "k.-", lw=0.6, ms=3)
-    set_scale(axes.xaxis, result.axes[x], log=is_log(result.axes[x], spread_of(result, x)))
+    set_scale(axes.xaxis, result.axes[x], log=is_log_along(result, x))
     if what == "regime":
         axes.set_yticks(range(len(result.regimes)), labels=result.regimes)

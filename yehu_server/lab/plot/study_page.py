@@ -14,9 +14,8 @@ import numpy as np
 
 from yehu_server.errors import ParameterError
 from yehu_server.lab.plot.axes import COLOURS, LABELS
-from yehu_server.lab.plot.cells import is_log
 from yehu_server.lab.plot.study import limits_along, plane_of
-from yehu_server.lab.plot.sweep_maps import MOST_PERIODS, spread_of
+from yehu_server.lab.plot.sweep_maps import MOST_PERIODS, is_log_along
 from yehu_server.lab.sweeps.result import Result
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.util.files import read_text, write_text
@@ -86,7 +85,7 @@ def _axis(result: Result, name: str) -> dict[str, Any]:
         "label": label,
         "values": words or values.tolist(),
         "numbers": list(range(len(values))) if is_text else values.tolist(),
-        "log": is_log(values, spread_of(result, name)),
+        "log": is_log_along(result, name),
     }
     return axis | ({"words": words} if is_text else {})
 

@@ -73,7 +73,7 @@ def regimes(sweep: Result, x: str, y: str, *, at: At | None = None, ax: Axes | N
     """
     cells = map_of(sweep, sweep.grid("regime"), x, y, place_of(sweep, x, y, at))
     axes = axes_of(ax)
-    _draw(axes, sweep, x, y, cells, **regime_colours(sweep.regimes))
+    draw_map(axes, sweep, x, y, cells, "regime")
     axes.legend(handles=regime_patches(sweep.regimes, cells), **BESIDE)
     return axes
 
@@ -160,7 +160,7 @@ def guettler(sweep: Result, *, at: At | None = None, ax: Axes | None = None) -> 
     x, y = _axis_of(sweep, ACCELERATION), _axis_of(sweep, FORCE)
     cells = map_of(sweep, sweep.onset_periods(), x, y, place_of(sweep, x, y, at))
     axes = axes_of(ax)
-    image = _draw(axes, sweep, x, y, cells, **PERIOD_COLOURS)
+    image = draw_map(axes, sweep, x, y, cells, "helmholtz_s")
     axes.figure.colorbar(image, ax=axes, label=PERIODS, extend="max", pad=0.02)
     return axes
 
@@ -168,6 +168,11 @@ def guettler(sweep: Result, *, at: At | None = None, ax: Axes | None = None) -> 
 def spread_of(sweep: Result, name: str) -> str:
     """Return how the values of an axis lie: "linear", "log", or "" for a list."""
     return str(dict(zip(sweep.meta["axes"], sweep.meta["spreads"], strict=True))[name])
+
+
+def is_log_along(sweep: Result, name: str) -> bool:
+    """Return whether an axis is drawn by logarithms."""
+    return is_log(sweep.axes[name], spread_of(sweep, name))
 
 
 def place_of(sweep: Result, x: str, y: str, at: At | None = None) -> dict[str, int]:
@@ -216,9 +221,14 @@ def _axis_of(sweep: Result, names: tuple[str, ...]) -> str:
     raise ParameterError(f"the sweep has no axis {names[0]!r} (it has: {', '.join(sweep.axes)})")
 
 
-def _draw(axes: Any, sweep: Result, x: str, y: str, cells: Array, **options: Any) -> Any:
-    """Draw a map over two axes as they are."""
-    log = is_log(sweep.axes[x], spread_of(sweep, x)), is_log(sweep.axes[y], spread_of(sweep, y))
+def draw_map(axes: Any, sweep: Result, x: str, y: str, cells: Array, what: str) -> Any:
+    """Draw a map of a column over two axes as they are; return the image."""
+    options: Any = {"cmap": "viridis_r"}
+    if what == "regime":
+        options = regime_colours(sweep.regimes)
+    elif what == "helmholtz_s":
+        options = PERIOD_COLOURS
+    log = is_log_along(sweep, x), is_log_along(sweep, y)
     image = draw_cells(axes, sweep.axes[x], sweep.axes[y], cells, log=log, **options)
     axes.set(xlabel=LABELS.get(x, x), ylabel=LABELS.get(y, y))
     return image

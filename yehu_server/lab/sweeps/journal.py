@@ -40,7 +40,30 @@ def key_of_study(study: Study) -> str:
     return hashlib.sha256(f"{source_hash()} {study.as_text()}".encode()).hexdigest()[:32]
 
 
-class Journal:
+class Done:
+    """The points of a study that are done."""
+
+    def __init__(self) -> None:
+        self.numbers = [np.zeros(0, np.int64)]
+        self.findings = [np.zeros(0, FINDING)]
+
+    @property
+    def count(self) -> int:
+        """Number of strokes that are done."""
+        return sum(map(len, self.numbers))
+
+    def done(self) -> tuple[Array, Array]:
+        """The numbers of the points that are done, in order, and their findings."""
+        numbers, first = np.unique(np.concatenate(self.numbers), return_index=True)
+        return numbers, np.concatenate(self.findings)[first]
+
+    def add(self, numbers: Array, findings: Array) -> None:
+        """Add points."""
+        self.numbers.append(numbers)
+        self.findings.append(findings)
+
+
+class Journal(Done):
     """The journal of one study: what is done, and a file that more is added to.
 
     Parameters
@@ -55,9 +78,8 @@ class Journal:
     """
 
     def __init__(self, target: Path, study: Study, *, overwrite: bool = False) -> None:
+        super().__init__()
         self.path = journal_of(target)
-        self.numbers: list[Array] = []
-        self.findings: list[Array] = []
         key = key_of_study(study)
         try:
             if overwrite:
@@ -74,19 +96,6 @@ class Journal:
         except OSError as error:
             raise OutputError(f"{self.path}: cannot write: {why(error)}") from error
 
-    @property
-    def count(self) -> int:
-        """Number of strokes that are done."""
-        return sum(map(len, self.numbers))
-
-    def done(self) -> tuple[Array, Array]:
-        """The numbers of the points that are done, in order, and their findings."""
-        if not self.numbers:
-            return np.zeros(0, np.int64), np.zeros(0, FINDING)
-        numbers = np.concatenate(self.numbers)
-        numbers, first = np.unique(numbers, return_index=True)
-        return numbers, np.concatenate(self.findings)[first]
-
     def add(self, numbers: Array, findings: Array) -> None:
         """Add points, safe against the end of this process.
 
@@ -101,8 +110,7 @@ class Journal:
             self._file.flush()
         except OSError as error:
             raise OutputError(f"{self.path}: cannot write: {why(error)}") from error
-        self.numbers.append(numbers)
-        self.findings.append(findings)
+        super().add(numbers, findings)
 
     def close(self, *, remove: bool = False) -> None:
         """Close the file; remove it where the result is written."""
@@ -134,7 +142,7 @@ class Journal:
                 payload = file.read(count * each)
                 if len(payload) < count * each or zlib.crc32(payload) != checksum:
                     break
-                self.numbers.append(np.frombuffer(payload[: 8 * count], "<i8").astype(np.int64))
-                self.findings.append(np.frombuffer(payload[8 * count :], FINDING))
+                numbers = np.frombuffer(payload[: 8 * count], "<i8").astype(np.int64)
+                super().add(numbers, np.frombuffer(payload[8 * count :], FINDING))
                 good = file.tell()
             return good

@@ -212,7 +212,9 @@ class NoteBow:
         tension = float(varied.get("tension", self.fixed["tension"]))
         for name, value in varied.items():
             if name.startswith("instrument."):
-                changed = override(changed, nested(name.split(".")[1:], value), self.folder)
+                for part in reversed(name.split(".")[1:]):
+                    value = {part: value}  # noqa: PLW2901 - nested as in a file
+                changed = override(changed, value, self.folder)
         if tension != 1.0:
             section = f"string_{string}"
             own = changed.strings[string - 1].T * tension
@@ -266,24 +268,11 @@ def _is_of_model(name: str) -> bool:
 
 def distinct(columns: Sequence[Array], count: int) -> tuple[Array, list[tuple[Any, int]]]:
     """Number the combinations of some columns; the values of each, and where it is first."""
+    rows = zip(*(column.tolist() for column in columns), strict=True) if columns else [()] * count
     found: dict[tuple[Any, ...], int] = {}
-    keys: list[tuple[Any, int]] = []
-    numbers = np.zeros(count, np.int64)
-    for i in range(count):
-        key = tuple(column[i].item() for column in columns)
-        if key not in found:
-            found[key] = len(found)
-            keys.append((key, i))
-        numbers[i] = found[key]
-    return numbers, keys
-
-
-def nested(path: Sequence[str], value: Any) -> dict[str, Any]:
-    """A value below its names: ``{"bow": {"mu_S": 1.0}}``."""
-    entries: Any = value
-    for name in reversed(path):
-        entries = {name: entries}
-    return dict(entries)
+    numbers = np.array([found.setdefault(row, len(found)) for row in rows], np.int64)
+    first = np.unique(numbers, return_index=True)[1].tolist()
+    return numbers, list(zip(found, first, strict=True))
 
 
 def _checked(name: str, value: Any) -> Any:

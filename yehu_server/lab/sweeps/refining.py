@@ -45,22 +45,21 @@ def finer_points(
     known, kinds : ndarray
         Numbers of the points that are known, and the kind of each.
     """
-    filled = fill(shape, refine, levels, known, kinds, halved)
     step = 2 ** (levels - halved)
-    grid = _grid(filled, refine, step)
-    numbers = np.arange(math.prod(shape)).reshape(shape)
-    corners = [_shifted(grid, refine, offset) for offset in _offsets(refine)]
-    differs = np.zeros(corners[0].shape, bool)
-    for other in corners[1:]:
-        differs |= other != corners[0]
-    lowest = _shifted(_grid(numbers, refine, step), refine, (0,) * len(refine))[differs]
-    places = [math.prod(shape[axis + 1 :]) for axis in refine]
-    half = step // 2
-    wanted = [
-        lowest + sum(part * half * place for part, place in zip(parts, places, strict=True))
-        for parts in itertools.product((0, 1, 2), repeat=len(refine))
-    ]
-    return np.setdiff1d(np.concatenate(wanted), known)
+    least = most = _grid(fill(shape, refine, levels, known, kinds, halved), refine, step)
+    for axis in refine:
+        lower, upper = _along(axis, slice(None, -1)), _along(axis, slice(1, None))
+        least = np.minimum(least[lower], least[upper])
+        most = np.maximum(most[lower], most[upper])
+    differs = least != most
+    wanted = np.zeros(shape, bool)
+    halves = _grid(wanted, refine, step // 2)
+    for offset in itertools.product((0, 1, 2), repeat=len(refine)):
+        corner = halves
+        for axis, move in zip(refine, offset, strict=True):
+            corner = corner[_along(axis, slice(move, move + 2 * differs.shape[axis] - 1, 2))]
+        corner |= differs
+    return np.setdiff1d(np.flatnonzero(wanted), known)
 
 
 def fill(
@@ -86,10 +85,8 @@ def fill(
     for level in range(levels if halved is None else halved):
         grid = _grid(source, refine, 2 ** (levels - level - 1))
         for axis in refine:
-            odd, even = [slice(None)] * grid.ndim, [slice(None)] * grid.ndim
-            odd[axis], even[axis] = slice(1, None, 2), slice(0, -1, 2)
-            here = grid[tuple(odd)]
-            here[...] = np.where(here < 0, grid[tuple(even)], here)
+            here = grid[_along(axis, slice(1, None, 2))]
+            here[...] = np.where(here < 0, grid[_along(axis, slice(0, -1, 2))], here)
     found = np.asarray(values)[source]
     found[source < 0] = 0
     return found
@@ -97,19 +94,11 @@ def fill(
 
 def _grid(dense: Array, refine: Sequence[int], step: int) -> Array:
     """A view of every so many points along the refined axes."""
-    part = [slice(None)] * dense.ndim
     for axis in refine:
-        part[axis] = slice(None, None, step)
-    return dense[tuple(part)]
+        dense = dense[_along(axis, slice(None, None, step))]
+    return dense
 
 
-def _offsets(refine: Sequence[int]) -> list[tuple[int, ...]]:
-    return list(itertools.product((0, 1), repeat=len(refine)))
-
-
-def _shifted(grid: Array, refine: Sequence[int], offset: Sequence[int]) -> Array:
-    """One corner of each cell of a grid: the lowest, moved along some axes."""
-    part = [slice(None)] * grid.ndim
-    for axis, move in zip(refine, offset, strict=True):
-        part[axis] = slice(move, grid.shape[axis] - 1 + move)
-    return grid[tuple(part)]
+def _along(axis: int, part: slice) -> tuple[slice, ...]:
+    """The index of a part of an array along one axis."""
+    return (slice(None),) * axis + (part,)

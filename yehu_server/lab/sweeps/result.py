@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.errors import OutputError, ParameterError, ScoreError, YehuError
+from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.lab.regimes.judge import FINDING
 from yehu_server.lab.regimes.names import HELMHOLTZ, REGIMES
 from yehu_server.lab.sweeps.gestures import ACCELERATION
@@ -18,6 +18,7 @@ from yehu_server.lab.sweeps.refining import fill
 from yehu_server.lab.sweeps.study import Study, study_of
 from yehu_server.scores.gesture import CONTROLS
 from yehu_server.util import __version__
+from yehu_server.util.extras import need
 from yehu_server.util.files import anything, replacing
 
 Array = Any
@@ -25,10 +26,7 @@ Array = Any
 FORMAT, VERSION = "yehu-server sweep", 1
 COLUMNS = tuple(FINDING.names or ())
 UNITS = {
-    "regime": "",
-    "faults": "",
     "slips": "a period",
-    "certainty": "",
     "first_slip_s": "s",
     "helmholtz_s": "s",
     "pitch_hz": "Hz",
@@ -125,30 +123,27 @@ class Result:
 
         Raises
         ------
-        YehuError
+        ParameterError
             Where xarray is missing.
         """
-        try:
-            import xarray
-        except ImportError:
-            raise YehuError("xarray is missing: install yehu-server[lab]") from None
+        need("xarray", "to_xarray", "lab")
+        import xarray
+
         names = tuple(self.axes)
         computed = np.zeros(self.shape, bool)
         computed.reshape(-1)[self.numbers] = True
-        found = {
+        found: dict[str, Any] = {
             name: (names, self.grid(name), {"units": UNITS.get(name, "")}) for name in self.columns
         }
         found["computed"] = (names, computed, {})
         axes = {
             name: (name, values, {"units": unit_of(name)}) for name, values in self.axes.items()
         }
-        dataset = xarray.Dataset(found, coords=axes)
         # As CF conventions have it: names of the numbers, without spaces.
-        dataset["regime"].attrs["flag_values"] = list(range(len(self.regimes)))
-        dataset["regime"].attrs["flag_meanings"] = " ".join(
-            name.replace(" ", "_") for name in self.regimes
-        )
-        return dataset
+        found["regime"][2]["flag_values"] = list(range(len(self.regimes)))
+        meanings = " ".join(name.replace(" ", "_") for name in self.regimes)
+        found["regime"][2]["flag_meanings"] = meanings
+        return xarray.Dataset(found, coords=axes)
 
     def save(self, target: Path) -> None:
         """Write one compressed ``.npz`` file; the same result makes the same bytes.
@@ -232,15 +227,3 @@ def result_of(study: Study, numbers: Array, findings: Array) -> Result:
     columns = {name: np.ascontiguousarray(findings[name][order]) for name in COLUMNS}
     axes = {axis.name: axis.as_array() for axis in study.axes}
     return Result(meta, axes, numbers[order], columns)
-
-
-def check_result(target: Path) -> None:
-    """Check the ending of a result file.
-
-    Raises
-    ------
-    OutputError
-        Where it is not ``.npz``.
-    """
-    if target.suffix != ".npz":
-        raise OutputError(f"{target}: name a file that ends in .npz")

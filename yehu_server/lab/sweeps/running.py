@@ -16,11 +16,11 @@ from yehu_server.errors import OutputError, YehuError
 from yehu_server.lab.regimes.judge import FINDING
 from yehu_server.lab.regimes.names import HELMHOLTZ
 from yehu_server.lab.regimes.strokes import find
-from yehu_server.lab.sweeps.journal import Journal, journal_of
+from yehu_server.lab.sweeps.journal import Done, Journal, journal_of
 from yehu_server.lab.sweeps.refining import coarse_points, finer_points
-from yehu_server.lab.sweeps.result import Result, check_result, result_of
+from yehu_server.lab.sweeps.result import Result, result_of
 from yehu_server.lab.sweeps.study import Study, study_from_text
-from yehu_server.util.files import check_target
+from yehu_server.util.files import anything, check_free, check_target, nothing
 
 Array = Any
 Progress = Callable[[float, float], None]
@@ -48,16 +48,9 @@ def sweep(
     progress : callable
         Called with the number of strokes done, and of those known to be wanted.
     """
-    known: list[tuple[Array, Array]] = []
-
-    def done() -> tuple[Array, Array]:
-        if not known:
-            return np.zeros(0, np.int64), np.zeros(0, FINDING)
-        numbers, findings = (np.concatenate(parts) for parts in zip(*known, strict=True))
-        return numbers, findings
-
-    run_levels(study, done, lambda *both: known.append(both), workers, cluster, progress)
-    return result_of(study, *done())
+    known = Done()
+    run_levels(study, known, workers, cluster, progress)
+    return result_of(study, *known.done())
 
 
 def sweep_to(
@@ -89,7 +82,7 @@ def sweep_to(
     check_free_result(target, overwrite=overwrite)
     journal = Journal(target, study, overwrite=overwrite)
     try:
-        run_levels(study, journal.done, journal.add, workers, cluster, progress)
+        run_levels(study, journal, workers, cluster, progress)
         result = result_of(study, *journal.done())
         result.save(target)
         journal.close(remove=True)
@@ -110,52 +103,39 @@ def check_free_result(target: Path, *, overwrite: bool = False) -> None:
     OutputError
         Where it may not.
     """
-    check_result(target)
+    if target.suffix != ".npz":
+        raise OutputError(f"{target}: name a file that ends in .npz")
     check_target(target)
-    if target.exists() and not overwrite:
-        raise OutputError(f"{target}: exists; --overwrite replaces it")
+    check_free(target, anything if overwrite else nothing)
 
 
 def run_levels(
     study: Study,
-    done: Callable[[], tuple[Array, Array]],
-    add: Callable[[Array, Array], None],
+    known: Done,
     workers: int | None = None,
     cluster: Any = None,
     progress: Progress | None = None,
-    levels: int | None = None,
 ) -> None:
-    """Compute what is not done, level by level of the refinement.
-
-    Parameters
-    ----------
-    done : callable
-        Returns the numbers of the points that are done, in order, and their findings.
-    add : callable
-        Takes more of them.
-    levels : int
-        After how many of the study's levels to stop; by default after all.
-    """
+    """Compute what is not done, level by level of the refinement."""
     wanted = coarse_points(study.shape, study.refine, study.levels)
-    for level in range((study.levels if levels is None else levels) + 1):
+    for level in range(study.levels + 1):
+        numbers, findings = known.done()
         if level > 0:
             # Not of all that is done: an earlier run may have come to finer levels.
-            numbers, findings = done()
-            known = np.isin(numbers, wanted)
-            kinds = findings["regime"][known]
+            of_level = np.isin(numbers, wanted)
+            kinds = findings["regime"][of_level]
             if study.border == "helmholtz":
                 kinds = kinds == HELMHOLTZ
             shape, refine = study.shape, study.refine
-            more = finer_points(shape, refine, study.levels, level - 1, numbers[known], kinds)
+            more = finer_points(shape, refine, study.levels, level - 1, numbers[of_level], kinds)
             wanted = np.union1d(wanted, more)
-        numbers, _ = done()
         missing = np.setdiff1d(wanted, numbers, assume_unique=True)
         before = len(wanted) - len(missing)
         total = len(wanted)
         if progress is not None:
             progress(before, total)
         for part, findings in _computed(study, missing, workers, cluster):
-            add(part, findings)
+            known.add(part, findings)
             before += len(part)
             if progress is not None:
                 progress(before, total)

@@ -1,4 +1,4 @@
-"""The libraries that the workshop needs beyond the instrument's own."""
+"""Libraries that come with extras of the package only."""
 
 from __future__ import annotations
 
@@ -7,8 +7,13 @@ import importlib
 from yehu_server.errors import ParameterError
 
 
-def need(module: str, extra: str) -> None:
+def need(module: str, what: str, extra: str) -> None:
     """Check that a library is there.
+
+    Parameters
+    ----------
+    what : str
+        What needs it, for the message.
 
     Raises
     ------
@@ -19,6 +24,4 @@ def need(module: str, extra: str) -> None:
         importlib.import_module(module)
     except ImportError:
         library = module.partition(".")[0]
-        raise ParameterError(
-            f"the body workshop needs {library}: install yehu-server[{extra}]"
-        ) from None
+        raise ParameterError(f"{what} needs {library}: pip install yehu-server[{extra}]") from None

@@ -103,7 +103,7 @@ MATRIX = [("wav", "16"), ("wav", "24"), ("wav", "float"), ("flac", "16"), ("flac
 
 @pytest.mark.parametrize(("kind", "subtype"), MATRIX)
 def test_the_summary_says_what_the_file_holds(play, tmp_path, phrase, kind, subtype):
-    words = (phrase, "--format", kind, "--subtype", subtype, "--rate", 48000)
+    words = (phrase, "--tail", 0, "--format", kind, "--subtype", subtype, "--rate", 48000)
     summary, sound = play(*words, target="out")
     info = soundfile.info(tmp_path / "out")
     assert info.format == kind.upper()
@@ -160,7 +160,7 @@ def test_the_format_is_asked_for_or_goes_by_the_ending(play, tmp_path, midi, tar
 
 @pytest.mark.parametrize(("kind", "subtype"), MATRIX)
 def test_rendering_twice_gives_the_same_file(play, tmp_path, phrase, kind, subtype):
-    words = (phrase, "--format", kind, "--subtype", subtype)
+    words = (phrase, "--format", kind, "--subtype", subtype, "--tail", 0)
     _, once = play(*words, target="once")
     _, twice = play(*words, target="twice")
     np.testing.assert_array_equal(once, twice)
@@ -168,7 +168,7 @@ def test_rendering_twice_gives_the_same_file(play, tmp_path, phrase, kind, subty
         assert (tmp_path / "once").read_bytes() == (tmp_path / "twice").read_bytes()
 
 
-@pytest.mark.parametrize("block", [1, 64, 333, 10**6])
+@pytest.mark.parametrize("block", [1, 333, 10**6])
 def test_the_block_size_within_is_not_heard(phrase, block):
     expected = samples(phrase)
     assert rms(expected) > 0.01
@@ -199,10 +199,21 @@ def test_the_seed_is_a_word_on_the_command_line(play, phrase):
 # ---------------------------------------------------------------- levels
 
 
-@pytest.mark.parametrize(("kind", "subtype"), [("wav", "float"), ("wav", "16"), ("flac", "24")])
-@pytest.mark.parametrize("gain_db", [-30, 0, 24])
+@pytest.mark.parametrize(
+    ("kind", "subtype", "gain_db"), [("wav", "float", 24), ("wav", "16", -30), ("flac", "24", 0)]
+)
 def test_normalize_puts_the_peak_at_minus_1_dbfs(play, phrase, kind, subtype, gain_db):
-    words = ("--normalize", "--format", kind, "--subtype", subtype, "--gain-db", gain_db)
+    words = (
+        "--tail",
+        0,
+        "--normalize",
+        "--format",
+        kind,
+        "--subtype",
+        subtype,
+        "--gain-db",
+        gain_db,
+    )
     summary, sound = play(phrase, *words)
     assert 20.0 * math.log10(np.abs(sound).max()) == pytest.approx(-1.0, abs=0.01)
     assert summary["peak"] == pytest.approx(np.abs(sound).max(), abs=STEP[subtype])
@@ -210,8 +221,8 @@ def test_normalize_puts_the_peak_at_minus_1_dbfs(play, phrase, kind, subtype, ga
 
 
 def test_normalize_changes_nothing_but_the_level(play, phrase):
-    _, usual = play(phrase, "--subtype", "float")
-    _, scaled = play(phrase, "--subtype", "float", "--normalize")
+    _, usual = play(phrase, "--tail", 0, "--subtype", "float")
+    _, scaled = play(phrase, "--tail", 0, "--subtype", "float", "--normalize")
     factor = np.abs(scaled).max() / np.abs(usual).max()
     np.testing.assert_allclose(scaled, factor * usual, rtol=1e-5, atol=1e-9)
 
@@ -231,9 +242,9 @@ def test_gain_is_in_decibels(play, phrase):
     np.testing.assert_allclose(by_address[4410:], high[4410:], rtol=1e-5, atol=1e-9)
 
 
-@pytest.mark.parametrize("subtype", ["16", "24", "float"])
+@pytest.mark.parametrize("subtype", ["16", "float"])
 def test_the_limiter_keeps_a_loud_rendering_within_full_scale(play, phrase, subtype):
-    summary, sound = play(phrase, "--gain-db", 24, "--subtype", subtype)
+    summary, sound = play(phrase, "--tail", 0, "--gain-db", 24, "--subtype", subtype)
     assert 0.9 < np.abs(sound).max() <= 1.0
     assert summary["peak"] <= 1.0
     # Limited, not wrapped around: no sample jumps from one end to the other.
@@ -243,8 +254,7 @@ def test_the_limiter_keeps_a_loud_rendering_within_full_scale(play, phrase, subt
 # ---------------------------------------------------------------- the tail
 
 
-@pytest.mark.parametrize("tail", [0, 0.5, 1.25])
-@pytest.mark.parametrize("rate", [44100, 48000])
+@pytest.mark.parametrize(("tail", "rate"), [(0, 44100), (1.25, 48000)])
 def test_a_tail_asked_for_is_exactly_as_long(play, midi, tail, rate):
     summary, sound = play(midi(*notes((0, 0.4, 70, 64))), "--tail", tail, "--rate", rate)
     assert len(sound) == round((0.4 + tail) * rate)
@@ -381,12 +391,8 @@ def test_an_instrument_file_changes_the_instrument(play, midi, tmp_path, name, t
 @pytest.mark.parametrize(
     ("policy", "note", "fitted"),
     [
-        ("transpose", 53, 65),
-        ("transpose", 90, 78),
         ("transpose", 127, 79),
-        ("transpose", 0, 72),
         ("clamp", 20, 65),
-        ("clamp", 100, 89),
         ("clamp", 70, 70),
     ],
 )
@@ -404,11 +410,6 @@ def test_skipped_notes_are_counted_but_not_played(play, midi):
     assert summary["notes_played"] == 0
     assert summary["channels"] == {}
     assert not sound.any()
-
-
-def test_transposing_is_the_usual_policy(play, midi):
-    summary, _ = play(midi(*notes((0, 0.1, 20, 64), (0.2, 0.1, 66, 64))), "--tail", 0)
-    assert (summary["notes_played"], summary["notes_out_of_range"]) == (2, 1)
 
 
 # ---------------------------------------------------------------- several files, other rates
@@ -442,7 +443,8 @@ def test_a_pedal_or_fade_at_the_end_of_one_file_does_not_reach_the_next(midi):
 
 
 @pytest.mark.parametrize(
-    "rate", [22050, 32000, 48000, 96000, pytest.param(192000, marks=pytest.mark.slow)]
+    "rate",
+    [22050, 48000, *(pytest.param(rate, marks=pytest.mark.slow) for rate in (96000, 192000))],
 )
 def test_other_rates_play_the_same_tune(play, tmp_path, midi, rate):
     tune = midi(*notes((0, 0.6, 74, 64)))

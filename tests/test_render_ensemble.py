@@ -19,7 +19,7 @@ from yehu_server.rendering.performance import Performance
 from yehu_server.scores.reading import part_of
 from yehu_server.scores.smf.reader import read_score
 
-QUIET = ("--gain-db", -20)  # the limiter does nothing
+QUIET = ("--gain-db", -20, "--tail", 0.5)  # the limiter does nothing
 FLOAT = ("--subtype", "float")
 
 
@@ -87,7 +87,7 @@ def test_the_report_has_a_line_for_each_part(command, trio, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "words", [(), ("--gain-db", 24), ("--normalize",), ("--mono",), ("--dry",)]
+    "words", [("--gain-db", 24), ("--normalize",), ("--mono", "--tail", 0), ("--dry", "--tail", 0)]
 )
 def test_the_mix_is_the_sum_of_its_stems(play, trio, tmp_path, words):
     summary, mix, stems = play(trio, "--ensemble", "--stems", tmp_path / "stems", *words)

@@ -14,7 +14,7 @@ from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.style import Style
 
 RATE = 48000.0
-FRAMES = 96000
+FRAMES = 72000
 BLOCK = 128
 SECOND = 48000
 OPEN_STRING = [(0, BEGIN, 0, 65.0, 65.0)]

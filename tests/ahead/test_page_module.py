@@ -77,9 +77,9 @@ def test_a_rate_that_it_was_not_built_for_is_refused(node, tmp_path):
         node("play.mjs", rate=32000, frames=1, block=1, wishes=[], samples=str(tmp_path / "s"))
 
 
-def test_a_million_random_events_make_neither_a_trap_nor_a_number_that_is_not_finite(node):
-    kinds = len(KINDS) + len(EVENTS)
-    report = node("fuzz.mjs", rate=RATE, seed=1, count=1_000_000, rows=len(TABLE), kinds=kinds)
-    assert report["posted"] == 1_000_000
+def test_no_random_events_make_a_trap_or_a_number_that_is_not_finite(node, everything):
+    kinds, count = len(KINDS) + len(EVENTS), 1_000_000 if everything else 200_000
+    report = node("fuzz.mjs", rate=RATE, seed=1, count=count, rows=len(TABLE), kinds=kinds)
+    assert report["posted"] == count
     assert report["finite"]
     assert report["loudest"] > 0.01

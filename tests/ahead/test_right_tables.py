@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import pytest
 from ahead.tables import TUNINGS, are_right, some_tables
@@ -59,13 +60,14 @@ def test_a_rule_holds_for_each_field():
     assert set(FIELDS) == set(TABLES.names or ())
 
 
-@pytest.mark.parametrize("wrong", [math.nan, math.inf, -math.inf, -1e308])
-@pytest.mark.parametrize("field", TABLES.names or ())
-def test_no_field_has_a_wild_number(right, field, wrong):
-    if math.isnan(wrong) and field in ("pitch", "program_row"):
-        pytest.skip("stands for none")
-    right[field].reshape(-1)[0] = wrong
-    assert not are_right(right)
+def test_no_field_has_a_wild_number(right):
+    taken = []
+    for field, wrong in product(TABLES.names or (), (math.nan, math.inf, -math.inf, -1e308)):
+        made = right.copy()
+        made[field].reshape(-1)[0] = wrong
+        if are_right(made):
+            taken.append((field, str(wrong)))
+    assert taken == [("pitch", "nan"), ("program_row", "nan")]  # which stand for none
 
 
 WRONG = [
@@ -113,12 +115,13 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("field", "place", "wrong"), WRONG)
-def test_what_would_lead_astray_is_refused_and_changes_nothing(right, field, place, wrong):
+def test_what_would_lead_astray_is_refused_and_changes_nothing(right):
     instrument = Instrument(InstrumentSpec(48000.0), is_live=True)
     before = instrument.tables.tobytes()
-    right[field].reshape(-1)[place] = wrong
-    given = instrument.address, 0, right.ctypes.data, right.nbytes
-    assert use_tables.call(*given) == -1
+    for field, place, wrong in WRONG:
+        made = right.copy()
+        made[field].reshape(-1)[place] = wrong
+        given = instrument.address, 0, made.ctypes.data, made.nbytes
+        assert use_tables.call(*given) == -1, (field, place, wrong)
     assert instrument.posted == 0
     assert instrument.tables.tobytes() == before

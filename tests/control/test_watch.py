@@ -36,7 +36,7 @@ def test_a_changed_file_is_taken_up_while_a_note_sounds_or_refused_whole(watched
     receive(watched.player, note, frame=watched.player.frame_of(), port=0)
     path.write_text(BIND.format(21) + BIND.format(2100))
     (refused,) = patience(lambda: watched.said, "a line on what is wrong")
-    assert refused.startswith(f"{path}:5: bind 2: unknown source 'cc 2100'")
+    assert refused.startswith(f"{path}:5: bind 2: source: unknown source 'cc 2100'")
     assert refused.endswith("; the mapping stays as it was")
     assert send(21) == 1.0
     path.write_text(BIND.format(21) + BIND.format(22))

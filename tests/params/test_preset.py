@@ -20,7 +20,6 @@ from yehu_server.params.spec import Curve, Place
 from yehu_server.params.table import TABLE
 
 HEAD = "version = 1\n"
-every_param = pytest.mark.parametrize("address", POSSIBLE)
 
 
 def of(**values: float) -> Preset:
@@ -35,11 +34,11 @@ def parse(text, name):
     return preset_from(document_of(name, text), name)
 
 
-@every_param
-@pytest.mark.parametrize("end", ["lo", "hi", "default"])
-def test_every_parameter_is_read_at_its_ends_and_its_default(address, end):
-    value = getattr(POSSIBLE[address], end)
-    assert parse(f'{HEAD}[values]\n"{address}" = {value!r}\n', "mine").values == {address: value}
+def test_every_parameter_is_read_at_its_ends_and_its_default():
+    for end in ("lo", "hi", "default"):
+        values = {address: getattr(param, end) for address, param in POSSIBLE.items()}
+        lines = "".join(f'"{address}" = {value!r}\n' for address, value in values.items())
+        assert parse(f"{HEAD}[values]\n{lines}", "mine").values == values
 
 
 def test_a_preset_may_have_all_the_players_and_nothing_that_the_player_moves():
@@ -104,26 +103,24 @@ def test_what_is_wrong_is_said_and_nothing_is_read(text, reason):
 # ---------------------------------------------------------------- between two
 
 
-@every_param
-def test_a_morph_begins_and_ends_at_the_very_values(address):
-    param = POSSIBLE[address]
-    third = param.from_unit(1.0 / 3.0)
-    one, other = Preset("one", {address: param.hi}), Preset("other", {address: third})
-    for amount, value in ((0.0, param.hi), (-3.0, param.hi), (1.0, third), (7.0, third)):
-        assert morph(one, other, amount) == {address: value}
+def test_a_morph_begins_and_ends_at_the_very_values():
+    one = Preset("one", {address: param.hi for address, param in POSSIBLE.items()})
+    third = {address: param.from_unit(1.0 / 3.0) for address, param in POSSIBLE.items()}
+    for amount, values in ((0.0, one.values), (-3.0, one.values), (1.0, third), (7.0, third)):
+        assert morph(one, Preset("other", third), amount) == values
 
 
-@every_param
-def test_half_way_is_half_the_way_along_the_curve(address):
-    param = POSSIBLE[address]
-    one, other = Preset("one", {address: param.lo}), Preset("other", {address: param.hi})
-    half = morph(one, other, 0.5)[address]
-    if param.is_choice:
-        assert half == param.hi
-    elif param.curve is Curve.EXP:
-        assert half == pytest.approx((param.lo * param.hi) ** 0.5)
-    else:
-        assert half == pytest.approx(0.5 * (param.lo + param.hi))
+def test_half_way_is_half_the_way_along_the_curve():
+    one = Preset("one", {address: param.lo for address, param in POSSIBLE.items()})
+    other = Preset("other", {address: param.hi for address, param in POSSIBLE.items()})
+    for address, half in morph(one, other, 0.5).items():
+        param = POSSIBLE[address]
+        if param.is_choice:
+            assert half == param.hi, address
+        elif param.curve is Curve.EXP:
+            assert half == pytest.approx((param.lo * param.hi) ** 0.5), address
+        else:
+            assert half == pytest.approx(0.5 * (param.lo + param.hi)), address
 
 
 def test_a_switch_turns_over_at_a_half_and_is_never_between():

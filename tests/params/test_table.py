@@ -7,95 +7,66 @@ import math
 import pytest
 
 from yehu_server.errors import ParameterError
-from yehu_server.params.spec import Curve, Param, Place
+from yehu_server.params.spec import Curve, Place
 from yehu_server.params.table import ENGINE, TABLE, assignment, find, read
-
-rows = pytest.mark.parametrize("param", TABLE, ids=lambda param: param.address)
-
 
 # ---------------------------------------------------------------- every row
 
 
-@rows
-def test_a_row_is_complete_and_its_default_is_in_its_range(param: Param):
-    assert param.address.startswith("/")
-    assert param.address == param.address.lower().strip().rstrip("/")
-    assert param.lo < param.hi
-    assert param.lo <= param.default <= param.hi
-    assert param.curve is not Curve.EXP or param.lo > 0.0
-    assert param.smooth_ms >= 0.0
-    assert param.unit
-    assert param.doc.endswith(".")
+def test_each_row_is_complete_and_found_by_its_address():
+    for param in TABLE:
+        address = param.address
+        assert find(address) is param
+        assert address.startswith("/"), address
+        assert address == address.lower().strip().rstrip("/")
+        assert param.lo < param.hi, address
+        assert param.lo <= param.default <= param.hi, address
+        assert param.curve is not Curve.EXP or param.lo > 0.0, address
+        assert param.smooth_ms >= 0.0, address
+        assert param.unit, address
+        assert param.doc.endswith("."), address
 
 
-@rows
-def test_the_default_is_accepted_as_it_is(param: Param):
-    assert param.accept(param.default) == param.default
+def test_each_row_takes_its_range_and_clamps_what_is_beyond():
+    for param in TABLE:
+        for value in (param.default, param.lo, param.hi):
+            assert param.accept(value) == value, param.address
+            assert assignment(f"{param.address}={value!r}") == (param.address, value)
+        assert param.accept(param.hi * 2.0 + 1.0) == param.hi, param.address
+        assert param.accept(param.lo - 1e300) == param.lo, param.address
+        assert isinstance(param.accept(1), float), param.address
 
 
-@rows
-def test_what_is_beyond_the_range_is_clamped(param: Param):
-    assert param.accept(param.hi * 2.0 + 1.0) == param.hi
-    assert param.accept(param.lo - 1e300) == param.lo
-    assert isinstance(param.accept(1), float)
-
-
-@rows
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, True, False, "1", None, [1.0]])
-def test_what_is_no_finite_number_is_refused_by_address(param: Param, value):
-    with pytest.raises(ParameterError, match=param.address):
-        param.accept(value)
-
-
-def test_a_number_too_large_to_be_one_here_is_refused():
+def test_what_is_no_finite_number_is_refused_by_address():
+    for param in TABLE:
+        for value in (math.nan, math.inf, -math.inf, True, False, "1", None, [1.0]):
+            with pytest.raises(ParameterError, match=param.address):
+                param.accept(value)
     with pytest.raises(ParameterError, match="not finite"):
         find("/bow/force").accept(10**400)
 
 
-@rows
-def test_zero_to_one_is_the_whole_range_and_nothing_beyond(param: Param):
-    steps = [param.from_unit(n / 100) for n in range(101)]
-    assert steps == sorted(steps)
-    assert steps[0] == param.lo
-    assert steps[-1] == param.hi
-    assert param.from_unit(-1.0) == param.lo
-    assert param.from_unit(2.0) == param.hi
-
-
-@rows
-def test_each_unit_comes_back_from_its_value(param: Param):
-    for n in range(101):
-        assert param.to_unit(param.from_unit(n / 100)) == pytest.approx(n / 100, abs=1e-9)
-    assert param.to_unit(param.lo - 1.0) == 0.0
-    assert param.to_unit(param.hi + 1.0) == 1.0
+def test_zero_to_one_is_the_whole_range_and_comes_back_from_each_value():
+    units = [n / 100 for n in range(101)]
+    for param in TABLE:
+        steps = [param.from_unit(unit) for unit in units]
+        assert steps == sorted(steps), param.address
+        assert (steps[0], steps[-1]) == (param.lo, param.hi), param.address
+        assert (param.from_unit(-1.0), param.from_unit(2.0)) == (param.lo, param.hi), param.address
+        assert [param.to_unit(step) for step in steps] == pytest.approx(units, abs=1e-9)
+        assert (param.to_unit(param.lo - 1.0), param.to_unit(param.hi + 1.0)) == (0.0, 1.0)
+        values = {param.address: param.from_unit(0.25)}
+        assert read(values, param.address) == param.from_unit(0.25)
+        assert read(values, param.address + "/unit") == pytest.approx(0.25)
 
 
 @pytest.mark.parametrize("curve", Curve)
-@pytest.mark.parametrize("ends", [(1.0, 5.0), (5.0, 1.0), (0.2, 0.3)])
-def test_a_curve_is_undone_also_where_it_falls(curve: Curve, ends):
-    for n in range(101):
-        value = curve.from_unit(n / 100, *ends)
-        assert curve.to_unit(value, *ends) == pytest.approx(n / 100, abs=1e-9)
+def test_a_curve_is_undone_also_where_it_falls(curve: Curve):
+    for ends in [(1.0, 5.0), (5.0, 1.0), (0.2, 0.3)]:
+        for n in range(101):
+            value = curve.from_unit(n / 100, *ends)
+            assert curve.to_unit(value, *ends) == pytest.approx(n / 100, abs=1e-9)
     assert curve.to_unit(2.0, 3.0, 3.0) == 0.0
-
-
-@rows
-def test_a_value_is_read_as_it_is_or_as_unit(param: Param):
-    values = {param.address: param.from_unit(0.25)}
-    assert read(values, param.address) == param.from_unit(0.25)
-    assert read(values, param.address + "/unit") == pytest.approx(0.25)
-
-
-@rows
-def test_each_row_is_found_by_its_address(param: Param):
-    assert find(param.address) is param
-
-
-@rows
-def test_each_row_can_be_set_by_a_word(param: Param):
-    assert assignment(f"{param.address}={param.default!r}") == (param.address, param.default)
-    assert assignment(f"{param.address}={param.lo!r}") == (param.address, param.lo)
-    assert assignment(f"{param.address}={param.hi!r}") == (param.address, param.hi)
 
 
 def test_no_address_stands_twice():

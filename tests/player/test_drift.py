@@ -10,12 +10,12 @@ from yehu_server.core.controls.drift import CENTS, FORCE, PLACE, PRESS, SPEED
 from yehu_server.core.controls.slots import SLOT
 from yehu_server.core.player.drift import DRIFT, TOGETHER, TREMOR, TREMOR_HZ
 
-LONG_S = 60.0
+LONG_S = 40.0
 
 
 @pytest.fixture(scope="module")
 def drifts() -> np.ndarray:
-    """What the hands of a note do for a minute, at full variation [shape=(hops, 5)]."""
+    """What the hands of a note do for a while, at full variation [shape=(hops, 5)]."""
     playing = Playing(variation=1.0, bow_length=0.0)
     playing.on(74)
     (found,) = playing.play(LONG_S, "drift")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 from pitch import cents, hertz
@@ -113,12 +115,11 @@ def test_a_pitch_that_moves_slowly_is_followed_and_one_that_jumps_is_found_again
 
 
 @pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize("note", NOTES)
-def test_noise_has_no_certain_pitch(rate, note):
-    for seed in range(20):
+def test_noise_has_no_certain_pitch(rate):
+    for seed, note in product(range(5), NOTES):
         ear = Ear(rate)
         ear.listen(np.random.default_rng(seed).normal(size=EAR_SAMPLES))
-        assert ear.hear(hertz(note))[1] < 0.8
+        assert ear.hear(hertz(note))[1] < 0.8, (seed, note)
 
 
 @pytest.mark.parametrize("rate", RATES)

@@ -139,7 +139,7 @@ def test_samples_do_not_depend_on_the_sizes_of_blocks(listening):
 
 
 @pytest.mark.parametrize("note", NOTES)
-@pytest.mark.parametrize("detuned", [0.0, *DETUNED])
+@pytest.mark.parametrize("detuned", [0.0, DETUNED[-1]])
 def test_a_held_note_does_not_hunt_for_its_pitch(note, detuned):
     sound = Play(1.0, detuned).note(note, 2.3)  # the last cents take up to a second
     pitches = [error(sound, at, at + 0.06, note) for at in np.arange(1.2, 2.2, 0.02)]

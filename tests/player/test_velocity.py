@@ -16,7 +16,7 @@ from yehu_server.playing.style import Style
 
 RATE = 44100
 VELOCITIES = (1, 20, 50, 80, 110, 127)
-NOTES = (66, 69, 71, 74, 78, 82, 86)  # on both strings
+NOTES = (66, 69, 74, 82)  # on both strings
 
 
 @cache

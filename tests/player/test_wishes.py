@@ -23,11 +23,12 @@ def after(*wishes: tuple[int, int, float, float]):
     return instrument._rig["player"][0].copy(), instrument._rig["controls"][0].copy()
 
 
-@pytest.mark.parametrize("kind", range(len(KINDS)), ids=KINDS)
-@pytest.mark.parametrize("numbers", [(math.nan, 0.0), (0.5, math.nan), (math.inf, 0.5)], ids=str)
-def test_a_number_that_is_not_finite_changes_nothing(kind, numbers):
-    for found, untouched in zip(after((kind, 1, *numbers)), after(), strict=True):
-        assert found.tobytes() == untouched.tobytes()
+def test_a_number_that_is_not_finite_changes_nothing():
+    untouched = [record.tobytes() for record in after()]
+    for kind, name in enumerate(KINDS):
+        for numbers in ((math.nan, 0.0), (0.5, math.nan), (math.inf, 0.5)):
+            found = [record.tobytes() for record in after((kind, 1, *numbers))]
+            assert found == untouched, (name, numbers)
 
 
 @pytest.mark.parametrize("kind", [WRITE, HOLD, EXPRESS])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from itertools import product
 
 import mido
 import numpy as np
@@ -94,15 +95,18 @@ def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 
     return pitch_of(out[round(0.1 * rate) :], rate)
 
 
-@pytest.mark.parametrize("rate", [44100.0, 48000.0])
-@pytest.mark.parametrize("note", [65, 67, 70, 72, 73, 75, 77, 78, 81, 82, 84, 86, 87, 89])
-def test_notes_are_in_tune(note, rate):
-    bound = 15.0 if note == 65 else 10.0  # at 48 kHz a slow bow plays it 14 cents sharp
-    for velocity, wheel in ((80, None), (110, 0), (50, 64)):
-        assert abs(cents(heard(note, rate, velocity, wheel), hertz(note))) < bound
+def test_notes_are_in_tune():
+    notes = [65, 67, 70, 72, 73, 75, 77, 78, 81, 82, 84, 86, 87, 89]
+    hows = [(80, None), (110, 0), (50, 64)]  # velocity, wheel
+    cases = [*product([44100.0], notes, hows), *product([48000.0], notes[::3], hows)]
+    off = {
+        (rate, note, how): cents(heard(note, rate, *how), hertz(note)) for rate, note, how in cases
+    }
+    # At 48 kHz a slow bow plays the lowest one 14 cents sharp.
+    assert {at: by for at, by in off.items() if abs(by) >= (15.0 if at[1] == 65 else 10.0)} == {}
 
 
-@pytest.mark.parametrize(("velocity", "wheel"), [(80, None), (80, 0), (110, 64), (127, 127)])
+@pytest.mark.parametrize(("velocity", "wheel"), [(80, None), (110, 64)])
 def test_notes_are_evenly_loud(velocity, wheel):
     levels = [loudness(note, velocity, wheel) for note in range(65, 90)]
     assert max(levels) - min(levels) < 6.0
@@ -137,8 +141,8 @@ def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None
 def test_another_reference_pitch_is_calibrated_for(monkeypatch, tmp_path):
     monkeypatch.setattr(calibration_store, "data_folder", lambda: tmp_path)
     told = []
-    calibration_for(44100.0, a4=430.0, progress=lambda done, total: told.append((done, total)))
+    calibration_for(22050.0, a4=430.0, progress=lambda done, total: told.append((done, total)))
     assert told[-1] == (36, 36)
     for note in (72, 77, 84):
-        pitch = heard(note, 44100.0, 80, None, a4=430.0)
+        pitch = heard(note, 22050.0, 80, None, a4=430.0)
         assert abs(cents(pitch, 430.0 / 440.0 * hertz(note))) < 10.0

@@ -31,34 +31,26 @@ def player_at(rate: float) -> tuple[WishPoster, Instrument]:
 # ---------------------------------------------------------------- notes
 
 
-@pytest.mark.parametrize("note", range(65, 90))
-@pytest.mark.parametrize("rate", [44100, 48000])
-def test_every_note_is_heard_in_tune_without_any_controller(note, rate):
-    player, instrument = player_at(rate)
-    player.note_on(Key(0, note))
-    out = run_for(instrument, 1.0)[rate // 2 :]
-    assert abs(cents(pitch_of(out, rate), hertz(note))) < 35.0
-    assert level(out) > -40.0
+def test_every_note_speaks_in_tune_within_a_fifth_of_a_second_without_any_controller():
+    off = {}
+    for note in range(65, 90):
+        player, instrument = player_at(RATE)
+        player.note_on(Key(0, note))
+        out = run_for(instrument, 0.6)[RATE // 5 :]
+        off[note] = cents(pitch_of(out, RATE), hertz(note))
+        assert level(out) > -40.0, note
+    assert {note: by for note, by in off.items() if not abs(by) < 35.0} == {}
 
 
-@pytest.mark.parametrize("note", range(66, 90, 2))
-def test_every_note_speaks_within_a_fifth_of_a_second(note):
-    player, instrument = player_at(RATE)
-    player.note_on(Key(0, note))
-    out = run_for(instrument, 0.5)
-    assert abs(cents(pitch_of(out[RATE // 5 :], RATE), hertz(note))) < 50.0
-
-
-@pytest.mark.parametrize("note", [66, 71, 74, 80, 86])
-@pytest.mark.parametrize("bend", [-1.5, 0.5, 2.0])
-def test_a_bend_is_heard_as_far_as_it_says(note, bend):
-    player, instrument = player_at(RATE)
-    player.note_on(Key(0, note))
-    run_for(instrument, 0.4)
-    player.write("/playing/bend", bend)
-    out = run_for(instrument, 0.8)[RATE // 3 :]
-    expected = max(note + bend, 65)  # nothing is below the open F string
-    assert abs(cents(pitch_of(out, RATE), hertz(expected))) < 35.0
+def test_a_bend_is_heard_as_far_as_it_says():
+    for note, bend in ((66, -1.5), (71, 0.5), (74, 2.0), (80, -1.5), (86, 0.5)):
+        player, instrument = player_at(RATE)
+        player.note_on(Key(0, note))
+        run_for(instrument, 0.4)
+        player.write("/playing/bend", bend)
+        out = run_for(instrument, 0.8)[RATE // 3 :]
+        expected = max(note + bend, 65)  # nothing is below the open F string
+        assert abs(cents(pitch_of(out, RATE), hertz(expected))) < 35.0, (note, bend)
 
 
 def test_legato_turns_reach_every_note():

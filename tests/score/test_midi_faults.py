@@ -18,9 +18,16 @@ from yehu_server.scores.score import Score
 from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
 
+LONG = 1_000_000  # bytes
 PAGE = "docs/midi_files.md"
 ROW = re.compile(r"^\| `([a-z0-9-]+)` \| (?:.+?) \| (.*?) \|$", re.MULTILINE)
-each_case = pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+each_case = pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(case, marks=[pytest.mark.slow] if len(case.data) > LONG else [], id=case.name)
+        for case in CASES
+    ],
+)
 playable = pytest.mark.parametrize(
     "case", [case for case in CASES if case.hears is not None], ids=lambda case: case.name
 )

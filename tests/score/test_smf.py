@@ -248,13 +248,14 @@ def test_a_file_cut_short_plays_as_far_as_it_goes(read):
     )
 
 
-@pytest.mark.parametrize("junk", [b"", b"\0", b"\0MTr", b"    \xff\xff\xff\xff"])
-@pytest.mark.parametrize("length", [*range(24), 1000, 2**24, 2**32 - 1])
-def test_a_track_of_any_length_whatever_hides_no_other(read, length, junk):
+def test_a_track_of_any_length_whatever_hides_no_other(read):
     first, second = on(0, 60) + off(9, 60) + END, on(0, 62) + off(9, 62) + END
-    score = read(head(1, 2, 100) + chunk(b"MTrk", first, length) + junk + chunk(b"MTrk", second))
-    assert told(score) == told(read(midi(first, second)))
-    assert score.warnings or (length == len(first) and not junk)
+    expected, last = told(read(midi(first, second))), chunk(b"MTrk", second)
+    for junk in (b"", b"\0", b"\0MTr", b"    \xff\xff\xff\xff"):
+        for length in (*range(24), 1000, 2**24, 2**32 - 1):
+            score = read(head(1, 2, 100) + chunk(b"MTrk", first, length) + junk + last)
+            assert told(score) == expected, (junk, length)
+            assert score.warnings or (length == len(first) and not junk), (junk, length)
 
 
 def test_a_riff_wrapper_is_taken_off(read):

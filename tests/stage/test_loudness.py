@@ -27,10 +27,10 @@ def loudness_db(sound: np.ndarray) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def air() -> np.ndarray:
-    """The first half of the slow air, dry."""
+    """The first seconds of the slow air, dry."""
     score = read_score(ROOT / "examples" / "slow_air.mid")
-    events = tuple(event for event in score.events if event.time_s < 30.0)
-    score = dataclasses.replace(score, events=events, duration_s=30.0)
+    events = tuple(event for event in score.events if event.time_s < 12.0)
+    score = dataclasses.replace(score, events=events, duration_s=12.0)
     blocks = Performance(score, Options(rate=RATE, is_dry=True)).blocks()
     return np.concatenate(list(blocks))[:, 0]
 

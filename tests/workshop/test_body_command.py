@@ -148,6 +148,7 @@ def test_a_missing_library_is_one_line_that_names_its_extra(
     monkeypatch.undo()
 
 
+@pytest.mark.slow
 def test_the_same_body_has_the_same_picture(whole_fit, tmp_path):
     write_picture(whole_fit, tmp_path / "one.png")
     write_picture(whole_fit, tmp_path / "two.png")

@@ -12,7 +12,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import MeasurementError
 from yehu_server.lab.body import Curve, Measurement, fit
 
-GRID = np.geomspace(200.0, 5000.0, 20_000)
+GRID = np.geomspace(200.0, 5000.0, 5000)
 
 
 def test_the_admittance_comes_out_again(fitted):
@@ -33,7 +33,7 @@ def test_frequencies_dampings_and_masses_are_those_of_the_modes(fitted):
     alone = [i for i in range(len(HZ)) if np.sort(np.abs(HZ - HZ[i]))[1] > 20.0]
     for i in alone:
         at = int(np.abs(hz - HZ[i]).argmin())
-        share = {60.0: 0.01, 40.0: 0.05, 30.0: 0.15}[noise_db]
+        share = {40.0: 0.05, 30.0: 0.15}[noise_db]
         assert hz[at] == pytest.approx(HZ[i], rel=0.001)
         assert modes.mass[at] == pytest.approx(MASS[i], rel=share)
         assert modes.resistance[at] == pytest.approx(DAMPING[i], rel=share)
@@ -41,7 +41,7 @@ def test_frequencies_dampings_and_masses_are_those_of_the_modes(fitted):
 
 def test_the_real_part_is_nowhere_below_zero(fitted):
     _, found = fitted
-    assert found.admittance(np.linspace(1.0, 22_000.0, 200_000)).real.min() > 0.0
+    assert found.admittance(np.linspace(1.0, 22_000.0, 50_000)).real.min() > 0.0
 
 
 def test_a_clean_measurement_has_nothing_to_warn_of(fitted):
@@ -67,7 +67,7 @@ def test_a_stiff_support_below_the_band_and_modes_above_it_are_met():
     assert rms(off_db(found.admittance(hz), values)) < 0.1
 
 
-@settings(max_examples=12)
+@settings(max_examples=6)
 @given(
     seed=st.integers(0, 2**32 - 1),
     count=st.integers(1, MAX_MODES),

@@ -160,7 +160,9 @@ def test_accelerometers_and_displacements_give_the_same_admittance(what):
 
 def test_noise_of_the_response_does_not_bias_the_average():
     """H1: its mean over many taps is right, where H2's would be too large."""
-    measured = average([with_velocity_only(tap) for tap in made_taps(count=24, noise_db=20.0)])
+    measured = average(
+        [with_velocity_only(tap) for tap in made_taps(count=24, noise_db=20.0, seconds=0.4)]
+    )
     curve = measured.admittance.within(2000.0, 4000.0)
     share = np.mean(curve.values / admittance(curve.frequency_hz))
     assert share == pytest.approx(1.0, abs=0.02)
@@ -168,7 +170,7 @@ def test_noise_of_the_response_does_not_bias_the_average():
 
 def test_coherence_tells_of_noise():
     """In a band with noise as strong as the answer, gamma squared of many taps is a half."""
-    taps = made_taps(count=24, noise_db=200.0)
+    taps = made_taps(count=24, noise_db=200.0, seconds=0.4)
     random = np.random.default_rng(1)
     hz = np.fft.rfftfreq(len(taps[0].force), 1.0 / taps[0].rate)
     noisy = []

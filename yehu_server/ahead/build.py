@@ -47,6 +47,7 @@ def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str =
     YehuError
         Where something is missing to build with, or the folder cannot be written.
     """
+    link.linker_of(what)  # or there would be none after minutes of compiling
     command = [sys.executable, "-m", "yehu_server.ahead.build", what, str(folder), cpu]
     command += [f"{rate!r}" for rate in rates]
     environment = {**os.environ, "NUMBA_CPU_NAME": cpu, "NUMBA_CPU_FEATURES": ""}
@@ -60,6 +61,7 @@ def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str =
 
 def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> list[Path]:
     """Build in this process, which compiles for the processor wanted; see `build`."""
+    linker = link.linker_of(what)
     functions = interface.functions(rates, [image(rate) for rate in rates], sources_hash())
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -68,12 +70,12 @@ def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> lis
             if what == "wasm":
                 functions += INTERPRETER
                 code.write_bytes(compiled(functions, PAGE))
-                link.link_page(code, [function.name for function in functions], linked)
+                link.link_page(linker, code, [function.name for function in functions], linked)
                 module = with_section(linked.read_bytes(), f"{__version__} {sources_hash()}")
                 return [_written(folder / PAGE_FILE, module)]
             code.write_bytes(compiled(functions, here(cpu)))
             linked = linked.with_name(LIBRARY_FILE)
-            link.link_library(code, linked)
+            link.link_library(linker, code, linked)
             text = header(functions, version=__version__, sources=sources_hash(), rates=rates)
             return [
                 _written(folder / LIBRARY_FILE, linked.read_bytes()),

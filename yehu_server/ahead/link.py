@@ -20,17 +20,30 @@ def page_linker() -> str | None:
     return _first(PAGE_LINKERS)
 
 
-def link_page(code: Path, exports: Iterable[str], into: Path) -> None:
+def linker_of(what: str) -> str:
+    """The path of the linker for ``wasm`` or a ``library``.
+
+    Raises
+    ------
+    YehuError
+        Where there is none.
+    """
+    linker = page_linker() if what == "wasm" else _first(LIBRARY_LINKERS)
+    if linker is not None:
+        return linker
+    if what == "wasm":
+        raise YehuError("there is no wasm-ld here; Debian's package lld has it")
+    raise YehuError("there is no C compiler here, whose linker makes the library")
+
+
+def link_page(linker: str, code: Path, exports: Iterable[str], into: Path) -> None:
     """Link an object file into a WebAssembly module with its own memory.
 
     Raises
     ------
     YehuError
-        Where there is no linker, or it fails.
+        Where it fails.
     """
-    linker = page_linker()
-    if linker is None:
-        raise YehuError("there is no wasm-ld here; Debian's package lld has it")
     options = [
         "--no-entry",
         "--allow-undefined",  # what it needs of the page; `module.joined` has checked it
@@ -43,17 +56,14 @@ def link_page(code: Path, exports: Iterable[str], into: Path) -> None:
     _run([linker, *options, str(code), "-o", str(into)])
 
 
-def link_library(code: Path, into: Path) -> None:
+def link_library(linker: str, code: Path, into: Path) -> None:
     """Link an object file into a shared library.
 
     Raises
     ------
     YehuError
-        Where there is no linker, or it fails.
+        Where it fails.
     """
-    linker = _first(LIBRARY_LINKERS)
-    if linker is None:
-        raise YehuError("there is no C compiler here, whose linker makes the library")
     options = ["-shared", "-s"]
     if sys.platform == "linux":
         options += ["-Wl,--build-id=none", f"-Wl,-soname,{into.name}"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -53,7 +54,7 @@ SCALE = next((Path(__file__).parents[2] / "tunings").glob("*.scl"))
         ({"preset": "flautando", "seed": 3}, "--preset flautando --seed 3"),
         ({"settings": {"/playing/vibrato": 20.0}}, "--set /playing/vibrato=20"),
         ({"normalize": True, "phrasing": 0.0}, "--normalize --phrasing 0"),
-        ({"gain_db": -6.0, "tuning": SCALE}, f"--gain-db -6 --tuning {SCALE}"),
+        ({"gain_db": -6.0, "tuning": SCALE}, f"--gain-db -6 --tuning {shlex.quote(str(SCALE))}"),
         ({"instrument": {"string_1": {"sigma_0": 2.0}}}, "--instrument mine.toml"),
     ],
 )
@@ -62,7 +63,7 @@ def test_it_is_the_sound_of_the_command(plain, tmp_path, monkeypatch, command, o
     Path("mine.toml").write_text("[string_1]\nsigma_0 = 2.0\n")
     target = tmp_path / "out.wav"
     form = ("--subtype", "float", "--tail", "0.2")
-    assert command("render", plain, "-o", target, *form, *words.split())[0] == 0
+    assert command("render", plain, "-o", target, *form, *shlex.split(words))[0] == 0
     expected, rate = soundfile.read(target, dtype="float32")
     found = yehu.render(plain, tail=0.2, **options)
     assert found.sample_rate == rate

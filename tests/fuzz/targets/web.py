@@ -42,7 +42,7 @@ class Osc:
         return False
 
     def receive(self, packet: bytes, peer: Any) -> None:
-        assert peer.name
+        assert peer.host
         try:
             list(unpack(packet))
         except PacketError:
@@ -52,7 +52,7 @@ class Osc:
         action()
 
     def leave(self, peer: Any) -> None:
-        assert peer.name
+        assert peer.host
 
 
 class Connection(asyncio.Transport):

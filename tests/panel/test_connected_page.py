@@ -8,7 +8,10 @@ import pytest
 from panel.browser import missing
 from panel.serving import converse, free_port, start, stop, until
 
-pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
+pytestmark = [
+    pytest.mark.slow,  # it hears a server in real time
+    pytest.mark.skipif(missing() is not None, reason=str(missing())),
+]
 
 PRESSURE = "/playing/pressure"
 

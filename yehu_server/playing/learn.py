@@ -15,8 +15,8 @@ from yehu_server.params.table import find
 from yehu_server.playing import sources
 from yehu_server.playing.binds import Bind, override_key
 from yehu_server.playing.mapping import Mapping, mapping_folder, user_folder, with_bases
-from yehu_server.playing.mapping_entries import settable_param
 from yehu_server.playing.mapping_file import MappingFile, read_mapping_file, text_of
+from yehu_server.playing.mapping_values import settable_param
 from yehu_server.playing.mapping_writer import as_toml, edited
 from yehu_server.playing.sources import COARSE, FINE_ABOVE, OF_ONE_NOTE, RESERVED, STEPS, is_address
 from yehu_server.util.files import write_text

@@ -12,7 +12,7 @@ from typing import Any
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.errors import EnsembleError
 from yehu_server.params.table import find
-from yehu_server.playing import mapping_entries as entries
+from yehu_server.playing import mapping_values as entries
 from yehu_server.playing.sources import CHANNELS
 from yehu_server.util.documents import MOST_ERRORS, Document, Fields
 from yehu_server.util.values import line, whole

@@ -13,7 +13,7 @@ import numpy as np
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.lab.regimes.judge import FINDING
 from yehu_server.lab.regimes.names import HELMHOLTZ, REGIMES
-from yehu_server.lab.sweeps.gestures import ACCELERATION
+from yehu_server.lab.sweeps.gesture_strokes import ACCELERATION
 from yehu_server.lab.sweeps.refining import fill
 from yehu_server.lab.sweeps.study import Study, study_of
 from yehu_server.scores.gesture import CONTROLS

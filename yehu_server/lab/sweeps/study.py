@@ -12,8 +12,8 @@ from typing import Any, Protocol
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.lab.regimes.strokes import ControlCurves
 from yehu_server.lab.sweeps.axes import Axis, axis_from
-from yehu_server.lab.sweeps.gestures import GestureBow
-from yehu_server.lab.sweeps.notes import NoteBow
+from yehu_server.lab.sweeps.gesture_strokes import GestureBow
+from yehu_server.lab.sweeps.note_strokes import NoteBow
 from yehu_server.scores.gesture import Gesture
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.values import choice, choices, whole

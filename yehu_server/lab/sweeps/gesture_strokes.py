@@ -19,7 +19,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.lab.regimes.judge import check_length
 from yehu_server.lab.regimes.strokes import STROKE, ControlCurves, control_curves_of, prepared
 from yehu_server.lab.sweeps.axes import Axis, Value
-from yehu_server.lab.sweeps.notes import distinct
+from yehu_server.lab.sweeps.note_strokes import distinct
 from yehu_server.scores.gesture import CONTROLS, Gesture, gesture_from
 from yehu_server.util.documents import Fields
 

@@ -25,7 +25,7 @@ FOLDERS = {
 }
 _MODULE = re.compile(rf"\b{PACKAGE}(?:\.\w+)+")
 _IMPORT = re.compile(rf"^\s*from ({PACKAGE}[\w.]*) import \(?([\w\s,]+)", re.MULTILINE)
-_HELPER = re.compile(r"^(?:from|import) ([a-z_]\w*)", re.MULTILINE)
+_HELPER = re.compile(r"^(?:from|import) ([a-z_][\w.]*)", re.MULTILINE)
 _COMMAND = re.compile(r"\b(?:command|refused|mappings)\(\s*\"(\w+)\"")
 
 
@@ -102,5 +102,6 @@ def _read(file: Path) -> tuple[frozenset[str], frozenset[Path]]:
     # `a.b.name` may be a name of the module `a.b`.
     modules |= {module.rpartition(".")[0] for module in modules}
     places = [file.parent, ROOT / "tests"]
-    helpers = {place / f"{name}.py" for name in _HELPER.findall(text) for place in places}
+    names = [name.replace(".", "/") for name in _HELPER.findall(text)]
+    helpers = {place / f"{name}.py" for name in names for place in places}
     return frozenset(modules), frozenset(helper for helper in helpers if helper.exists())

@@ -84,7 +84,7 @@ def still_time(monkeypatch) -> StillTime:
 
 
 class Services:
-    """A services that records its calls."""
+    """Services of a server that record their calls."""
 
     def __init__(self) -> None:
         self.names: list[str] = []

@@ -179,7 +179,7 @@ def test_a_part_has_a_status(stage):
     heard = stage.ask("/part/3/status")
     assert [one.address for one in heard] == [f"/yehu/part/3/status/{name}" for name in names]
     heard = stage.ask("/get", "/yehu/part/2/status/keys")
-    assert [one.arguments for one in heard] == [[1.0]]  # the services of the tests tells the part
+    assert [one.arguments for one in heard] == [[1.0]]  # which the services of the tests give
     stage.ask("/part/2/subscribe/status", 60.0)
     (error,) = errors(stage.ask("/part/2/status/keys", 1.0))
     assert "cannot be set" in error

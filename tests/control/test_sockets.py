@@ -32,7 +32,7 @@ SETTLE_S = 0.05
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells")
 
 
-class Housekeeper:
+class Collector:
     """Keeps the packets that come, unless it is held up."""
 
     def __init__(self) -> None:
@@ -87,7 +87,7 @@ class Housekeeper:
 
 @pytest.fixture
 def keeper():
-    return Housekeeper()
+    return Collector()
 
 
 @pytest.fixture

@@ -1,0 +1,33 @@
+"""`pytest --changed` selects the tests that a change can reach, nearest first."""
+
+from __future__ import annotations
+
+from changed import FOLDERS, ROOT, distances
+
+TESTS = ROOT / "tests"
+SCALE = TESTS / "score" / "test_jianpu.py"
+PHYSICS = TESTS / "physics" / "test_energy.py"
+PAGE = TESTS / "panel" / "test_page_views.py"
+ALL = [SCALE, PHYSICS, PAGE]
+
+
+def test_a_module_reaches_the_tests_that_import_it_and_no_others():
+    near = distances({"yehu_server/scores/jianpu/scale.py"}, ALL)
+    assert SCALE in near
+    assert PHYSICS not in near
+
+
+def test_what_imports_a_module_directly_is_nearer_than_what_does_so_by_others():
+    physics = distances({"yehu_server/core/physics/energy.py"}, ALL)
+    assert physics[PHYSICS] < physics[PAGE]
+
+
+def test_a_changed_test_is_the_nearest_and_its_helpers_count_as_it():
+    assert distances({"tests/physics/test_energy.py"}, ALL) == {PHYSICS: 0}
+    assert distances({"tests/panel/browser.py"}, ALL) == {PAGE: 0}
+
+
+def test_files_that_are_no_modules_reach_the_tests_of_their_folder():
+    assert distances({"web/main.js"}, ALL) == {PAGE: 1}
+    assert distances({"LICENSE"}, ALL) == {}
+    assert all((ROOT / place).exists() for places in FOLDERS.values() for place in places)

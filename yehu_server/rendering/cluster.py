@@ -102,7 +102,7 @@ class Cluster:
     def __enter__(self) -> Self:
         from distributed import Client
 
-        _hush()
+        _quiet_libraries()
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # of versions: `_check` tells what matters
@@ -262,7 +262,7 @@ class Cluster:
             raise YehuError(f"{self.address}: the scheduler is lost") from error
 
 
-def _hush() -> None:
+def _quiet_libraries() -> None:
     """Keep Dask's own messages from the terminal: what matters is told in one line."""
     for name in ("distributed", "tornado.application", "asyncio"):
         logging.getLogger(name).setLevel(logging.CRITICAL)

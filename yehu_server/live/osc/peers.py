@@ -141,7 +141,7 @@ class TcpPeer:
         self._finished = False
         self._traffic = traffic
         self._watch = watch
-        self._hear_out = drain_and_close
+        self._drain_and_close = drain_and_close
 
     @property
     def is_finished(self) -> bool:
@@ -184,7 +184,7 @@ class TcpPeer:
         self._unsent.clear()
         self._finished = True
         if self.reads:
-            self._hear_out(self)
+            self._drain_and_close(self)
 
     def finish(self) -> None:
         """End the connection once all waiting bytes are sent."""

@@ -76,7 +76,7 @@ class Page:
         self.part = part
         self.transport = transport
         self.looks = self.sounds = False  # whether it wants looks; whether it sounds itself
-        self.allowance = TokenBucket(WISHES_PER_S, WISHES_AT_ONCE)
+        self.bucket = TokenBucket(WISHES_PER_S, WISHES_AT_ONCE)
 
 
 class PageSockets:
@@ -184,8 +184,8 @@ class PageSockets:
         for other in self._pages.values():
             if other is not page and other.sounds and other.part == page.part:
                 write(other.transport, frame, MOST_UNSENT)
-        page.allowance.spend(len(wishes))
-        if (left := page.allowance.left(time.monotonic())) < 0.0:
+        page.bucket.spend(len(wishes))
+        if (left := page.bucket.left(time.monotonic())) < 0.0:
             await asyncio.sleep(-left / WISHES_PER_S)
 
     # -- telling all -------------------------------------------------------------------------

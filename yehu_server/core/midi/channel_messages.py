@@ -11,16 +11,12 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.binds import (
-    disconnect_channel,
     follow_native,
-    forget_all_moves,
     move,
     move_coarse,
     move_fine,
     move_native,
     press_key,
-    reset_controllers,
-    reset_controllers_native,
     set_directly,
 )
 from yehu_server.core.midi.channels import (
@@ -56,6 +52,12 @@ from yehu_server.core.midi.registered_parameters import (
     RPN_FINE,
     enter_data,
     select,
+)
+from yehu_server.core.midi.resets import (
+    disconnect_channel,
+    forget_all_moves,
+    reset_controllers,
+    reset_controllers_native,
 )
 from yehu_server.core.midi.tables import BEND, PAIR, PRESSURE, TABLES
 from yehu_server.core.player.rows import ROWS

@@ -13,7 +13,6 @@ from yehu_server.core.midi.binds import (
     follow_native,
     move_control,
     move_native,
-    reset_controllers_native,
     set_directly,
 )
 from yehu_server.core.midi.channel_messages import (
@@ -65,6 +64,9 @@ from yehu_server.core.midi.notes import (
 )
 from yehu_server.core.midi.record import CHANNELS, MIDI, NONE, emit
 from yehu_server.core.midi.remapping import change_binds, change_binds_native, start
+from yehu_server.core.midi.resets import (
+    reset_controllers_native,
+)
 from yehu_server.core.midi.section import slide_players
 from yehu_server.core.midi.tables import CONTROL as CONTROL_SOURCE
 from yehu_server.core.midi.tables import SLOTS, TABLES

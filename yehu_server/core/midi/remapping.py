@@ -13,9 +13,14 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
-from yehu_server.core.midi.binds import restore_moves, set_directly
+from yehu_server.core.midi.binds import (
+    set_directly,
+)
 from yehu_server.core.midi.emit_wishes import write, write_native
 from yehu_server.core.midi.record import MIDI, NONE
+from yehu_server.core.midi.resets import (
+    restore_moves,
+)
 from yehu_server.core.midi.tables import KEYS, MOST_BINDS, POLY_PRESSURE, TABLES
 from yehu_server.core.midi.values import find_values, find_values_native, keep_target
 from yehu_server.core.player.rows import ROWS

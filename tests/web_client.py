@@ -14,7 +14,7 @@ import socket
 import struct
 from typing import Any, NamedTuple
 
-from wire import Heard, Wire
+from wire import Message, Wire
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0
@@ -146,7 +146,7 @@ class WebSocket:
     def tell(self, address: str, *arguments: float | str | None) -> None:
         self.send(BINARY, Wire.message(address, *arguments))
 
-    def next(self, within_s: float = PATIENCE_S) -> Heard | dict[str, Any] | None:
+    def next(self, within_s: float = PATIENCE_S) -> Message | dict[str, Any] | None:
         """The next message or command; None after the time."""
         while True:
             try:
@@ -165,7 +165,7 @@ class WebSocket:
     def wait_for(self, address: str) -> list[Any]:
         """The arguments of the next message of an address."""
         while (heard := self.next()) is not None:
-            if isinstance(heard, Heard) and heard.address == address:
+            if isinstance(heard, Message) and heard.address == address:
                 return heard.arguments
         raise AssertionError(f"no {address}")
 

@@ -1,4 +1,4 @@
-"""OSC in bytes, a peer that only listens, and a manual clock."""
+"""OSC in bytes, a peer that only listens, and a still clock."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 SINCE_1900_S = 2_208_988_800
 
 
-class Heard(NamedTuple):
+class Message(NamedTuple):
     """A message as a client reads it."""
 
     address: str
@@ -78,7 +78,7 @@ class Wire:
         return b"#bundle\0" + struct.pack(">Q", tag) + b"".join(sized)
 
     @classmethod
-    def read(cls, packet: bytes) -> Heard:
+    def read(cls, packet: bytes) -> Message:
         """Parse one message, strictly."""
 
         def text(at: int) -> tuple[str, int]:
@@ -108,7 +108,7 @@ class Wire:
                 value, at = packet[at : at + 4], at + 4
             arguments.append(value)
         assert at == len(packet)
-        return Heard(address, arguments)
+        return Message(address, arguments)
 
 
 def f32(value: float) -> float:
@@ -116,35 +116,35 @@ def f32(value: float) -> float:
     return float(np.float32(value))
 
 
-def values(heard: list[Heard]) -> dict[str, Any]:
+def values(heard: list[Message]) -> dict[str, Any]:
     """The first argument of each address."""
     return {message.address: message.arguments[0] for message in heard}
 
 
-def errors(heard: list[Heard]) -> list[str]:
+def errors(heard: list[Message]) -> list[str]:
     """The addresses of the errors answered."""
     return [message.arguments[0] for message in heard if message.address == "/yehu/error"]
 
 
-class Ear:
+class FakePeer:
     """A peer who only listens."""
 
     takes_more = True
 
     def __init__(self, port: int = 1, host: str = "") -> None:
         self.port = port
-        self.name = f"ear:{port}"
+        self.name = f"peer:{port}"
         self.host = host or self.name
         self.packets: list[bytes] = []
-        self.others: dict[int, Ear] = {}
+        self.others: dict[int, FakePeer] = {}
 
     def send(self, packet: bytes) -> None:
         self.packets.append(packet)
 
-    def at(self, port: int) -> Ear:
-        return self.others.setdefault(port, Ear(port))
+    def at(self, port: int) -> FakePeer:
+        return self.others.setdefault(port, FakePeer(port))
 
-    def heard(self) -> list[Heard]:
+    def received(self) -> list[Message]:
         """The messages since the last call."""
         packets, self.packets = self.packets, []
         return [Wire.read(packet) for packet in packets]

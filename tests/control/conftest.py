@@ -1,4 +1,4 @@
-"""A stage on a manual clock, and real servers with clients."""
+"""A server on a still clock, and real servers with clients."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pytest
 from moves import Moves
-from wire import Ear, Heard, StillTime, Wire
+from wire import FakePeer, Message, StillTime, Wire
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.player.record import SILENT
@@ -58,8 +58,8 @@ def wire() -> type[Wire]:
     return Wire
 
 
-@pytest.fixture(scope="session")
-def patience() -> Callable[..., Any]:
+@pytest.fixture(scope="session", name="until")
+def until_fixture() -> Callable[..., Any]:
     """Wait for something to be true, and return it."""
     return until
 
@@ -68,8 +68,8 @@ def patience() -> Callable[..., Any]:
 
 
 @pytest.fixture
-def ear() -> Ear:
-    return Ear()
+def peer() -> FakePeer:
+    return FakePeer()
 
 
 @pytest.fixture
@@ -80,7 +80,7 @@ def still_time(monkeypatch) -> StillTime:
     return clock
 
 
-# ---------------------------------------------------------------- a stage on the manual clock
+# ---------------------------------------------------------------- a server on a still clock
 
 
 class Services:
@@ -120,8 +120,8 @@ class Services:
         return f"{self.names.pop()}.wav"
 
 
-class Stage:
-    """An OSC handler and its instrument, on the manual clock."""
+class StillServer:
+    """An OSC handler and its instrument, on a still clock."""
 
     RATE = 48000
 
@@ -142,28 +142,28 @@ class Stage:
         self.player.write("/playing/variation", 0.0, frame=0)
         self.services = Services()
         self.handler = handler.OscHandler([self.player], self.services)
-        self.ear = Ear()
+        self.peer = FakePeer()
         self.events: list[tuple[int, str, float]] = []
 
     def _frame_at(self, time_ns: int) -> float:
         moment, frame = self._began
         return frame + (1e-9 * time_ns - moment) * self.RATE * self.pace
 
-    def take(self, packet: bytes, ear: Ear | None = None) -> None:
+    def take(self, packet: bytes, peer: FakePeer | None = None) -> None:
         """Receive a packet now."""
-        for _ in self.handler.handle(packet, ear or self.ear, self.clock.monotonic_ns()):
+        for _ in self.handler.handle(packet, peer or self.peer, self.clock.monotonic_ns()):
             pass
 
     def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
         self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
 
-    def ask(self, address: str, *arguments: Any, tags: str | None = None) -> list[Heard]:
+    def ask(self, address: str, *arguments: Any, tags: str | None = None) -> list[Message]:
         """Send a message; return the answers up to the next flush."""
-        self.ear.heard()
+        self.peer.received()
         self.tell(address, *arguments, tags=tags)
         self.clock.now += 0.02
         self.handler.tick()
-        return self.ear.heard()
+        return self.peer.received()
 
     def pass_time(self, seconds: float) -> np.ndarray:
         """Play on at the device's pace; return the sound."""
@@ -200,13 +200,13 @@ class Stage:
 
 
 @pytest.fixture
-def stage_type(still_time) -> Callable[..., Stage]:
-    return lambda block=128: Stage(still_time, block)
+def make_still(still_time) -> Callable[..., StillServer]:
+    return lambda block=128: StillServer(still_time, block)
 
 
 @pytest.fixture
-def stage(stage_type) -> Stage:
-    return stage_type()
+def still(make_still) -> StillServer:
+    return make_still()
 
 
 # ---------------------------------------------------------------- clients of a real server
@@ -228,7 +228,7 @@ class Client:
     def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
         self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
 
-    def next(self, within_s: float = PATIENCE_S) -> Heard | None:
+    def next(self, within_s: float = PATIENCE_S) -> Message | None:
         """The next message, if one comes within the time."""
         self.socket.settimeout(within_s)
         try:
@@ -238,7 +238,7 @@ class Client:
         assert sender[:2] == self.server  # from the listening port
         return Wire.read(packet)
 
-    def all(self, quiet_s: float = QUIET_S) -> list[Heard]:
+    def all(self, quiet_s: float = QUIET_S) -> list[Message]:
         """All messages until none comes for a while."""
         return list(iter(lambda: self.next(quiet_s), None))
 
@@ -288,7 +288,7 @@ class Stream:
     def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
         self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
 
-    def next(self, within_s: float = PATIENCE_S) -> Heard | None:
+    def next(self, within_s: float = PATIENCE_S) -> Message | None:
         """The next message; None after the time, or when the server closed the connection."""
         self.socket.settimeout(within_s)
         while (packet := self._packet()) is None:
@@ -335,7 +335,7 @@ class Stream:
         self.socket.close()
 
 
-class Hall:
+class LiveServer:
     """A server without a device, and its clients."""
 
     def __init__(self, folder: Path, ending: contextlib.ExitStack, **options: Any) -> None:
@@ -411,42 +411,42 @@ class Hall:
 
 
 @contextlib.contextmanager
-def hall_opened(folder: Path, **options: Any) -> Iterator[Hall]:
+def run_live(folder: Path, **options: Any) -> Iterator[LiveServer]:
     interval = sys.getswitchinterval()
     before = set(threading.enumerate())
     try:
         with contextlib.ExitStack() as ending:
-            yield Hall(folder, ending, **options)
+            yield LiveServer(folder, ending, **options)
     finally:
         sys.setswitchinterval(interval)
     assert set(threading.enumerate()) <= before
 
 
 @pytest.fixture
-def make_hall(tmp_path) -> Iterator[Callable[..., Hall]]:
+def make_live(tmp_path) -> Iterator[Callable[..., LiveServer]]:
     """Open a server with options."""
     with contextlib.ExitStack() as ending:
-        yield lambda **options: ending.enter_context(hall_opened(tmp_path / "takes", **options))
+        yield lambda **options: ending.enter_context(run_live(tmp_path / "takes", **options))
 
 
 @pytest.fixture
-def hall(make_hall) -> Hall:
-    return make_hall()
+def live(make_live) -> LiveServer:
+    return make_live()
 
 
 @pytest.fixture(scope="module")
-def house(tmp_path_factory) -> Iterator[Hall]:
+def shared_server(tmp_path_factory) -> Iterator[LiveServer]:
     """One server for all tests of a file; each leaves it as it was."""
-    with hall_opened(tmp_path_factory.mktemp("house")) as hall:
-        yield hall
+    with run_live(tmp_path_factory.mktemp("live")) as live:
+        yield live
 
 
 @pytest.fixture(scope="module")
-def web_house(tmp_path_factory) -> Iterator[Hall]:
+def shared_web(tmp_path_factory) -> Iterator[LiveServer]:
     """The same, with OSCQuery."""
     http = WebOptions((HOST, 0))
-    with hall_opened(tmp_path_factory.mktemp("house"), http=http) as hall:
-        yield hall
+    with run_live(tmp_path_factory.mktemp("live"), http=http) as live:
+        yield live
 
 
 @contextlib.contextmanager

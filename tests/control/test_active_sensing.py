@@ -25,7 +25,7 @@ class Port:
         self.receive = callback
 
 
-class Desk:
+class Controller:
     """One open port, a manual clock, and the events reported."""
 
     def __init__(self, monkeypatch) -> None:
@@ -57,27 +57,27 @@ class Desk:
 
 
 @pytest.fixture
-def desk(monkeypatch) -> Desk:
-    desk = Desk(monkeypatch)
-    desk.port.receive(([ACTIVE_SENSING], 0.0))
-    return desk
+def controller(monkeypatch) -> Controller:
+    controller = Controller(monkeypatch)
+    controller.port.receive(([ACTIVE_SENSING], 0.0))
+    return controller
 
 
-def test_a_controller_that_falls_silent_is_told_of_once(desk):
-    desk.sense_for(300)
-    assert desk.told == []
-    desk.sense_for(1000)
-    assert desk.told == ["disconnect", "silent"]
+def test_a_controller_that_falls_silent_is_told_of_once(controller):
+    controller.sense_for(300)
+    assert controller.told == []
+    controller.sense_for(1000)
+    assert controller.told == ["disconnect", "silent"]
 
 
 @pytest.mark.parametrize("slept_s", [0.4, 2.5, 3600.0])
-def test_a_controller_is_not_taken_for_silent_because_we_slept(desk, slept_s):
-    desk.sense_for(200)
-    desk.now_ns += round(1e9 * slept_s)
-    desk.sense_for(300)
-    assert desk.told == []
-    desk.port.receive(([ACTIVE_SENSING], 0.0))
-    desk.sense_for(300)
-    assert desk.told == []
-    desk.sense_for(200)
-    assert desk.told == ["disconnect", "silent"]
+def test_a_controller_is_not_taken_for_silent_because_we_slept(controller, slept_s):
+    controller.sense_for(200)
+    controller.now_ns += round(1e9 * slept_s)
+    controller.sense_for(300)
+    assert controller.told == []
+    controller.port.receive(([ACTIVE_SENSING], 0.0))
+    controller.sense_for(300)
+    assert controller.told == []
+    controller.sense_for(200)
+    assert controller.told == ["disconnect", "silent"]

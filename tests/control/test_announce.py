@@ -39,11 +39,11 @@ def test_who_says_so_is_announced_or_not():
     assert announced(*far, False) == []
 
 
-def test_without_a_network_it_is_said_in_a_line(patience):
+def test_without_a_network_it_is_said_in_a_line(until):
     said = []
     announcer = Announcer([Service(OSC, "0.0.0.0", 9000)], said.append)  # noqa: S104
     announcer.start()
-    patience(lambda: said, "a line")
+    until(lambda: said, "a line")
     announcer.stop()
     assert said == ["not announced: this machine has no network"]
 
@@ -51,7 +51,7 @@ def test_without_a_network_it_is_said_in_a_line(patience):
 @pytest.mark.parametrize(
     "error", [OSError(19, "No such device"), RuntimeError("no adapters"), NonUniqueNameException()]
 )
-def test_what_goes_wrong_is_said_in_a_line(patience, monkeypatch, error):
+def test_what_goes_wrong_is_said_in_a_line(until, monkeypatch, error):
     def fail(**_):
         raise error
 
@@ -59,7 +59,7 @@ def test_what_goes_wrong_is_said_in_a_line(patience, monkeypatch, error):
     said = []
     announcer = Announcer([Service(OSC, HOST, 9000)], said.append)
     announcer.start()
-    patience(lambda: said, "a line")
+    until(lambda: said, "a line")
     announcer.stop()
     (line,) = said
     assert line.startswith("not announced: ")
@@ -108,14 +108,14 @@ def browser():
     browser.close()
 
 
-def test_a_server_is_found_while_it_plays(make_hall, browser, patience):
-    hall = make_hall(http=WebOptions((HOST, 0)), announce=True)
-    server = hall.server
+def test_a_server_is_found_while_it_plays(make_live, browser, until):
+    live = make_live(http=WebOptions((HOST, 0)), announce=True)
+    server = live.server
     places = {(HOST, server.osc.port), (HOST, server.web.port)}
-    patience(lambda: places <= set(browser.found.values()), "both are found")
+    until(lambda: places <= set(browser.found.values()), "both are found")
     names = [name for name, place in browser.found.items() if place in places]
     host = socket.gethostname().partition(".")[0]
     assert all(name.startswith(f"yehu-server {host}") for name in names)
-    patience(lambda: any("announced as yehu-server" in line for line in hall.said), "a line")
+    until(lambda: any("announced as yehu-server" in line for line in live.said), "a line")
     server._announcer.stop()
-    patience(lambda: not places & set(browser.found.values()), "both are gone")
+    until(lambda: not places & set(browser.found.values()), "both are gone")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 import pytest
-from wire import Ear
+from wire import FakePeer
 
 from yehu_server.live.osc import subscriptions as listener_module
 from yehu_server.live.osc.clients import (
@@ -53,278 +53,278 @@ def play(still_time, clients):
     return play
 
 
-def told(ear) -> list[tuple[str, list[float]]]:
-    return [(message.address, message.arguments) for message in ear.heard()]
+def told(peer) -> list[tuple[str, list[float]]]:
+    return [(message.address, message.arguments) for message in peer.received()]
 
 
 def test_another_server_that_tells_us_its_values_is_not_answered_for_as_long(
-    clients, values, play, ear
+    clients, values, play, peer
 ):
-    clients.mute(ear, 0.5)
+    clients.mute(peer, 0.5)
     for _ in range(4):
-        clients.echo(ear, ["/a"])
-        clients.send_error(ear, "/x", "unknown")
+        clients.echo(peer, ["/a"])
+        clients.send_error(peer, "/x", "unknown")
         play(100)
-    assert told(ear) == []
-    clients.subscribe(ear, 10.0)  # it still gets what it asks for
+    assert told(peer) == []
+    clients.subscribe(peer, 10.0)  # it still gets what it asks for
     values.now["/a"] = 1.0
     play(20)
-    assert ("/yehu/a", [1.0]) in told(ear)
+    assert ("/yehu/a", [1.0]) in told(peer)
     play(200)
-    clients.echo(ear, ["/b"])
+    clients.echo(peer, ["/b"])
     play(20)
-    assert told(ear) == [("/yehu/b", [0.0])]
+    assert told(peer) == [("/yehu/b", [0.0])]
 
 
 # ---------------------------------------------------------------- echoes
 
 
-def test_who_sets_something_is_told_its_value_once(clients, values, play, ear):
-    other = Ear(2)
+def test_who_sets_something_is_told_its_value_once(clients, values, play, peer):
+    other = FakePeer(2)
     values.now["/a"] = 0.5
-    clients.echo(ear, ["/a"])
+    clients.echo(peer, ["/a"])
     play(100)
-    assert told(ear) == [("/yehu/a", [0.5])]
+    assert told(peer) == [("/yehu/a", [0.5])]
     assert told(other) == []
     play(100)
-    assert told(ear) == []
+    assert told(peer) == []
 
 
 def test_who_sets_something_often_is_told_sixty_times_a_second_and_the_last_value(
-    clients, values, play, ear
+    clients, values, play, peer
 ):
     def turn() -> None:
         values.now["/a"] += 1.0
-        clients.echo(ear, ["/a"])
+        clients.echo(peer, ["/a"])
 
     play(1000, turn)
     play(20)
-    heard = told(ear)
+    heard = told(peer)
     assert 50 <= len(heard) <= 61
     assert heard[-1] == ("/yehu/a", [1000.0])
 
 
-def test_there_is_nothing_to_wait_for_while_nobody_is_to_be_told(clients, play, ear):
+def test_there_is_nothing_to_wait_for_while_nobody_is_to_be_told(clients, play, peer):
     assert clients.wait_s() is None
-    clients.echo(ear, ["/a"])
+    clients.echo(peer, ["/a"])
     assert 0.0 <= clients.wait_s() <= 1.0 / 60.0
     play(20)
     assert clients.wait_s() is None
 
 
 def test_many_who_set_something_at_once_are_all_told(clients, play):
-    ears = [Ear(port) for port in range(MOST_KNOWN + 100)]
-    for ear in ears:
-        clients.echo(ear, ["/a"])
+    peers = [FakePeer(port) for port in range(MOST_KNOWN + 100)]
+    for peer in peers:
+        clients.echo(peer, ["/a"])
     play(17)
-    assert sum(len(ear.packets) for ear in ears) in (MOST_SENT, 2 * MOST_SENT)
+    assert sum(len(peer.packets) for peer in peers) in (MOST_SENT, 2 * MOST_SENT)
     play(60)
-    assert {len(ear.packets) for ear in ears} == {1}
+    assert {len(peer.packets) for peer in peers} == {1}
 
 
 def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(clients, values, play):
-    ears = [Ear(port) for port in range(40)]
+    peers = [FakePeer(port) for port in range(40)]
     values.now = {f"/{number}": 0.0 for number in range(MOST_SENT // 10)}
-    for ear in ears:
-        assert clients.subscribe(ear, 60.0)
+    for peer in peers:
+        assert clients.subscribe(peer, 60.0)
     play(1000)
-    for ear in ears:
-        ear.packets.clear()
+    for peer in peers:
+        peer.packets.clear()
 
     def turn() -> None:
         values.now = {address: value + 1.0 for address, value in values.now.items()}
 
     play(1000, turn)
-    counts = [len(ear.packets) for ear in ears]
+    counts = [len(peer.packets) for peer in peers]
     assert sum(counts) <= 61 * MOST_SENT
     assert min(counts) > 0.8 * max(counts)
 
 
-def test_who_takes_no_more_is_told_the_last_value_later(clients, values, play, ear):
-    clients.subscribe(ear, 60.0)
+def test_who_takes_no_more_is_told_the_last_value_later(clients, values, play, peer):
+    clients.subscribe(peer, 60.0)
     play(20)
-    ear.heard()
-    ear.takes_more = False
+    peer.received()
+    peer.takes_more = False
     for number in range(50):
         values.now["/a"] = float(number)
         play(20)
-    assert told(ear) == []
-    ear.takes_more = True
+    assert told(peer) == []
+    peer.takes_more = True
     play(20)
-    assert told(ear) == [("/yehu/a", [49.0])]
+    assert told(peer) == [("/yehu/a", [49.0])]
 
 
-def test_who_takes_no_more_for_long_is_not_forgotten(clients, play, ear):
-    ear.takes_more = False
-    clients.echo(ear, ["/a"])
+def test_who_takes_no_more_for_long_is_not_forgotten(clients, play, peer):
+    peer.takes_more = False
+    clients.echo(peer, ["/a"])
     play(5000)
-    ear.takes_more = True
+    peer.takes_more = True
     play(20)
-    assert told(ear) == [("/yehu/a", [0.0])]
+    assert told(peer) == [("/yehu/a", [0.0])]
 
 
 def test_only_so_many_are_remembered(clients):
     for port in range(5 * MOST_KNOWN):
-        clients.send_error(Ear(port), "/x", "no")
+        clients.send_error(FakePeer(port), "/x", "no")
         assert len(clients._clients) <= MOST_KNOWN
 
 
 # ---------------------------------------------------------------- changes
 
 
-def test_a_subscriber_is_told_all_and_then_what_changes(clients, values, play, ear):
-    assert clients.subscribe(ear, 10.0)
+def test_a_subscriber_is_told_all_and_then_what_changes(clients, values, play, peer):
+    assert clients.subscribe(peer, 10.0)
     play(20)
-    assert told(ear) == [("/yehu/a", [0.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
+    assert told(peer) == [("/yehu/a", [0.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
     play(100)
-    assert told(ear) == []
+    assert told(peer) == []
     values.now["/b"] = 1.0
     play(100)
-    assert told(ear) == [("/yehu/b", [1.0])]
+    assert told(peer) == [("/yehu/b", [1.0])]
 
 
-def test_a_subscriber_is_told_of_a_value_sixty_times_a_second_at_most(clients, values, play, ear):
+def test_a_subscriber_is_told_of_a_value_sixty_times_a_second_at_most(clients, values, play, peer):
     def turn() -> None:
         values.now["/a"] += 1.0
         values.now["/b"] -= 1.0
-        clients.echo(ear, ["/a"])
+        clients.echo(peer, ["/a"])
 
-    clients.subscribe(ear, 10.0)
+    clients.subscribe(peer, 10.0)
     play(20)
-    ear.heard()
+    peer.received()
     play(1000, turn)
     play(20)
-    heard = told(ear)
+    heard = told(peer)
     assert max(Counter(address for address, _ in heard).values()) <= 61
     assert heard[-2:] == [("/yehu/a", [1000.0]), ("/yehu/b", [-1000.0])]
 
 
 def test_a_change_that_is_taken_back_at_once_need_not_be_told_but_never_lies(
-    clients, values, play, ear
+    clients, values, play, peer
 ):
-    clients.subscribe(ear, 10.0)
+    clients.subscribe(peer, 10.0)
     play(20)
     values.now["/a"] = 1.0
     values.now["/a"] = 0.0
     play(20)
-    assert set(told(ear)[3:]) <= {("/yehu/a", (0.0,))}
+    assert set(told(peer)[3:]) <= {("/yehu/a", (0.0,))}
 
 
-def test_a_subscription_ends(clients, values, play, ear):
-    clients.subscribe(ear, 0.5)
+def test_a_subscription_ends(clients, values, play, peer):
+    clients.subscribe(peer, 0.5)
     play(400)
     assert clients.subscribers == 1
     play(200)
     assert clients.subscribers == 0
-    ear.heard()
+    peer.received()
     values.now["/a"] = 1.0
     play(100)
-    assert told(ear) == []
+    assert told(peer) == []
     assert clients.wait_s() is None
 
 
-def test_a_subscription_is_renewed_and_not_doubled(clients, values, play, ear):
-    clients.subscribe(ear, 0.5)
+def test_a_subscription_is_renewed_and_not_doubled(clients, values, play, peer):
+    clients.subscribe(peer, 0.5)
     play(400)
-    clients.subscribe(ear, 0.5)
+    clients.subscribe(peer, 0.5)
     play(400)
-    ear.heard()
+    peer.received()
     values.now["/a"] = 1.0
     play(50)
-    assert told(ear) == [("/yehu/a", [1.0])]
+    assert told(peer) == [("/yehu/a", [1.0])]
 
 
 def test_one_host_leaves_places_for_others(clients):
-    tenants = [Ear(port, "192.0.2.1") for port in range(MOST_OF_A_HOST + 1)]
-    assert [clients.subscribe(ear, 60.0) for ear in tenants].count(True) == MOST_OF_A_HOST
-    assert clients.subscribe(Ear(7), 60.0)
+    tenants = [FakePeer(port, "192.0.2.1") for port in range(MOST_OF_A_HOST + 1)]
+    assert [clients.subscribe(peer, 60.0) for peer in tenants].count(True) == MOST_OF_A_HOST
+    assert clients.subscribe(FakePeer(7), 60.0)
     clients.unsubscribe(tenants[0])
     assert clients.subscribe(tenants[-1], 60.0)
 
 
 @pytest.mark.parametrize("end", [Clients.unsubscribe, Clients.forget])
-def test_who_unsubscribes_or_is_gone_is_told_no_more(clients, values, play, ear, end):
-    clients.subscribe(ear, 10.0)
+def test_who_unsubscribes_or_is_gone_is_told_no_more(clients, values, play, peer, end):
+    clients.subscribe(peer, 10.0)
     play(20)
-    ear.heard()
-    end(clients, ear)
+    peer.received()
+    end(clients, peer)
     values.now["/a"] = 1.0
     play(100)
-    assert told(ear) == []
+    assert told(peer) == []
     assert clients.subscribers == 0
 
 
-def test_subscribers_of_no_time_get_all_values_once(clients, values, play, ear):
-    clients.subscribe(ear, 0.0)
+def test_subscribers_of_no_time_get_all_values_once(clients, values, play, peer):
+    clients.subscribe(peer, 0.0)
     values.now["/a"] = 1.0
     play(100)
-    assert told(ear) == [("/yehu/a", [1.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
+    assert told(peer) == [("/yehu/a", [1.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
 
 
 def test_there_is_room_for_so_many_subscribers_and_for_more_when_some_are_gone(clients, play):
-    ears = [Ear(port) for port in range(MOST_SUBSCRIBERS + 1)]
-    assert all(clients.subscribe(ear, 1.0) for ear in ears[:-1])
-    assert not clients.subscribe(ears[-1], 1.0)
-    assert clients.subscribe(ears[0], 1.0)  # a subscriber keeps its place
-    clients.unsubscribe(ears[3])
-    assert clients.subscribe(ears[-1], 1.0)
+    peers = [FakePeer(port) for port in range(MOST_SUBSCRIBERS + 1)]
+    assert all(clients.subscribe(peer, 1.0) for peer in peers[:-1])
+    assert not clients.subscribe(peers[-1], 1.0)
+    assert clients.subscribe(peers[0], 1.0)  # a subscriber keeps its place
+    clients.unsubscribe(peers[3])
+    assert clients.subscribe(peers[-1], 1.0)
     play(1100)
     assert clients.subscribers == 0
 
 
-def test_subscribers_are_not_forgotten_for_the_many_who_pass_by(clients, values, play, ear):
-    clients.subscribe(ear, 10.0)
+def test_subscribers_are_not_forgotten_for_the_many_who_pass_by(clients, values, play, peer):
+    clients.subscribe(peer, 10.0)
     play(20)
-    ear.heard()
+    peer.received()
     for port in range(2, 3 * MOST_KNOWN):
-        clients.send_error(Ear(port), "/x", "no")
+        clients.send_error(FakePeer(port), "/x", "no")
     values.now["/a"] = 1.0
     play(20)
-    assert told(ear) == [("/yehu/a", [1.0])]
+    assert told(peer) == [("/yehu/a", [1.0])]
 
 
 @pytest.mark.parametrize("is_subscribed", [False, True])
 def test_a_peer_that_is_gone_when_it_is_told_leaves_the_others_in_peace(
-    clients, play, ear, is_subscribed
+    clients, play, peer, is_subscribed
 ):
-    class Gone(Ear):
+    class Gone(FakePeer):
         def send(self, _packet: bytes) -> None:
             clients.forget(self)
 
     if is_subscribed:
         clients.subscribe(Gone(2), 10.0)
     clients.echo(Gone(3), ["/a"])
-    clients.echo(ear, ["/a"])
+    clients.echo(peer, ["/a"])
     play(20)
-    assert ("/yehu/a", [0.0]) in told(ear)
+    assert ("/yehu/a", [0.0]) in told(peer)
 
 
 # ---------------------------------------------------------------- errors
 
 
-def test_errors_are_told_with_address_and_reason(clients, ear):
-    clients.send_error(ear, "/yehu/nothing", "it is not there")
-    assert told(ear) == [("/yehu/error", ["/yehu/nothing", "it is not there"])]
+def test_errors_are_told_with_address_and_reason(clients, peer):
+    clients.send_error(peer, "/yehu/nothing", "it is not there")
+    assert told(peer) == [("/yehu/error", ["/yehu/nothing", "it is not there"])]
 
 
-def test_errors_are_told_rarely_to_who_makes_many(clients, play, ear):
-    patient = Ear(2)
-    play(10_000, lambda: clients.send_error(ear, "/x", "no"))
-    assert 100 <= len(ear.packets) <= 125
-    assert clients.errors_sent == len(ear.packets)
+def test_errors_are_told_rarely_to_who_makes_many(clients, play, peer):
+    patient = FakePeer(2)
+    play(10_000, lambda: clients.send_error(peer, "/x", "no"))
+    assert 100 <= len(peer.packets) <= 125
+    assert clients.errors_sent == len(peer.packets)
     assert clients.errors_sent + clients.errors_withheld == 10_000
     clients.send_error(patient, "/x", "no")
     assert len(patient.packets) == 1  # others need not wait
-    ear.heard()
+    peer.received()
     play(5000)
-    clients.send_error(ear, "/x", "no")
-    assert len(ear.packets) == 1
+    clients.send_error(peer, "/x", "no")
+    assert len(peer.packets) == 1
 
 
 # ---------------------------------------------------------------- in slices
 
 
-class Slow(Ear):
+class Slow(FakePeer):
     """A peer that it takes a quarter of a slice to send to."""
 
     def __init__(self, clock, port: int = 2) -> None:
@@ -354,18 +354,18 @@ def test_who_is_told_much_is_told_in_slices_between_which_others_are_served(
     assert clients.wait_s() > 0.0  # until the next round
 
 
-def test_what_is_set_while_others_are_told_is_told_as_it_then_is(clients, values, still_time, ear):
+def test_what_is_set_while_others_are_told_is_told_as_it_then_is(clients, values, still_time, peer):
     values.now = {f"/{number}": 0.0 for number in range(100)}
     clients.subscribe(Slow(still_time), 60.0)
-    clients.listen(ear, "/0")
+    clients.listen(peer, "/0")
     still_time.now += 1.0
     clients.flush()
     values.now["/99"] = 7.0
-    clients.echo(ear, ["/99"])
+    clients.echo(peer, ["/99"])
     for _ in range(100):
         still_time.now += 0.001
         clients.flush()
-    assert told(ear) == [("/yehu/0", [0.0]), ("/yehu/99", [7.0])]
+    assert told(peer) == [("/yehu/0", [0.0]), ("/yehu/99", [7.0])]
 
 
 @pytest.mark.parametrize("end", ["ignore", "forget"])
@@ -393,31 +393,31 @@ def test_what_is_ended_between_slices_is_told_no_more(clients, values, still_tim
 # ---------------------------------------------------------------- listeners
 
 
-def test_a_listener_is_told_its_address_now_and_when_it_changes(clients, values, play, ear):
-    clients.listen(ear, "/b")
+def test_a_listener_is_told_its_address_now_and_when_it_changes(clients, values, play, peer):
+    clients.listen(peer, "/b")
     play(20)
-    assert told(ear) == [("/yehu/b", [0.0])]
+    assert told(peer) == [("/yehu/b", [0.0])]
     values.now |= {"/a": 1.0, "/b": 2.0}
     play(20)
-    assert told(ear) == [("/yehu/b", [2.0])]
+    assert told(peer) == [("/yehu/b", [2.0])]
     play(1000)
     values.now["/b"] = 3.0
-    clients.ignore(ear, "/b")
+    clients.ignore(peer, "/b")
     play(20)
-    assert told(ear) == []
+    assert told(peer) == []
 
 
-def test_who_listens_and_sets_is_told_once(clients, values, play, ear):
-    clients.listen(ear, "/a")
+def test_who_listens_and_sets_is_told_once(clients, values, play, peer):
+    clients.listen(peer, "/a")
     play(20)
-    told(ear)
+    told(peer)
     values.now["/a"] = 1.0
-    clients.echo(ear, ["/a"])
+    clients.echo(peer, ["/a"])
     play(50)
-    assert told(ear) == [("/yehu/a", [1.0])]
+    assert told(peer) == [("/yehu/a", [1.0])]
 
 
-def test_the_status_is_looked_at_only_for_listeners_and_seldom(still_time, values, ear):
+def test_the_status_is_looked_at_only_for_listeners_and_seldom(still_time, values, peer):
     looks = []
 
     def status(_group: str) -> dict[str, float | str]:
@@ -425,7 +425,7 @@ def test_the_status_is_looked_at_only_for_listeners_and_seldom(still_time, value
         return {"load": float(len(looks)), "device": "null"}
 
     clients = Clients(values, "/yehu", status)
-    clients.subscribe(ear, 60.0)
+    clients.subscribe(peer, 60.0)
 
     def play(ms: int) -> None:
         for _ in range(ms):
@@ -434,44 +434,44 @@ def test_the_status_is_looked_at_only_for_listeners_and_seldom(still_time, value
 
     play(1000)
     assert looks == []
-    told(ear)
-    clients.listen(ear, "/status/load")
-    clients.listen(ear, "/status/device")
+    told(peer)
+    clients.listen(peer, "/status/load")
+    clients.listen(peer, "/status/device")
     play(20)
-    assert sorted(told(ear)) == [("/yehu/status/device", ["null"]), ("/yehu/status/load", [1.0])]
+    assert sorted(told(peer)) == [("/yehu/status/device", ["null"]), ("/yehu/status/load", [1.0])]
     play(1000)
     assert 3 <= len(looks) - 1 <= 5
-    assert {address for address, _ in told(ear)} == {"/yehu/status/load"}
+    assert {address for address, _ in told(peer)} == {"/yehu/status/load"}
 
 
-def test_an_address_ignored_before_it_was_told_is_not_told(clients, play, ear):
-    clients.listen(ear, "/status/none")
-    clients.ignore(ear, "/status/none")
+def test_an_address_ignored_before_it_was_told_is_not_told(clients, play, peer):
+    clients.listen(peer, "/status/none")
+    clients.ignore(peer, "/status/none")
     play(50)
-    assert told(ear) == []
+    assert told(peer) == []
 
 
 def test_a_flush_takes_no_longer_for_addresses_that_do_not_change(
-    clients, values, play, ear, monkeypatch
+    clients, values, play, peer, monkeypatch
 ):
     for address in ("/a", "/b", "/c", *(f"/part/{part}/a" for part in range(1, 9))):
-        clients.listen(ear, address)
+        clients.listen(peer, address)
     play(100)
-    ear.heard()
+    peer.received()
     parsed = []
     monkeypatch.setattr(listener_module, "split_group", parsed.append)
     play(100)
     values.now["/b"] = 1.0
     play(100)
-    assert ("/yehu/b", [1.0]) in told(ear)
+    assert ("/yehu/b", [1.0]) in told(peer)
     assert not parsed  # an address is taken apart as somebody asks for it, and never again
 
 
-def test_who_has_nothing_to_hear_is_forgotten(clients, play, ear):
-    clients.subscribe(Ear(2), 1.0)
-    clients.listen(Ear(3), "/a")
-    clients.echo(ear, ["/a"])
-    clients.send_error(Ear(4), "/x", "why")
+def test_who_has_nothing_to_hear_is_forgotten(clients, play, peer):
+    clients.subscribe(FakePeer(2), 1.0)
+    clients.listen(FakePeer(3), "/a")
+    clients.echo(peer, ["/a"])
+    clients.send_error(FakePeer(4), "/x", "why")
     play(20)
     assert len(clients._clients) == 4
     play(4000)
@@ -479,9 +479,9 @@ def test_who_has_nothing_to_hear_is_forgotten(clients, play, ear):
 
 
 @pytest.mark.parametrize("form", ["", UNIT, STATUS_PREFIX])
-def test_whatever_one_is_subscribed_to_one_is_sent_changes(clients, ear, still_time, form):
-    assert not clients.is_subscribed(ear)
-    clients.subscribe(ear, 10.0, form)
-    assert clients.is_subscribed(ear)
+def test_whatever_one_is_subscribed_to_one_is_sent_changes(clients, peer, still_time, form):
+    assert not clients.is_subscribed(peer)
+    clients.subscribe(peer, 10.0, form)
+    assert clients.is_subscribed(peer)
     still_time.now += 11.0
-    assert not clients.is_subscribed(ear)
+    assert not clients.is_subscribed(peer)

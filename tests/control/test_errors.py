@@ -31,18 +31,18 @@ from yehu_server.live.osc import clients
         "/ÿehu/" + "x" * 300,
     ],
 )
-def test_an_unknown_address_is_answered_and_changes_nothing(house, wire, address):
-    client = house.client()
-    before, counted = house.player.values(), house.handler.counts.errors
+def test_an_unknown_address_is_answered_and_changes_nothing(shared_server, wire, address):
+    client = shared_server.client()
+    before, counted = shared_server.player.values(), shared_server.handler.counts.errors
     client.take(wire.message(address, 0.123))
     assert client.wait_for("/error")[0] == address
-    assert house.player.values() == before
-    assert house.handler.counts.errors == counted + 1
-    assert house.is_well()
+    assert shared_server.player.values() == before
+    assert shared_server.handler.counts.errors == counted + 1
+    assert shared_server.is_well()
 
 
-def test_a_near_name_is_suggested(house):
-    client = house.client()
+def test_a_near_name_is_suggested(shared_server):
+    client = shared_server.client()
     client.tell("/bow/forc", 0.5)
     assert "/bow/force" in client.wait_for("/error")[1]
 
@@ -52,31 +52,31 @@ def test_a_near_name_is_suggested(house):
     [b"", b"\0", b"hello", b"/yehu/bow/force", b"/yehu/bow/force\0,i\0\0\0", b"#bundle\0\0"],
     ids=repr,
 )
-def test_a_malformed_packet_is_counted_and_answered(house, packet):
-    client = house.client()
-    counted = house.handler.counts.malformed
+def test_a_malformed_packet_is_counted_and_answered(shared_server, packet):
+    client = shared_server.client()
+    counted = shared_server.handler.counts.malformed
     client.take(packet)
     assert "malformed" in client.wait_for("/error")[1]
-    assert house.handler.counts.malformed == counted + 1
+    assert shared_server.handler.counts.malformed == counted + 1
 
 
-def test_one_who_makes_many_errors_is_told_of_few(house):
-    client, patient = house.client(), house.client()
-    counted = house.handler.counts.errors
+def test_one_who_makes_many_errors_is_told_of_few(shared_server):
+    client, patient = shared_server.client(), shared_server.client()
+    counted = shared_server.handler.counts.errors
     started = time.monotonic()
     for _ in range(2000):
         client.tell("/nothing")
     client.sync()
     took = time.monotonic() - started
     heard = errors(client.all())
-    assert house.handler.counts.errors == counted + 2000
+    assert shared_server.handler.counts.errors == counted + 2000
     assert len(heard) <= clients.ERRORS_AT_ONCE + clients.ERRORS_A_SECOND * (took + 1.0)
     patient.tell("/nothing")
     assert patient.wait_for("/error")
 
 
-def test_an_address_of_any_length_is_answered(house):
-    client = house.client()
+def test_an_address_of_any_length_is_answered(shared_server):
+    client = shared_server.client()
     client.tell("/" + "x" * 16_000)
     assert client.next(0.5)
 
@@ -85,20 +85,20 @@ def test_an_address_of_any_length_is_answered(house):
     "call",
     ["/get", "/preset/load", "/preset/save", "/preset/delete", "/learn", "/unlearn", "/bow/force"],
 )
-def test_an_error_is_of_bounded_length_and_keeps_its_reason(stage, call):
-    (refused,) = stage.ask(call, "x" * 60_000)
+def test_an_error_is_of_bounded_length_and_keeps_its_reason(still, call):
+    (refused,) = still.ask(call, "x" * 60_000)
     address, reason = refused.arguments
     assert address == "/yehu" + call
     assert len(reason) < 1100
     assert any(word in reason for word in ("unknown", "plain name", "expected a number"))
 
 
-def test_near_names_are_looked_for_only_where_they_are_told(stage, monkeypatch):
+def test_near_names_are_looked_for_only_where_they_are_told(still, monkeypatch):
     looked = []
     monkeypatch.setattr(
         difflib, "get_close_matches", lambda *words, **_: looked.append(words) or []
     )
     for number in range(500):
-        stage.tell(f"/bow/forc{number}", 1.0)
-    assert len(errors(stage.ear.heard())) == clients.ERRORS_AT_ONCE
+        still.tell(f"/bow/forc{number}", 1.0)
+    assert len(errors(still.peer.received())) == clients.ERRORS_AT_ONCE
     assert len(looked) <= 2 * clients.ERRORS_AT_ONCE

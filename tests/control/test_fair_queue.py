@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from yehu_server.live.osc import fair_queue
 from yehu_server.live.osc.fair_queue import LONG_BYTES, MOST_BYTES, SLICE_NS, TURN_NS, FairQueue
-from yehu_server.live.osc.limits import LITTLE_BYTES, OVERHEAD_BYTES
+from yehu_server.live.osc.memory_quota import LITTLE_BYTES, OVERHEAD_BYTES
 
 SHORT_NS, LONG_NS = SLICE_NS // 100, SLICE_NS + SLICE_NS // 2
 

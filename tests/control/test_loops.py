@@ -19,7 +19,7 @@ TOO_MANY = OSError(errno.EMFILE, os.strerror(errno.EMFILE))
 
 
 @pytest.mark.parametrize("error", [TOO_MANY, MemoryError(), RuntimeError("no thread")])
-def test_what_fails_is_begun_again_and_said_once(patience, error):
+def test_what_fails_is_begun_again_and_said_once(until, error):
     begun, said = [], []
 
     async def main() -> None:
@@ -30,12 +30,12 @@ def test_what_fails_is_begun_again_and_said_once(patience, error):
 
     thread = LoopThread(main, "work", said.append, Backoff(0.01, 0.01))
     thread.start()
-    patience(lambda: len(begun) == 4, "four tries")
+    until(lambda: len(begun) == 4, "four tries")
     thread.stop()
     assert said == [error]
 
 
-def test_it_ends_at_once_while_it_waits_to_try_again(patience):
+def test_it_ends_at_once_while_it_waits_to_try_again(until):
     said = []
 
     async def main() -> None:
@@ -43,12 +43,12 @@ def test_it_ends_at_once_while_it_waits_to_try_again(patience):
 
     thread = LoopThread(main, "work", said.append, Backoff(3600.0, 3600.0))
     thread.start()
-    patience(lambda: said, "an error")
+    until(lambda: said, "an error")
     thread.stop()
     assert not thread._thread.is_alive()
 
 
-def test_a_loop_that_is_short_of_files_says_so_once_in_a_line(patience, caplog):
+def test_a_loop_that_is_short_of_files_says_so_once_in_a_line(until, caplog):
     done = []
 
     async def main() -> None:
@@ -60,12 +60,12 @@ def test_a_loop_that_is_short_of_files_says_so_once_in_a_line(patience, caplog):
     thread = LoopThread(main, "OSCQuery", lambda _error: None)
     with caplog.at_level(logging.WARNING):
         thread.start()
-        patience(lambda: done, "its errors")
+        until(lambda: done, "its errors")
         thread.stop()
     assert caplog.messages == [f"OSCQuery: {os.strerror(errno.EMFILE)}; trying again"]
 
 
-def test_oscquery_answers_again_after_its_server_failed(make_hall, patience, monkeypatch):
+def test_oscquery_answers_again_after_its_server_failed(make_live, until, monkeypatch):
     fails = [TOO_MANY, None]
     sleep = asyncio.sleep
 
@@ -75,7 +75,7 @@ def test_oscquery_answers_again_after_its_server_failed(make_hall, patience, mon
             raise error
 
     monkeypatch.setattr(server.asyncio, "sleep", failing)
-    hall = make_hall(http=WebOptions(("127.0.0.1", 0)))
-    patience(lambda: not fails, "a failure, and another try")
-    with urllib.request.urlopen(f"http://127.0.0.1:{hall.server.web.port}/?HOST_INFO") as answer:
+    live = make_live(http=WebOptions(("127.0.0.1", 0)))
+    until(lambda: not fails, "a failure, and another try")
+    with urllib.request.urlopen(f"http://127.0.0.1:{live.server.web.port}/?HOST_INFO") as answer:
         assert answer.status == 200

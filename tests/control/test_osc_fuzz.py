@@ -68,37 +68,37 @@ def resident_bytes() -> int:
 
 
 @pytest.mark.parametrize("kind", ["udp", "prefixed", "slip"])
-def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(hall, wire, patience, kind):
+def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(live, wire, until, kind):
     chance = random.Random(f"garbage by {kind}")
-    sender = hall.client() if kind == "udp" else hall.stream(slip=kind == "slip")
-    listener = hall.client()
+    sender = live.client() if kind == "udp" else live.stream(slip=kind == "slip")
+    listener = live.client()
     sizes = []
     for _ in range(4):
         for number in range(300):
             try:
                 sender.take(garbage(wire, chance, time.time()))
             except ConnectionError:  # what begins as no OSC does ends a stream
-                sender = hall.stream(slip=kind == "slip")
+                sender = live.stream(slip=kind == "slip")
             if number % 50 == 49:
                 with contextlib.suppress(AssertionError):
                     sender.all(0.001)
-        patience(lambda: not hall.ports._queue, "all to be handled")
+        until(lambda: not live.ports._queue, "all to be handled")
         listener.sync()
         if Path("/proc/self/statm").exists():
             sizes.append(resident_bytes())
     time.sleep(0.15)  # the last bundles' time comes
     listener.tell("/panic")
     listener.sync()
-    hall.settle()
-    assert hall.is_at_rest()
-    assert hall.is_well()
-    assert hall.level() < 1e-6
+    live.settle()
+    assert live.is_at_rest()
+    assert live.is_well()
+    assert live.level() < 1e-6
     assert not sizes or sizes[-1] - sizes[0] < GROWTH_BYTES
     listener.tell("/reset")  # whatever was set
     listener.tell("/note", 67, 90)
     listener.sync()
-    hall.settle()
-    assert hall.player.pitch == pytest.approx(67.0, abs=0.5)
+    live.settle()
+    assert live.player.pitch == pytest.approx(67.0, abs=0.5)
 
 
 @pytest.mark.parametrize(
@@ -115,16 +115,16 @@ def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(hall, wire, pat
     ],
     ids=["http", "ones", "zeros", "ends", "escapes", "huge", "long", "half"],
 )
-def test_a_stream_of_anything_else_is_survived(house, stream):
-    bad, good = house.stream(), house.client()
+def test_a_stream_of_anything_else_is_survived(shared_server, stream):
+    bad, good = shared_server.stream(), shared_server.client()
     with contextlib.suppress(OSError):
         bad.socket.sendall(stream)
         bad.socket.shutdown(1)
     good.sync()
     good.tell("/note", 67, 90)
     good.sync()
-    house.settle()
-    assert house.player.pitch == pytest.approx(67.0, abs=0.5)
+    shared_server.settle()
+    assert shared_server.player.pitch == pytest.approx(67.0, abs=0.5)
     good.tell("/panic")
     assert bad.has_ended()
-    assert house.is_well()
+    assert shared_server.is_well()

@@ -19,34 +19,34 @@ OWN = Mapping(
 
 
 @pytest.fixture
-def own_stage(stage):
-    stage.player.remap(OWN, frame=0)
-    return stage
+def own_still(still):
+    still.player.remap(OWN, frame=0)
+    return still
 
 
-def say(stage, wire, address: str, *arguments, tags: str | None = None) -> list[str]:
+def say(still, wire, address: str, *arguments, tags: str | None = None) -> list[str]:
     """Send a message without the prefix; return the errors answered."""
-    stage.ear.heard()
-    stage.take(wire.message(address, *arguments, tags=tags))
-    return [" ".join(heard.arguments) for heard in stage.ear.heard()]
+    still.peer.received()
+    still.take(wire.message(address, *arguments, tags=tags))
+    return [" ".join(heard.arguments) for heard in still.peer.received()]
 
 
-def test_an_address_of_ones_own_moves_what_it_is_bound_to(own_stage, wire):
+def test_an_address_of_ones_own_moves_what_it_is_bound_to(own_still, wire):
     for sent, volume in ((0.0, 0.0), (63.5, 0.5), (127, 1.0), (900.0, 1.0), (-1, 0.0)):
-        assert say(own_stage, wire, "/fader1", sent) == []
-        assert own_stage.value(VOLUME) == volume
-    assert say(own_stage, wire, "/1/push", tags="T") == []
-    assert own_stage.value("/playing/pizzicato") == 1.0
+        assert say(own_still, wire, "/fader1", sent) == []
+        assert own_still.value(VOLUME) == volume
+    assert say(own_still, wire, "/1/push", tags="T") == []
+    assert own_still.value("/playing/pizzicato") == 1.0
 
 
-def test_patterns_reach_ones_own_addresses_too(own_stage, wire):
-    assert say(own_stage, wire, "/fader[12]", 0) == []
-    assert own_stage.value(VOLUME) == 0.0
-    assert own_stage.value("/playing/expression") == 1.0
-    assert say(own_stage, wire, "/fader{2,3}", 1) == []
-    assert own_stage.value("/playing/expression") == 0.0
-    assert own_stage.value(VOLUME) == 0.0
-    assert say(own_stage, wire, "/fadr*", 1) == ["/fadr* the pattern matches no address"]
+def test_patterns_reach_ones_own_addresses_too(own_still, wire):
+    assert say(own_still, wire, "/fader[12]", 0) == []
+    assert own_still.value(VOLUME) == 0.0
+    assert own_still.value("/playing/expression") == 1.0
+    assert say(own_still, wire, "/fader{2,3}", 1) == []
+    assert own_still.value("/playing/expression") == 0.0
+    assert own_still.value(VOLUME) == 0.0
+    assert say(own_still, wire, "/fadr*", 1) == ["/fadr* the pattern matches no address"]
 
 
 @pytest.mark.parametrize(
@@ -60,42 +60,42 @@ def test_patterns_reach_ones_own_addresses_too(own_stage, wire):
         ("/yehu/fader1", (0.5,), "unknown parameter"),
     ],
 )
-def test_what_ones_own_address_cannot_mean_is_answered(own_stage, wire, address, arguments, reason):
-    (error,) = say(own_stage, wire, address, *arguments)
+def test_what_ones_own_address_cannot_mean_is_answered(own_still, wire, address, arguments, reason):
+    (error,) = say(own_still, wire, address, *arguments)
     assert error.startswith(f"{address} {reason}")
-    assert own_stage.value(VOLUME) == 1.0
+    assert own_still.value(VOLUME) == 1.0
 
 
-def test_an_address_that_the_mapping_gives_up_is_unknown(own_stage, wire):
-    own_stage.player.remap(Mapping("other", ()), frame=0)
-    (error,) = say(own_stage, wire, "/fader1", 1)
+def test_an_address_that_the_mapping_gives_up_is_unknown(own_still, wire):
+    own_still.player.remap(Mapping("other", ()), frame=0)
+    (error,) = say(own_still, wire, "/fader1", 1)
     assert "unknown address" in error
 
 
-def test_ones_own_address_is_heard_at_the_time_of_its_tag(own_stage, wire):
-    due = own_stage.clock.time() + 0.1
+def test_ones_own_address_is_heard_at_the_time_of_its_tag(own_still, wire):
+    due = own_still.clock.time() + 0.1
     bundle = wire.bundle(due, wire.message("/fader1", 0.0))
-    own_stage.take(bundle)
-    assert own_stage.player.value(VOLUME) == 1.0
-    own_stage.pass_time(0.15)
-    assert own_stage.player.value(VOLUME) == 0.0
-    (frame,) = own_stage.frames("/output/level")
-    assert frame == pytest.approx(0.1 * own_stage.RATE, abs=own_stage.RATE * 0.002)
+    own_still.take(bundle)
+    assert own_still.player.value(VOLUME) == 1.0
+    own_still.pass_time(0.15)
+    assert own_still.player.value(VOLUME) == 0.0
+    (frame,) = own_still.frames("/output/level")
+    assert frame == pytest.approx(0.1 * own_still.RATE, abs=own_still.RATE * 0.002)
 
 
-def test_subscribers_hear_of_what_ones_own_address_moves(own_stage, wire):
-    own_stage.ask("/subscribe")
-    own_stage.take(wire.message("/fader1", 0.0))
-    own_stage.pass_time(0.05)
+def test_subscribers_hear_of_what_ones_own_address_moves(own_still, wire):
+    own_still.ask("/subscribe")
+    own_still.take(wire.message("/fader1", 0.0))
+    own_still.pass_time(0.05)
     assert ("/yehu/playing/volume", 0.0) in [
-        (heard.address, *heard.arguments) for heard in own_stage.ear.heard()
+        (heard.address, *heard.arguments) for heard in own_still.peer.received()
     ]
 
 
-def test_a_faders_burst_costs_no_note(own_stage, wire):
-    own_stage.tell("/note", 67.0, 90.0)
+def test_a_faders_burst_costs_no_note(own_still, wire):
+    own_still.tell("/note", 67.0, 90.0)
     for step in range(200):
-        say(own_stage, wire, "/fader1", step % 128)
-    own_stage.pass_time(0.01)
-    assert own_stage.player.pitch is not None
-    assert own_stage.handler.counts.errors == 0
+        say(own_still, wire, "/fader1", step % 128)
+    own_still.pass_time(0.01)
+    assert own_still.player.pitch is not None
+    assert own_still.handler.counts.errors == 0

@@ -24,21 +24,21 @@ needs_pd = pytest.mark.skipif(not PD, reason="Pure Data is not here")
 # ---------------------------------------------------------------- liblo
 
 
-def oscsend(hall, kind: str, *words: str) -> None:
-    url = f"osc.{kind}://127.0.0.1:{hall.ports.port}"
+def oscsend(live, kind: str, *words: str) -> None:
+    url = f"osc.{kind}://127.0.0.1:{live.ports.port}"
     subprocess.run(["oscsend", url, *words], check=True, timeout=LONGEST_S)  # noqa: S607
 
 
 @needs_liblo
 @pytest.mark.parametrize("kind", ["udp", "tcp"])
-def test_liblo_plays_a_note_and_ends_it(hall, patience, kind):
-    oscsend(hall, kind, "/yehu/playing/variation", "f", "0")
-    oscsend(hall, kind, "/yehu/note", "ff", "67", "90")
-    patience(lambda: hall.player.pitch == 67.0, "the note")
-    oscsend(hall, kind, "/yehu/note", "if", "67", "0")
-    patience(lambda: hall.player.pitch is None, "its end")
-    patience(lambda: hall.ports.traffic.connections == 0, "the connections to be gone")
-    assert hall.is_well()
+def test_liblo_plays_a_note_and_ends_it(live, until, kind):
+    oscsend(live, kind, "/yehu/playing/variation", "f", "0")
+    oscsend(live, kind, "/yehu/note", "ff", "67", "90")
+    until(lambda: live.player.pitch == 67.0, "the note")
+    oscsend(live, kind, "/yehu/note", "if", "67", "0")
+    until(lambda: live.player.pitch is None, "its end")
+    until(lambda: live.ports.traffic.connections == 0, "the connections to be gone")
+    assert live.is_well()
 
 
 @needs_liblo
@@ -55,11 +55,11 @@ def test_liblo_plays_a_note_and_ends_it(hall, patience, kind):
         ("/yehu/b?w/f*", ["f", "0.25"], 0.25),
     ],
 )
-def test_liblo_sets_a_parameter_with_any_type(house, patience, kind, address, words, value):
-    before = house.handler.counts.messages
-    oscsend(house, kind, address, *words)
-    patience(lambda: house.handler.counts.messages > before, "the message")
-    patience(lambda: house.player.value("/bow/force") == value, "the value")
+def test_liblo_sets_a_parameter_with_any_type(shared_server, until, kind, address, words, value):
+    before = shared_server.handler.counts.messages
+    oscsend(shared_server, kind, address, *words)
+    until(lambda: shared_server.handler.counts.messages > before, "the message")
+    until(lambda: shared_server.player.value("/bow/force") == value, "the value")
 
 
 @needs_liblo
@@ -68,13 +68,13 @@ def test_liblo_sets_a_parameter_with_any_type(house, patience, kind, address, wo
     "words",
     [["s", "0.75"], ["N"], ["I"], ["c", "a"], ["m", "00903c40"], ["S", "loud"], ["cf", "a", "1"]],
 )
-def test_what_liblo_sends_of_a_wrong_type_changes_nothing(house, patience, kind, words):
-    counts = house.handler.counts
-    before, refused = house.player.values(), counts.errors + counts.malformed
-    oscsend(house, kind, "/yehu/bow/force", *words)
-    patience(lambda: counts.errors + counts.malformed == refused + 1, "the refusal")
-    assert house.player.values() == before
-    assert house.is_well()
+def test_what_liblo_sends_of_a_wrong_type_changes_nothing(shared_server, until, kind, words):
+    counts = shared_server.handler.counts
+    before, refused = shared_server.player.values(), counts.errors + counts.malformed
+    oscsend(shared_server, kind, "/yehu/bow/force", *words)
+    until(lambda: counts.errors + counts.malformed == refused + 1, "the refusal")
+    assert shared_server.player.values() == before
+    assert shared_server.is_well()
 
 
 # ---------------------------------------------------------------- Pure Data
@@ -137,32 +137,32 @@ def speaking(port: int, address: str, arguments: str, ends_after_ms: int = 10_00
 
 
 @needs_pd
-def test_pure_data_plays_a_note(hall, tmp_path):
-    pd(tmp_path, speaking(hall.ports.port, "/yehu/note", "67 90", 500))
-    assert hall.handler.counts.messages == 1
-    hall.settle()
-    assert hall.player.pitch == pytest.approx(67.0, abs=0.5)
-    assert hall.is_well()
+def test_pure_data_plays_a_note(live, tmp_path):
+    pd(tmp_path, speaking(live.ports.port, "/yehu/note", "67 90", 500))
+    assert live.handler.counts.messages == 1
+    live.settle()
+    assert live.player.pitch == pytest.approx(67.0, abs=0.5)
+    assert live.is_well()
 
 
 @needs_pd
-def test_pure_data_hears_the_value_it_has_set(hall, tmp_path):
-    printed = pd(tmp_path, speaking(hall.ports.port, "/yehu/bow/force", "0.75"))
-    assert hall.player.value("/bow/force") == 0.75
+def test_pure_data_hears_the_value_it_has_set(live, tmp_path):
+    printed = pd(tmp_path, speaking(live.ports.port, "/yehu/bow/force", "0.75"))
+    assert live.player.value("/bow/force") == 0.75
     assert "heard: list yehu bow force 0.75" in printed or "heard: yehu bow force 0.75" in printed
 
 
 @needs_pd
-def test_pure_data_hears_all_values_when_it_subscribes(hall, tmp_path):
-    printed = pd(tmp_path, speaking(hall.ports.port, "/yehu/subscribe", "10"))
+def test_pure_data_hears_all_values_when_it_subscribes(live, tmp_path):
+    printed = pd(tmp_path, speaking(live.ports.port, "/yehu/subscribe", "10"))
     for line in ("yehu subscribed 10", "yehu bow force 0.5", "yehu finger 1 press 0"):
         assert line in printed
 
 
 @needs_pd
-def test_pure_data_reads_the_status(hall, tmp_path):
-    printed = pd(tmp_path, speaking(hall.ports.port, "/yehu/status", "1"))
-    for name, value in hall.server.status().items():
+def test_pure_data_reads_the_status(live, tmp_path):
+    printed = pd(tmp_path, speaking(live.ports.port, "/yehu/status", "1"))
+    for name, value in live.server.status().items():
         if value != "":
             assert f"yehu status {name}" in printed
 
@@ -170,39 +170,39 @@ def test_pure_data_reads_the_status(hall, tmp_path):
 # ---------------------------------------------------------------- python-osc
 
 
-def test_python_osc_plays_and_hears_by_udp(hall, patience):
-    with SimpleUDPClient("127.0.0.1", hall.ports.port, timeout=LONGEST_S) as client:
+def test_python_osc_plays_and_hears_by_udp(live, until):
+    with SimpleUDPClient("127.0.0.1", live.ports.port, timeout=LONGEST_S) as client:
         client.send_message("/yehu/note", [67.0, 90])
         client.send_message("/yehu/bow/force", 0.75)
         message = next(client.get_messages(LONGEST_S))
         assert (message.address, message.params) == ("/yehu/bow/force", [0.75])
-        patience(lambda: hall.player.pitch is not None, "the note")
+        until(lambda: live.player.pitch is not None, "the note")
         client.send_message("/yehu/note/off", 67)
-        patience(lambda: hall.player.pitch is None, "its end")
+        until(lambda: live.player.pitch is None, "its end")
 
 
 @pytest.mark.parametrize("mode", [MODE_1_0, MODE_1_1])
-def test_python_osc_plays_and_hears_by_tcp(hall, patience, mode):
-    with SimpleTCPClient("127.0.0.1", hall.ports.port, mode=mode, timeout=LONGEST_S) as client:
+def test_python_osc_plays_and_hears_by_tcp(live, until, mode):
+    with SimpleTCPClient("127.0.0.1", live.ports.port, mode=mode, timeout=LONGEST_S) as client:
         client.send_message("/yehu/note", [67.0, 90])
         client.send_message("/yehu/bow/force", 0.75)
         message = next(client.get_messages(LONGEST_S))
         assert (message.address, message.params) == ("/yehu/bow/force", [0.75])
-        patience(lambda: hall.player.pitch is not None, "the note")
-    patience(lambda: hall.ports.traffic.connections == 0, "the connection to be gone")
+        until(lambda: live.player.pitch is not None, "the note")
+    until(lambda: live.ports.traffic.connections == 0, "the connection to be gone")
 
 
-def test_python_osc_sends_bundles_ahead(hall, patience):
+def test_python_osc_sends_bundles_ahead(live, until):
     now = time.time()
     bundle = OscBundleBuilder(now + 0.3)
     for address, value in (("/yehu/bow/position", 0.3), ("/yehu/bow/force", 1.5)):
         message = OscMessageBuilder(address)
         message.add_arg(value)
         bundle.add_content(message.build())
-    with SimpleUDPClient("127.0.0.1", hall.ports.port) as client:
+    with SimpleUDPClient("127.0.0.1", live.ports.port) as client:
         client.send(bundle.build())
-    patience(lambda: hall.handler.counts.scheduled == 2, "the bundle")
-    patience(lambda: hall.handler.waiting == 0, "its time")
+    until(lambda: live.handler.counts.scheduled == 2, "the bundle")
+    until(lambda: live.handler.waiting == 0, "its time")
     assert time.time() - now > 0.2
-    moves = {address: frame for frame, address, _ in hall.settle()}
+    moves = {address: frame for frame, address, _ in live.settle()}
     assert moves["/bow/position"] == moves["/bow/force"]

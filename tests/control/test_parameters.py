@@ -17,7 +17,7 @@ TABLE = [param for param in ALL if param.address != "/playing/section"]
 INFINITE = [math.nan, math.inf, -math.inf]
 
 
-def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(stage):
+def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(still):
     for param in TABLE:
         third = param.lo + (param.hi - param.lo) / 3.0
         for sent, accepted in (
@@ -25,21 +25,21 @@ def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(stag
             *((1e30, param.hi), (-1e30, param.lo), (param.default, param.default)),
         ):
             told = [("/yehu" + param.address, [f32(accepted)])]
-            assert stage.ask(param.address, sent) == told
-            assert stage.ask("/get", param.address) == told
+            assert still.ask(param.address, sent) == told
+            assert still.ask("/get", param.address) == told
         if param.place is Place.ENGINE:
-            stage.pass_time(0.02)
-            assert stage.target(param.address) == pytest.approx(param.default, rel=1e-6)
+            still.pass_time(0.02)
+            assert still.target(param.address) == pytest.approx(param.default, rel=1e-6)
 
 
-def test_every_parameter_also_answers_as_zero_to_one(stage):
+def test_every_parameter_also_answers_as_zero_to_one(still):
     for param in TABLE:
         at = param.address + "/unit"
         for sent, accepted in ((1.0, 1.0), (0.0, 0.0), (0.25, 0.25), (7.0, 1.0), (-7.0, 0.0)):
             told = [("/yehu" + at, [pytest.approx(accepted, abs=1e-6)])]
-            assert stage.ask(at, sent) == told
-            assert stage.ask("/get", at) == told
-            assert stage.player.value(param.address) == param.from_unit(accepted)
+            assert still.ask(at, sent) == told
+            assert still.ask("/get", at) == told
+            assert still.player.value(param.address) == param.from_unit(accepted)
 
 
 NUMBERS = [
@@ -48,12 +48,12 @@ NUMBERS = [
 ]
 
 
-def test_every_parameter_takes_ints_doubles_and_truth(stage):
+def test_every_parameter_takes_ints_doubles_and_truth(still):
     for param in TABLE:
         for value, tags in NUMBERS:
-            stage.tell(param.address, value, tags=tags)
+            still.tell(param.address, value, tags=tags)
             sent = f32(value) if tags == "f" else float(value)
-            assert stage.player.value(param.address) == min(max(sent, param.lo), param.hi)
+            assert still.player.value(param.address) == min(max(sent, param.lo), param.hi)
 
 
 NO_NUMBERS = [
@@ -63,64 +63,64 @@ NO_NUMBERS = [
 ]
 
 
-def test_what_no_parameter_can_take_is_answered_and_changes_nothing(stage):
-    before = stage.player.values()
+def test_what_no_parameter_can_take_is_answered_and_changes_nothing(still):
+    before = still.player.values()
     for param in TABLE:
-        stage.clock.now += clients.FORGIVEN_S
+        still.clock.now += clients.FORGIVEN_S
         for arguments, tags in NO_NUMBERS:
-            (refused,) = stage.ask(param.address, *arguments, tags=tags)
+            (refused,) = still.ask(param.address, *arguments, tags=tags)
             assert refused.address == "/yehu/error"
             address, reason = refused.arguments
             assert address == "/yehu" + param.address
             assert reason
-    assert stage.player.values() == before
+    assert still.player.values() == before
 
 
 @pytest.mark.parametrize(("value", "tags"), NUMBERS)
-def test_a_number_of_any_type_comes_over_the_wire(house, value, tags):
-    client = house.client()
+def test_a_number_of_any_type_comes_over_the_wire(shared_server, value, tags):
+    client = shared_server.client()
     accepted = f32(min(max(value, 0.0), 5.0))
     client.tell("/bow/force", value, tags=tags)
     assert client.wait_for("/bow/force") == [accepted]
     assert client.value("/bow/force") == accepted
     assert client.value("/bow/force/unit") == pytest.approx(accepted / 5.0)
-    house.settle()
-    assert house.target("/bow/force") == pytest.approx(accepted, rel=1e-6)
-    assert house.is_well()
+    shared_server.settle()
+    assert shared_server.target("/bow/force") == pytest.approx(accepted, rel=1e-6)
+    assert shared_server.is_well()
 
 
 @pytest.mark.parametrize(("arguments", "tags"), NO_NUMBERS)
-def test_what_is_no_number_is_refused_over_the_wire(house, arguments, tags):
-    client = house.client()
-    before = house.player.values()
+def test_what_is_no_number_is_refused_over_the_wire(shared_server, arguments, tags):
+    client = shared_server.client()
+    before = shared_server.player.values()
     client.tell("/bow/force", *arguments, tags=tags)
     assert client.wait_for("/error")[0] == "/yehu/bow/force"
     client.sync()
-    assert house.player.values() == before
-    assert house.is_well()
+    assert shared_server.player.values() == before
+    assert shared_server.is_well()
 
 
-def test_reset_puts_every_parameter_back_and_tells(stage):
+def test_reset_puts_every_parameter_back_and_tells(still):
     for param in TABLE:
-        stage.tell(param.address, param.lo)
-    heard = values(stage.ask("/reset"))
+        still.tell(param.address, param.lo)
+    heard = values(still.ask("/reset"))
     assert heard == {"/yehu" + param.address: f32(param.default) for param in ALL}
-    stage.pass_time(0.1)
+    still.pass_time(0.1)
     for param in TABLE:
-        assert stage.player.value(param.address) == param.default
-        moves = [value for _, address, value in stage.events if address == param.address]
+        assert still.player.value(param.address) == param.default
+        moves = [value for _, address, value in still.events if address == param.address]
         if param.place is Place.ENGINE and param.lo != param.default:
             assert moves[-1] == param.default
 
 
-def test_parameters_are_listed_with_all_that_a_client_needs(house):
-    client = house.client()
+def test_parameters_are_listed_with_all_that_a_client_needs(shared_server):
+    client = shared_server.client()
     client.tell("/params")
     heard = list(itertools.takewhile(lambda m: m.address == "/yehu/param", iter(client.next, 0)))
     assert [message.arguments for message in heard] == [
         [
             "/yehu" + param.address,
-            f32(house.player.value(param.address)),
+            f32(shared_server.player.value(param.address)),
             *map(f32, (param.lo, param.hi, param.default)),
             param.unit,
             param.doc,
@@ -133,34 +133,34 @@ def test_parameters_are_listed_with_all_that_a_client_needs(house):
 
 
 @pytest.mark.parametrize("asked", ["/bow/force", "/yehu/bow/force"])
-def test_a_value_is_asked_for_with_or_without_the_prefix(stage, asked):
-    stage.tell("/bow/force", 0.75)
-    assert stage.ask("/get", asked)[0] == ("/yehu/bow/force", [0.75])
+def test_a_value_is_asked_for_with_or_without_the_prefix(still, asked):
+    still.tell("/bow/force", 0.75)
+    assert still.ask("/get", asked)[0] == ("/yehu/bow/force", [0.75])
 
 
 @pytest.mark.parametrize("played", [False, True], ids=["in silence", "while a note sounds"])
-def test_a_value_that_was_set_is_answered_before_and_after_the_audio_side_has_it(stage, played):
+def test_a_value_that_was_set_is_answered_before_and_after_the_audio_side_has_it(still, played):
     for param in TABLE:
-        stage.tell("/reset")
+        still.tell("/reset")
         if played:
-            stage.tell("/note", 72.0, 90.0)
-        stage.pass_time(0.02)
+            still.tell("/note", 72.0, 90.0)
+        still.pass_time(0.02)
         value = f32(param.lo + (param.hi - param.lo) / 3.0)
-        stage.tell(param.address, value)
-        assert stage.player.value(param.address) == value
-        assert values(stage.ask("/get", param.address)) == {"/yehu" + param.address: value}
+        still.tell(param.address, value)
+        assert still.player.value(param.address) == value
+        assert values(still.ask("/get", param.address)) == {"/yehu" + param.address: value}
         for _ in range(30):  # ms; the audio side takes it up meanwhile
-            if param.address == "/pluck/force" and stage.frames(param.address):
+            if param.address == "/pluck/force" and still.frames(param.address):
                 break  # the string slips off soon
-            assert stage.player.value(param.address) == value
-            stage.pass_time(0.001)
+            assert still.player.value(param.address) == value
+            still.pass_time(0.001)
         if param.place is Place.ENGINE and param.address != "/pluck/force":
-            assert stage.target(param.address) == value
+            assert still.target(param.address) == value
 
 
 @pytest.mark.parametrize("address", ["/bow/force", "/playing/pressure"])
-def test_a_get_that_follows_a_set_answers_the_value_set_while_python_is_busy(house, busy, address):
-    client = house.client()
+def test_a_get_after_a_set_answers_the_value_set_while_python_is_busy(shared_server, busy, address):
+    client = shared_server.client()
     with busy():
         for step in range(100):
             value = f32(0.3 + 0.001 * step)
@@ -170,40 +170,40 @@ def test_a_get_that_follows_a_set_answers_the_value_set_while_python_is_busy(hou
             told = list(iter(client.next, ("/yehu/pong", [step])))
             # The value set before may be echoed, first or, on a busy machine, last.
             assert ("/yehu" + address, [value]) in told
-    assert house.is_well()
+    assert shared_server.is_well()
 
 
-def test_a_bow_drawn_by_hand_is_answered_at_once(stage):
-    stage.tell("/note", 72.0, 90.0)
-    stage.pass_time(0.1)
-    stage.tell("/bow", 0.25, 0.75)
+def test_a_bow_drawn_by_hand_is_answered_at_once(still):
+    still.tell("/note", 72.0, 90.0)
+    still.pass_time(0.1)
+    still.tell("/bow", 0.25, 0.75)
     drawn = {"/bow/speed": 0.25, "/bow/force": 0.75, "/bow/assist": 0.0}
     for _ in range(12):  # ms; the audio side takes it up meanwhile
-        assert {address: stage.player.value(address) for address in drawn} == drawn
-        stage.pass_time(0.001)
-    assert {address: stage.target(address) for address in drawn} == drawn
+        assert {address: still.player.value(address) for address in drawn} == drawn
+        still.pass_time(0.001)
+    assert {address: still.target(address) for address in drawn} == drawn
 
 
-def test_newtons_are_answered_with_the_assist_that_they_end(stage):
-    assert stage.player.value("/bow/assist") == 1.0
-    stage.tell("/bow/force", 0.75)
-    assert stage.player.value("/bow/assist") == 0.0
-    stage.pass_time(0.01)
-    assert stage.target("/bow/assist") == 0.0
+def test_newtons_are_answered_with_the_assist_that_they_end(still):
+    assert still.player.value("/bow/assist") == 1.0
+    still.tell("/bow/force", 0.75)
+    assert still.player.value("/bow/assist") == 0.0
+    still.pass_time(0.01)
+    assert still.target("/bow/assist") == 0.0
 
 
-def test_what_the_hands_do_with_a_parameter_that_was_set_is_answered_once_they_do_it(stage):
-    stage.tell("/bow/speed", 0.5)
-    stage.pass_time(0.02)
-    stage.tell("/note", 74.0, 80.0)
-    assert stage.player.value("/bow/speed") == 0.5
-    stage.pass_time(0.02)
-    now = stage.player.value("/bow/speed")
-    assert now == stage.target("/bow/speed") == pytest.approx(0.2, rel=1e-3)
+def test_what_the_hands_do_with_a_parameter_that_was_set_is_answered_once_they_do_it(still):
+    still.tell("/bow/speed", 0.5)
+    still.pass_time(0.02)
+    still.tell("/note", 74.0, 80.0)
+    assert still.player.value("/bow/speed") == 0.5
+    still.pass_time(0.02)
+    now = still.player.value("/bow/speed")
+    assert now == still.target("/bow/speed") == pytest.approx(0.2, rel=1e-3)
 
 
-def test_values_are_asked_for_by_pattern(stage):
-    heard = stage.ask("/get", "/finger/[1-2]/p*")
+def test_values_are_asked_for_by_pattern(still):
+    heard = still.ask("/get", "/finger/[1-2]/p*")
     assert {message.address for message in heard} == {
         "/yehu/finger/1/position",
         "/yehu/finger/1/press",
@@ -213,62 +213,62 @@ def test_values_are_asked_for_by_pattern(stage):
 
 
 @pytest.mark.parametrize("arguments", [(), (1,), ("/bow/force", "/bow/side"), (b"/bow/force",)])
-def test_what_cannot_be_asked_for_is_answered(stage, arguments):
-    assert errors(stage.ask("/get", *arguments)) == ["/yehu/get"]
+def test_what_cannot_be_asked_for_is_answered(still, arguments):
+    assert errors(still.ask("/get", *arguments)) == ["/yehu/get"]
 
 
 @pytest.mark.parametrize("asked", ["", "/nothing", "/note", "/z*", "/yehu"])
-def test_what_is_not_there_is_answered(stage, asked):
-    assert errors(stage.ask("/get", asked)) == ["/yehu/get"]
+def test_what_is_not_there_is_answered(still, asked):
+    assert errors(still.ask("/get", asked)) == ["/yehu/get"]
 
 
 @pytest.mark.parametrize("asked", ["/bow/[fs", "/bow/{force,side", "[", "{"])
-def test_an_unclosed_bracket_that_is_asked_for_is_answered(stage, asked):
-    assert errors(stage.ask("/get", asked)) == ["/yehu/get"]
+def test_an_unclosed_bracket_that_is_asked_for_is_answered(still, asked):
+    assert errors(still.ask("/get", asked)) == ["/yehu/get"]
 
 
-def test_a_pattern_that_is_too_long_to_ask_for_is_answered(stage):
-    assert errors(stage.ask("/get", "/bow/" + "*" * 5000)) == ["/yehu/get"]
+def test_a_pattern_that_is_too_long_to_ask_for_is_answered(still):
+    assert errors(still.ask("/get", "/bow/" + "*" * 5000)) == ["/yehu/get"]
 
 
 # ---------------------------------------------------------------- patterns
 
 
-def test_a_pattern_sets_all_that_it_fits(stage):
-    heard = values(stage.ask("/bow/{force,position}", 0.3))
+def test_a_pattern_sets_all_that_it_fits(still):
+    heard = values(still.ask("/bow/{force,position}", 0.3))
     assert heard == {"/yehu/bow/force": f32(0.3), "/yehu/bow/position": f32(0.3)}
-    heard = values(stage.ask("/*/speed", 0.25))
+    heard = values(still.ask("/*/speed", 0.25))
     assert heard == {"/yehu/bow/speed": 0.25, "/yehu/playing/speed": 0.25}
-    heard = values(stage.ask("/finger/?/pre[a-z]s", 2.0))
+    heard = values(still.ask("/finger/?/pre[a-z]s", 2.0))
     assert heard == {f"/yehu/finger/{number}/press": 2.0 for number in (1, 2, 3, 4)}
 
 
 @pytest.mark.parametrize("address", ["/bow/[z]*", "/nothing*", "/bow*", "/?", "/bow/[", "/bow/{a"])
-def test_a_pattern_that_fits_nothing_is_answered(stage, address):
-    assert errors(stage.ask(address, 1.0)) == ["/yehu" + address]
+def test_a_pattern_that_fits_nothing_is_answered(still, address):
+    assert errors(still.ask(address, 1.0)) == ["/yehu" + address]
 
 
-def test_a_pattern_reaches_the_prefix_too(stage, wire):
-    stage.take(wire.message("/*/bow/force", 0.75))
-    assert stage.player.value("/bow/force") == 0.75
+def test_a_pattern_reaches_the_prefix_too(still, wire):
+    still.take(wire.message("/*/bow/force", 0.75))
+    assert still.player.value("/bow/force") == 0.75
 
 
 @pytest.mark.parametrize("start", ["/[ab]", "/a*bc", "/{ab}", "/a?cd", "/**/b"])
-def test_a_pattern_that_does_not_fit_the_prefix_does_nothing(stage, wire, start):
-    stage.take(wire.message(start + "/bow/force", 0.75))
-    assert stage.player.value("/bow/force") == 0.5
+def test_a_pattern_that_does_not_fit_the_prefix_does_nothing(still, wire, start):
+    still.take(wire.message(start + "/bow/force", 0.75))
+    assert still.player.value("/bow/force") == 0.5
 
 
-def test_a_pattern_that_is_too_long_is_answered(stage):
-    assert errors(stage.ask("/" + "*" * 300, 1.0))
+def test_a_pattern_that_is_too_long_is_answered(still):
+    assert errors(still.ask("/" + "*" * 300, 1.0))
 
 
 @pytest.mark.parametrize("pattern", ["/{note,bend}", "/[nb]*"])
-def test_of_a_pattern_one_that_refuses_does_not_hinder_the_others(stage, pattern):
-    stage.tell(pattern, 1.5)
-    assert stage.player.value("/playing/bend") == 1.5
+def test_of_a_pattern_one_that_refuses_does_not_hinder_the_others(still, pattern):
+    still.tell(pattern, 1.5)
+    assert still.player.value("/playing/bend") == 1.5
 
 
-def test_of_a_pattern_one_that_refuses_is_told(stage):
-    assert errors(stage.ask("/b{end,ow}", 1.5)) == ["/yehu/b{end,ow}"]
-    assert stage.player.value("/playing/bend") == 1.5
+def test_of_a_pattern_one_that_refuses_is_told(still):
+    assert errors(still.ask("/b{end,ow}", 1.5)) == ["/yehu/b{end,ow}"]
+    assert still.player.value("/playing/bend") == 1.5

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(not PD, reason="Pure Data is not here")
 WATCHED = "/yehu/playing/vibrato"  # only these tests move it
 
 
-class Desk:
+class RunningPatch:
     """A Pd with the patch open, moved and watched from another patch."""
 
     def __init__(self, folder, port: int) -> None:
@@ -68,86 +68,86 @@ class Desk:
 
 
 @pytest.fixture
-def desk(hall, patience, tmp_path):
-    hall.player.write("/playing/variation", 0.0, frame=0)
-    hall.player.write("/playing/vibrato", 12.5, frame=0)
-    with contextlib.closing(Desk(tmp_path, hall.ports.port)) as desk:
-        patience(lambda: "watched: set 12.5" in desk.printed, "what the server had")
-        yield desk
+def patch(live, until, tmp_path):
+    live.player.write("/playing/variation", 0.0, frame=0)
+    live.player.write("/playing/vibrato", 12.5, frame=0)
+    with contextlib.closing(RunningPatch(tmp_path, live.ports.port)) as patch:
+        until(lambda: "watched: set 12.5" in patch.printed, "what the server had")
+        yield patch
 
 
-def test_every_slider_of_the_patch_moves_its_parameter(hall, patience, desk):
+def test_every_slider_of_the_patch_moves_its_parameter(live, until, patch):
     for param in TABLE:
         if param.address == "/playing/section":  # at most as many as there are
             continue
         value = param.from_unit(0.3)
-        desk.move(f"/yehu{param.address}", f"{value:.9g}")
-        patience(
+        patch.move(f"/yehu{param.address}", f"{value:.9g}")
+        until(
             lambda param=param, value=value: (
-                hall.player.value(param.address) == pytest.approx(value, rel=1e-5)
+                live.player.value(param.address) == pytest.approx(value, rel=1e-5)
             ),
             param.address,
         )
-    assert hall.handler.counts.errors == 0
-    assert not [line for line in desk.printed if "create" in line or "error" in line]
+    assert live.handler.counts.errors == 0
+    assert not [line for line in patch.printed if "create" in line or "error" in line]
 
 
-def test_a_slider_follows_the_server_and_says_nothing_back(hall, patience, desk):
-    client = hall.client()
+def test_a_slider_follows_the_server_and_says_nothing_back(live, until, patch):
+    client = live.client()
     client.tell("/playing/vibrato", 40.0)
-    patience(lambda: "watched: set 40" in desk.printed, "the change")
+    until(lambda: "watched: set 40" in patch.printed, "the change")
     client.sync()
-    count = hall.handler.counts.messages
+    count = live.handler.counts.messages
     time.sleep(0.4)
-    assert hall.handler.counts.messages == count
-    assert hall.player.value("/playing/vibrato") == 40.0
+    assert live.handler.counts.messages == count
+    assert live.player.value("/playing/vibrato") == 40.0
 
 
-def test_what_a_slider_has_moved_comes_back_to_all_that_show_it(patience, desk):
-    desk.move(WATCHED, 25)
-    patience(lambda: "watched: set 25" in desk.printed, "the echo")
+def test_what_a_slider_has_moved_comes_back_to_all_that_show_it(until, patch):
+    patch.move(WATCHED, 25)
+    until(lambda: "watched: set 25" in patch.printed, "the echo")
     # The patch itself shows it at once, the server when the slider rests.
-    patience(lambda: desk.printed.count("watched: set 25") >= 2, "what the server tells")
+    until(lambda: patch.printed.count("watched: set 25") >= 2, "what the server tells")
 
 
-def test_the_patch_lets_go_of_a_moving_slider_only_when_it_rests(hall, patience, desk):
-    client = hall.client()
-    desk.move("/yehu/playing/speed", 0.3)
-    patience(lambda: hall.player.value("/playing/speed") == pytest.approx(0.3), "the move")
+def test_the_patch_lets_go_of_a_moving_slider_only_when_it_rests(live, until, patch):
+    client = live.client()
+    patch.move("/yehu/playing/speed", 0.3)
+    until(lambda: live.player.value("/playing/speed") == pytest.approx(0.3), "the move")
     client.tell("/playing/vibrato", 77.0)
-    patience(lambda: "watched: set 77" in desk.printed, "the change, told late")
+    until(lambda: "watched: set 77" in patch.printed, "the change, told late")
 
 
-def test_a_key_begins_before_the_last_one_ends(hall, patience, desk, monkeypatch):
+def test_a_key_begins_before_the_last_one_ends(live, until, patch, monkeypatch):
     heard = []
     for name in ("note_on", "note_off"):
-        call = getattr(hall.player, name)
+        call = getattr(live.player, name)
 
         def hear(note, *words, name=name, call=call, **named):
             heard.append((name, note))
             return call(note, *words, **named)
 
-        monkeypatch.setattr(hall.player, name, hear)
-    desk.move(layout.local(puredata.KEY), 2)
-    desk.move(layout.local(puredata.KEY), 4)
-    patience(lambda: ("note_off", 67.0) in heard, "the end of G4")
+        monkeypatch.setattr(live.player, name, hear)
+    patch.move(layout.local(puredata.KEY), 2)
+    patch.move(layout.local(puredata.KEY), 4)
+    until(lambda: ("note_off", 67.0) in heard, "the end of G4")
     assert heard[-2:] == [("note_on", 69.0), ("note_off", 67.0)]
 
 
-def test_keys_end_and_panic(hall, patience, desk):
-    desk.move(layout.local(puredata.KEY), 2)
-    patience(lambda: hall.player.pitch == 67.0, "G4")
-    desk.move(layout.local(puredata.KEY), 4)
-    patience(lambda: hall.player.pitch == 69.0, "A4")
-    desk.move(layout.local(puredata.END), "bang")
-    patience(lambda: hall.player.pitch is None, "its end")
-    desk.move(layout.local(puredata.KEY), 4)
-    patience(lambda: hall.player.pitch == 69.0, "the same key again")
-    desk.move(layout.local(puredata.PANIC), "bang")
-    patience(lambda: hall.player.pitch is None, "panic")
-    desk.move("/yehu/bow/speed", 0.2)
-    patience(lambda: hall.player.value("/bow/speed") == pytest.approx(0.2), "the bow")
-    desk.move(layout.local(puredata.LIFT), "bang")
-    patience(lambda: hall.player.value("/bow/speed") == 0.0, "the bow lifted")
-    desk.move(layout.local(puredata.RELEASE), "bang")
-    assert hall.is_well()
+def test_keys_end_and_panic(live, until, patch):
+    patch.move(layout.local(puredata.KEY), 2)
+    until(lambda: live.player.pitch == 67.0, "G4")
+    patch.move(layout.local(puredata.KEY), 4)
+    until(lambda: live.player.pitch == 69.0, "A4")
+    patch.move(layout.local(puredata.END), "bang")
+    until(lambda: live.player.pitch is None, "its end")
+    patch.move(layout.local(puredata.KEY), 4)
+    until(lambda: live.player.pitch == 69.0, "the same key again")
+    patch.move(layout.local(puredata.PANIC), "bang")
+    until(lambda: live.player.pitch is None, "panic")
+    patch.move("/yehu/bow/speed", 0.2)
+    until(lambda: live.player.value("/bow/speed") == pytest.approx(0.2), "the bow")
+    patch.move(layout.local(puredata.LIFT), "bang")
+    until(lambda: live.player.value("/bow/speed") == 0.0, "the bow lifted")
+    patch.move(layout.local(puredata.RELEASE), "bang")
+    assert live.is_well()

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
-from wire import Ear
+from wire import FakePeer
 
 from yehu_server.live.osc import preset_calls
 from yehu_server.live.osc.context import SAVES_A_SECOND, SAVES_AT_ONCE
@@ -34,52 +34,52 @@ def by_address(heard) -> dict[str, list]:
     return {message.address.removeprefix("/yehu"): message.arguments for message in heard}
 
 
-def test_a_loaded_preset_is_told_value_by_value(stage):
-    answer = by_address(stage.ask("/preset/load", "flautando"))
+def test_a_loaded_preset_is_told_value_by_value(still):
+    answer = by_address(still.ask("/preset/load", "flautando"))
     values = SHIPPED.load("flautando").values
     assert answer.pop("/preset/loaded") == ["flautando"]
     assert answer == {address: [near(value)] for address, value in values.items()}
-    assert {address: stage.player.value(address) for address in values} == values
+    assert {address: still.player.value(address) for address in values} == values
 
 
-def test_a_load_is_heard_at_the_frame_of_its_time_tag_and_at_no_other(stage, wire):
-    stage.tell("/note", 74.0, 90.0)
-    stage.pass_time(0.1)
-    stage.events.clear()
-    at = stage.clock.time() + 0.05
-    frame = round(stage._frame_at(stage.clock.monotonic_ns()) + 0.05 * stage.RATE)
-    stage.take(wire.bundle(at, wire.message("/yehu/preset/load", "sul-ponticello")))
-    stage.pass_time(0.1)
-    frames = {moved for moved, _, _ in stage.events}
+def test_a_load_is_heard_at_the_frame_of_its_time_tag_and_at_no_other(still, wire):
+    still.tell("/note", 74.0, 90.0)
+    still.pass_time(0.1)
+    still.events.clear()
+    at = still.clock.time() + 0.05
+    frame = round(still._frame_at(still.clock.monotonic_ns()) + 0.05 * still.RATE)
+    still.take(wire.bundle(at, wire.message("/yehu/preset/load", "sul-ponticello")))
+    still.pass_time(0.1)
+    frames = {moved for moved, _, _ in still.events}
     assert len(frames) == 1
     assert abs(frames.pop() - frame) <= 1
-    assert {"/bow/speed", "/bow/position"} <= {address for _, address, _ in stage.events}
-    assert stage.late() == 0
+    assert {"/bow/speed", "/bow/position"} <= {address for _, address, _ in still.events}
+    assert still.late() == 0
 
 
-def test_subscribers_hear_of_a_load(stage):
-    other = Ear(2)
-    stage.handler.clients.subscribe(other, 60.0)
-    stage.ask("/ping")
-    other.heard()
-    stage.ask("/preset/load", "vibrato")
-    assert by_address(other.heard())["/playing/vibrato"] == [
+def test_subscribers_hear_of_a_load(still):
+    other = FakePeer(2)
+    still.handler.clients.subscribe(other, 60.0)
+    still.ask("/ping")
+    other.received()
+    still.ask("/preset/load", "vibrato")
+    assert by_address(other.received())["/playing/vibrato"] == [
         near(SHIPPED.load("vibrato").values["/playing/vibrato"])
     ]
 
 
-def test_a_held_parameter_is_told_where_it_stays(stage):
-    stage.player.hold("/playing/speed", 0.5)
-    answer = by_address(stage.ask("/preset/load", "flautando"))
+def test_a_held_parameter_is_told_where_it_stays(still):
+    still.player.hold("/playing/speed", 0.5)
+    answer = by_address(still.ask("/preset/load", "flautando"))
     assert answer["/playing/speed"] == [0.5]
-    assert stage.player.value("/playing/speed") == 0.5
+    assert still.player.value("/playing/speed") == 0.5
 
 
 @pytest.mark.parametrize(
     ("amount", "share"), [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (2, 1.0), (-1, 0.0)]
 )
-def test_a_morph_lies_between(stage, amount, share):
-    answer = by_address(stage.ask("/preset/morph", "ordinary", "scratch", amount))
+def test_a_morph_lies_between(still, amount, share):
+    answer = by_address(still.ask("/preset/morph", "ordinary", "scratch", amount))
     one, other = (SHIPPED.load(name).values for name in ("ordinary", "scratch"))
     for address, [told] in answer.items():
         param = POSSIBLE[address]
@@ -88,66 +88,66 @@ def test_a_morph_lies_between(stage, amount, share):
     assert set(answer) == set(one)
 
 
-def test_a_fader_may_morph_sixty_times_a_second_without_reading_files(stage, monkeypatch):
+def test_a_fader_may_morph_sixty_times_a_second_without_reading_files(still, monkeypatch):
     end = SHIPPED.load("vibrato").values["/playing/vibrato"]
-    stage.ask("/preset/morph", "ordinary", "vibrato", 0.0)
+    still.ask("/preset/morph", "ordinary", "vibrato", 0.0)
     monkeypatch.setattr("yehu_server.playing.preset_folders.read_text", None)
-    stage.tell("/note", 74.0, 90.0)
+    still.tell("/note", 74.0, 90.0)
     for step in range(61):
-        stage.tell("/preset/morph", "ordinary", "vibrato", step / 60)
-        stage.pass_time(1 / 60)
-    assert stage.player.value("/playing/vibrato") == end
-    assert stage.handler.counts.errors == 0
-    depths = [value for _, address, value in stage.events if address == "/vibrato/depth"]
+        still.tell("/preset/morph", "ordinary", "vibrato", step / 60)
+        still.pass_time(1 / 60)
+    assert still.player.value("/playing/vibrato") == end
+    assert still.handler.counts.errors == 0
+    depths = [value for _, address, value in still.events if address == "/vibrato/depth"]
     assert len(depths) > 50
     assert depths == sorted(depths)
 
 
-def test_the_sound_is_saved_and_comes_back(stage, own):
-    stage.tell("/playing/vibrato", 33.0)
-    stage.tell("/body/blend", 0.25)
-    stage.tell("/playing/bend", 1.0)
-    assert by_address(stage.ask("/preset/save", "my sound"))["/preset/saved"] == ["my sound"]
+def test_the_sound_is_saved_and_comes_back(still, own):
+    still.tell("/playing/vibrato", 33.0)
+    still.tell("/body/blend", 0.25)
+    still.tell("/playing/bend", 1.0)
+    assert by_address(still.ask("/preset/save", "my sound"))["/preset/saved"] == ["my sound"]
     assert [file.name for file in own.iterdir()] == ["my sound.toml"]
-    stage.tell("/reset")
-    stage.tell("/playing/bend", 2.0)
-    answer = by_address(stage.ask("/preset/load", "my sound"))
+    still.tell("/reset")
+    still.tell("/playing/bend", 2.0)
+    answer = by_address(still.ask("/preset/load", "my sound"))
     assert answer["/playing/vibrato"] == [33.0]
     assert answer["/body/blend"] == [0.25]
-    assert stage.player.value("/playing/vibrato") == 33.0
-    assert stage.player.value("/body/blend") == 0.25
-    assert stage.player.value("/playing/bend") == 2.0  # of the moment
+    assert still.player.value("/playing/vibrato") == 33.0
+    assert still.player.value("/body/blend") == 0.25
+    assert still.player.value("/playing/bend") == 2.0  # of the moment
 
 
-def test_one_of_ones_own_may_be_saved_over_and_deleted(stage, own):
+def test_one_of_ones_own_may_be_saved_over_and_deleted(still, own):
     for vibrato in (10.0, 20.0):
-        stage.tell("/playing/vibrato", vibrato)
-        stage.ask("/preset/save", "mine")
+        still.tell("/playing/vibrato", vibrato)
+        still.ask("/preset/save", "mine")
     assert SHIPPED.find(str(own / "mine.toml")).values["/playing/vibrato"] == 20.0
-    assert by_address(stage.ask("/preset/delete", "mine")) == {"/preset/deleted": ["mine"]}
+    assert by_address(still.ask("/preset/delete", "mine")) == {"/preset/deleted": ["mine"]}
     assert list(own.iterdir()) == []
 
 
-def test_presets_are_saved_so_many_at_once_and_one_more_each_second(stage, own, monkeypatch):
-    monkeypatch.setattr(preset_calls, "time", stage.clock)
+def test_presets_are_saved_so_many_at_once_and_one_more_each_second(still, own, monkeypatch):
+    monkeypatch.setattr(preset_calls, "time", still.clock)
     for number in range(20):
-        stage.tell("/preset/save", f"mine {number}")
+        still.tell("/preset/save", f"mine {number}")
     assert len(list(own.iterdir())) == SAVES_AT_ONCE
-    address, reason = stage.ask("/preset/save", "another")[-1].arguments
+    address, reason = still.ask("/preset/save", "another")[-1].arguments
     assert (address, reason) == (
         "/yehu/preset/save",
         "presets are saved too often; try again in a second",
     )
-    stage.clock.now += 1.0 / SAVES_A_SECOND
+    still.clock.now += 1.0 / SAVES_A_SECOND
     for name in ("another", "and another"):
-        stage.tell("/preset/save", name)
+        still.tell("/preset/save", name)
     assert len(list(own.iterdir())) == SAVES_AT_ONCE + 1
 
 
-def test_presets_are_listed_and_a_broken_one_is_told(stage, own):
+def test_presets_are_listed_and_a_broken_one_is_told(still, own):
     (own / "mine.toml").write_text(HEAD + 'about = "wild"\n')
     (own / "bad.toml").write_text("version = 9\n")
-    heard = stage.ask("/preset/list")
+    heard = still.ask("/preset/list")
     rows = [message.arguments for message in heard if message.address == "/yehu/preset"]
     presets = SHIPPED.all()[0]
     expected = [[preset.name, preset.program or 0, preset.about] for preset in presets]
@@ -159,9 +159,9 @@ def test_presets_are_listed_and_a_broken_one_is_told(stage, own):
     assert reason.startswith("bad:1: version: 9 is newer")
 
 
-def test_unknown_addresses_of_a_file_are_told_and_the_rest_is_set(stage, own):
+def test_unknown_addresses_of_a_file_are_told_and_the_rest_is_set(still, own):
     (own / "mine.toml").write_text(HEAD + '[values]\n"/a/b" = 1\n"/playing/vibrato" = 5\n')
-    answer = by_address(stage.ask("/preset/load", "mine"))
+    answer = by_address(still.ask("/preset/load", "mine"))
     assert answer["/preset/loaded"] == ["mine"]
     assert answer["/playing/vibrato"] == [5.0]
     address, reason = answer["/error"]
@@ -169,21 +169,21 @@ def test_unknown_addresses_of_a_file_are_told_and_the_rest_is_set(stage, own):
     assert "mine: unknown parameter '/a/b'" in reason
 
 
-def test_nothing_of_a_file_with_a_wrong_value_is_set(stage, own):
+def test_nothing_of_a_file_with_a_wrong_value_is_set(still, own):
     (own / "mine.toml").write_text(
         HEAD + '[values]\n"/playing/vibrato" = 5\n"/playing/speed" = 5\n'
     )
-    before = stage.player.values()
-    (refused,) = stage.ask("/preset/load", "mine")
+    before = still.player.values()
+    (refused,) = still.ask("/preset/load", "mine")
     assert refused.address == "/yehu/error"
     assert "/playing/speed: 5 is not within 0.03 to 0.6 m/s" in refused.arguments[1]
-    assert stage.player.values() == before
+    assert still.player.values() == before
 
 
 @pytest.mark.parametrize("call", ["/preset/load", "/preset/save", "/preset/delete"])
 @pytest.mark.parametrize("name", ["../x", "a/b", "C:\\x", ".hidden", "x" * 5000, "", "é"])
-def test_a_name_that_is_a_path_is_refused(stage, own, call, name):
-    (refused,) = stage.ask(call, name)
+def test_a_name_that_is_a_path_is_refused(still, own, call, name):
+    (refused,) = still.ask(call, name)
     assert refused.address == "/yehu/error"
     assert "is not a plain name" in refused.arguments[1]
     assert list(own.parent.rglob("*")) == [own]
@@ -206,18 +206,18 @@ def test_a_name_that_is_a_path_is_refused(stage, own, call, name):
         ("/preset/morph", ["ordinary", "../x", 0.5], "is not a plain name"),
     ],
 )
-def test_a_wrong_call_changes_nothing_and_says_why(stage, call, arguments, reason):
-    before = stage.player.values()
-    (refused,) = stage.ask(call, *arguments)
+def test_a_wrong_call_changes_nothing_and_says_why(still, call, arguments, reason):
+    before = still.player.values()
+    (refused,) = still.ask(call, *arguments)
     assert refused.arguments[0] == "/yehu" + call
     assert reason in refused.arguments[1]
-    assert stage.player.values() == before
+    assert still.player.values() == before
 
 
-def test_a_list_reads_no_files_while_the_server_plays(make_hall, own, monkeypatch):
+def test_a_list_reads_no_files_while_the_server_plays(make_live, own, monkeypatch):
     (own / "mine.toml").write_text(HEAD)
     (own / "bad.toml").write_text("version = 9\n")
-    client = make_hall().client()
+    client = make_live().client()
     monkeypatch.setattr("yehu_server.playing.preset_folders.read_text", None)
     client.tell("/preset/list")
     assert client.wait_for("/presets") == [len(SHIPPED.names()) + 1]

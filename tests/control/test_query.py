@@ -61,26 +61,26 @@ def test_every_parameter_is_described_as_the_table_has_it(root, param):
     assert (unit["TYPE"], unit["ACCESS"]) == ("f", 3)
 
 
-def test_every_value_that_is_set_over_osc_is_read(stage):
+def test_every_value_that_is_set_over_osc_is_read(still):
     def read(path):
-        return find(tree(Snapshot(stage.player.values(), STANDING)), path)["VALUE"]
+        return find(tree(Snapshot(still.player.values(), STANDING)), path)["VALUE"]
 
     for param in TABLE:
         if param.address == "/playing/section":  # which has as many as there are
             continue
         path = "/yehu" + param.address
         wished = param.lo + 0.375 * (param.hi - param.lo)
-        stage.tell(param.address, wished)
+        still.tell(param.address, wished)
         assert read(path) == pytest.approx([wished], rel=1e-6)
-        stage.tell(f"{param.address}/unit", 0.625)
+        still.tell(f"{param.address}/unit", 0.625)
         assert read(f"{path}/unit") == pytest.approx([0.625], abs=1e-6)
 
 
-def test_every_value_can_be_listened_to(stage):
+def test_every_value_can_be_listened_to(still):
     for address in LISTENABLE:
-        stage.handler.clients.listen(stage.ear, address)
-    stage.pass_time(0.5)
-    assert {heard.address for heard in stage.ear.heard()} == {"/yehu" + at for at in LISTENABLE}
+        still.handler.clients.listen(still.peer, address)
+    still.pass_time(0.5)
+    assert {heard.address for heard in still.peer.received()} == {"/yehu" + at for at in LISTENABLE}
 
 
 def test_what_has_a_value_can_be_listened_to_and_nothing_else(root):

@@ -6,24 +6,24 @@ import pytest
 from wire import errors
 
 
-def test_records_are_begun_and_ended_at_the_desk(stage):
-    assert stage.ask("/record/start", "take") == [("/yehu/record/started", ["take.wav"])]
-    assert stage.ask("/record/stop") == [("/yehu/record/stopped", ["take.wav"])]
+def test_records_are_begun_and_ended_at_the_desk(still):
+    assert still.ask("/record/start", "take") == [("/yehu/record/started", ["take.wav"])]
+    assert still.ask("/record/stop") == [("/yehu/record/stopped", ["take.wav"])]
     for arguments in [(), (1,), ("a", "b"), (b"a",)]:
-        assert errors(stage.ask("/record/start", *arguments)) == ["/yehu/record/start"]
+        assert errors(still.ask("/record/start", *arguments)) == ["/yehu/record/start"]
 
 
-def test_what_is_recorded_is_a_file_when_it_ends(hall):
-    client = hall.client()
+def test_what_is_recorded_is_a_file_when_it_ends(live):
+    client = live.client()
     client.tell("/record/start", "take 1")
     assert client.wait_for("/record/started") == ["take 1.wav"]
-    assert hall.server.status()["recording"] == "take 1.wav"
+    assert live.server.status()["recording"] == "take 1.wav"
     client.tell("/record/start", "take 2")
     assert client.wait_for("/error")[0] == "/yehu/record/start"
-    hall.wait_frames(9600)
+    live.wait_frames(9600)
     client.tell("/record/stop")
     assert client.wait_for("/record/stopped") == ["take 1.wav"]
-    folder = hall.server.options.recordings
+    folder = live.server.options.recordings
     assert (folder / "take 1.wav").stat().st_size > 8 * 9600
     client.tell("/record/start", "take 1")  # nothing is overwritten
     assert client.wait_for("/error")[0] == "/yehu/record/start"
@@ -56,40 +56,40 @@ def test_what_is_recorded_is_a_file_when_it_ends(hall):
         " a",
     ],
 )
-def test_a_name_that_is_more_than_a_name_records_nothing(house, name):
-    client = house.client()
+def test_a_name_that_is_more_than_a_name_records_nothing(shared_server, name):
+    client = shared_server.client()
     client.tell("/record/start", name)
     assert client.wait_for("/error")[0] == "/yehu/record/start"
-    assert house.server.takes.names == ""
-    folder = house.server.options.recordings
+    assert shared_server.server.takes.names == ""
+    folder = shared_server.server.options.recordings
     assert list(folder.iterdir()) == []
-    assert house.is_well()
+    assert shared_server.is_well()
 
 
 @pytest.mark.parametrize("is_there", [True, False])
 def test_a_link_in_the_recordings_that_leads_out_is_not_written_through(
-    make_hall, tmp_path, is_there
+    make_live, tmp_path, is_there
 ):
-    hall = make_hall()
-    folder = hall.server.options.recordings
+    live = make_live()
+    folder = live.server.options.recordings
     folder.mkdir(exist_ok=True)
     secret = tmp_path / "secret"
     if is_there:
         secret.write_text("kept")
     (folder / "take.wav").symlink_to(secret)
-    client = hall.client()
+    client = live.client()
     client.tell("/record/start", "take")
     address, reason = client.wait_for("/error")
     assert address == "/yehu/record/start"
     assert reason.startswith("take.wav is a link that leads out of")
-    assert hall.server.takes.names == ""
+    assert live.server.takes.names == ""
     assert secret.exists() == is_there
 
 
-def test_a_folder_that_cannot_be_reached_is_answered(make_hall, tmp_path):
-    hall = make_hall()
-    hall.server.takes._folder = tmp_path / ("x" * 300)  # stands in for a folder without access
-    client = hall.client()
+def test_a_folder_that_cannot_be_reached_is_answered(make_live, tmp_path):
+    live = make_live()
+    live.server.takes._folder = tmp_path / ("x" * 300)  # stands in for a folder without access
+    client = live.client()
     client.tell("/record/start", "take")
     message = client.next(0.5)
     assert message

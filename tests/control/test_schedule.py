@@ -9,16 +9,16 @@ from types import SimpleNamespace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from wire import Ear
+from wire import FakePeer
 
 from yehu_server.live.osc import schedule
-from yehu_server.live.osc.limits import LITTLE_BYTES, OVERHEAD_BYTES
+from yehu_server.live.osc.memory_quota import LITTLE_BYTES, OVERHEAD_BYTES
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
 
 RATE = 48000
 MANY = 1 << 20
 MS = RATE // 1000
-ME, OTHER = Ear(1), Ear(2)
+ME, OTHER = FakePeer(1), FakePeer(2)
 
 
 # ---------------------------------------------------------------- waiting
@@ -69,7 +69,7 @@ def test_sixty_thousand_notes_wait_thirty_thousand_of_one_sender(wire):
     waiting: Schedule[int] = Schedule()
     note = len(wire.message("/yehu/note", 67.0, 90.0))
     for host in range(40):
-        peer = Ear(1, f"192.0.2.{host}")
+        peer = FakePeer(1, f"192.0.2.{host}")
         count = sum(waiting.add(0.0, number, peer, note) for number in range(40_000))
         assert host > 0 or count > 30_000
     assert 60_000 < len(waiting) < 80_000

@@ -11,99 +11,99 @@ from wire import f32
 from yehu_server.live.addresses import Allowed
 
 
-def test_a_message_is_heard_a_constant_time_after_it_came(hall, busy):
-    client = hall.client()
+def test_a_message_is_heard_a_constant_time_after_it_came(live, busy):
+    client = live.client()
     delays = []
     with busy():
         for number in range(30):
             # The delay follows the device's period, which grows on a machine that is held up.
-            delay = hall.player.delay
-            before = hall.instrument.frame_at(time.monotonic_ns())
+            delay = live.player.delay
+            before = live.instrument.frame_at(time.monotonic_ns())
             client.tell("/bow/position", 0.1 + 0.001 * number)
-            after = hall.instrument.frame_at(time.monotonic_ns())
+            after = live.instrument.frame_at(time.monotonic_ns())
             client.wait_for("/bow/position")
-            moves = [frame for frame, address, _ in hall.settle() if address == "/bow/position"]
+            moves = [frame for frame, address, _ in live.settle() if address == "/bow/position"]
             delays.append((moves[0] - before, moves[0] - after, delay))
     # On a busy machine some may be late; most are not.
     on_time = [1 for most, least, delay in delays if least <= delay <= most + 1]
     assert len(on_time) > len(delays) // 2
 
 
-def test_a_burst_of_messages_all_reach_the_instrument(hall, wire):
-    client = hall.client()
+def test_a_burst_of_messages_all_reach_the_instrument(live, wire):
+    client = live.client()
     count = 20_000
-    if hall.ports.traffic.buffer_bytes < count * 768:
-        pytest.skip(f"the system grants {hall.ports.traffic.buffer_bytes} bytes only")
-    applied = int(hall.instrument.meters()["applied"])
+    if live.ports.traffic.buffer_bytes < count * 768:
+        pytest.skip(f"the system grants {live.ports.traffic.buffer_bytes} bytes only")
+    applied = int(live.instrument.meters()["applied"])
     for number in range(count):
         client.take(wire.message("/yehu/bow/position", 0.04 + 2e-5 * number))
     client.sync()
-    hall.settle()
-    assert hall.handler.counts.messages == count + 1
-    assert hall.ports.traffic.kernel_drops == 0
-    assert int(hall.instrument.meters()["applied"]) - applied == count
-    assert hall.instrument.dropped_events == 0
-    assert hall.target("/bow/position") == f32(0.04 + 2e-5 * (count - 1))
+    live.settle()
+    assert live.handler.counts.messages == count + 1
+    assert live.ports.traffic.kernel_drops == 0
+    assert int(live.instrument.meters()["applied"]) - applied == count
+    assert live.instrument.dropped_events == 0
+    assert live.target("/bow/position") == f32(0.04 + 2e-5 * (count - 1))
 
 
 @pytest.mark.parametrize("slip", [False, True], ids=["prefixed", "slip"])
-def test_a_stream_of_messages_all_reach_the_instrument(hall, busy, slip, wire):
-    stream = hall.stream(slip=slip)
+def test_a_stream_of_messages_all_reach_the_instrument(live, busy, slip, wire):
+    stream = live.stream(slip=slip)
     count = 20_000
     packets = [wire.message("/yehu/bow/position", 0.04 + 2e-5 * n) for n in range(count)]
     with busy():
         stream.socket.sendall(b"".join(map(stream.wrap, packets)))
         stream.sync()
-    hall.settle()
-    assert hall.handler.counts.messages == count + 1
-    assert hall.target("/bow/position") == f32(0.04 + 2e-5 * (count - 1))
-    assert hall.instrument.dropped_events == 0
-    assert hall.is_well()
+    live.settle()
+    assert live.handler.counts.messages == count + 1
+    assert live.target("/bow/position") == f32(0.04 + 2e-5 * (count - 1))
+    assert live.instrument.dropped_events == 0
+    assert live.is_well()
 
 
-def test_who_asks_for_much_at_once_keeps_nobody_else_waiting(hall, wire):
-    greedy, other = hall.client(), hall.client()
+def test_who_asks_for_much_at_once_keeps_nobody_else_waiting(live, wire):
+    greedy, other = live.client(), live.client()
     greedy.take(wire.bundle(None, *[wire.message("/yehu/params")] * 800))
-    hall.wait_frames(1000)
+    live.wait_frames(1000)
     other.sync()
-    assert hall.handler.counts.messages < 800
+    assert live.handler.counts.messages < 800
 
 
-def test_who_says_no_more_still_gets_its_answers(hall, wire):
-    stream = hall.stream()
+def test_who_says_no_more_still_gets_its_answers(live, wire):
+    stream = live.stream()
     stream.socket.sendall(stream.wrap(wire.message("/yehu/ping", 1)) * 3000)
     stream.socket.shutdown(socket.SHUT_WR)
     assert sum(1 for _ in iter(stream.next, None)) == 3000
 
 
-def test_who_is_not_allowed_hears_nothing_and_does_nothing(make_hall, patience):
-    hall = make_hall(allowed=Allowed(["192.0.2.0/24"]))
-    client = hall.client()
+def test_who_is_not_allowed_hears_nothing_and_does_nothing(make_live, until):
+    live = make_live(allowed=Allowed(["192.0.2.0/24"]))
+    client = live.client()
     client.tell("/note", 67, 90)
     client.tell("/nothing")
     client.take(b"garbage")
     client.tell("/subscribe", 10)
-    patience(lambda: hall.ports.traffic.refused == 4, "refusals to be counted")
+    until(lambda: live.ports.traffic.refused == 4, "refusals to be counted")
     assert client.all() == []
-    assert hall.server.status()["osc_refused"] == 4
-    assert hall.handler.counts.messages == 0
-    hall.settle()
-    assert hall.player.pitch is None
+    assert live.server.status()["osc_refused"] == 4
+    assert live.handler.counts.messages == 0
+    live.settle()
+    assert live.player.pitch is None
 
 
-def test_two_servers_do_not_share_a_port(hall, make_hall):
+def test_two_servers_do_not_share_a_port(live, make_live):
     from yehu_server.errors import DeviceError
 
     with pytest.raises(DeviceError, match="cannot listen"):
-        make_hall(osc=("127.0.0.1", hall.ports.port))
+        make_live(osc=("127.0.0.1", live.ports.port))
 
 
-def test_stopping_while_notes_and_clients_are_there_ends_all(make_hall):
-    hall = make_hall()
-    client, stream = hall.client(), hall.stream()
+def test_stopping_while_notes_and_clients_are_there_ends_all(make_live):
+    live = make_live()
+    client, stream = live.client(), live.stream()
     client.tell("/subscribe", 60)
     client.wait_for("/subscribed")
     stream.tell("/note", 67, 90)
     stream.tell("/record/start", "take")
     stream.wait_for("/record/started")
-    hall.wait_frames(4800)  # the fixture checks that nothing is left
+    live.wait_frames(4800)  # the fixture checks that nothing is left

@@ -135,7 +135,7 @@ def send_all(client, packets) -> None:
 
 @pytest.mark.parametrize("hindrance", ["none", "busy", "held up", "not started"])
 def test_a_burst_that_the_buffer_holds_arrives_whole(
-    listen, client, keeper, patience, busy, hindrance
+    listen, client, keeper, until, busy, hindrance
 ):
     ports = listen(start=hindrance != "not started")
     packets = numbered(min(BURST, ports.traffic.buffer_bytes // (2 * PACKET_BYTES)))
@@ -146,23 +146,23 @@ def test_a_burst_that_the_buffer_holds_arrives_whole(
         if hindrance == "not started":
             ports.start()
         keeper.go_on.set()
-        patience(lambda: len(keeper.packets) >= len(packets), "all packets")
+        until(lambda: len(keeper.packets) >= len(packets), "all packets")
     assert keeper.bodies == packets
     assert ports.traffic.packets == len(packets)
     assert ports.traffic.kernel_drops == 0
 
 
 @on_linux
-def test_what_the_kernel_drops_is_counted(listen, client, keeper, patience):
+def test_what_the_kernel_drops_is_counted(listen, client, keeper, until):
     ports = listen(start=False)
     ports._udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 8192)
     sender = client(ports)
     send_all(sender, numbered(1000))
     ports.start()
-    patience(lambda: keeper.packets, "a packet")
+    until(lambda: keeper.packets, "a packet")
     time.sleep(SETTLE_S)
     sender.take(b"the last")  # the kernel reports drops with the next packet
-    patience(lambda: b"the last" in keeper.bodies, "the last packet")
+    until(lambda: b"the last" in keeper.bodies, "the last packet")
     assert ports.traffic.kernel_drops > 0
     assert ports.traffic.packets + ports.traffic.kernel_drops == 1001
 
@@ -175,7 +175,7 @@ def test_the_buffer_that_is_granted_is_told(listen):
 
 @pytest.mark.parametrize("kernel_filters", [True, False])
 def test_longer_datagrams_are_dropped_and_counted(
-    listen, client, keeper, patience, monkeypatch, kernel_filters
+    listen, client, keeper, until, monkeypatch, kernel_filters
 ):
     if not kernel_filters:
         monkeypatch.setattr(listening, "FILTER", ((6, 0, 0, 0xFFFFFFFF),))
@@ -186,7 +186,7 @@ def test_longer_datagrams_are_dropped_and_counted(
     for size in (listening.DATAGRAM_BYTES + 1, 65507):
         sender.take(b"x" * size)
     sender.take(b"/a\0\0")
-    patience(lambda: keeper.packets, "the short one")
+    until(lambda: keeper.packets, "the short one")
     assert keeper.bodies == [b"/a\0\0"]
     assert ports.traffic.kernel_drops == (2 if kernel_filters else 0)
     assert ports.traffic.excess == (0 if kernel_filters else 2)
@@ -201,20 +201,18 @@ def test_answers_come_from_the_listening_port_to_who_asked(listen, client, keepe
     assert other.next(0.1) is None
 
 
-def test_answers_nobody_takes_are_no_trouble(listen, client, keeper, patience):
+def test_answers_nobody_takes_are_no_trouble(listen, client, keeper, until):
     ports = listen()
     keeper.answer = b"x" * 70_000  # more than a datagram holds
     one, other = client(ports), client(ports)
     one.take(b"/ping")
     one.close()
     other.take(b"/ping")
-    patience(lambda: len(keeper.packets) == 2, "both")
-    patience(lambda: ports.traffic.unsent == 2, "both to be counted")
+    until(lambda: len(keeper.packets) == 2, "both")
+    until(lambda: ports.traffic.unsent == 2, "both to be counted")
 
 
-def test_what_waits_in_memory_is_bounded_and_what_is_over_is_counted(
-    listen, client, keeper, patience
-):
+def test_what_waits_in_memory_is_bounded_and_what_is_over_is_counted(listen, client, keeper, until):
     ports = listen()
     one, other = client(ports), client(ports)
     keeper.is_slow = True
@@ -223,15 +221,15 @@ def test_what_waits_in_memory_is_bounded_and_what_is_over_is_counted(
     for number in range(sent):
         one.take(b"x" * 16_000)
         if number % 10 == 0:  # as the system's buffer may be small
-            patience(lambda sent=number + 1: ports.traffic.packets == sent, "it to be read")
-    patience(lambda: ports.traffic.packets == sent, "all to be read")
+            until(lambda sent=number + 1: ports.traffic.packets == sent, "it to be read")
+    until(lambda: ports.traffic.packets == sent, "all to be read")
     for _ in range(5):
         other.take(b"y" * 16_000)
-    patience(lambda: ports.traffic.packets == sent + 5, "all to be read")
+    until(lambda: ports.traffic.packets == sent + 5, "all to be read")
     assert 0.4 * sent < ports.traffic.excess < 0.6 * sent  # half of the room is for others
     assert ports._queue.bytes < 0.6 * MOST_BYTES
     keeper.go_on.set()
-    patience(lambda: ports._queue.bytes == 0, "nothing to be left")
+    until(lambda: ports._queue.bytes == 0, "nothing to be left")
     assert len(keeper.packets) == sent + 5 - ports.traffic.excess
     assert keeper.bodies.count(b"y" * 16_000) == 5
 
@@ -254,18 +252,18 @@ KINDS = ["prefixed", "slip"]
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_stream_loses_nothing_while_python_is_busy(listen, client, keeper, patience, busy, kind):
+def test_a_stream_loses_nothing_while_python_is_busy(listen, client, keeper, until, busy, kind):
     ports = listen()
     packets = numbered(BURST)
     stream = client(ports, kind)
     with busy():
         stream.socket.sendall(b"".join(map(stream.wrap, packets)))
-        patience(lambda: len(keeper.packets) >= BURST, "all packets")
+        until(lambda: len(keeper.packets) >= BURST, "all packets")
     assert keeper.bodies == packets
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_stream_that_is_too_fast_is_made_to_wait(listen, client, keeper, patience, kind):
+def test_a_stream_that_is_too_fast_is_made_to_wait(listen, client, keeper, until, kind):
     ports = listen()
     keeper.go_on.clear()
     packet = b"/" + b"x" * 999
@@ -281,12 +279,12 @@ def test_a_stream_that_is_too_fast_is_made_to_wait(listen, client, keeper, patie
     time.sleep(0.2)
     keeper.go_on.set()
     sender.join(60.0)
-    patience(lambda: len(keeper.packets) >= count, "all packets")
+    until(lambda: len(keeper.packets) >= count, "all packets")
     assert len(keeper.packets) == count
     assert set(keeper.bodies) == {packet}
 
 
-def test_a_stream_is_not_read_further_before_it_is_handled(listen, client, keeper, patience):
+def test_a_stream_is_not_read_further_before_it_is_handled(listen, client, keeper, until):
     ports = listen()
     keeper.go_on.clear()
     streams = [client(ports, "prefixed") for _ in range(20)]
@@ -297,13 +295,13 @@ def test_a_stream_is_not_read_further_before_it_is_handled(listen, client, keepe
     time.sleep(SETTLE_S)
     assert ports._queue.bytes <= len(streams) * 2 * sockets.STREAM_BYTES
     keeper.go_on.set()
-    patience(lambda: len(keeper.packets) == 80, "all packets")
+    until(lambda: len(keeper.packets) == 80, "all packets")
     for sender in senders:
         sender.join()
     assert ports.traffic.excess == 0
 
 
-def test_streams_are_not_lost_beside_a_flood_of_datagrams(listen, client, keeper, patience):
+def test_streams_are_not_lost_beside_a_flood_of_datagrams(listen, client, keeper, until):
     ports = listen()
     udp, tcp = client(ports), client(ports, "prefixed")
     packets = numbered(2000)
@@ -311,20 +309,20 @@ def test_streams_are_not_lost_beside_a_flood_of_datagrams(listen, client, keeper
         tcp.take(packet)
         udp.take(b"flood")
         udp.take(b"flood")
-    patience(lambda: len([p for p in keeper.bodies if p != b"flood"]) >= 2000, "the stream")
+    until(lambda: len([p for p in keeper.bodies if p != b"flood"]) >= 2000, "the stream")
     assert [packet for packet in keeper.bodies if packet != b"flood"] == packets
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_what_was_sent_before_hanging_up_is_heard(listen, client, keeper, patience, kind):
+def test_what_was_sent_before_hanging_up_is_heard(listen, client, keeper, until, kind):
     ports = listen()
     packets = numbered(3000)
     stream = client(ports, kind)
     stream.socket.sendall(b"".join(map(stream.wrap, packets)))
     stream.close()
-    patience(lambda: len(keeper.packets) >= 3000, "all packets")
+    until(lambda: len(keeper.packets) >= 3000, "all packets")
     assert keeper.bodies == packets
-    patience(lambda: ports.traffic.connections == 0, "the connection to be gone")
+    until(lambda: ports.traffic.connections == 0, "the connection to be gone")
     assert len(keeper.gone_peers) == 1
 
 
@@ -339,14 +337,14 @@ def test_answers_come_in_the_framing_of_the_question(listen, client, keeper, kin
         assert stream.next() == ("/yehu/pong", ["a\x40b"])
 
 
-def test_who_sends_no_packets_is_hung_up_on_and_others_play_on(listen, client, keeper, patience):
+def test_who_sends_no_packets_is_hung_up_on_and_others_play_on(listen, client, keeper, until):
     ports = listen()
     bad, good = client(ports, "prefixed"), client(ports, "prefixed")
     good.take(b"/a\0\0")
     bad.socket.sendall(bad.wrap(b"/b\0\0") + struct.pack(">I", 1 << 23))
     assert bad.has_ended()
     good.take(b"/c\0\0")
-    patience(lambda: len(keeper.packets) == 3, "all whole packets")
+    until(lambda: len(keeper.packets) == 3, "all whole packets")
     assert sorted(keeper.bodies) == [b"/a\0\0", b"/b\0\0", b"/c\0\0"]
     assert ports.traffic.connections == 1
 
@@ -378,13 +376,13 @@ def test_answers_to_other_hosts_are_bounded_for_each_and_for_all(
     assert most <= net.sent_bytes / ANSWERED_BYTES < 1.2 * most + 0.2
 
 
-def test_who_never_reads_misses_answers_and_others_play_on(listen, client, keeper, patience):
+def test_who_never_reads_misses_answers_and_others_play_on(listen, client, keeper, until):
     ports = listen()
     keeper.answer = b"x" * 60_000
     deaf = client(ports, "prefixed")
     for _ in range(400):
         deaf.take(b"/ping\0\0\0")
-    patience(lambda: len(keeper.packets) == 400, "all that it says")
+    until(lambda: len(keeper.packets) == 400, "all that it says")
     assert ports.traffic.unsent > 0
     assert ports.traffic.connections == 1
     keeper.answer = pack("/yehu/pong")
@@ -403,18 +401,18 @@ def test_who_reads_slowly_gets_every_answer(listen, client, keeper):
     assert [slow.next() for _ in range(500)] == [("/yehu/pong", ["x" * 1000])] * 500
 
 
-def test_half_a_packet_makes_nobody_wait(listen, client, keeper, patience):
+def test_half_a_packet_makes_nobody_wait(listen, client, keeper, until):
     ports = listen()
     half, whole = client(ports, "prefixed"), client(ports, "prefixed")
     half.socket.sendall(struct.pack(">I", 100) + b"/half")
     whole.take(b"/whole\0\0")
-    patience(lambda: keeper.packets, "the whole one")
+    until(lambda: keeper.packets, "the whole one")
     assert keeper.bodies == [b"/whole\0\0"]
     half.socket.sendall(b"x" * 95)
-    patience(lambda: len(keeper.packets) == 2, "the other one")
+    until(lambda: len(keeper.packets) == 2, "the other one")
 
 
-def test_connections_that_come_and_go_leave_nothing(listen, client, patience):
+def test_connections_that_come_and_go_leave_nothing(listen, client, until):
     ports = listen()
     kept = len(ports._selector.get_map())
     for number in range(200):
@@ -424,29 +422,29 @@ def test_connections_that_come_and_go_leave_nothing(listen, client, patience):
         if number % 5 == 0:  # a reset, not a goodbye
             stream.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
         stream.close()
-    patience(lambda: ports.traffic.connections == 0, "all to be gone")
-    patience(lambda: len(ports._selector.get_map()) == kept, "no socket to be left")
+    until(lambda: ports.traffic.connections == 0, "all to be gone")
+    until(lambda: len(ports._selector.get_map()) == kept, "no socket to be left")
 
 
 @pytest.mark.parametrize("many", [sockets.MOST_OF_A_HOST, sockets.MOST_CONNECTIONS])
-def test_there_is_room_for_so_many_connections(listen, client, keeper, patience, monkeypatch, many):
+def test_there_is_room_for_so_many_connections(listen, client, keeper, until, monkeypatch, many):
     monkeypatch.setattr(sockets, "MOST_OF_A_HOST", many)
     ports = listen()
     streams = [client(ports, "slip") for _ in range(many)]
     for stream in streams:
         stream.take(b"/a\0\0")
-    patience(lambda: len(keeper.packets) == len(streams), "all to be heard")
+    until(lambda: len(keeper.packets) == len(streams), "all to be heard")
     assert client(ports, "slip").has_ended()
     assert ports.traffic.refused == 1
     streams[0].close()
-    patience(lambda: ports.traffic.connections < len(streams), "room")
+    until(lambda: ports.traffic.connections < len(streams), "room")
     late = client(ports, "slip")
     late.take(b"/late\0\0\0")
-    patience(lambda: b"/late\0\0\0" in keeper.bodies, "the late one")
+    until(lambda: b"/late\0\0\0" in keeper.bodies, "the late one")
 
 
 def test_connections_that_never_say_a_thing_shut_nobody_out(
-    listen, client, keeper, patience, monkeypatch
+    listen, client, keeper, until, monkeypatch
 ):
     monkeypatch.setattr(sockets, "MOST_CONNECTIONS", 3)
     monkeypatch.setattr(sockets, "SPEAKS_WITHIN_S", 0.3)
@@ -454,20 +452,20 @@ def test_connections_that_never_say_a_thing_shut_nobody_out(
     half, silent, speaks = (client(ports, "prefixed") for _ in range(3))
     half.socket.sendall(struct.pack(">I", 100) + b"/half")
     speaks.take(b"/a\0\0")
-    patience(lambda: len(keeper.packets) == 1, "it to be heard")
+    until(lambda: len(keeper.packets) == 1, "it to be heard")
     assert client(ports, "slip").has_ended()  # they still have time
     time.sleep(0.4)
     for body in (b"/b\0\0", b"/c\0\0"):
         client(ports, "slip").take(body)
-        patience(lambda body=body: body in keeper.bodies, "who comes")
+        until(lambda body=body: body in keeper.bodies, "who comes")
     assert half.has_ended()
     assert silent.has_ended()
     speaks.take(b"/d\0\0")
-    patience(lambda: b"/d\0\0" in keeper.bodies, "who stays")
+    until(lambda: b"/d\0\0" in keeper.bodies, "who stays")
 
 
 def test_who_is_silent_for_long_gives_its_place_to_who_comes_unless_it_listens(
-    listen, client, keeper, patience, monkeypatch
+    listen, client, keeper, until, monkeypatch
 ):
     monkeypatch.setattr(sockets, "MOST_CONNECTIONS", 3)
     monkeypatch.setattr(sockets, "QUIET_S", 0.5)
@@ -475,19 +473,19 @@ def test_who_is_silent_for_long_gives_its_place_to_who_comes_unless_it_listens(
     listens, silent, speaks = (client(ports, "prefixed") for _ in range(3))
     for number, stream in enumerate((listens, silent, speaks)):
         stream.take(b"/a\0\0")
-        patience(lambda count=number + 1: len(keeper.packets) == count, "it to be heard")
+        until(lambda count=number + 1: len(keeper.packets) == count, "it to be heard")
     keeper.hearing.append(keeper.packets[0][1])
     for _ in range(7):
         time.sleep(0.1)
         speaks.take(b"/b\0\0")
-    patience(lambda: len(keeper.packets) == 10, "all to be heard")
+    until(lambda: len(keeper.packets) == 10, "all to be heard")
     comes = client(ports, "slip")
     comes.take(b"/c\0\0")
-    patience(lambda: b"/c\0\0" in keeper.bodies, "who comes")
+    until(lambda: b"/c\0\0" in keeper.bodies, "who comes")
     assert silent.has_ended()
     for stream in (listens, speaks):
         stream.take(b"/d\0\0")
-    patience(lambda: keeper.bodies.count(b"/d\0\0") == 2, "who stays")
+    until(lambda: keeper.bodies.count(b"/d\0\0") == 2, "who stays")
     assert client(ports, "slip").has_ended()  # nobody is silent any more
 
 
@@ -501,7 +499,7 @@ POST = (
 
 
 def test_a_web_page_is_hung_up_on_with_its_first_byte_and_plays_nothing(
-    listen, client, keeper, patience, caplog
+    listen, client, keeper, until, caplog
 ):
     caplog.set_level(logging.WARNING)
     ports = listen()
@@ -516,20 +514,20 @@ def test_a_web_page_is_hung_up_on_with_its_first_byte_and_plays_nothing(
     assert ports.traffic.refused == 21
     assert [record.message for record in caplog.records if "not OSC" in record.message][1:] == []
     assert keeper.packets == []
-    patience(lambda: ports.traffic.connections == 0, "all to be gone")
+    until(lambda: ports.traffic.connections == 0, "all to be gone")
 
 
 # ---------------------------------------------------------------- who may speak
 
 
 @pytest.mark.parametrize("kind", ["udp", *KINDS])
-def test_who_is_not_allowed_is_counted_and_never_answered(listen, client, keeper, patience, kind):
+def test_who_is_not_allowed_is_counted_and_never_answered(listen, client, keeper, until, kind):
     ports = listen(allowed=Allowed(["192.0.2.0/24"]))
     keeper.answer = b"/yehu/pong\0\0,\0\0\0"
     sender = client(ports, kind)
     with contextlib.suppress(OSError):
         sender.take(b"/ping\0\0\0")
-    patience(lambda: ports.traffic.refused == 1, "the refusal to be counted")
+    until(lambda: ports.traffic.refused == 1, "the refusal to be counted")
     assert sender.next(0.1) is None
     assert keeper.packets == []
     assert ports.traffic.packets == ports.traffic.connections == 0
@@ -559,7 +557,7 @@ def test_an_address_that_is_not_ours_is_told(keeper, host):
 
 
 def test_a_handler_that_fails_is_counted_and_the_next_packet_is_heard(
-    listen, client, keeper, patience
+    listen, client, keeper, until
 ):
     ports = listen()
     sender = client(ports)
@@ -567,23 +565,21 @@ def test_a_handler_that_fails_is_counted_and_the_next_packet_is_heard(
     try:
         sender.take(b"raise")
         sender.take(b"/next\0\0\0")
-        patience(lambda: b"/next\0\0\0" in keeper.bodies, "the next")
+        until(lambda: b"/next\0\0\0" in keeper.bodies, "the next")
     finally:
         logging.disable(logging.NOTSET)
     assert ports.traffic.failures == 1
 
 
-def test_what_is_due_is_looked_after_however_much_is_to_be_handled(
-    listen, client, keeper, patience
-):
+def test_what_is_due_is_looked_after_however_much_is_to_be_handled(listen, client, keeper, until):
     ports = listen()
     keeper.takes_s = 0.001
     send_all(client(ports), numbered(300))
-    patience(lambda: len(keeper.packets) == 300, "all packets")
+    until(lambda: len(keeper.packets) == 300, "all packets")
     assert max(keeper.since_tick) * keeper.takes_s <= AHEAD_S
 
 
-def test_what_is_due_is_looked_after_however_much_is_to_be_read(listen, client, keeper, patience):
+def test_what_is_due_is_looked_after_however_much_is_to_be_read(listen, client, keeper, until):
     ports = listen(start=False)
     count = min(BURST, ports.traffic.buffer_bytes // (2 * PACKET_BYTES))
     send_all(client(ports), numbered(count))
@@ -591,7 +587,7 @@ def test_what_is_due_is_looked_after_however_much_is_to_be_read(listen, client, 
     gc.disable()  # a collection of all the session's objects takes long
     try:
         ports.start()
-        patience(lambda: len(keeper.packets) >= count, "all packets")
+        until(lambda: len(keeper.packets) >= count, "all packets")
     finally:
         gc.enable()
     gaps = [after - before for before, after in itertools.pairwise(keeper.ticked_s)]
@@ -605,14 +601,14 @@ def test_an_idle_server_sleeps(listen, keeper):
     assert keeper.ticks <= 5
 
 
-def test_when_it_stops_a_stream_that_is_still_heard_out_is_closed_too(keeper, kit, patience):
+def test_when_it_stops_a_stream_that_is_still_heard_out_is_closed_too(keeper, kit, until):
     ports = OscPorts(HOST, 0, Allowed(), keeper)
     ports.start()
     keeper.takes_s = 0.01
     stream = kit.Stream(ports.port)
     stream.socket.sendall(stream.wrap(b"/a\0\0") * 1000)
     stream.socket.shutdown(socket.SHUT_WR)
-    patience(lambda: keeper.packets, "it to be heard")
+    until(lambda: keeper.packets, "it to be heard")
     ports.stop()
     connections = {peer.socket for _, peer, _ in keeper.packets}
     assert [connection.fileno() for connection in connections] == [-1]

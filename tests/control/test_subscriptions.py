@@ -13,18 +13,18 @@ from wire import f32, values
 from yehu_server.params.table import TABLE, find
 
 
-def test_a_subscriber_may_be_told_of_zero_to_one(stage):
-    told = values(stage.ask("/subscribe/unit", 60.0))
-    speed = stage.player.value("/playing/speed")
+def test_a_subscriber_may_be_told_of_zero_to_one(still):
+    told = values(still.ask("/subscribe/unit", 60.0))
+    speed = still.player.value("/playing/speed")
     assert told["/yehu/playing/speed/unit"] == f32(find("/playing/speed").to_unit(speed))
     assert {f"/yehu{param.address}/unit" for param in TABLE} <= set(told)
-    stage.player.write("/playing/speed", find("/playing/speed").from_unit(0.7), frame=0)
-    stage.pass_time(0.1)
-    assert values(stage.ear.heard()) == {"/yehu/playing/speed/unit": pytest.approx(0.7)}
+    still.player.write("/playing/speed", find("/playing/speed").from_unit(0.7), frame=0)
+    still.pass_time(0.1)
+    assert values(still.peer.received()) == {"/yehu/playing/speed/unit": pytest.approx(0.7)}
 
 
-def test_a_subscriber_is_told_all_and_what_others_change(hall):
-    client, other = hall.client(), hall.client()
+def test_a_subscriber_is_told_all_and_what_others_change(live):
+    client, other = live.client(), live.client()
     client.tell("/subscribe", 30)
     assert client.wait_for("/subscribed") == [30.0]
     assert set(values(client.all())) == {"/yehu" + param.address for param in TABLE}
@@ -41,22 +41,22 @@ def test_a_subscriber_is_told_all_and_what_others_change(hall):
     assert client.all() == []
 
 
-def test_another_server_may_follow_and_neither_answers_the_other(hall, make_hall, patience):
-    follower, client = make_hall(), hall.client()
+def test_another_server_may_follow_and_neither_answers_the_other(live, make_live, until):
+    follower, client = make_live(), live.client()
     client.tell("/subscribe", 30, follower.ports.port)
     client.tell("/playing/volume", 0.3)
     client.wait_for("/playing/volume")
-    patience(lambda: follower.player.value("/playing/volume") == f32(0.3), "it to follow")
+    until(lambda: follower.player.value("/playing/volume") == f32(0.3), "it to follow")
     time.sleep(0.2)
-    heard = [server.ports.traffic.packets for server in (hall, follower)]
+    heard = [server.ports.traffic.packets for server in (live, follower)]
     time.sleep(0.3)
-    assert [server.ports.traffic.packets for server in (hall, follower)] == heard
-    assert hall.handler.counts.messages == 2  # the client's alone
+    assert [server.ports.traffic.packets for server in (live, follower)] == heard
+    assert live.handler.counts.messages == 2  # the client's alone
     assert follower.handler.counts.errors == 0
 
 
-def test_a_subscriber_is_told_sixty_times_a_second_at_most(hall):
-    client, other = hall.client(), hall.client()
+def test_a_subscriber_is_told_sixty_times_a_second_at_most(live):
+    client, other = live.client(), live.client()
     client.tell("/subscribe")
     assert client.wait_for("/subscribed") == [60.0]
     client.all()
@@ -73,8 +73,8 @@ def test_a_subscriber_is_told_sixty_times_a_second_at_most(hall):
     assert heard[-1] == [0.375]
 
 
-def test_a_client_names_the_port_it_listens_on(hall):
-    speaks, listens, other = hall.client(), hall.client(), hall.client()
+def test_a_client_names_the_port_it_listens_on(live):
+    speaks, listens, other = live.client(), live.client(), live.client()
     speaks.tell("/subscribe", 30, listens.port)
     assert listens.wait_for("/subscribed") == [30.0]
     listens.all()
@@ -102,23 +102,23 @@ def test_a_client_names_the_port_it_listens_on(hall):
         (10, math.inf),
     ],
 )
-def test_what_is_no_subscription_is_answered(house, arguments):
-    client = house.client()
+def test_what_is_no_subscription_is_answered(shared_server, arguments):
+    client = shared_server.client()
     client.tell("/subscribe", *arguments)
     assert client.wait_for("/error")[0] == "/yehu/subscribe"
-    assert house.handler.clients.subscribers == 0
-    assert house.is_well()
+    assert shared_server.handler.clients.subscribers == 0
+    assert shared_server.is_well()
 
 
 @pytest.mark.parametrize("port", [-1, 65536, 99999, 7.5])
-def test_an_unsubscription_of_no_port_is_answered(house, port):
-    client = house.client()
+def test_an_unsubscription_of_no_port_is_answered(shared_server, port):
+    client = shared_server.client()
     client.tell("/unsubscribe", port)
     assert client.wait_for("/error")[0] == "/yehu/unsubscribe"
 
 
-def test_a_subscription_ends_by_itself(hall):
-    client, other = hall.client(), hall.client()
+def test_a_subscription_ends_by_itself(live):
+    client, other = live.client(), live.client()
     client.tell("/subscribe", 0.3)
     client.wait_for("/subscribed")
     time.sleep(0.4)
@@ -126,12 +126,12 @@ def test_a_subscription_ends_by_itself(hall):
     other.tell("/playing/volume", 0.25)
     other.wait_for("/playing/volume")
     assert client.all() == []
-    assert hall.handler.clients.subscribers == 0
+    assert live.handler.clients.subscribers == 0
 
 
 @pytest.mark.parametrize("slip", [False, True], ids=["prefixed", "slip"])
-def test_a_subscriber_may_be_at_the_end_of_a_stream(hall, slip):
-    stream, other = hall.stream(slip=slip), hall.client()
+def test_a_subscriber_may_be_at_the_end_of_a_stream(live, slip):
+    stream, other = live.stream(slip=slip), live.client()
     stream.tell("/subscribe", 30, 7400)  # over a stream answers go back by the stream alone
     assert stream.wait_for("/subscribed") == [30.0]
     assert len(stream.all()) == len(TABLE)
@@ -140,25 +140,25 @@ def test_a_subscriber_may_be_at_the_end_of_a_stream(hall, slip):
     stream.close()
     other.tell("/playing/volume", 0.5)
     other.wait_for("/playing/volume")
-    hall.wait_frames(4800)
-    assert hall.handler.clients.subscribers == 0
+    live.wait_frames(4800)
+    assert live.handler.clients.subscribers == 0
 
 
-def test_who_subscribes_and_hangs_up_at_once_is_no_subscriber(hall, patience, wire):
-    stream = hall.stream()
+def test_who_subscribes_and_hangs_up_at_once_is_no_subscriber(live, until, wire):
+    stream = live.stream()
     packets = [wire.message("/yehu/note/off", 67)] * 3000
     stream.socket.sendall(b"".join(map(stream.wrap, packets)))
     stream.tell("/subscribe", 3600)
     stream.close()
-    patience(lambda: hall.handler.counts.messages == 3001, "all to be heard")
-    patience(lambda: hall.ports.traffic.connections == 0, "the connection to be gone")
-    hall.wait_frames(4800)
-    assert hall.handler.clients.subscribers == 0
+    until(lambda: live.handler.counts.messages == 3001, "all to be heard")
+    until(lambda: live.ports.traffic.connections == 0, "the connection to be gone")
+    live.wait_frames(4800)
+    assert live.handler.clients.subscribers == 0
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "0.0.0.0", "this machine's"])  # noqa: S104
-def test_a_server_never_talks_to_itself(make_hall, kit, host):
-    hall = make_hall(osc=("127.0.0.1" if host == "127.0.0.1" else "0.0.0.0", 0))  # noqa: S104
+def test_a_server_never_talks_to_itself(make_live, kit, host):
+    live = make_live(osc=("127.0.0.1" if host == "127.0.0.1" else "0.0.0.0", 0))  # noqa: S104
     if host == "this machine's":
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
             with contextlib.suppress(OSError):
@@ -166,10 +166,10 @@ def test_a_server_never_talks_to_itself(make_hall, kit, host):
             host = any_socket.getsockname()[0]
         if host in ("0.0.0.0", "127.0.0.1"):  # noqa: S104
             pytest.skip("this machine has no other address")
-    client = kit.Client(hall.ports.port, host if host != "0.0.0.0" else "127.0.0.1")  # noqa: S104
-    client.tell("/subscribe", 0.1, hall.ports.port)
+    client = kit.Client(live.ports.port, host if host != "0.0.0.0" else "127.0.0.1")  # noqa: S104
+    client.tell("/subscribe", 0.1, live.ports.port)
     time.sleep(0.4)
-    counted = hall.handler.counts.messages
+    counted = live.handler.counts.messages
     time.sleep(0.2)
     client.close()
-    assert hall.handler.counts.messages == counted
+    assert live.handler.counts.messages == counted

@@ -9,14 +9,14 @@ from yehu_server.live.web.server import WebOptions
 
 
 @pytest.fixture
-def hall(config_home, make_hall):
+def live(config_home, make_live):
     del config_home
-    return make_hall(http=WebOptions(("127.0.0.1", 0)))
+    return make_live(http=WebOptions(("127.0.0.1", 0)))
 
 
 @pytest.fixture
-def web(hall):
-    web = WebSocket(hall.server.web.port)
+def web(live):
+    web = WebSocket(live.server.web.port)
     yield web
     web.close()
 
@@ -29,8 +29,8 @@ def changed(web: WebSocket) -> str:
     raise AssertionError("no PATH_CHANGED came")
 
 
-def test_a_learned_address_is_in_the_tree_and_the_change_is_told(hall, web):
-    port = hall.server.web.port
+def test_a_learned_address_is_in_the_tree_and_the_change_is_told(live, web):
+    port = live.server.web.port
     assert ask(port, "/my/fader").status == 404
     web.tell("/yehu/learn", "/playing/vibrato")
     for place in (0.0, 0.5):
@@ -44,8 +44,8 @@ def test_a_learned_address_is_in_the_tree_and_the_change_is_told(hall, web):
     assert ask(port, "/my/fader").status == 404
 
 
-def test_a_preset_that_is_kept_or_removed_changes_the_choice(hall, web):
-    port = hall.server.web.port
+def test_a_preset_that_is_kept_or_removed_changes_the_choice(live, web):
+    port = live.server.web.port
 
     def choice() -> list[str]:
         return ask(port, "/yehu/preset/load?RANGE").json["RANGE"][0]["VALS"]

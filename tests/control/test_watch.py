@@ -20,12 +20,12 @@ def path(tmp_path):
 
 
 @pytest.fixture
-def watched(make_hall, path):
+def watched(make_live, path):
     mapping = load(str(path))
-    return make_hall(style=Style(mapping=mapping), reread=lambda: load(str(path)))
+    return make_live(style=Style(mapping=mapping), reread=lambda: load(str(path)))
 
 
-def test_a_changed_file_is_taken_up_while_a_note_sounds_or_refused_whole(watched, path, patience):
+def test_a_changed_file_is_taken_up_while_a_note_sounds_or_refused_whole(watched, path, until):
     def send(control: int) -> float:
         message = mido.Message("control_change", control=control, value=0, channel=0)
         receive(watched.player, message, frame=watched.player.frame_of(), port=0)
@@ -35,20 +35,20 @@ def test_a_changed_file_is_taken_up_while_a_note_sounds_or_refused_whole(watched
     note = mido.Message("note_on", note=70, velocity=90, channel=0)
     receive(watched.player, note, frame=watched.player.frame_of(), port=0)
     path.write_text(BIND.format(21) + BIND.format(2100))
-    (refused,) = patience(lambda: watched.said, "a line on what is wrong")
+    (refused,) = until(lambda: watched.said, "a line on what is wrong")
     assert refused.startswith(f"{path}:5: bind 2: source: unknown source 'cc 2100'")
     assert refused.endswith("; the mapping stays as it was")
     assert send(21) == 1.0
     path.write_text(BIND.format(21) + BIND.format(22))
-    patience(lambda: len(watched.said) == 2, "the mapping to be taken up")
+    until(lambda: len(watched.said) == 2, "the mapping to be taken up")
     assert watched.said[1] == "the mapping mine has changed; it is used from now on"
     assert watched.player.pitch is not None
     assert send(20) == 1.0
     assert send(22) == 0.0
 
 
-def test_without_it_a_file_is_read_once(make_hall, path):
-    hall = make_hall(style=Style(mapping=load(str(path))))
+def test_without_it_a_file_is_read_once(make_live, path):
+    live = make_live(style=Style(mapping=load(str(path))))
     path.write_text("wrong")
-    hall.wait_frames(60_000)
-    assert hall.said == []
+    live.wait_frames(60_000)
+    assert live.said == []

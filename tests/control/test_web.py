@@ -23,8 +23,8 @@ HOST = "127.0.0.1"
 
 
 @pytest.fixture(scope="module")
-def port(web_house) -> int:
-    return web_house.server.web.port
+def port(shared_web) -> int:
+    return shared_web.server.web.port
 
 
 @pytest.fixture(scope="module")
@@ -58,8 +58,8 @@ def test_the_whole_tree_is_there(nodes):
     assert {"/yehu" + param.address for param in TABLE} <= set(nodes)
 
 
-def test_a_value_set_over_osc_is_read(web_house, port):
-    client = web_house.client()
+def test_a_value_set_over_osc_is_read(shared_web, port):
+    client = shared_web.client()
     client.tell("/bow/force", 1.875)
     assert client.wait_for("/bow/force") == [1.875]
     assert ask(port, "/yehu/bow/force?VALUE").json == {"VALUE": [1.875]}
@@ -71,8 +71,8 @@ def test_a_value_set_over_osc_is_read(web_house, port):
     client.sync()
 
 
-def test_the_status_has_the_names_of_its_table(web_house):
-    status = web_house.server.status()
+def test_the_status_has_the_names_of_its_table(shared_web):
+    status = shared_web.server.status()
     assert list(status) == [row.name for row in STATUS]
     for row in STATUS:
         assert isinstance(status[row.name], str) == (row.kind is Kind.TEXT), row.name
@@ -121,10 +121,10 @@ def test_the_proposals_status_codes(port, path, status):
     assert ask(port, path).status == status
 
 
-def test_what_the_host_is(web_house, port):
+def test_what_the_host_is(shared_web, port):
     info = ask(port, "/anywhere?HOST_INFO").json
     assert info["NAME"] == "yehu-server"
-    assert (info["OSC_IP"], info["OSC_PORT"]) == (HOST, web_house.ports.port)
+    assert (info["OSC_IP"], info["OSC_PORT"]) == (HOST, shared_web.ports.port)
     assert info["OSC_TRANSPORT"] == "UDP"
     assert (info["WS_IP"], info["WS_PORT"]) == (HOST, port)
     known = (
@@ -140,9 +140,9 @@ def test_what_the_host_is(web_house, port):
     assert info["EXTENSIONS"] == dict.fromkeys(known, True)
 
 
-def test_the_host_is_told_as_it_was_reached(make_hall):
-    hall = make_hall(osc=("0.0.0.0", 0), http=WebOptions(("0.0.0.0", 0)), announce=False)  # noqa: S104
-    info = ask(hall.server.web.port, "/?HOST_INFO").json
+def test_the_host_is_told_as_it_was_reached(make_live):
+    live = make_live(osc=("0.0.0.0", 0), http=WebOptions(("0.0.0.0", 0)), announce=False)  # noqa: S104
+    info = ask(live.server.web.port, "/?HOST_INFO").json
     assert (info["OSC_IP"], info["WS_IP"]) == (HOST, HOST)
 
 
@@ -169,13 +169,13 @@ def test_a_browser_gets_a_page_with_links(port):
 
 
 def test_the_page_of_parameters_is_served_where_there_is_one(
-    web_house, port, monkeypatch, tmp_path
+    shared_web, port, monkeypatch, tmp_path
 ):
     is_there = (shipped_folder("mappings") / PARAMETERS).exists()
     assert ask(port, f"/{PARAMETERS}").status == (200 if is_there else 404)
     (tmp_path / PARAMETERS).write_text("<p>蘇</p>", "utf-8")
     (tmp_path / "secret.html").write_text("no", "utf-8")
-    web = web_house.server.web
+    web = shared_web.server.web
     monkeypatch.setattr(web, "_sources", dataclasses.replace(web._sources, folder=tmp_path))
     answer = ask(port, f"/{PARAMETERS}")
     assert answer.headers["Content-Type"] == "text/html; charset=utf-8"
@@ -238,22 +238,22 @@ def test_only_reading_is_allowed(port, method):
         {"Host": "evil.example", "Origin": "http://evil.example"},
     ],
 )
-def test_a_page_from_elsewhere_is_refused_and_counted(web_house, port, headers):
-    before = web_house.server.status()["http_refused"]
+def test_a_page_from_elsewhere_is_refused_and_counted(shared_web, port, headers):
+    before = shared_web.server.status()["http_refused"]
     answer = ask(port, "/yehu/bow/force", **headers)
     assert answer.status == 403
     assert b"VALUE" not in answer.body
-    assert web_house.server.status()["http_refused"] == before + 1
+    assert shared_web.server.status()["http_refused"] == before + 1
 
 
 def test_a_page_of_this_machine_may_read(port):
     assert ask(port, "/yehu", Origin=f"http://{HOST}:{port}").status == 200
 
 
-def test_who_is_not_on_the_list_is_refused(make_hall):
-    hall = make_hall(http=WebOptions((HOST, 0), Allowed(["192.0.2.0/24"])))
-    assert ask(hall.server.web.port, "/").status == 403
-    assert ask(hall.server.web.port, "/metrics").status == 403
+def test_who_is_not_on_the_list_is_refused(make_live):
+    live = make_live(http=WebOptions((HOST, 0), Allowed(["192.0.2.0/24"])))
+    assert ask(live.server.web.port, "/").status == 403
+    assert ask(live.server.web.port, "/metrics").status == 403
 
 
 def raw(port: int, data: bytes) -> bytes:
@@ -281,10 +281,10 @@ def raw(port: int, data: bytes) -> bytes:
     ],
     ids=["long line", "long header", "many headers", "TLS", "OSC", "less than nothing"],
 )
-def test_nonsense_is_refused_and_the_server_goes_on(web_house, port, data):
+def test_nonsense_is_refused_and_the_server_goes_on(shared_web, port, data):
     assert raw(port, data).startswith((b"HTTP/1.1 4", b"HTTP/1.0 4"))
     assert ask(port, "/yehu/bow/force?TYPE").status == 200
-    assert web_house.server.status()["http_failures"] == 0
+    assert shared_web.server.status()["http_failures"] == 0
 
 
 def test_a_request_with_too_much_to_it_is_refused(port):
@@ -292,7 +292,7 @@ def test_a_request_with_too_much_to_it_is_refused(port):
     assert b" 413 " in raw(port, head + bytes(65537)).split(b"\r\n")[0]
 
 
-def test_those_who_connect_and_say_nothing_are_bounded(port, patience):
+def test_those_who_connect_and_say_nothing_are_bounded(port, until):
     silent = [socket.create_connection((HOST, port)) for _ in range(MOST_CONNECTIONS + 50)]
     try:
         gone = []
@@ -309,46 +309,46 @@ def test_those_who_connect_and_say_nothing_are_bounded(port, patience):
                     gone.append(connection)
             return len(gone) >= 50
 
-        patience(excess_is_gone, "the excess is closed", IDLE_S / 2)
+        until(excess_is_gone, "the excess is closed", IDLE_S / 2)
         assert len(gone) <= 60
     finally:
         for connection in silent:
             connection.close()
-    patience(lambda: ask(port, "/yehu/bow/force?TYPE").status == 200, "there is room again")
+    until(lambda: ask(port, "/yehu/bow/force?TYPE").status == 200, "there is room again")
 
 
 @pytest.mark.parametrize(
     "line", [b"Connection: \x98", b"Upgrade: \xff", b"Accept: \xed\xa0\x80", b"X: \xc0"]
 )
-def test_a_header_that_is_no_text_is_refused_and_counts_as_no_defect(web_house, port, line):
+def test_a_header_that_is_no_text_is_refused_and_counts_as_no_defect(shared_web, port, line):
     head = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\n" + line + b"\r\n\r\n"
     assert raw(port, head).startswith(b"HTTP/1.1 400")
-    assert web_house.server.status()["http_failures"] == 0
+    assert shared_web.server.status()["http_failures"] == 0
 
 
 # ---------------------------------------------------------------- begin and end
 
 
-def test_an_address_that_is_taken_is_one_clear_line(web_house, port, make_hall):
+def test_an_address_that_is_taken_is_one_clear_line(shared_web, port, make_live):
     with pytest.raises(DeviceError, match=f"at {HOST}:{port}: Address already in use$"):
-        make_hall(http=WebOptions((HOST, port)))
-    del web_house
+        make_live(http=WebOptions((HOST, port)))
+    del shared_web
 
 
-def test_the_server_can_do_without(make_hall):
-    hall = make_hall(http=None)
-    assert hall.server.web is None
-    assert hall.server.status()["http_requests"] == 0
+def test_the_server_can_do_without(make_live):
+    live = make_live(http=None)
+    assert live.server.web is None
+    assert live.server.status()["http_requests"] == 0
 
 
-def test_a_defect_is_counted_and_ends_one_request_only(web_house, port, monkeypatch):
-    before = web_house.server.status()["http_failures"]
+def test_a_defect_is_counted_and_ends_one_request_only(shared_web, port, monkeypatch):
+    before = shared_web.server.status()["http_failures"]
     with monkeypatch.context() as patch:
         patch.setattr("yehu_server.live.web.server.query.node_at", lambda *_: 1 / 0)
         patch.setattr("yehu_server.live.web.server.log.exception", lambda *_: None)
         assert ask(port, "/yehu").status == 500
     assert ask(port, "/yehu").status == 200
-    web_house.server.web.traffic.failures = before
+    shared_web.server.web.traffic.failures = before
 
 
 # ---------------------------------------------------------------- a foreign client
@@ -368,7 +368,7 @@ service.update().then(() => {
 """
 
 
-def test_the_oscquery_package_for_node_reads_the_tree(web_house, port, nodes):
+def test_the_oscquery_package_for_node_reads_the_tree(shared_web, port, nodes):
     node = shutil.which("node")
     found = node and subprocess.run([node, "-e", "require('oscquery')"], capture_output=True)  # noqa: PLW1510
     if not found or found.returncode:
@@ -378,6 +378,6 @@ def test_the_oscquery_package_for_node_reads_the_tree(web_house, port, nodes):
     )
     read = json.loads(run.stdout)
     assert read["name"] == "yehu-server"
-    assert read["port"] == web_house.ports.port
+    assert read["port"] == shared_web.ports.port
     assert read["value"] == pytest.approx(nodes["/yehu/bow/force"]["VALUE"][0])
     assert read["methods"] == sum("TYPE" in node for node in nodes.values())

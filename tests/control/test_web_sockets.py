@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 from web_client import BINARY, CLOSE, TEXT, Refused, WebSocket, ask
-from wire import Heard, Wire
+from wire import Message, Wire
 
 from yehu_server.live.osc.peers import MOST_UNSENT_BYTES, WebTraffic
 from yehu_server.live.web.server import MOST_CONNECTIONS, MOST_WEB_SOCKETS, SWEEP_S, WebOptions
@@ -23,8 +23,8 @@ FORCE = "/yehu/bow/force"
 
 
 @pytest.fixture(scope="module")
-def port(web_house) -> int:
-    return web_house.server.web.port
+def port(shared_web) -> int:
+    return shared_web.server.web.port
 
 
 @pytest.fixture
@@ -47,13 +47,13 @@ def web(connect) -> WebSocket:
 
 
 @pytest.fixture(autouse=True)
-def _as_it_was(web_house, patience):
+def _as_it_was(shared_web, until):
     """Check that each test leaves the server well and without clients."""
     yield
-    status = web_house.server.status
-    patience(lambda: status()["web_sockets"] == 0, "all WebSockets are gone")
-    web_house.player.reset(frame=web_house.player.frame_of())  # after all that was asked
-    assert web_house.is_well()
+    status = shared_web.server.status
+    until(lambda: status()["web_sockets"] == 0, "all WebSockets are gone")
+    shared_web.player.reset(frame=shared_web.player.frame_of())  # after all that was asked
+    assert shared_web.is_well()
     assert status()["http_failures"] == 0
 
 
@@ -65,11 +65,11 @@ def test_the_many_who_connect_and_say_nothing_shut_nobody_out(connect, port):
     web = connect()
     try:
         web.tell(FORCE, 1.0)
-        assert web.next() == Heard(FORCE, [1.0])
+        assert web.next() == Message(FORCE, [1.0])
         silent += [socket.create_connection((HOST, port)) for _ in range(50)]
         time.sleep(2.0 * SWEEP_S)
         web.tell(FORCE, 1.5)
-        assert web.next() == Heard(FORCE, [1.5])
+        assert web.next() == Message(FORCE, [1.5])
     finally:
         for connection in silent:
             connection.close()
@@ -77,13 +77,13 @@ def test_the_many_who_connect_and_say_nothing_shut_nobody_out(connect, port):
 
 def test_a_binary_frame_is_osc_and_who_sets_something_is_told(web, port):
     web.tell(FORCE, 1.25)
-    assert web.next() == Heard(FORCE, [1.25])
+    assert web.next() == Message(FORCE, [1.25])
     assert ask(port, FORCE + "?VALUE").json == {"VALUE": [1.25]}
 
 
 def test_a_call_without_arguments_takes_the_nil_of_its_type(web):
     web.tell("/yehu/unsubscribe", None)
-    assert web.next() == Heard("/yehu/unsubscribed", [])
+    assert web.next() == Message("/yehu/unsubscribed", [])
 
 
 def test_what_cannot_be_done_is_answered(web):
@@ -93,49 +93,49 @@ def test_what_cannot_be_done_is_answered(web):
     assert web.next().address == "/yehu/error"
 
 
-def test_a_subscription_works_here_too(web, web_house):
+def test_a_subscription_works_here_too(web, shared_web):
     web.tell("/yehu/subscribe", 60.0)
     told = [web.next() for _ in range(len(TABLE) + 1)]
     assert {one.address for one in told} >= {"/yehu" + param.address for param in TABLE}
-    web_house.client().tell("/bow/force", 1.5)
+    shared_web.client().tell("/bow/force", 1.5)
     assert web.wait_for(FORCE) == [1.5]
 
 
 # ---------------------------------------------------------------- LISTEN and IGNORE
 
 
-def test_a_listener_is_told_the_value_at_once_and_then_each_change(web, web_house):
+def test_a_listener_is_told_the_value_at_once_and_then_each_change(web, shared_web):
     web.listen(FORCE)
-    assert web.next() == Heard(FORCE, [0.5])
-    client = web_house.client()
+    assert web.next() == Message(FORCE, [0.5])
+    client = shared_web.client()
     for value in (1.0, 1.5, 99.0):
         client.tell("/bow/force", value)
-        assert web.next() == Heard(FORCE, [min(value, 5.0)])
+        assert web.next() == Message(FORCE, [min(value, 5.0)])
     assert web.next(QUIET_S) is None
 
 
-def test_a_listener_hears_of_what_it_asked_for_only(web, web_house):
+def test_a_listener_hears_of_what_it_asked_for_only(web, shared_web):
     web.listen(FORCE)
     web.next()
-    web_house.client().tell("/bow/position", 0.2)
-    web_house.client().tell("/playing/press", 2.0)
+    shared_web.client().tell("/bow/position", 0.2)
+    shared_web.client().tell("/playing/press", 2.0)
     assert web.next(QUIET_S) is None
 
 
-def test_a_listener_may_ask_for_0_to_1(web, web_house):
+def test_a_listener_may_ask_for_0_to_1(web, shared_web):
     web.listen(FORCE + "/unit")
-    assert web.next() == Heard(FORCE + "/unit", [pytest.approx(0.1)])
-    web_house.client().tell("/bow/force", 2.5)
-    assert web.next() == Heard(FORCE + "/unit", [0.5])
+    assert web.next() == Message(FORCE + "/unit", [pytest.approx(0.1)])
+    shared_web.client().tell("/bow/force", 2.5)
+    assert web.next() == Message(FORCE + "/unit", [0.5])
 
 
-def test_who_ignores_is_told_no_more(web, web_house):
+def test_who_ignores_is_told_no_more(web, shared_web):
     web.listen(FORCE)
     web.listen("/yehu/bow/position")
     web.ignore(FORCE)
     web.sync()
-    web_house.client().tell("/bow/force", 2.0)
-    web_house.client().tell("/bow/position", 0.2)
+    shared_web.client().tell("/bow/force", 2.0)
+    shared_web.client().tell("/bow/position", 0.2)
     assert web.wait_for("/yehu/bow/position") == [pytest.approx(0.2)]
     assert web.next(QUIET_S) is None
 
@@ -150,7 +150,7 @@ def test_the_status_is_told_a_few_times_a_second(web):
 
 def test_a_status_value_that_stays_is_told_once(web):
     web.listen("/yehu/status/device")
-    assert web.next() == Heard("/yehu/status/device", ["silent clock"])
+    assert web.next() == Message("/yehu/status/device", ["silent clock"])
     assert web.next(0.6) is None
 
 
@@ -218,11 +218,11 @@ def test_text_that_is_none_ends_the_one_who_sent_it(web, connect):
     connect().sync()
 
 
-def test_all_are_told_that_the_tree_changed(connect, web_house):
+def test_all_are_told_that_the_tree_changed(connect, shared_web):
     here = [connect() for _ in range(3)]
     for web in here:
         web.sync()
-    web_house.server.web.tree_changed("/yehu/preset")
+    shared_web.server.web.tree_changed("/yehu/preset")
     for web in here:
         assert web.next() == {"COMMAND": "PATH_CHANGED", "DATA": "/yehu/preset"}
 
@@ -281,17 +281,17 @@ def test_there_is_room_for_so_many_and_no_more(connect):
 # ---------------------------------------------------------------- those who hold up, or leave
 
 
-def test_one_who_reads_nothing_holds_up_nobody(connect, web_house, patience):
+def test_one_who_reads_nothing_holds_up_nobody(connect, shared_web, until):
     deaf, well = connect(), connect()
-    unsent = web_house.server.status()["http_unsent"]
+    unsent = shared_web.server.status()["http_unsent"]
     for _ in range(400):
         deaf.tell("/yehu/ping", "x" * 30_000)
-    patience(lambda: web_house.server.status()["http_unsent"] > unsent, "some is dropped")
+    until(lambda: shared_web.server.status()["http_unsent"] > unsent, "some is dropped")
     well.listen(FORCE)
     well.next()
-    web_house.client().tell("/bow/force", 3.0)
+    shared_web.client().tell("/bow/force", 3.0)
     began = time.monotonic()
-    assert well.next() == Heard(FORCE, [3.0])
+    assert well.next() == Message(FORCE, [3.0])
     assert time.monotonic() - began < 1.0
 
 
@@ -312,33 +312,33 @@ def test_what_a_peer_does_not_take_is_dropped_and_counted():
     assert len(asked) == 2
 
 
-def test_one_who_vanishes_is_forgotten_with_all_it_asked_for(web_house, port, patience):
+def test_one_who_vanishes_is_forgotten_with_all_it_asked_for(shared_web, port, until):
     web = WebSocket(port)
     web.listen(FORCE)
     web.tell("/yehu/subscribe", 3600.0)
     web.sync()
-    assert web_house.server.status()["osc_subscribers"] == 1
+    assert shared_web.server.status()["osc_subscribers"] == 1
     web.vanish()
-    patience(lambda: not web_house.handler.clients._clients, "nobody is left")
+    until(lambda: not shared_web.handler.clients._clients, "nobody is left")
 
 
-def test_what_one_said_last_is_done_before_it_is_forgotten(web_house, connect, patience):
-    clients = web_house.handler.clients
+def test_what_one_said_last_is_done_before_it_is_forgotten(shared_web, connect, until):
+    clients = shared_web.handler.clients
     web = connect()
     web.sync()
-    web_house.ports.call_soon(lambda: time.sleep(0.3))  # all of it comes at once
+    shared_web.ports.call_soon(lambda: time.sleep(0.3))  # all of it comes at once
     web.tell("/yehu/subscribe", 3600.0)
     web.tell(FORCE, 4.0)
     web.send(CLOSE, b"\x03\xe8")
-    patience(lambda: web_house.player.value("/bow/force") == 4.0, "it is done")
-    patience(lambda: not clients._clients, "nobody is left")
+    until(lambda: shared_web.player.value("/bow/force") == 4.0, "it is done")
+    until(lambda: not clients._clients, "nobody is left")
 
 
 @pytest.mark.slow
-def test_twenty_who_come_and_go_at_random_leave_nothing_behind(web_house, port, patience):
+def test_twenty_who_come_and_go_at_random_leave_nothing_behind(shared_web, port, until):
     chance = random.Random(7)
     ending = time.monotonic() + 2.5
-    bystander, osc = web_house.client(), (HOST, web_house.ports.port)
+    bystander, osc = shared_web.client(), (HOST, shared_web.ports.port)
     slowest = 0.0
 
     def come_and_go(seed: int) -> None:
@@ -373,19 +373,19 @@ def test_twenty_who_come_and_go_at_random_leave_nothing_behind(web_house, port, 
     for one in crowd:
         one.join()
     bystander.close()
-    patience(lambda: web_house.server.status()["web_sockets"] == 0, "all WebSockets are gone")
-    patience(lambda: not web_house.handler.clients._clients, "nobody is kept")
-    assert web_house.server.status()["osc_subscribers"] == 0
+    until(lambda: shared_web.server.status()["web_sockets"] == 0, "all WebSockets are gone")
+    until(lambda: not shared_web.handler.clients._clients, "nobody is kept")
+    assert shared_web.server.status()["osc_subscribers"] == 0
     assert slowest < 10.0  # nobody is forgotten; a busy machine may take seconds
 
 
-def test_nobody_is_told_anything_after_its_time(web_house, patience):
-    client = web_house.client()
+def test_nobody_is_told_anything_after_its_time(shared_web, until):
+    client = shared_web.client()
     client.tell("/subscribe", 0.3)
     client.wait_for("/subscribed")
-    patience(lambda: web_house.handler.clients.subscribers == 0, "its time is up")
+    until(lambda: shared_web.handler.clients.subscribers == 0, "its time is up")
     client.all()
-    other = web_house.client()
+    other = shared_web.client()
     for step in range(20):
         other.tell("/bow/force", 0.1 * step)
     other.sync()
@@ -395,10 +395,10 @@ def test_nobody_is_told_anything_after_its_time(web_house, patience):
 # ---------------------------------------------------------------- how soon
 
 
-def lags(web_house, web: WebSocket, changes: int, per_second: float) -> list[float]:
+def lags(shared_web, web: WebSocket, changes: int, per_second: float) -> list[float]:
     """Time (s) from each change to its listener while other messages arrive."""
     ending = threading.Event()
-    client, other = web_house.client(), web_house.client()
+    client, other = shared_web.client(), shared_web.client()
 
     def flood() -> None:
         due = time.monotonic()
@@ -428,20 +428,20 @@ def lags(web_house, web: WebSocket, changes: int, per_second: float) -> list[flo
     return took
 
 
-def test_a_listener_hears_soon_while_a_thousand_messages_a_second_arrive(web_house, web):
-    took = lags(web_house, web, changes=40, per_second=1000.0)
+def test_a_listener_hears_soon_while_a_thousand_messages_a_second_arrive(shared_web, web):
+    took = lags(shared_web, web, changes=40, per_second=1000.0)
     assert sorted(took)[-4] < 0.25  # nine of ten; machines are shared
 
 
 # ---------------------------------------------------------------- the end
 
 
-def test_the_end_of_the_server_is_told_and_soon(make_hall):
-    hall = make_hall(http=WebOptions((HOST, 0)))
-    webs = [WebSocket(hall.server.web.port) for _ in range(5)]
+def test_the_end_of_the_server_is_told_and_soon(make_live):
+    live = make_live(http=WebOptions((HOST, 0)))
+    webs = [WebSocket(live.server.web.port) for _ in range(5)]
     webs[0].sync()
     began = time.monotonic()
-    hall.server.web.stop()
+    live.server.web.stop()
     assert time.monotonic() - began < 1.0
     for web in webs:
         with pytest.raises(ConnectionError, match="1001"):

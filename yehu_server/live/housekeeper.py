@@ -14,13 +14,13 @@ from functools import partial
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import MappingError
-from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.playing.delay import Delay
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.mapping_watch import MappingWatch
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.retry import run_forever
+from yehu_server.util.token_bucket import TokenBucket
 
 LINES_PER_S, LINES_AT_ONCE = 0.1, 1.0  # of each count
 

@@ -13,7 +13,7 @@ from unittest.mock import patch
 
 from fuzz.instrument import Instrument, check_silence, check_values
 from fuzz.target import Program, scratch, target
-from wire import SINCE_1900_S, Ear, StillTime
+from wire import SINCE_1900_S, FakePeer, StillTime
 
 from yehu_server.live.osc import clients, schedule
 from yehu_server.live.osc import handler as osc
@@ -136,13 +136,13 @@ def osc_calls(data: bytes) -> None:
     The bytes are a program: packets of addresses and arguments, and pauses between them.
     """
     with still_time() as clock:
-        instrument, services, ear = Instrument(), Services(), Ear(host="ear")
+        instrument, services, peer = Instrument(), Services(), FakePeer(host="peer")
         style = Style(mapping=mapping(), presets=Presets(scratch() / "config" / "presets"))
         player = LivePlayer(instrument, style, delay_ms=3.0, wishes=style.wishes([instrument]))
         handler = OscHandler([player], services)
 
         def take(what: bytes) -> None:
-            for _ in handler.handle(what, ear, clock.monotonic_ns()):
+            for _ in handler.handle(what, peer, clock.monotonic_ns()):
                 pass
             handler.tick()
 
@@ -161,7 +161,10 @@ def osc_calls(data: bytes) -> None:
         check_silence(player, instrument)
         handler.tick()
         assert handler.waiting == 0
-    for answer in (*ear.packets, *(one for other in ear.others.values() for one in other.packets)):
+    for answer in (
+        *peer.packets,
+        *(one for other in peer.others.values() for one in other.packets),
+    ):
         for message in unpack(answer):
             assert message.address.startswith(PREFIX)
             numbers = (value for value in message.arguments if isinstance(value, float))

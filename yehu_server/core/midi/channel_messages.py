@@ -26,7 +26,7 @@ from yehu_server.core.midi.channels import (
     plays,
 )
 from yehu_server.core.midi.emit_wishes import stop_sound, write_native
-from yehu_server.core.midi.keys import list_key
+from yehu_server.core.midi.held_keys import list_key
 from yehu_server.core.midi.notes import (
     end_all,
     end_channel,

@@ -12,7 +12,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
-from yehu_server.core.midi.keys import find_key, forget_listed, hold_key, list_key
+from yehu_server.core.midi.held_keys import find_key, forget_listed, hold_key, list_key
 from yehu_server.core.midi.record import MIDI, NONE, SECTION, emit
 from yehu_server.core.midi.section import (
     add_value,

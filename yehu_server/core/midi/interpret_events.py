@@ -51,7 +51,7 @@ from yehu_server.core.midi.events import (
     START,
     TABLES_TO,
 )
-from yehu_server.core.midi.keys import list_key
+from yehu_server.core.midi.held_keys import list_key
 from yehu_server.core.midi.notes import (
     end_all,
     end_notes,

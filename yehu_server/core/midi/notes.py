@@ -17,7 +17,7 @@ from yehu_server.core.midi.emit_wishes import (
     end_listed_native,
     express,
 )
-from yehu_server.core.midi.keys import find_key, list_key, next_sounding_key
+from yehu_server.core.midi.held_keys import find_key, list_key, next_sounding_key
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, MIDI, NONE
 from yehu_server.core.midi.tables import CLAMP, KEYS, NOTE, SKIP, TABLES, VELOCITY
 from yehu_server.core.midi.values import (

@@ -12,7 +12,7 @@ from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.channels import bend_range, is_midi, master_of, moves_all
 from yehu_server.core.midi.curves import along_curve, from_unit, inverted
-from yehu_server.core.midi.keys import find_key
+from yehu_server.core.midi.held_keys import find_key
 from yehu_server.core.midi.record import IN_PORT, MIDI, NONE
 from yehu_server.core.midi.tables import KEYS, NOTE, POLY_PRESSURE, TABLES, VELOCITY
 

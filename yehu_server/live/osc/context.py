@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from yehu_server.live.osc.clients import Clients
-from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.request import Request
 from yehu_server.params.table import PREFIX
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
+from yehu_server.util.token_bucket import TokenBucket
 
 SAVES_A_SECOND, SAVES_AT_ONCE = 1.0, 10.0  # of all clients together: each writes a file
 

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from yehu_server.live.osc.limits import LITTLE_BYTES, OVERHEAD_BYTES, MemoryQuota
+from yehu_server.live.osc.memory_quota import LITTLE_BYTES, OVERHEAD_BYTES, MemoryQuota
 from yehu_server.live.osc.peers import Peer
 
 MOST_BYTES = 16 << 20  # of all waiting packets

@@ -17,7 +17,7 @@ from typing import Protocol
 
 from yehu_server.live.addresses import Address
 from yehu_server.live.osc.framing import Framing
-from yehu_server.live.osc.limits import TokenBucket
+from yehu_server.util.token_bucket import TokenBucket
 
 MOST_UNSENT_BYTES = 1 << 18  # waiting for one peer
 ANSWERED_BYTES = 1 << 17  # to a port, at once and a second

@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from yehu_server.live.osc.limits import OVERHEAD_BYTES, MemoryQuota
+from yehu_server.live.osc.memory_quota import OVERHEAD_BYTES, MemoryQuota
 from yehu_server.live.osc.peers import Peer
 from yehu_server.playing.live_player import LivePlayer
 

@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import split_group
 from yehu_server.params.table import UNIT, read
+from yehu_server.util.token_bucket import TokenBucket
 
 ERRORS_A_SECOND, ERRORS_AT_ONCE = 10.0, 20.0
 

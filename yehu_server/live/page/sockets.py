@@ -21,10 +21,10 @@ import numpy as np
 from aiohttp import WSMsgType, web
 
 from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
-from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.params.table import TABLE
+from yehu_server.util.token_bucket import TokenBucket
 
 TEXT, BINARY = 0x81, 0x82  # whole messages
 SHORT, MIDDLE = 126, 1 << 16  # payloads below have lengths of one and of two bytes

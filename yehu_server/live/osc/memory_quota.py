@@ -1,8 +1,7 @@
-"""Limits: on memory that several owners share, and on how often something is done."""
+"""A quota of memory that several peers share."""
 
 from __future__ import annotations
 
-import math
 from typing import Any, Protocol
 
 OVERHEAD_BYTES = 256  # memory for a stored packet beside its own bytes
@@ -59,38 +58,3 @@ def _count(held: dict[Any, int], owner: object, size: int) -> None:
     held[owner] = held.get(owner, 0) + size
     if not held[owner]:
         del held[owner]
-
-
-class TokenBucket:
-    """A token bucket, full at first. Times are those of ``time.monotonic()``.
-
-    Parameters
-    ----------
-    per_s : float
-        Tokens added a second.
-    at_once : float
-        Tokens that the bucket holds.
-    """
-
-    def __init__(self, per_s: float, at_once: float) -> None:
-        self._per_s = per_s
-        self._at_once = self._left = at_once
-        self._looked = -math.inf
-
-    def left(self, now: float) -> float:
-        """The number of tokens at a time."""
-        gained = self._per_s * (now - self._looked)
-        self._left = min(self._left + gained, self._at_once)
-        self._looked = now
-        return self._left
-
-    def spend(self, count: float) -> None:
-        """Take tokens, also more than there are: the debt is paid first."""
-        self._left -= count
-
-    def takes(self, now: float) -> bool:
-        """Take one token if there is one; return whether there was."""
-        if self.left(now) < 1.0:
-            return False
-        self.spend(1.0)
-        return True

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from wire import Ear
+from wire import FakePeer
 
-from yehu_server.live.osc.limits import MemoryQuota, TokenBucket
+from yehu_server.live.osc.memory_quota import MemoryQuota
+from yehu_server.util.token_bucket import TokenBucket
 
 
 def test_a_burst_is_allowed_and_after_it_what_each_second_brings():
@@ -25,7 +26,7 @@ def test_who_spends_more_than_there_is_waits_until_it_is_gained_again():
 
 def test_there_is_always_room_for_a_peer_that_is_limited_otherwise():
     quota = MemoryQuota(1000)
-    assert quota.take(Ear(1), 400)
-    assert not quota.take(Ear(2), 700)
-    assert quota.take(Ear(2), 700, always=True)
+    assert quota.take(FakePeer(1), 400)
+    assert not quota.take(FakePeer(2), 700)
+    assert quota.take(FakePeer(2), 700, always=True)
     assert quota.taken_bytes == 1100

@@ -1,0 +1,40 @@
+"""A token bucket: how often something may be done."""
+
+from __future__ import annotations
+
+import math
+
+
+class TokenBucket:
+    """A token bucket, full at first. Times are those of ``time.monotonic()``.
+
+    Parameters
+    ----------
+    per_s : float
+        Tokens added a second.
+    at_once : float
+        Tokens that the bucket holds.
+    """
+
+    def __init__(self, per_s: float, at_once: float) -> None:
+        self._per_s = per_s
+        self._at_once = self._left = at_once
+        self._looked = -math.inf
+
+    def left(self, now: float) -> float:
+        """The number of tokens at a time."""
+        gained = self._per_s * (now - self._looked)
+        self._left = min(self._left + gained, self._at_once)
+        self._looked = now
+        return self._left
+
+    def spend(self, count: float) -> None:
+        """Take tokens, also more than there are: the debt is paid first."""
+        self._left -= count
+
+    def takes(self, now: float) -> bool:
+        """Take one token if there is one; return whether there was."""
+        if self.left(now) < 1.0:
+            return False
+        self.spend(1.0)
+        return True

@@ -21,6 +21,7 @@ from yehu_server.core.engine import warming
 if len(sys.argv) > 1:
     shipped.shipped_file = lambda: shipped.Path(sys.argv[1])
 from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.playing.wishes import Key, WishPoster
 warming.warm_up()
 print(all(function.compiled.cache_hits == 1 for function in warming.ALL_FUNCTIONS))

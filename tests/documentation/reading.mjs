@@ -41,8 +41,17 @@ await run(
       return sound.duration;
     });
 
-    await page.fill("[data-md-component=search-query]", "Helmholtz motion");
-    await page.waitForSelector(".md-search-result__link");
+    // What is typed before the search is ready is not searched for: type until it is.
+    let isFound = false;
+    for (let attempt = 0; attempt < 10 && !isFound; attempt++) {
+      await page.fill("[data-md-component=search-query]", "");
+      await page.fill("[data-md-component=search-query]", "Helmholtz motion");
+      const link = page.waitForSelector(".md-search-result__link", { timeout: 3000 });
+      isFound = await link.then(
+        () => true,
+        () => false,
+      );
+    }
     const found = await page.$$eval(".md-search-result__link", (links) => links.map((a) => a.href));
 
     const barriers = [];

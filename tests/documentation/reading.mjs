@@ -41,12 +41,15 @@ await run(
       return sound.duration;
     });
 
-    // What is typed before the search is ready is not searched for: type until it is.
+    // A search that was entered before the page was ready never begins: enter it again.
     let isFound = false;
     for (let attempt = 0; attempt < 10 && !isFound; attempt++) {
-      await page.fill("[data-md-component=search-query]", "");
+      await page.evaluate(() => document.activeElement?.blur());
       await page.fill("[data-md-component=search-query]", "Helmholtz motion");
-      const link = page.waitForSelector(".md-search-result__link", { timeout: 3000 });
+      const link = page.waitForSelector(".md-search-result__link[href*='glossary.html']", {
+        state: "attached",
+        timeout: 3000,
+      });
       isFound = await link.then(
         () => true,
         () => false,

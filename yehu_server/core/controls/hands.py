@@ -58,7 +58,9 @@ LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction
 @compiled
 def vibrato_at(c: Any, phase: float) -> float:
     """The value of the vibrato at a phase (turns), -1 to 1, faded in by /vibrato/onset."""
-    come = max(0.0, (c.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM))
+    if c.value[ONSET] <= ONSET_FROM:
+        return 0.0
+    come = (c.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM)
     return float(come * come * (3.0 - 2.0 * come) * math.sin(2.0 * math.pi * phase))
 
 

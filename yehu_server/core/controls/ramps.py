@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from yehu_server.compile.jit import compiled
 from yehu_server.core.controls.slots import (
     BALANCE,
@@ -68,29 +70,35 @@ def take(c: Any, index: int, target: float, ramp: int) -> None:
         return
     target = min(max(target, LOWEST[index]), HIGHEST[index])
     c.target[index] = target
-    c.moving -= 1 if c.remaining[index] > 0 else 0
     if ramp <= 0:
         c.value[index] = target
         c.remaining[index] = 0
-    else:
-        c.slope[index] = (target - c.value[index]) / ramp
-        c.remaining[index] = ramp
-        c.moving += 1
+        return
+    c.slope[index] = (target - c.value[index]) / ramp
+    c.remaining[index] = ramp
+    if c.is_moving[index] == 0:
+        c.is_moving[index] = 1
+        c.moving[np.uint64(c.moving_count)] = index
+        c.moving_count += 1
 
 
 @compiled
 def move(c: Any) -> None:
     """Advance all ramps by one sample; each ends exactly on its target. Real time: safe."""
-    if c.moving == 0:
-        return
-    for index in range(SLOTS):
-        if c.remaining[index] > 0:
-            c.remaining[index] -= 1
-            if c.remaining[index] == 0:
-                c.value[index] = c.target[index]
-                c.moving -= 1
-            else:
-                c.value[index] += c.slope[index]
+    place = np.uint64(0)
+    while place < np.uint64(c.moving_count):
+        index = np.uint64(c.moving[place])
+        left = c.remaining[index] - 1
+        if left > 0:
+            c.remaining[index] = left
+            c.value[index] += c.slope[index]
+            place += np.uint64(1)
+            continue
+        if left == 0:  # else a jump ended the ramp
+            c.value[index] = c.target[index]
+        c.remaining[index], c.is_moving[index] = 0, 0
+        c.moving_count -= 1
+        c.moving[place] = c.moving[np.uint64(c.moving_count)]
 
 
 FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.

@@ -36,7 +36,10 @@ CONTROLS = np.dtype(
         ("target", np.float64, SLOTS),
         ("slope", np.float64, SLOTS),
         ("remaining", np.int64, SLOTS),
-        ("moving", np.int64),  # number of parameters on a ramp
+        # Slots on a ramp, in any order; whether each slot is among them.
+        ("moving", np.int64, SLOTS),
+        ("moving_count", np.int64),
+        ("is_moving", np.int64, SLOTS),
         ("decibels", np.float64, DECIBELS),  # the gains, and their amplitude factors
         ("factor", np.float64, DECIBELS),
         # of each string as calibrated (N, 1/s, m^2/s); its tuning (cents) and loss now
@@ -113,7 +116,7 @@ def settle(controls: Any) -> None:
     controls["target"][PLUCK] = 0.0
     controls["value"] = controls["target"]
     controls["remaining"] = 0
-    controls["moving"] = 0
+    controls["moving_count"], controls["is_moving"] = 0, 0
     controls["silence_in"] = 0
     is_down = controls["value"][FINGER_PRESS] > 0.0
     controls["finger_up"] = np.where(is_down, 0, controls["park_after"])

@@ -34,35 +34,39 @@ Response = tuple[float, float, float, float]
 
 @compiled
 def place_contacts(model: Model, c: Contacts, control: Array, bowed_string: int) -> bool:
-    """Move bow and fingers to the places in a row of controls; return whether any moved.
+    """Move bow and fingers to the places in a row of controls.
 
     The bow keeps one node away from the bridge and from the loop, a finger one node
     away from the ends. Only what moved is worked out anew.
     Real time: safe.
+
+    Returns whether contacts may share other nodes now: a finger moved, or the bow touches others.
     """
     moved = False
     x_b = control[X_B]
     if c.placed == 0 or c.x[BOW] != x_b or c.string[BOW] != bowed_string:
-        i, moved = bowed_string, True
+        i, first, string = bowed_string, c.first[BOW], c.string[BOW]
         c.x[BOW], c.string[BOW] = x_b, i
         h = model.h[i]
         position = max(1.0, min(x_b / h, model.bridge_x / h - 1.0))
         c.first[BOW] = place_linear(position, model.N[i], c.weights[BOW])
         set_compliances(model, c, BOW)
+        moved = c.first[BOW] != first or string != i
+    fingers_moved = False
     for j in range(model.fingers):
         x_f = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j]
         if c.placed == 0 or c.x[STRINGS * j] != x_f:
-            moved = True
+            fingers_moved = True
             for i in range(STRINGS):
                 p = STRINGS * j + i
                 c.x[p], c.string[p] = x_f, i
                 position = max(1.0, min(x_f / model.h[i], model.N[i] - 1.0))
                 c.first[p] = place_cubic(position, model.N[i], c.weights[p])
                 set_compliances(model, c, p)
-    if moved:
+    if fingers_moved:
         sort_fingers(model, c)
     c.placed = 1
-    return moved
+    return bool(moved or fingers_moved)
 
 
 @compiled

@@ -323,9 +323,8 @@ def measure(m: Model, state: State, probe: Array) -> None:
         probe[at] = s.U[now, j]
         size += abs(s.U[now, j])
         for i in range(STRINGS):
-            p = STRINGS * j + i
-            probe[at + 1 + i] = w.f_f[p]
-            size += abs(w.f_f[p]) + abs(s.Psi[p])
+            probe[at + 1 + i] = w.f_f[STRINGS * j + i]
+            size += abs(w.f_f[STRINGS * j + i])
     if not size < LOST_SIZE:  # also true of NaN
         come_to_rest(m, state)
         state.lost += 1

@@ -1,0 +1,196 @@
+"""What a rendered frame costs: the whole way by feature and by stage, and beside another checkout.
+
+    .venv/bin/python bench/budget.py [--rounds 9] [--beside CHECKOUT] [--save FILE.json]
+
+Nanoseconds of processor time a frame. Each row has all that the rows above have, and one thing more. The
+rows are measured in turn, round after round, in one process, so that a slow minute of the machine
+meets all of them; what a row adds is the median of its differences within a round. With `--beside` the same is
+measured of another checkout (one of before), in a process of its own, a row of each in turn. Only
+processor time of the thread that computes is counted, so other work on the machine matters little.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import report
+
+ROOT = Path(__file__).resolve().parent.parent
+TUNE = ROOT / "examples" / "slow_air.mid"
+BARE = {
+    "/playing/variation": 0.0,
+    "/playing/listening": 0.0,
+    "/bow/noise": 0.0,
+    "/body/width": 0.0,
+}
+# What each row adds to the one above: settings as shipped, and options of the render.
+ROWS: dict[str, tuple[tuple[str, ...], dict[str, bool]]] = {
+    "mono, dry, steady hands, no hair, no ear": ((), {"is_dry": True, "is_mono": True}),
+    "hair": (("/bow/noise",), {"is_dry": True, "is_mono": True}),
+    "hands that vary": (("/playing/variation",), {"is_dry": True, "is_mono": True}),
+    "ear": (("/playing/listening",), {"is_dry": True, "is_mono": True}),
+    "stereo": ((), {"is_dry": True}),
+    "room": (("/body/width",), {}),
+}
+KERNEL, WRITING = "the kernel alone, one finger, bowed", "writing the WAV"
+ALL = (KERNEL, *ROWS, WRITING)
+
+
+def kernel_row() -> Callable[[], int]:
+    """The bare kernel, as it is called."""
+    from parts import FRAMES, Kernel
+
+    machine = Kernel(1, 1, 0.5)
+    rows = machine.rows(FRAMES)
+
+    def work() -> int:
+        for _ in range(40):
+            machine.advance(*rows)
+        return 40 * FRAMES
+
+    return work
+
+
+def tune_row(name: str) -> Callable[[], int]:
+    """The tune, from its score to samples, with all that rows up to this one have."""
+    from yehu_server.playing.style import Style
+    from yehu_server.rendering.options import Options
+    from yehu_server.rendering.performance import Performance
+    from yehu_server.scores.smf.reader import read_score
+
+    score, settings, options = read_score(TUNE), dict(BARE), {}
+    for row, (on, options) in ROWS.items():
+        for address in on:
+            del settings[address]
+        if row == name:
+            break
+    made = Options(style=Style(settings=tuple(settings.items())), **options)
+
+    def work() -> int:
+        return sum(len(samples) for samples in Performance(score, made).blocks())
+
+    return work
+
+
+def writing_row() -> Callable[[], int]:
+    """Blocks of sound into a WAV file of 24 bits."""
+    import numpy as np
+
+    from yehu_server.util.sound_file import SoundWriter
+
+    sound = (0.2 * np.random.default_rng(1).normal(size=(1 << 20, 2))).astype(np.float32)
+
+    def work() -> int:
+        with (
+            tempfile.TemporaryDirectory() as folder,
+            io.FileIO(Path(folder) / "x.wav", "w") as file,
+        ):
+            writer = SoundWriter(file, Path("x.wav"), 44100, "wav", "24", channels=2)
+            for first in range(0, len(sound), 4096):
+                writer.write(sound[first : first + 4096])
+        return len(sound)
+
+    return work
+
+
+def answer() -> None:
+    """Be a worker: for each name of a row on stdin, write the nanoseconds that a frame takes."""
+    works: dict[str, Callable[[], int]] = {}
+    for line in sys.stdin:
+        name = line.strip()
+        if name not in works:
+            works[name] = (
+                kernel_row()
+                if name == KERNEL
+                else writing_row()
+                if name == WRITING
+                else tune_row(name)
+            )
+            works[name]()  # once, which does not count
+        start = time.thread_time_ns()
+        frames = works[name]()
+        print((time.thread_time_ns() - start) / frames, flush=True)
+
+
+class Worker:
+    """A process that measures rows of one checkout."""
+
+    def __init__(self, checkout: Path) -> None:
+        self._process = subprocess.Popen(  # noqa: S603
+            [sys.executable, __file__, "--answer"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env=os.environ | {"PYTHONPATH": str(checkout)},
+        )
+
+    def ns(self, name: str) -> float:
+        """Nanoseconds of a frame of a row, this time."""
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._process.stdin.write(name + "\n")
+        self._process.stdin.flush()
+        return float(self._process.stdout.readline())
+
+
+def measured(workers: dict[str, Worker], rounds: int) -> dict[str, dict[str, list[float]]]:
+    """Nanoseconds of each row in each round, by checkout."""
+    found = {which: {name: [] for name in ALL} for which in workers}
+    for _ in range(rounds):
+        for name in ALL:
+            for which, worker in workers.items():
+                found[which][name].append(worker.ns(name))
+    return found
+
+
+def table(found: dict[str, dict[str, list[float]]]) -> dict[str, dict[str, float]]:
+    """Rows to show: medians, what each adds, and the ratio to the other checkout."""
+    here = found["here"]
+    rows: dict[str, dict[str, float]] = {}
+    before: list[float] | None = None
+    for name in ALL:
+        row = {"ns a frame": statistics.median(here[name])}
+        if name in ROWS:
+            if before is not None:
+                pairs = zip(here[name], before, strict=True)
+                row["adds"] = statistics.median(now - was for now, was in pairs)
+            before = here[name]
+        if "beside" in found:
+            other = found["beside"][name]
+            row["beside"] = statistics.median(other)
+            ratios = [now / was for now, was in zip(here[name], other, strict=True)]
+            row["ratio"] = statistics.median(ratios)
+            row["from"], row["to"] = min(ratios), max(ratios)
+        rows[name] = row
+    return rows
+
+
+def main() -> None:
+    """Measure, print, and save where wanted."""
+    if "--answer" in sys.argv:
+        answer()
+        return
+    parser = report.options(__doc__ or "")
+    parser.add_argument(
+        "--rounds", type=int, default=9, help="how often all is measured (default: 9)"
+    )
+    parser.add_argument("--beside", type=Path, help="another checkout, measured in turn")
+    arguments = parser.parse_args()
+    workers = {"here": Worker(ROOT)}
+    if arguments.beside:
+        workers["beside"] = Worker(arguments.beside.resolve())
+    rows = table(measured(workers, arguments.rounds))
+    report.show(rows)
+    report.save(arguments.save, rows, rounds=arguments.rounds)
+
+
+if __name__ == "__main__":
+    main()

@@ -2,11 +2,12 @@
 
     .venv/bin/python bench/budget.py [--rounds 9] [--beside CHECKOUT] [--save FILE.json]
 
-Nanoseconds of processor time a frame. Each row has all that the rows above have, and one thing more. The
-rows are measured in turn, round after round, in one process, so that a slow minute of the machine
-meets all of them; what a row adds is the median of its differences within a round. With `--beside` the same is
-measured of another checkout (one of before), in a process of its own, a row of each in turn. Only
-processor time of the thread that computes is counted, so other work on the machine matters little.
+Nanoseconds of processor time a frame. Each row of the tune has all that the rows above it have, and
+one thing more. The rows are measured in turn, round after round, so that a slow minute of the
+machine meets all of them; what a row adds is the median of its differences within a round. With
+`--beside` the same is measured of another checkout (one of before), in a process of its own, a row
+of each in turn. Only processor time of the thread that computes counts, so other work on the
+machine matters little.
 """
 
 from __future__ import annotations
@@ -66,13 +67,13 @@ def tune_row(name: str) -> Callable[[], int]:
     from yehu_server.rendering.performance import Performance
     from yehu_server.scores.smf.reader import read_score
 
-    score, settings, options = read_score(TUNE), dict(BARE), {}
-    for row, (on, options) in ROWS.items():
+    score, settings = read_score(TUNE), dict(BARE)
+    for row, (on, _) in ROWS.items():
         for address in on:
             del settings[address]
         if row == name:
             break
-    made = Options(style=Style(settings=tuple(settings.items())), **options)
+    made = Options(style=Style(settings=tuple(settings.items())), **ROWS[name][1])
 
     def work() -> int:
         return sum(len(samples) for samples in Performance(score, made).blocks())
@@ -134,11 +135,11 @@ class Worker:
 
     def ns(self, name: str) -> float:
         """Nanoseconds of a frame of a row, this time."""
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._process.stdin.write(name + "\n")
-        self._process.stdin.flush()
-        return float(self._process.stdout.readline())
+        question, answer = self._process.stdin, self._process.stdout
+        if question is None or answer is None:
+            raise ValueError("a worker has pipes")
+        print(name, file=question, flush=True)
+        return float(answer.readline())
 
 
 def measured(workers: dict[str, Worker], rounds: int) -> dict[str, dict[str, list[float]]]:

@@ -9,8 +9,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.layout import new_record
-from yehu_server.core.stage.late_field import ROOM, prepare_room, reverberate, set_room
-from yehu_server.core.stage.record import EVERY
+from yehu_server.core.stage.late_field import EVERY, ROOM, prepare_room, reverberate, set_room
 
 
 @dataclass(frozen=True)
@@ -24,11 +23,13 @@ class Asked:
 
 @compiled_exactly
 def _run(room: Any, first: int, asked: Any, level: Any, sound: Any, heard: Any) -> None:
-    for n in range(sound.shape[0]):
-        if (first + n) % EVERY == 0:
-            set_room(room[0], asked[n, 0], asked[n, 1], asked[n, 2])
-        reverberate(room[0], first + n, level[n], sound[n, 0], sound[n, 1])
-        heard[n, 0], heard[n, 1] = room[0].left, room[0].right
+    done = 0
+    while done < sound.shape[0]:
+        if (first + done) % EVERY == 0:
+            set_room(room[0], asked[done, 0], asked[done, 1], asked[done, 2])
+        end = min(done + EVERY - (first + done) % EVERY, sound.shape[0])
+        reverberate(room[0], first + done, level[done:end], sound[done:end], heard[done:end])
+        done = end
 
 
 class Room:

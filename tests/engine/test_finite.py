@@ -99,7 +99,7 @@ def check_it_comes_back(ensemble: Ensemble, field: str, bad: float) -> None:
     if field not in PREPARED:
         assert np.abs(out[-4410:]).max() > 0.05, (field, bad)
         room = ensemble._stage["room"]
-        assert np.isfinite([room["left"], room["right"]]).all(), (field, bad)
+        assert np.isfinite(room["row"]).all(), (field, bad)
         # All begins anew at once, wherever a block begins: what was computed ahead is lost too.
         assert ensemble._stage["invalid_samples"] - before <= 2 * CHUNK, (field, bad)
 

@@ -139,6 +139,18 @@ def compiled_exactly(function: Callable[P, R]) -> Callable[P, R]:
     No sum is reordered and no multiply-add fused, so that a decision doesn't depend on the
     processor. Constants make no versions of their own.
     """
+    return _compiled_exactly(function)
+
+
+def compiled_exactly_apart(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile as `compiled_exactly` does, for loops over rows that do not overlap.
+
+    It becomes a part of its callers, where loops over several rows become vectors.
+    """
+    return _compiled_exactly(function, forceinline=True, pipeline_class=NoAliasCompiler)
+
+
+def _compiled_exactly(function: Callable[P, R], **options: Any) -> Callable[P, R]:
     if IS_PLAIN:
         return function
     made = numba.njit(
@@ -147,6 +159,7 @@ def compiled_exactly(function: Callable[P, R]) -> Callable[P, R]:
         fastmath=False,  # said, as a function without the word has its caller's
         no_cfunc_wrapper=True,
         _nrt=False,
+        **options,
     )(function)
     versions = made.get_call_template
 

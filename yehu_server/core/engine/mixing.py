@@ -29,14 +29,12 @@ from yehu_server.core.engine.telemetry import METERS, WINDOW_S
 from yehu_server.core.stage import late_field, seat
 from yehu_server.core.stage.directivity import side_signal
 from yehu_server.core.stage.image_sources import EARS
-from yehu_server.core.stage.late_field import reverberate, set_room
+from yehu_server.core.stage.late_field import EVERY, is_settled, reverberate, set_room
 from yehu_server.core.stage.record import (
     BUSES,
     DIRECT,
     EARLY,
-    EVERY,
     SEND,
-    SILENCED,
     STAGE,
     TAPE,
     TAPE_AT,
@@ -90,6 +88,7 @@ def mix(rigs: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int
     """
     parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
     stage = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0]
+    stage.silenced_at = frames
     for n in range(frames):
         for bus in range(BUSES):
             stage.bus[n, bus] = 0.0
@@ -102,8 +101,8 @@ def mix(rigs: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int
             if has_stems != 0:
                 own = carray(stems, (frames, parts + 1, EARS), np.float64)
                 own[n, part, LEFT], own[n, part, RIGHT] = left, right
+    add_room(rigs, stage, first, frames)
     for n in range(frames):
-        add_room(rigs, stage, first + n, n)
         left, right = finish(rigs, stage, first + n, n, out)
         if has_stems != 0:
             own = carray(stems, (frames, parts + 1, EARS), np.float64)
@@ -152,27 +151,46 @@ def take_up(rigs: Any, part: int, first: int, frames: int) -> None:
         s.direct[RIGHT] += s.direct_step[RIGHT]
         if n == o.silenced_at:
             clear_filters(s)
-            stage.bus[n, SILENCED] = 1.0
+            stage.silenced_at = min(stage.silenced_at, n)
 
 
 @compiled_with_aliasing
-def add_room(rigs: Any, stage: Any, frame: int, n: int) -> None:
-    """Compute what the room gives to row `n` of the mix (``own``)."""
-    shared = carray(at(rigs, OUTPUT_AT), (1,), OUTPUT)[0]
-    room_inputs, bus = shared.stage_inputs[n], stage.bus[n]
-    r = stage.room
-    stage.own[n, LEFT], stage.own[n, RIGHT] = 0.0, 0.0
+def add_room(rigs: Any, stage: Any, first: int, frames: int) -> None:
+    """Compute what the room gives to the mix (``own``)."""
     if stage.has_room == 0:
+        for n in range(frames):
+            stage.own[n, LEFT], stage.own[n, RIGHT] = 0.0, 0.0
         return
-    if frame % EVERY == 0:
-        set_room(r, room_inputs[SIZE_NOW], room_inputs[DECAY_NOW], room_inputs[DAMPING_NOW])
-    level = room_inputs[LEVEL_NOW]
-    reverberate(r, frame, level, bus[SEND + LEFT], bus[SEND + RIGHT])
-    early = level * r.open
-    stage.own[n, LEFT] = r.left + early * bus[EARLY + LEFT]
-    stage.own[n, RIGHT] = r.right + early * bus[EARLY + RIGHT]
-    if bus[SILENCED] > 0.0:
-        r.closing = 1
+    inputs = carray(at(rigs, OUTPUT_AT), (1,), OUTPUT)[0].stage_inputs
+    r, begin = stage.room, 0
+    while begin < frames:
+        if (first + begin) % EVERY == 0:
+            row = inputs[begin]
+            set_room(r, row[SIZE_NOW], row[DECAY_NOW], row[DAMPING_NOW])
+        end = end_of_room(r, inputs, first, begin, frames)
+        if begin <= stage.silenced_at < end:
+            end = stage.silenced_at + 1
+        sound = stage.bus[begin:end, SEND : SEND + EARS]
+        reverberate(r, first + begin, inputs[begin:end, LEVEL_NOW], sound, stage.own[begin:end])
+        for n in range(begin, end):
+            early = inputs[n, LEVEL_NOW] * r.opened[n - begin]
+            stage.own[n, LEFT] += early * stage.bus[n, EARLY + LEFT]
+            stage.own[n, RIGHT] += early * stage.bus[n, EARLY + RIGHT]
+        if end - 1 == stage.silenced_at:
+            r.closing = 1
+        begin = end
+
+
+@compiled_with_aliasing
+def end_of_room(r: Any, inputs: Any, first: int, begin: int, frames: int) -> int:
+    """The row before which the room stays as it is, from a row on: of those where it may change."""
+    end = begin + EVERY - (first + begin) % EVERY
+    while end < frames:
+        row = inputs[end]
+        if not is_settled(r, row[SIZE_NOW], row[DECAY_NOW], row[DAMPING_NOW]):
+            return end
+        end += EVERY
+    return frames
 
 
 @compiled_with_aliasing

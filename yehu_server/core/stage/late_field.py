@@ -14,12 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled_exactly
+from yehu_server.compile.jit import compiled_exactly, compiled_exactly_apart
+from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.stage import absorption, image_sources
 
 Array = Any
 
 LINES = 16
+EVERY = 32  # frames between two looks at what is asked of a room
 LENGTH = 1 << 15  # most frames of a line, and of the span that it is kept in
 # Frames between two lines: with a span of a power of two alone, all would fall into the same set of
 # the processor's cache.
@@ -43,12 +45,16 @@ DIFFUSER_S = np.array([[0.0009, 0.0023], [0.0011, 0.0021]])
 # Which line's sound enters a line again: so that two ways round of the same lines in another order,
 # which take the same time, do not add up.
 TURN, SHIFT = 5, 3
+LARGEST_GAP = 128 + CHUNK  # frames by which a prime may be longer than asked, and a block
 MOVE_S = 0.05  # in which lines take on the lengths of another size
 CLOSE_S, OPEN_S = 0.005, 0.02  # fades when the room is emptied
 
 ROOM = np.dtype(
     [
         ("rate", np.float64),  # Hz
+        # Frames that lines, and what entered, are kept for, less 1: powers of two, as few as do.
+        ("mask", np.int64),
+        ("entry_mask", np.int64),
         # What holds now: m, s, and shares.
         ("size", np.float64),
         ("decay", np.float64),
@@ -73,9 +79,13 @@ ROOM = np.dtype(
         ("state", np.float64, LINES),  # of the filters
         ("entry", np.int64, LINES),  # frames
         ("entry_gain", np.float64, LINES),
-        ("x", np.float64, LINES),
-        ("left", np.float64),  # what it gives
-        ("right", np.float64),
+        # Of each of the frames that are computed at once: what is in the lines; what one line gave
+        # before a move, and its share; the amplitude that is heard; how far the room is open.
+        ("row", np.float64, (LINES, CHUNK)),
+        ("was", np.float64, CHUNK),
+        ("share", np.float64, CHUNK),
+        ("gain", np.float64, CHUNK),
+        ("opened", np.float64, CHUNK),
         ("diffuser_length", np.int64, (2, DIFFUSERS)),
         ("diffuser", np.float64, (2, DIFFUSERS, DIFFUSER_LENGTH)),
         ("entered", np.float64, (2, ENTRIES)),
@@ -85,11 +95,18 @@ ROOM = np.dtype(
 )
 
 
+def power_of_two(least: float) -> int:
+    """The least power of two that is no less than a number."""
+    return 1 << math.ceil(math.log2(least))
+
+
 def prepare_room(room: Any, rate: float) -> None:
     """Prepare a record of dtype ROOM [shape=()] for a rate (Hz), in place: an empty room."""
     room["rate"] = rate
     room["close_step"], room["open_step"] = 1.0 / (CLOSE_S * rate), 1.0 / (OPEN_S * rate)
     room["move_step"] = 1.0 / (MOVE_S * rate)
+    room["mask"] = power_of_two(LONGEST * MOST_S * rate + LARGEST_GAP) - 1
+    room["entry_mask"] = power_of_two(ENTRY_S.max() * rate + CHUNK) - 1
     room["entry"] = np.round(ENTRY_S * rate)
     room["diffuser_length"] = np.round(DIFFUSER_S * rate)
     empty_room(room)
@@ -97,7 +114,7 @@ def prepare_room(room: Any, rate: float) -> None:
 
 def empty_room(room: Any) -> None:
     """Take all sound out of a record of dtype ROOM, in place."""
-    for name in ("state", "diffuser", "entered", "line", "open", "left", "right"):
+    for name in ("state", "diffuser", "entered", "line", "open", "row"):
         room[name] = 0.0
     # A room of no size is closed; that which is asked for first is open at once.
     room["size"], room["closing"], room["emptying"], room["moved"] = 0.0, 1, 0, 1.0
@@ -127,6 +144,13 @@ def set_room(r: Any, size: float, decay: float, damping: float) -> None:
             absorption.set_shelf(r, i, frames / r.rate, decay, damping)
             left = 10.0 ** (-absorption.loss_low(decay) * r.entry[i] / r.rate / 20.0)
             r.entry_gain[i] = ENTRY_SIGN[i] * INTO_LINES * left
+
+
+@compiled_exactly
+def is_settled(r: Any, size: float, decay: float, damping: float) -> bool:
+    """Whether `set_room` would leave the room as it is."""
+    is_as_asked = size == r.size and decay == r.decay and damping == r.damping
+    return bool(is_as_asked and r.moved == r.shaped and r.closing == 0)
 
 
 @compiled_exactly
@@ -168,91 +192,187 @@ def next_prime(number: int) -> int:
 
 
 @compiled_exactly
-def enter(r: Any, frame: int, side: int, x: float) -> None:
-    """Let a sample of one side enter, through the all-pass filters."""
-    for k in range(DIFFUSERS):
-        line = r.diffuser[side, k]
-        late = line[(frame - r.diffuser_length[side, k]) & (DIFFUSER_LENGTH - 1)]
-        if r.emptying > 0:
-            late = 0.0
-        kept = x + DIFFUSION * late
-        line[frame & (DIFFUSER_LENGTH - 1)] = kept
-        x = late - DIFFUSION * kept
-    r.entered[side, frame & (ENTRIES - 1)] = x
+def reverberate(r: Any, frame: int, level: Array, sound: Array, heard: Array) -> None:
+    """Let sound of two sides enter the room; write what the room gives, and how far it is open.
 
-
-@compiled_exactly
-def reverberate(r: Any, frame: int, level: float, left: float, right: float) -> None:
-    """Let sound of two sides enter the room; ``left`` and ``right`` are what it gives.
-
-    At a level of 0 nothing is computed, and the room is empty when it is heard again.
+    While the level is 0 nothing is computed, and the room is empty when it is heard again.
     Real time: safe.
+
+    Parameters
+    ----------
+    frame : int
+        Number of the first of the frames, of which there are at most CHUNK.
+    level : ndarray [shape=(frames,)]
+    sound, heard : ndarray [shape=(frames, 2)]
     """
-    r.left, r.right = 0.0, 0.0
-    if level == 0.0 or r.size == 0.0:
-        r.open, r.closing = 0.0, 1
-        return
+    frames, done = level.shape[0], 0
+    while done < frames:
+        if level[done] == 0.0 or r.size == 0.0:
+            r.open, r.closing, r.opened[done] = 0.0, 1, 0.0
+            heard[done, 0], heard[done, 1] = 0.0, 0.0
+            done += 1
+            continue
+        end = done + 1
+        while end < frames and level[end] != 0.0:
+            end += 1
+        if r.emptying > 0:
+            end = min(end, done + r.emptying)
+        opened = r.opened[done:end]
+        open_room(r, opened)
+        enter(r, frame + done, opened, sound[done:end])
+        go_round(r, frame + done, level[done:end], opened, heard[done:end])
+        done = end
+
+
+@compiled_exactly
+def open_room(r: Any, opened: Array) -> None:
+    """Write how far the room is open at each frame: a room that closes or opens does so slowly."""
+    now, step = r.open, 0.0
     if r.closing != 0:
-        r.open = max(0.0, r.open - r.close_step)
-    elif r.emptying == 0:
-        r.open = min(1.0, r.open + r.open_step)
-    enter(r, frame, 0, r.open * left)
-    enter(r, frame, 1, r.open * right)
-    leave(r, frame)
-    x = r.x
-    for i in range(LINES):
-        y = r.b_0[i] * x[i] + r.state[i]
-        r.state[i] = r.b_1[i] * x[i] - r.a_1[i] * y
-        x[i] = y
-    per_level = r.per_level
-    if r.moved < 1.0:
-        per_level += (1.0 - r.moved) * (r.was_per_level - per_level)
-        r.moved = min(1.0, r.moved + r.move_step)
-    gain = per_level * level * r.open
-    r.left = gain * (((x[0] + x[2]) + (x[4] + x[6])) - ((x[8] + x[10]) + (x[12] + x[14])))
-    r.right = gain * (((x[1] + x[3]) + (x[5] + x[7])) - ((x[9] + x[11]) + (x[13] + x[15])))
-    if r.emptying == 0:
-        for i in range(LINES):
-            x[i] += r.entry_gain[i] * r.entered[i & 1, (frame - r.entry[i]) & (ENTRIES - 1)]
-    mix(x)
-    here = frame & (LENGTH - 1)
-    for i in range(LINES):
-        r.line[i, here] = x[(TURN * i + SHIFT) & (LINES - 1)]
+        step = -r.close_step
+    elif r.emptying == 0 and now < 1.0:
+        step = r.open_step
+    for n in range(opened.shape[0]):
+        if step != 0.0:
+            now = min(1.0, max(0.0, now + step))
+        opened[n] = now
+    r.open = now
 
 
 @compiled_exactly
-def leave(r: Any, frame: int) -> None:
-    """Take what leaves the lines."""
-    x = r.x
-    if r.emptying > 0:
-        r.emptying -= 1
-        for i in range(LINES):
-            x[i], r.state[i] = 0.0, 0.0
-        return
-    for i in range(LINES):
-        x[i] = r.line[i, (frame - r.length[i]) & (LENGTH - 1)]
-    if r.moved < 1.0:
-        for i in range(LINES):
-            was = r.line[i, (frame - r.was_length[i]) & (LENGTH - 1)]
-            x[i] += (1.0 - r.moved) * (was - x[i])
+def enter(r: Any, frame: int, opened: Array, sound: Array) -> None:
+    """Let sound of both sides enter, through the all-pass filters."""
+    for n in range(opened.shape[0]):
+        for side in range(2):
+            x = opened[n] * sound[n, side]
+            for k in range(DIFFUSERS):
+                line = r.diffuser[side, k]
+                late = line[(frame + n - r.diffuser_length[side, k]) & (DIFFUSER_LENGTH - 1)]
+                if r.emptying > 0:
+                    late = 0.0
+                kept = x + DIFFUSION * late
+                line[(frame + n) & (DIFFUSER_LENGTH - 1)] = kept
+                x = late - DIFFUSION * kept
+            r.entered[side, (frame + n) & r.entry_mask] = x
 
 
 @compiled_exactly
-def mix(x: Array) -> None:
-    """Multiply LINES values by an orthogonal matrix, in place: all its entries are 1/4 or -1/4.
+def go_round(r: Any, frame: int, level: Array, opened: Array, heard: Array) -> None:
+    """Take what leaves the lines, write what is heard of it, and let it enter them again.
+
+    No line is as short as CHUNK frames, so nothing that enters leaves among the same frames.
+    """
+    frames, row = level.shape[0], r.row
+    was_moving, is_empty = r.moved < 1.0, r.emptying > 0
+    moved, step, gain, was_gain = r.moved, r.move_step, r.per_level, r.was_per_level
+    for n in range(frames):
+        share = 1.0 - moved
+        r.share[n] = share
+        r.gain[n] = (gain + share * (was_gain - gain)) * level[n] * opened[n]
+        if was_moving:
+            moved = min(1.0, moved + step)
+    r.moved = moved
+    if is_empty:
+        r.emptying -= frames
+        r.state[:], row[:] = 0.0, 0.0
+    else:
+        for i in range(LINES):
+            read_ring(row[i], r.line[i], frame - r.length[i], r.mask, frames)
+    if was_moving and not is_empty:
+        for i in range(LINES):
+            read_ring(r.was, r.line[i], frame - r.was_length[i], r.mask, frames)
+            blend(row[i], r.was, r.share, frames)
+    absorb(row, r.b_0, r.b_1, r.a_1, r.state, frames)
+    hear(row, r.gain, heard, frames)
+    if not is_empty:
+        for i in range(LINES):
+            entered, gain = r.entered[i & 1], r.entry_gain[i]
+            add_ring(row[i], entered, frame - r.entry[i], r.entry_mask, gain, frames)
+    mix(row, frames)
+    for i in range(LINES):
+        write_ring(r.line[i], row[(TURN * i + SHIFT) & (LINES - 1)], frame, r.mask, frames)
+
+
+@compiled_exactly_apart
+def read_ring(row: Array, ring: Array, start: int, mask: int, frames: int) -> None:
+    """Read frames of a ring into a row, from a frame on."""
+    at, count = np.uint64(start & mask), np.uint64(frames)
+    before_end = min(count, np.uint64(mask + 1) - at)
+    for n in range(before_end):
+        row[n] = ring[at + n]
+    for n in range(before_end, count):
+        row[n] = ring[n - before_end]
+
+
+@compiled_exactly_apart
+def add_ring(row: Array, ring: Array, start: int, mask: int, gain: float, frames: int) -> None:
+    """Add frames of a ring to a row, from a frame on."""
+    at, count = np.uint64(start & mask), np.uint64(frames)
+    before_end = min(count, np.uint64(mask + 1) - at)
+    for n in range(before_end):
+        row[n] += gain * ring[at + n]
+    for n in range(before_end, count):
+        row[n] += gain * ring[n - before_end]
+
+
+@compiled_exactly_apart
+def write_ring(ring: Array, row: Array, start: int, mask: int, frames: int) -> None:
+    """Write a row into a ring, from a frame on."""
+    at, count = np.uint64(start & mask), np.uint64(frames)
+    before_end = min(count, np.uint64(mask + 1) - at)
+    for n in range(before_end):
+        ring[at + n] = row[n]
+    for n in range(before_end, count):
+        ring[n - before_end] = row[n]
+
+
+@compiled_exactly_apart
+def blend(row: Array, was: Array, share: Array, frames: int) -> None:
+    """Turn a row into what it was, by a share for each frame."""
+    for n in range(np.uint64(frames)):
+        row[n] += share[n] * (was[n] - row[n])
+
+
+@compiled_exactly_apart
+def absorb(row: Array, b_0: Array, b_1: Array, a_1: Array, state: Array, frames: int) -> None:
+    """Let air and walls take their part of what left each line: a filter of first order."""
+    for n in range(np.uint64(frames)):
+        for i in range(LINES):
+            x = row[i, n]
+            y = b_0[i] * x + state[i]
+            state[i] = b_1[i] * x - a_1[i] * y
+            row[i, n] = y
+
+
+@compiled_exactly_apart
+def hear(row: Array, gain: Array, heard: Array, frames: int) -> None:
+    """Write what both ears hear of the lines: the left the even ones, the right the odd ones."""
+    for n in range(np.uint64(frames)):
+        for ear in range(2):
+            plus = (row[ear, n] + row[ear + 2, n]) + (row[ear + 4, n] + row[ear + 6, n])
+            minus = (row[ear + 8, n] + row[ear + 10, n]) + (row[ear + 12, n] + row[ear + 14, n])
+            heard[n, ear] = gain[n] * (plus - minus)
+
+
+@compiled_exactly
+def mix(row: Array, frames: int) -> None:
+    """Multiply LINES rows by an orthogonal matrix, in place: all its entries are 1/4 or -1/4.
 
     It is the Kronecker product of two Householder reflections of four values, so that each line
     feeds all lines alike.
     """
     for j in range(4):
-        half = 0.5 * ((x[j] + x[4 + j]) + (x[8 + j] + x[12 + j]))
-        x[j] -= half
-        x[4 + j] -= half
-        x[8 + j] -= half
-        x[12 + j] -= half
+        reflect(row[j], row[4 + j], row[8 + j], row[12 + j], frames)
     for i in range(0, LINES, 4):
-        half = 0.5 * ((x[i] + x[i + 1]) + (x[i + 2] + x[i + 3]))
-        x[i] -= half
-        x[i + 1] -= half
-        x[i + 2] -= half
-        x[i + 3] -= half
+        reflect(row[i], row[i + 1], row[i + 2], row[i + 3], frames)
+
+
+@compiled_exactly_apart
+def reflect(a: Array, b: Array, c: Array, d: Array, frames: int) -> None:
+    """Reflect four rows about their mean, in place."""
+    for n in range(np.uint64(frames)):
+        half = 0.5 * ((a[n] + b[n]) + (c[n] + d[n]))
+        a[n] -= half
+        b[n] -= half
+        c[n] -= half
+        d[n] -= half

@@ -11,11 +11,9 @@ from yehu_server.core.stage.image_sources import EARS
 from yehu_server.core.stage.late_field import ROOM, empty_room, prepare_room
 
 TAPE = 1 << 19  # the last frames, for recorders: 10 s at 48 kHz
-EVERY = 32  # frames between two looks at what is asked of the room and the seats
-BUSES = 7
-# Of both ears: the direct sound, what enters the room, what is reflected at once; and whether an
-# instrument was put to rest at this frame.
-DIRECT, SEND, EARLY, SILENCED = 0, 2, 4, 6
+BUSES = 6
+# Of both ears: the direct sound, what enters the room, what is reflected at once.
+DIRECT, SEND, EARLY = 0, 2, 4
 
 STAGE = np.dtype(
     [
@@ -27,6 +25,7 @@ STAGE = np.dtype(
         ),  # number of frames that were not numbers, replaced by silence
         ("bus", np.float64, (CHUNK, BUSES)),
         ("own", np.float64, (CHUNK, EARS)),  # what one of the sources gives
+        ("silenced_at", np.int64),  # row of `bus` at which an instrument is put to rest first
         # Level of the mix, over windows of a sixtieth of a second, as in the meters.
         ("window_frames", np.int64),
         ("window_peak", np.float64),

@@ -183,13 +183,15 @@ def add_room(rigs: Any, stage: Any, first: int, frames: int) -> None:
 
 @compiled_with_aliasing
 def end_of_room(r: Any, inputs: Any, first: int, begin: int, frames: int) -> int:
-    """The row before which the room stays as it is, from a row on: of those where it may change."""
-    end = begin + EVERY - (first + begin) % EVERY
-    while end < frames:
-        row = inputs[end]
-        if not is_settled(r, row[SIZE_NOW], row[DECAY_NOW], row[DAMPING_NOW]):
-            return end
-        end += EVERY
+    """The row up to which the room stays as it is, from a row on."""
+    for n in range(begin + 1, frames):
+        row = inputs[n]
+        if (first + n) % EVERY == 0 and not is_settled(
+            r, row[SIZE_NOW], row[DECAY_NOW], row[DAMPING_NOW]
+        ):
+            return n
+        if inputs[n - 1, LEVEL_NOW] == 0.0 and r.closing == 0:  # the room closes
+            return n
     return frames
 
 

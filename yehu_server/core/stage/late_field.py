@@ -150,7 +150,7 @@ def set_room(r: Any, size: float, decay: float, damping: float) -> None:
 def is_settled(r: Any, size: float, decay: float, damping: float) -> bool:
     """Whether `set_room` would leave the room as it is."""
     is_as_asked = size == r.size and decay == r.decay and damping == r.damping
-    return bool(is_as_asked and r.moved == r.shaped and r.closing == 0)
+    return bool(is_as_asked and r.moved >= 1.0 and r.moved == r.shaped and r.closing == 0)
 
 
 @compiled_exactly

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.physics.layout import new_record
 from yehu_server.core.stage.seat import SEAT, clear_filters, prepare_seat, reflect, set_reflections
 
@@ -23,9 +22,9 @@ PLACES = [
 
 @compiled_exactly
 def _run(seat: Any, first: int, sound: Any, heard: Any) -> None:
-    for begin in range(0, sound.shape[0], CHUNK):
-        end = min(begin + CHUNK, sound.shape[0])
-        reflect(seat[0], first + begin, sound[begin:end], heard[:, begin:end])
+    for n in range(sound.shape[0]):
+        reflect(seat[0], first + n, sound[n])
+        heard[n, 0], heard[n, 1] = seat[0].early[0], seat[0].early[1]
 
 
 @compiled_exactly
@@ -54,10 +53,10 @@ class Player:
         _place(self.seat, size, decay, damping, distance, pan)
 
     def hear(self, sound: Any) -> Any:
-        heard = np.zeros((2, len(sound)))
+        heard = np.zeros((len(sound), 2))
         _run(self.seat, self.frame, np.asarray(sound, float), heard)
         self.frame += len(sound)
-        return heard.T
+        return heard
 
     def response(self, seconds: float = 0.3) -> Any:
         sound = np.zeros(round(seconds * self.rate))

@@ -122,49 +122,36 @@ def take_up(rigs: Any, part: int, first: int, frames: int) -> None:
     rig = at(rigs, part * RIG_BYTES)
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     s = carray(at(rig, SEAT_AT), (1,), SEAT)[0]
-    begin = 0
-    while begin < frames:
-        end = min(frames, begin + EVERY - (first + begin) % EVERY)
-        if begin <= o.silenced_at < end:
-            end = o.silenced_at + 1
-        place(s, o.stage_inputs[begin], shared.stage_inputs[begin], first + begin, stage.has_room)
-        for n in range(begin, end):
-            x, side = o.dry[n], 0.0
-            if stage.has_room != 0:
-                side = o.stage_inputs[n, WIDTH_NOW] * side_signal(s.sides, x)
-            stage.bus[n, SEND + LEFT] += s.send[LEFT] * x
-            stage.bus[n, SEND + RIGHT] += s.send[RIGHT] * x
-            stage.own[n, LEFT] = s.direct[LEFT] * (x + side)
-            stage.own[n, RIGHT] = s.direct[RIGHT] * (x - side)
-            s.direct[LEFT] += s.direct_step[LEFT]
-            s.direct[RIGHT] += s.direct_step[RIGHT]
-            stage.entering[n] = x if shared.stage_inputs[n, LEVEL_NOW] > 0.0 else 0.0
+    for n in range(frames):
+        own, room_inputs = o.stage_inputs[n], shared.stage_inputs[n]
+        is_time = (first + n) % EVERY == 0
+        if is_time or math.isnan(s.direct[LEFT]):  # or has begun anew, wherever the block begins
+            set_direct(s, own[DISTANCE_NOW], own[PAN_NOW], EVERY)
+        if is_time and stage.has_room != 0:
+            set_reflections(
+                s,
+                room_inputs[SIZE_NOW],
+                room_inputs[DECAY_NOW],
+                room_inputs[DAMPING_NOW],
+                own[DISTANCE_NOW],
+                own[PAN_NOW],
+            )
+        x = o.dry[n]
+        side = 0.0
         if stage.has_room != 0:
-            reflect(s, first + begin, stage.entering[begin:end], s.early[:, : end - begin])
-            for n in range(begin, end):
-                stage.bus[n, EARLY + LEFT] += s.early[LEFT, n - begin]
-                stage.bus[n, EARLY + RIGHT] += s.early[RIGHT, n - begin]
-        if end - 1 == o.silenced_at:
+            side = own[WIDTH_NOW] * side_signal(s.sides, x)
+            reflect(s, first + n, x if room_inputs[LEVEL_NOW] > 0.0 else 0.0)
+            stage.bus[n, EARLY + LEFT] += s.early[LEFT]
+            stage.bus[n, EARLY + RIGHT] += s.early[RIGHT]
+        stage.bus[n, SEND + LEFT] += s.send[LEFT] * x
+        stage.bus[n, SEND + RIGHT] += s.send[RIGHT] * x
+        stage.own[n, LEFT] = s.direct[LEFT] * (x + side)
+        stage.own[n, RIGHT] = s.direct[RIGHT] * (x - side)
+        s.direct[LEFT] += s.direct_step[LEFT]
+        s.direct[RIGHT] += s.direct_step[RIGHT]
+        if n == o.silenced_at:
             clear_filters(s)
-            stage.silenced_at = min(stage.silenced_at, end - 1)
-        begin = end
-
-
-@compiled_with_aliasing
-def place(s: Any, own: Any, room_inputs: Any, frame: int, has_room: int) -> None:
-    """Follow what is asked of one seat and of the room."""
-    is_time = frame % EVERY == 0
-    if is_time or math.isnan(s.direct[LEFT]):  # or has begun anew, wherever the block begins
-        set_direct(s, own[DISTANCE_NOW], own[PAN_NOW], EVERY)
-    if is_time and has_room != 0:
-        set_reflections(
-            s,
-            room_inputs[SIZE_NOW],
-            room_inputs[DECAY_NOW],
-            room_inputs[DAMPING_NOW],
-            own[DISTANCE_NOW],
-            own[PAN_NOW],
-        )
+            stage.silenced_at = min(stage.silenced_at, n)
 
 
 @compiled_with_aliasing

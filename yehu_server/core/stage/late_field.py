@@ -17,7 +17,6 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, compiled_exactly_apart
 from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.stage import absorption, image_sources
-from yehu_server.core.stage.rings import add_ring, read_ring, write_ring
 
 Array = Any
 
@@ -292,6 +291,39 @@ def go_round(r: Any, frame: int, level: Array, opened: Array, heard: Array) -> N
     mix(row, frames)
     for i in range(LINES):
         write_ring(r.line[i], row[(TURN * i + SHIFT) & (LINES - 1)], frame, r.mask, frames)
+
+
+@compiled_exactly_apart
+def read_ring(row: Array, ring: Array, start: int, mask: int, frames: int) -> None:
+    """Read frames of a ring into a row, from a frame on."""
+    at, count = np.uint64(start & mask), np.uint64(frames)
+    before_end = min(count, np.uint64(mask + 1) - at)
+    for n in range(before_end):
+        row[n] = ring[at + n]
+    for n in range(before_end, count):
+        row[n] = ring[n - before_end]
+
+
+@compiled_exactly_apart
+def add_ring(row: Array, ring: Array, start: int, mask: int, gain: float, frames: int) -> None:
+    """Add frames of a ring to a row, from a frame on."""
+    at, count = np.uint64(start & mask), np.uint64(frames)
+    before_end = min(count, np.uint64(mask + 1) - at)
+    for n in range(before_end):
+        row[n] += gain * ring[at + n]
+    for n in range(before_end, count):
+        row[n] += gain * ring[n - before_end]
+
+
+@compiled_exactly_apart
+def write_ring(ring: Array, row: Array, start: int, mask: int, frames: int) -> None:
+    """Write a row into a ring, from a frame on."""
+    at, count = np.uint64(start & mask), np.uint64(frames)
+    before_end = min(count, np.uint64(mask + 1) - at)
+    for n in range(before_end):
+        ring[at + n] = row[n]
+    for n in range(before_end, count):
+        ring[n - before_end] = row[n]
 
 
 @compiled_exactly_apart

@@ -25,7 +25,6 @@ STAGE = np.dtype(
         ),  # number of frames that were not numbers, replaced by silence
         ("bus", np.float64, (CHUNK, BUSES)),
         ("own", np.float64, (CHUNK, EARS)),  # what one of the sources gives
-        ("entering", np.float64, CHUNK),  # what one of them sends to the walls
         ("silenced_at", np.int64),  # row of `bus` at which an instrument is put to rest first
         # Level of the mix, over windows of a sixtieth of a second, as in the meters.
         ("window_frames", np.int64),

@@ -7,15 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled_exactly, compiled_exactly_apart
-from yehu_server.core.controls.record import CHUNK
+from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.stage import absorption, image_sources
 from yehu_server.core.stage.directivity import SIDES, fall_still, prepare_sides, rest_sides
 from yehu_server.core.stage.image_sources import EARS, REFERENCE, WALLS
 from yehu_server.core.stage.late_field import CLOSE_S
-from yehu_server.core.stage.rings import add_ring
-
-Array = Any
 
 SPAN = 1 << 16  # frames of sound that are kept for reflections
 MOVE_S = 0.03  # in which reflections move to where they belong now
@@ -49,11 +45,7 @@ SEAT = np.dtype(
         ("a_1", np.float64, 1),
         ("before", np.float64),
         ("filtered", np.float64),
-        # Of each of the frames that are computed at once: what is reflected to each ear; the share
-        # of the reflections of now; what one ear hears.
-        ("early", np.float64, (EARS, CHUNK)),
-        ("share", np.float64, CHUNK),
-        ("heard", np.float64, CHUNK),
+        ("early", np.float64, EARS),  # what is reflected
         ("kept", np.float64, SPAN),
     ],
     align=True,
@@ -136,86 +128,37 @@ def set_reflections(
 
 
 @compiled_exactly
-def reflect(s: Any, frame: int, sound: Array, early: Array) -> None:
-    """Keep sound, and write what both ears hear of what was kept.
+def reflect(s: Any, frame: int, x: float) -> None:
+    """Keep a sample, and compute what both ears hear of earlier ones (``early``).
 
     Real time: safe.
-
-    Parameters
-    ----------
-    frame : int
-        Number of the first of the frames, of which there are at most CHUNK.
-    sound : ndarray [shape=(frames,)]
-    early : ndarray [shape=(EARS, frames)]
     """
-    frames, done = sound.shape[0], 0
-    while done < frames:
-        if s.mute == -1:
+    if s.mute < 0:
+        s.mute += 1
+        if s.mute == 0:
             mute(s)
-        end = frames
-        if s.mute != 0:  # the room closes, or nothing is reflected
-            end = min(end, done + (s.mute if s.mute > 0 else -s.mute - 1))
-        keep(s, frame + done, sound[done:end])
-        heard = early[:, done:end]
-        if s.mute > 0:
-            heard[:] = 0.0
-            s.mute -= end - done
-        else:
-            s.mute += end - done if s.mute < 0 else 0
-            add_reflections(s, frame + done, heard)
-        done = end
-
-
-@compiled_exactly
-def keep(s: Any, frame: int, sound: Array) -> None:
-    """Keep sound as a wall reflects it."""
-    b_0, b_1, a_1, before, filtered = s.b_0[0], s.b_1[0], s.a_1[0], s.before, s.filtered
-    for n in range(sound.shape[0]):
-        filtered = b_0 * sound[n] + b_1 * before - a_1 * filtered
-        before = sound[n]
-        s.kept[(frame + n) & (SPAN - 1)] = filtered
-    s.before, s.filtered = before, filtered
-
-
-@compiled_exactly
-def add_reflections(s: Any, frame: int, early: Array) -> None:
-    """Write what is reflected: from where the player sits now, and from where it sat before."""
-    frames, moved = early.shape[1], s.moved
-    for n in range(frames):
-        s.share[n] = min(1.0, moved)
-        if moved < 1.0:
-            moved += s.move_step
-    for ear in range(EARS):
-        hear_walls(s, frame, s.now, ear, frames)
-        scale(early[ear], s.heard, s.share, frames)
+    y = s.b_0[0] * x + s.b_1[0] * s.before - s.a_1[0] * s.filtered
+    s.before, s.filtered = x, y
+    s.kept[frame & (SPAN - 1)] = y
+    if s.mute > 0:
+        s.mute -= 1
+        s.early[LEFT], s.early[RIGHT] = 0.0, 0.0
+        return
+    add_reflections(s, frame, s.now, min(1.0, s.moved), 0.0)
     if s.moved < 1.0:
-        for ear in range(EARS):
-            hear_walls(s, frame, 1 - s.now, ear, frames)
-            add_rest(early[ear], s.heard, s.share, frames)
-    s.moved = moved
+        add_reflections(s, frame, 1 - s.now, 1.0 - s.moved, 1.0)
+        s.moved += s.move_step
 
 
 @compiled_exactly
-def hear_walls(s: Any, frame: int, which: int, ear: int, frames: int) -> None:
-    """Write what one ear hears of one of the two sets of reflections."""
-    s.heard[:frames] = 0.0
-    for wall in range(WALLS):
-        start = frame - s.delay[which, ear, wall]
-        add_ring(s.heard, s.kept, start, SPAN - 1, s.gain[which, ear, wall], frames)
-
-
-@compiled_exactly_apart
-def scale(row: Array, heard: Array, share: Array, frames: int) -> None:
-    """Write a share of what is heard."""
-    for n in range(np.uint64(frames)):
-        row[n] = share[n] * heard[n]
-
-
-@compiled_exactly_apart
-def add_rest(row: Array, heard: Array, share: Array, frames: int) -> None:
-    """Add the share of what is heard that another has left."""
-    for n in range(np.uint64(frames)):
-        row[n] += (1.0 - share[n]) * heard[n]
+def add_reflections(s: Any, frame: int, which: int, amplitude: float, add: float) -> None:
+    """Hear one of the two sets of reflections, and add it to what was heard, or not (0)."""
+    for ear in range(EARS):
+        heard = 0.0
+        for wall in range(WALLS):
+            sample = s.kept[(frame - s.delay[which, ear, wall]) & (SPAN - 1)]
+            heard += s.gain[which, ear, wall] * sample
+        s.early[ear] = add * s.early[ear] + amplitude * heard
 
 
 @compiled_exactly
@@ -242,5 +185,5 @@ def reset_state(s: Any) -> None:
     s.mute = SPAN
     s.before, s.filtered, s.size, s.moved = 0.0, 0.0, 0.0, 1.0
     for ear in range(EARS):
-        s.direct[ear] = math.nan
+        s.early[ear], s.direct[ear] = 0.0, math.nan
     fall_still(s.sides)

@@ -90,27 +90,31 @@ def remember(heard: Array, frame: int, slip: float) -> None:
 def product(heard: Array, end: int, span: int, one: int, other: int) -> float:
     """Sum of products of the `span` samples before `end`, each `one` and `other` ago."""
     total = 0.0
-    for i in range(end - span, end):
-        total += heard[i - one] * heard[i - other]
+    first, second = np.uint64(end - span - one), np.uint64(end - span - other)
+    for i in range(np.uint64(span)):
+        total += heard[first + i] * heard[second + i]
     return total
 
 
 @compiled_exactly
-def correlation(heard: Array, end: int, span: int, lag: int) -> float:
-    """Correlation of the last `span` samples before `end` with those `lag` before."""
-    power = product(heard, end, span, 0, 0) * product(heard, end, span, lag, lag)
+def correlation(heard: Array, end: int, span: int, lag: int, own: float) -> float:
+    """Correlation of the last `span` samples before `end` with those `lag` before.
+
+    `own` is the `product` of the last ones with themselves.
+    """
+    power = own * product(heard, end, span, lag, lag)
     return product(heard, end, span, 0, lag) / math.sqrt(power + 1e-30)
 
 
 @compiled_exactly
 def count_slips(heard: Array, end: int, span: int) -> int:
     """Number of slips that begin in the last `span` samples before `end`."""
-    largest = 0.0
-    for i in range(end - span, end):
-        largest = max(largest, abs(heard[i]))
-    slips, is_slipping = 0, abs(heard[end - span]) > STICKING * largest
-    for i in range(end - span, end):
-        size = abs(heard[i])
+    largest, first = 0.0, np.uint64(end - span)
+    for i in range(np.uint64(span)):
+        largest = max(largest, abs(heard[first + i]))
+    slips, is_slipping = 0, abs(heard[first]) > STICKING * largest
+    for i in range(np.uint64(span)):
+        size = abs(heard[first + i])
         if is_slipping:
             is_slipping = size > STICKING * largest
         elif size > SLIPPING * largest:
@@ -150,9 +154,10 @@ def hear(ear: Any, heard: Array, frame: int, period: float) -> None:
     lag = best_lag(heard, end, span, first, last)
     ear.certainty = 0.0
     if first < lag < last:
-        below = correlation(heard, end, span, lag - 1)
-        best = correlation(heard, end, span, lag)
-        above = correlation(heard, end, span, lag + 1)
+        own = product(heard, end, span, 0, 0)
+        below = correlation(heard, end, span, lag - 1, own)
+        best = correlation(heard, end, span, lag, own)
+        above = correlation(heard, end, span, lag + 1, own)
         bend = below - 2.0 * best + above
         if bend < 0.0:
             ear.error = 1200.0 * math.log2(expected / (lag + 0.5 * (below - above) / bend))

@@ -31,12 +31,12 @@ def fastest_ns(parts: int, *, has_room: bool = True, **asked: Any) -> float:
     stage = stages.Stage(RATE, parts, has_room=has_room)
     dry = 0.01 * np.random.default_rng(1).normal(size=(parts, FRAMES))
     told = stages.told(FRAMES, **asked)
-    rows = np.ascontiguousarray(np.broadcast_to(told, (parts, *told.shape)))
+    sounded = stages.as_sounded(dry, np.broadcast_to(told, (parts, *told.shape)))
     out = np.zeros((FRAMES, 2), np.float32)
 
     def mix() -> None:
         mix_block.call(
-            stage.memory.ctypes.data, stage.frame, FRAMES, dry.ctypes.data, rows.ctypes.data,
+            stage.memory.ctypes.data, sounded.ctypes.data, stage.frame, FRAMES,
             out.ctypes.data, out.ctypes.data, 0,
         )  # fmt: skip
         stage.frame += FRAMES

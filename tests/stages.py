@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
 
+from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.controls.slots import STAGE_INPUTS
 from yehu_server.core.engine.instrument import new_memory
 from yehu_server.core.engine.mixing import mix_block
-from yehu_server.core.engine.output import prepare_output
+from yehu_server.core.engine.output import NOT_SILENCED, SOUNDED, prepare_output
 from yehu_server.core.engine.rig import RIG, RIG_BYTES
-from yehu_server.core.engine.sounding import STAGE_COLUMNS
 from yehu_server.core.stage.record import STAGE, prepare_stage
 from yehu_server.core.stage.seat import prepare_seat
 from yehu_server.params.table import ENGINE
@@ -22,18 +23,35 @@ DEFAULTS = {name: ENGINE[slot].default for name, slot in zip(NAMES, STAGE_INPUTS
 RANGES = {
     name: (ENGINE[slot].lo, ENGINE[slot].hi) for name, slot in zip(NAMES, STAGE_INPUTS, strict=True)
 }
-SILENCED = STAGE_COLUMNS - 1
+# Of each frame: what a stage needs, the limiter, and whether the instrument is put to rest.
+LIMITER = len(STAGE_INPUTS)
+SILENCED = LIMITER + 1
+COLUMNS = SILENCED + 1
 SMALL = 2.0**-10  # far below the limiter
-LIMITER = STAGE_COLUMNS - 2
 
 
 def told(frames: int, **asked: Any) -> Any:
-    """What a stage needs with each frame [shape=(frames, STAGE_COLUMNS)]: values or arrays."""
-    rows = np.zeros((frames, STAGE_COLUMNS))
+    """What a stage needs with each frame [shape=(frames, COLUMNS)]: values or arrays."""
+    rows = np.zeros((frames, COLUMNS))
     for column, name in enumerate(NAMES):
         rows[:, column] = asked.get(name, DEFAULTS[name])
     rows[:, LIMITER] = asked.get("limiter", 1.0)
     return rows
+
+
+def as_sounded(dry: Any, rows: Any) -> Any:
+    """Samples of all parts, and rows as `told`, as instruments give them to the stage."""
+    parts, frames = dry.shape
+    sounded = np.zeros((parts, -(-frames // CHUNK)), SOUNDED)
+    sounded["silenced_at"] = NOT_SILENCED
+    for part, begin in itertools.product(range(parts), range(0, frames, CHUNK)):
+        chunk, own = sounded[part, begin // CHUNK], rows[part, begin : begin + CHUNK]
+        chunk["dry"][: len(own)] = dry[part, begin : begin + CHUNK]
+        chunk["stage_inputs"][: len(own)] = own[:, :LIMITER]
+        chunk["soft"][: len(own)] = own[:, LIMITER]
+        for silenced in np.flatnonzero(own[:, SILENCED]):
+            chunk["silenced_at"] = silenced
+    return sounded
 
 
 class Stage:
@@ -57,7 +75,7 @@ class Stage:
         Parameters
         ----------
         dry : ndarray [shape=(frames,) or (parts, frames)]
-        rows : ndarray [shape=(frames, STAGE_COLUMNS) or (parts, frames, STAGE_COLUMNS)]
+        rows : ndarray [shape=(frames, COLUMNS) or (parts, frames, COLUMNS)]
             As `told`.
 
         Returns
@@ -68,18 +86,17 @@ class Stage:
         """
         dry = np.broadcast_to(dry, (self.parts, np.shape(dry)[-1]))
         frames = dry.shape[1]
-        rows = np.broadcast_to(rows, (self.parts, frames, STAGE_COLUMNS))
+        rows = np.broadcast_to(rows, (self.parts, frames, COLUMNS))
         out = np.zeros((frames, 2), np.float32)
         stems = np.zeros((frames, self.parts + 1, 2))
         for start in range(0, frames, block or frames):
             part = slice(start, min(frames, start + (block or frames)))
-            some = np.ascontiguousarray(dry[:, part], np.float64)
-            where = np.ascontiguousarray(rows[:, part])
-            mix_block.call(
-                self.memory.ctypes.data, self.frame, some.shape[1], some.ctypes.data,
-                where.ctypes.data, out[part].ctypes.data, stems[part].ctypes.data, 1,
-            )  # fmt: skip
-            self.frame += some.shape[1]
+            sounded = as_sounded(dry[:, part], rows[:, part])
+            count = part.stop - part.start
+            into = (out[part].ctypes.data, stems[part].ctypes.data, 1)
+            places = (self.memory.ctypes.data, sounded.ctypes.data, self.frame)
+            mix_block.call(*places, count, *into)
+            self.frame += count
         return out, stems
 
     def settle(self, seconds: float = 0.5, **asked: Any) -> None:

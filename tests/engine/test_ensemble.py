@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from sound import alone, bow, run
 
+from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.engine import intake, mixing, sounding
 from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.output import SOUNDED
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.wishes import BEGIN
@@ -39,18 +41,16 @@ def both(ensemble: Ensemble, frames: int, block: int = 0) -> np.ndarray:
 def apart(ensemble: Ensemble, frames: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """What `process` would give, by computing each instrument apart: mix, stems, dry samples."""
     parts = len(ensemble.instruments)
-    dry = np.zeros((parts, frames))
-    told = np.zeros((parts, frames, sounding.STAGE_COLUMNS))
+    sounded = np.zeros((parts, -(-frames // CHUNK)), SOUNDED)
     first = ensemble.frame
     assert intake.interpret_events.call(ensemble.address, first + frames) == first + frames
-    for instrument, samples, said in zip(ensemble.instruments, dry, told, strict=True):
-        pointers = samples.ctypes.data, said.ctypes.data
-        sounding.sound_block.call(instrument.address, frames, *pointers)
+    for instrument, own in zip(ensemble.instruments, sounded, strict=True):
+        sounding.sound_block.call(instrument.address, frames, own.ctypes.data)
     out = np.zeros((frames, ensemble.channels), np.float32)
     stems = np.zeros((frames, parts + 1, 2))
-    pointers = [each.ctypes.data for each in (dry, told, out, stems)]
-    mixing.mix_block.call(ensemble.address, first, frames, *pointers, 1)
-    return out, stems, dry
+    into = (out.ctypes.data, stems.ctypes.data, 1)
+    mixing.mix_block.call(ensemble.address, sounded.ctypes.data, first, frames, *into)
+    return out, stems, sounded["dry"].reshape(parts, -1)[:, :frames]
 
 
 def test_instruments_sound_the_same_apart_as_in_the_callback():

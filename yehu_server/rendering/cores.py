@@ -13,10 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.intake import interpret_events
 from yehu_server.core.engine.mixing import mix_block
-from yehu_server.core.engine.sounding import STAGE_COLUMNS, sound_block
+from yehu_server.core.engine.output import SOUNDED
+from yehu_server.core.engine.sounding import sound_block
 from yehu_server.core.stage.image_sources import EARS
 
 Array = Any
@@ -59,17 +61,16 @@ class Cores:
         """Compute frames whose events are taken in."""
         frames, instruments = len(out), self._ensemble.instruments
         first = self._ensemble.frame
-        dry = np.zeros((len(instruments), frames))
-        inputs = np.zeros((len(instruments), frames, STAGE_COLUMNS))
+        sounded = np.zeros((len(instruments), -(-frames // CHUNK)), SOUNDED)
 
         def sound(part: int) -> None:
-            places = (dry[part].ctypes.data, inputs[part].ctypes.data)
-            sound_block.call(instruments[part].address, frames, *places)
+            sound_block.call(instruments[part].address, frames, sounded[part].ctypes.data)
 
         for _ in self._share(sound, range(len(instruments))):
             pass
-        into = (dry.ctypes.data, inputs.ctypes.data, out.ctypes.data, stems.ctypes.data)
-        mix_block.call(self._ensemble.address, first, frames, *into, int(self._has_stems))
+        places = (self._ensemble.address, sounded.ctypes.data, first, frames)
+        into = (out.ctypes.data, stems.ctypes.data, int(self._has_stems))
+        mix_block.call(*places, *into)
 
 
 @contextmanager

@@ -17,14 +17,12 @@ from yehu_server.core.controls.slots import (
     LEVEL_NOW,
     PAN_NOW,
     SIZE_NOW,
-    STAGE_INPUTS,
     WIDTH_NOW,
 )
 from yehu_server.core.engine.atomics import at
-from yehu_server.core.engine.output import NOT_SILENCED, OUTPUT
+from yehu_server.core.engine.output import SOUNDED, SOUNDED_BYTES
 from yehu_server.core.engine.processor import flush_denormals, restore_denormals
-from yehu_server.core.engine.rig import METERS_AT, OUTPUT_AT, PARTS_AT, RIG_BYTES, SEAT_AT
-from yehu_server.core.engine.sounding import STAGE_COLUMNS
+from yehu_server.core.engine.rig import METERS_AT, PARTS_AT, RIG_BYTES, SEAT_AT
 from yehu_server.core.engine.telemetry import METERS, WINDOW_S
 from yehu_server.core.stage import late_field, seat
 from yehu_server.core.stage.directivity import side_signal
@@ -70,13 +68,25 @@ Array = Any
 LARGEST, LARGEST_LIMITED = 1e14, 2.0
 
 
-@native("void(voidptr, int64, int64, voidptr, voidptr, int64)")
-def mix(rigs: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int) -> None:
+@native("void(voidptr, voidptr, int64, int64, int64, voidptr, voidptr, int64)")
+def mix(
+    rigs: Any,
+    sounded: Any,
+    apart: int,
+    first: int,
+    frames: int,
+    out: Any,
+    stems: Any,
+    has_stems: int,
+) -> None:
     """Mix what all instruments sounded, at most CHUNK frames.
 
     Parameters
     ----------
     rigs : pointer to records of dtype RIG, and one of dtype STAGE after them
+    sounded : pointer to the record of dtype SOUNDED of the first instrument
+    apart : int
+        Bytes from there to that of the next.
     first : int
         Number of the first frame.
     out : pointer to float32 [shape=(frames, channels)]
@@ -93,7 +103,7 @@ def mix(rigs: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int
         for bus in range(BUSES):
             stage.bus[n, bus] = 0.0
     for part in range(parts):
-        take_up(rigs, part, first, frames)
+        take_up(rigs, sounded, apart, part, first, frames)
         for n in range(frames):
             left, right = stage.own[n, LEFT], stage.own[n, RIGHT]
             stage.bus[n, DIRECT + LEFT] += left
@@ -101,9 +111,10 @@ def mix(rigs: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int
             if has_stems != 0:
                 own = carray(stems, (frames, parts + 1, EARS), np.float64)
                 own[n, part, LEFT], own[n, part, RIGHT] = left, right
-    add_room(rigs, stage, first, frames)
+    inputs = carray(sounded, (1,), SOUNDED)[0]
+    add_room(stage, inputs.stage_inputs, first, frames)
     for n in range(frames):
-        left, right = finish(rigs, stage, first + n, n, out)
+        left, right = finish(rigs, stage, inputs.soft[n], first + n, n, out)
         if has_stems != 0:
             own = carray(stems, (frames, parts + 1, EARS), np.float64)
             own[n, parts, LEFT] = stage.own[n, LEFT]
@@ -114,14 +125,13 @@ def mix(rigs: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int
 
 
 @compiled_with_aliasing
-def take_up(rigs: Any, part: int, first: int, frames: int) -> None:
+def take_up(rigs: Any, sounded: Any, apart: int, part: int, first: int, frames: int) -> None:
     """Place what one instrument sounded: its direct sound (``own``), and what goes to the room."""
     parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
     stage = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0]
-    shared = carray(at(rigs, OUTPUT_AT), (1,), OUTPUT)[0]
-    rig = at(rigs, part * RIG_BYTES)
-    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
-    s = carray(at(rig, SEAT_AT), (1,), SEAT)[0]
+    shared = carray(sounded, (1,), SOUNDED)[0]
+    o = carray(at(sounded, part * apart), (1,), SOUNDED)[0]
+    s = carray(at(rigs, part * RIG_BYTES + SEAT_AT), (1,), SEAT)[0]
     for n in range(frames):
         own, room_inputs = o.stage_inputs[n], shared.stage_inputs[n]
         is_time = (first + n) % EVERY == 0
@@ -155,13 +165,12 @@ def take_up(rigs: Any, part: int, first: int, frames: int) -> None:
 
 
 @compiled_with_aliasing
-def add_room(rigs: Any, stage: Any, first: int, frames: int) -> None:
+def add_room(stage: Any, inputs: Any, first: int, frames: int) -> None:
     """Compute what the room gives to the mix (``own``)."""
     if stage.has_room == 0:
         for n in range(frames):
             stage.own[n, LEFT], stage.own[n, RIGHT] = 0.0, 0.0
         return
-    inputs = carray(at(rigs, OUTPUT_AT), (1,), OUTPUT)[0].stage_inputs
     r, begin = stage.room, 0
     while begin < frames:
         if (first + begin) % EVERY == 0:
@@ -196,15 +205,14 @@ def end_of_room(r: Any, inputs: Any, first: int, begin: int, frames: int) -> int
 
 
 @compiled_with_aliasing
-def finish(rigs: Any, stage: Any, frame: int, n: int, out: Any) -> tuple[float, float]:
+def finish(rigs: Any, stage: Any, soft: float, frame: int, n: int, out: Any) -> tuple[float, float]:
     """Limit row `n` of the mix, and put it into the block and onto the tape.
 
     Returns the factors by which the limiter made both sides smaller.
     """
-    shared = carray(at(rigs, OUTPUT_AT), (1,), OUTPUT)[0]
     left = stage.bus[n, DIRECT + LEFT] + stage.own[n, LEFT]
     right = stage.bus[n, DIRECT + RIGHT] + stage.own[n, RIGHT]
-    limited_left, limited_right = limit(left, shared.soft[n]), limit(right, shared.soft[n])
+    limited_left, limited_right = limit(left, soft), limit(right, soft)
     if not (is_valid(left, limited_left) and is_valid(right, limited_right)):
         limited_left, limited_right = 0.0, 0.0
         stage.invalid_samples += 1
@@ -261,39 +269,30 @@ def at_tape(rigs: Any) -> Any:
 mix_chunk = mix.symbol
 
 
-@native("void(voidptr, int64, int64, voidptr, voidptr, voidptr, voidptr, int64)", calls=[mix])
+@native("void(voidptr, voidptr, int64, int64, voidptr, voidptr, int64)", calls=[mix])
 def mix_block(
-    rigs: Any, first: int, frames: int, dry: Any, inputs: Any, out: Any, stems: Any, has_stems: int
+    rigs: Any, sounded: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int
 ) -> None:
     """Mix what instruments sounded that were computed apart, by ``sounding.sound_block``.
 
+    It touches nothing that ``sound_block`` does, so the next block may be computed meanwhile.
+
     Parameters
     ----------
-    dry : pointer to float64 [shape=(parts, frames)]
-    inputs : pointer to float64 [shape=(parts, frames, STAGE_COLUMNS)]
+    sounded : pointer to records of dtype SOUNDED [shape=(parts, chunks)]
     first, out, stems, has_stems
         As of `mix`.
     """
     mode = flush_denormals()
     parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
     channels = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0].channels
-    samples = carray(dry, (parts, frames), np.float64)
-    all_inputs = carray(inputs, (parts, frames, STAGE_COLUMNS), np.float64)
+    apart = (frames + CHUNK - 1) // CHUNK * SOUNDED_BYTES
     done = 0
     while done < frames:
         count = min(frames - done, CHUNK)
-        for part in range(parts):
-            o = carray(at(rigs, part * RIG_BYTES + OUTPUT_AT), (1,), OUTPUT)[0]
-            o.silenced_at = NOT_SILENCED
-            for n in range(count):
-                o.dry[n] = samples[part, done + n]
-                for k in range(len(STAGE_INPUTS)):
-                    o.stage_inputs[n, k] = all_inputs[part, done + n, k]
-                o.soft[n] = all_inputs[part, done + n, STAGE_COLUMNS - 2]
-                if all_inputs[part, done + n, STAGE_COLUMNS - 1] > 0.0:
-                    o.silenced_at = n
         here = at(out, done * channels * 4)
         stems_here = at(stems, done * (parts + 1) * EARS * 8)
-        mix_chunk(rigs, first + done, count, here, stems_here, has_stems)
+        chunk = at(sounded, done // CHUNK * SOUNDED_BYTES)
+        mix_chunk(rigs, chunk, apart, first + done, count, here, stems_here, has_stems)
         done += count
     restore_denormals(mode)

@@ -48,6 +48,7 @@ from yehu_server.core.engine.rig import (
     RIG_BYTES,
     RING_SIZES,
     RINGS_AT,
+    SOUNDED_AT,
     STATE_AT,
     TAPED_AT,
     VERSION_AT,
@@ -112,7 +113,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
         for part in range(parts):
             sound_chunk(at(rigs, part * RIG_BYTES), count)
         here = at(output, 4 * channels * done)
-        mix_chunk(rigs, first, count, here, here, 0)
+        mix_chunk(rigs, at(rigs, SOUNDED_AT), RIG_BYTES, first, count, here, here, 0)
         done += count
     for part in range(parts):
         update_meters(at(rigs, part * RIG_BYTES), t.frame, block)

@@ -27,6 +27,18 @@ BRIDGE_PRESSURE = 0.1
 LARGEST = 1e12  # of full scale: a sample beyond this is an error
 NOT_SILENCED = -1
 
+# What the stage gets of an instrument, of at most CHUNK frames.
+SOUNDED = np.dtype(
+    [
+        ("dry", np.float64, CHUNK),  # the samples
+        ("stage_inputs", np.float64, (CHUNK, len(STAGE_INPUTS))),
+        ("soft", np.float64, CHUNK),  # from where on the limiter bends
+        ("silenced_at", np.int64),  # row at which it came to rest, or NOT_SILENCED
+    ],
+    align=True,
+)
+SOUNDED_BYTES = SOUNDED.itemsize
+
 OUTPUT = np.dtype(
     [
         ("last", np.float64),  # the last sample
@@ -44,13 +56,7 @@ OUTPUT = np.dtype(
         ("gain", np.float64, CHUNK),
         ("body", np.float64, CHUNK),
         ("blend", np.float64, CHUNK),
-        ("soft", np.float64, CHUNK),
-        ("stage_inputs", np.float64, (CHUNK, len(STAGE_INPUTS))),
-        ("dry", np.float64, CHUNK),  # the samples, for the stage
-        (
-            "silenced_at",
-            np.int64,
-        ),  # row of `dry` at which the instrument came to rest, or NOT_SILENCED
+        ("sounded", SOUNDED),
     ],
     align=True,
 )
@@ -58,7 +64,7 @@ OUTPUT = np.dtype(
 
 def prepare_output(output: Any, rate: float) -> None:
     """Set the coefficients of a record of dtype OUTPUT [shape=(1,)] for a rate (Hz), in place."""
-    output["invalid_samples"], output["silenced_at"] = 0, NOT_SILENCED
+    output["invalid_samples"], output["sounded"]["silenced_at"] = 0, NOT_SILENCED
     output["decay"] = pole_of_time(FADE_S, rate)
     output["blocker"] = pole_of_cutoff(BLOCKED_HZ, rate)
     rest_output(output)

@@ -15,7 +15,7 @@ from yehu_server.core.engine.output import OUTPUT
 from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.midi.record import MIDI
 from yehu_server.core.midi.tables import SLOTS, TABLES
-from yehu_server.core.physics.layout import MODEL, STATE
+from yehu_server.core.physics.layout import MODEL, STATE, lined_up
 from yehu_server.core.player.ear import EAR_SAMPLES
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.wishes import WISH
@@ -24,7 +24,7 @@ from yehu_server.core.stage.seat import SEAT
 
 MOST_PARTS = 16
 
-RIG = np.dtype(
+RIG = lined_up(
     [
         ("parts", np.int64, LINE),  # number of rigs that play together, in the first of them
         ("model", MODEL),
@@ -49,8 +49,7 @@ RIG = np.dtype(
         ("heap", WAITING, HEAP),  # wishes to come
         ("reports", WISH, RING),
         ("seat", SEAT),
-    ],
-    align=True,
+    ]
 )
 RIG_BYTES = RIG.itemsize
 STAGE_BYTES = STAGE.itemsize
@@ -71,6 +70,7 @@ PARTS_AT = _offset("parts")
 MODEL_AT, STATE_AT, CONTROLS_AT = _offset("model"), _offset("state"), _offset("controls")
 PLAYER_AT, EAR_BUFFER_AT = _offset("player"), _offset("ear_buffer")
 OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
+SOUNDED_AT = _offset("output", "sounded")
 VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
 RINGS_AT = np.array([_offset("ring"), _offset("midi_ring"), _offset("page_ring")])  # by writer
 RING_SIZES = np.array([RING, SMALL_RING, SMALL_RING])

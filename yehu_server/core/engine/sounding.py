@@ -29,7 +29,14 @@ from yehu_server.core.engine.mailbox import (
     copy_wish,
     pop,
 )
-from yehu_server.core.engine.output import NOT_SILENCED, OUTPUT, clear_filters, output_sample
+from yehu_server.core.engine.output import (
+    NOT_SILENCED,
+    OUTPUT,
+    SOUNDED,
+    SOUNDED_BYTES,
+    clear_filters,
+    output_sample,
+)
 from yehu_server.core.engine.processor import flush_denormals, restore_denormals
 from yehu_server.core.engine.rig import (
     CONTROLS_AT,
@@ -43,6 +50,7 @@ from yehu_server.core.engine.rig import (
     READ_AT,
     REPORTED_AT,
     REPORTS_AT,
+    SOUNDED_AT,
     STATE_AT,
 )
 from yehu_server.core.engine.telemetry import METERS, close_window, hear
@@ -113,11 +121,12 @@ def sound(rig: Any, wanted: int) -> None:
     state = carray(at(rig, STATE_AT), (1,), STATE)
     c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
+    sounded = carray(at(rig, SOUNDED_AT), (1,), SOUNDED)[0]
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
     p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
     wanted = min(wanted, CHUNK)
-    o.silenced_at = NOT_SILENCED
+    sounded.silenced_at = NOT_SILENCED
     done = 0
     while done < wanted:
         first, start = c.frame, done
@@ -136,9 +145,9 @@ def sound(rig: Any, wanted: int) -> None:
             o.gain[done] = gain
             o.body[done] = amplitude(c, TO_BODY, c.value[BODY])
             o.blend[done] = c.value[BLEND]
-            o.soft[done] = amplitude(c, TO_LIMITER, c.value[LIMITER])
+            sounded.soft[done] = amplitude(c, TO_LIMITER, c.value[LIMITER])
             for k in range(len(STAGE_INPUTS)):
-                o.stage_inputs[done, k] = c.value[STAGE_INPUTS[k]]
+                sounded.stage_inputs[done, k] = c.value[STAGE_INPUTS[k]]
             retuned = has_new_strings(c)
             c.frame += 1
             done += 1
@@ -154,7 +163,7 @@ def sound(rig: Any, wanted: int) -> None:
         if silenced:
             kernel.come_to_rest(model[0], state[0])
             clear_filters(o)
-            o.silenced_at = done - 1
+            sounded.silenced_at = done - 1
         close_window(t, model[0], state[0].motion)
 
 
@@ -163,44 +172,32 @@ def write_output(rig: Any, first: int, start: int, end: int) -> None:
     """Make samples of some rows of the probes, which begin at frame `first`; tell the ear."""
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    dry = carray(at(rig, SOUNDED_AT), (1,), SOUNDED)[0].dry
     heard = carray(at(rig, EAR_BUFFER_AT), (2 * EAR_SAMPLES,), np.float64)
     for n in range(start, end):
         remember(heard, first + n - start, o.probes[n, RELATIVE_VELOCITY])
-        o.dry[n] = output_sample(o, n)
-        hear(t, o.dry[n])
+        dry[n] = output_sample(o, n)
+        hear(t, dry[n])
 
 
 sound_chunk = sound.symbol
 
 
-@native("void(voidptr, int64, voidptr, voidptr)", calls=[sound])
-def sound_block(rig: Any, frames: int, dry: Any, inputs: Any) -> None:
+@native("void(voidptr, int64, voidptr)", calls=[sound])
+def sound_block(rig: Any, frames: int, sounded: Any) -> None:
     """Compute the next frames of an instrument apart from the others, to be mixed later.
 
     Parameters
     ----------
-    dry : pointer to float64 [shape=(frames,)]
-        Written: the samples.
-    inputs : pointer to float64 [shape=(frames, STAGE_COLUMNS)]
-        Written: what the stage is inputs with each of them.
+    sounded : pointer to records of dtype SOUNDED
+        Written: one for each CHUNK of the frames.
     """
     mode = flush_denormals()
-    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
-    samples = carray(dry, (frames,), np.float64)
-    all_inputs = carray(inputs, (frames, STAGE_COLUMNS), np.float64)
-    done = 0
+    own = carray(at(rig, SOUNDED_AT), (1,), SOUNDED)
+    done, chunk = 0, 0
     while done < frames:
-        count = min(frames - done, CHUNK)
-        sound_chunk(rig, count)
-        for n in range(count):
-            samples[done + n] = o.dry[n]
-            for k in range(len(STAGE_INPUTS)):
-                all_inputs[done + n, k] = o.stage_inputs[n, k]
-            all_inputs[done + n, STAGE_COLUMNS - 2] = o.soft[n]
-            all_inputs[done + n, STAGE_COLUMNS - 1] = 1.0 if n == o.silenced_at else 0.0
-        done += count
+        sound_chunk(rig, frames - done)
+        carray(at(sounded, chunk * SOUNDED_BYTES), (1,), SOUNDED)[0] = own[0]
+        done += CHUNK
+        chunk += 1
     restore_denormals(mode)
-
-
-# Of each sample: its STAGE_INPUTS, the limiter, whether it is the last.
-STAGE_COLUMNS = len(STAGE_INPUTS) + 2

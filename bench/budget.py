@@ -23,6 +23,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import report
 
@@ -35,7 +36,7 @@ BARE = {
     "/body/width": 0.0,
 }
 # What each row adds to the one above: settings as shipped, and options of the render.
-ROWS: dict[str, tuple[tuple[str, ...], dict[str, bool]]] = {
+ROWS: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
     "mono, dry, steady hands, no hair, no ear": ((), {"is_dry": True, "is_mono": True}),
     "hair": (("/bow/noise",), {"is_dry": True, "is_mono": True}),
     "hands that vary": (("/playing/variation",), {"is_dry": True, "is_mono": True}),

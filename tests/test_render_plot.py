@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from scores import midi_file, notes
 
-from yehu_server.rendering.options import target_pitch
 from yehu_server.rendering.plot_data import COLUMNS, PlotData
 
 DRY = ("--dry", "--tail", 0)  # in little time
@@ -115,7 +114,7 @@ def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
     performance = Performance(read_score(tune), options)
     watch = PlotData(RATE, 0.6, 1)
     for samples in performance.blocks():
-        watch.take(samples, [target_pitch(player.instruments[0]) for player in performance.players])
+        watch.take(samples, performance.target_pitches)
     times, asked = watch.asked
     for note, first, last in ((67.0, 0.02, 0.28), (72.0, 0.32, 0.58)):
         within = (times > first) & (times < last)
@@ -132,7 +131,7 @@ def test_each_part_of_an_ensemble_is_asked_for_its_own_pitch(tune):
     options = Options(is_dry=True, tail_s=0.0, block=512)
     performance = Performance([Part(read_score(tune)), Part(read_score(tune))], options)
     next(iter(performance.blocks()))
-    assert [target_pitch(each.instruments[0]) for each in performance.players] == [67.0, 67.0]
+    assert performance.target_pitches == [67.0, 67.0]
 
 
 def test_what_is_no_picture_of_ours_is_not_replaced(tune, refused, tmp_path):

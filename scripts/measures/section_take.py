@@ -10,7 +10,6 @@ import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.wishes import BEGIN
-from yehu_server.core.stage.image_sources import EARS
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.section_instruments import SECTION, section_specs
 from yehu_server.playing.style import Style
@@ -48,10 +47,9 @@ class SectionTake:
         with shared(os.cpu_count() or 1) as share:
             cores = Cores(self._ensemble, share, has_stems=True)
             for begin in range(0, frames, block):
-                out = np.zeros((min(block, frames - begin), EARS), np.float32)
-                cores.process(out)
+                end = min(begin + block, frames)
+                cores.mix(cores.sound(end - begin))
                 for number, instrument in enumerate(self.instruments):
-                    end = begin + len(out)
                     sounds[number, begin:end] = cores.stems[:, number].mean(axis=1)
                     wishes = instrument.applied_wishes()
                     self.begun[number] += wishes["frame"][wishes["kind"] == BEGIN].tolist()

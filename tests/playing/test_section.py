@@ -19,7 +19,6 @@ from yehu_server.core.midi.record import IN_PORT, MIDI, clear_held, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.player import wishes as kinds
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.stage.image_sources import EARS
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
@@ -435,7 +434,7 @@ def played(style: Style, people: int, block: int, seconds: float = 1.5) -> np.nd
         while events and events[0][0] * RATE < begin + block:
             at, kind, note = events.pop(0)
             midi.receive(mido.Message(kind, note=note, velocity=80), frame=round(at * RATE))
-        cores.process(np.zeros((min(block, frames - begin), EARS), np.float32))
+        cores.mix(cores.sound(min(block, frames - begin)))
         sounds[:, begin : begin + block] = cores.stems[:, :people].mean(axis=2).T
     return sounds
 

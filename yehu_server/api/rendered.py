@@ -17,7 +17,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT
-from yehu_server.rendering.options import Options, target_pitch
+from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
 from yehu_server.rendering.to_files import NORMALIZED_PEAK
@@ -230,7 +230,7 @@ def _played(
     for samples in performance.blocks():
         blocks.append(samples)
         frames += len(samples)
-        asked = target_pitch(performance.instrument)
+        [asked] = performance.target_pitches
         times.append(frames / options.rate)
         pitches.append(np.nan if asked is None else asked)
         if progress is not None:

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -22,6 +23,22 @@ from yehu_server.core.engine.sounding import sound_block
 from yehu_server.core.stage.image_sources import EARS
 
 Array = Any
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Sounded:
+    """A block that is computed and not mixed yet.
+
+    Attributes
+    ----------
+    first : int
+        Number of its first frame.
+    pieces : list of (frames, ndarray [shape=(instruments, chunks), dtype=SOUNDED])
+    """
+
+    first: int
+    pieces: list[tuple[int, Array]] = field(default_factory=list)
 
 
 class Cores:
@@ -37,7 +54,7 @@ class Cores:
     Attributes
     ----------
     stems : ndarray [shape=(frames, parts + 1, EARS), float64]
-        What each instrument, and at last the room, gave to the last block.
+        What each instrument, and at last the room, gave to the last block that was mixed.
     """
 
     def __init__(
@@ -46,31 +63,40 @@ class Cores:
         self._ensemble, self._share, self._has_stems = ensemble, share, has_stems
         self.stems = np.zeros((0, len(ensemble.instruments) + 1, EARS))
 
-    def process(self, out: Array) -> None:
-        """Compute the next frames; see `Ensemble.process`."""
-        frames, parts = len(out), len(self._ensemble.instruments)
-        if self._has_stems:
-            self.stems = np.zeros((frames, parts + 1, EARS))
-        done, begin = 0, self._ensemble.frame
+    def sound(self, frames: int) -> Sounded:
+        """Compute the next frames; the block before may be mixed meanwhile."""
+        block, done = Sounded(self._ensemble.frame), 0
         while done < frames:
-            end = interpret_events.call(self._ensemble.address, begin + frames) - begin
-            self._compute(out[done:end], self.stems[done:end])
+            end = interpret_events.call(self._ensemble.address, block.first + frames) - block.first
+            block.pieces.append((end - done, self._sound(end - done)))
             done = end
+        return block
 
-    def _compute(self, out: Array, stems: Array) -> None:
+    def _sound(self, frames: int) -> Array:
         """Compute frames whose events are taken in."""
-        frames, instruments = len(out), self._ensemble.instruments
-        first = self._ensemble.frame
-        sounded = np.zeros((len(instruments), -(-frames // CHUNK)), SOUNDED)
+        instruments = self._ensemble.instruments
+        sounded = np.empty((len(instruments), -(-frames // CHUNK)), SOUNDED)
 
         def sound(part: int) -> None:
             sound_block.call(instruments[part].address, frames, sounded[part].ctypes.data)
 
         for _ in self._share(sound, range(len(instruments))):
             pass
-        places = (self._ensemble.address, sounded.ctypes.data, first, frames)
-        into = (out.ctypes.data, stems.ctypes.data, int(self._has_stems))
-        mix_block.call(*places, *into)
+        return sounded
+
+    def mix(self, block: Sounded) -> Array:
+        """Mix a block; return its samples [shape=(frames, channels), float32]."""
+        frames = sum(count for count, _ in block.pieces)
+        out = np.zeros((frames, self._ensemble.channels), np.float32)
+        if self._has_stems:
+            self.stems = np.zeros((frames, len(self._ensemble.instruments) + 1, EARS))
+        done = 0
+        for count, sounded in block.pieces:
+            places = (self._ensemble.address, sounded.ctypes.data, block.first + done, count)
+            into = (out[done:].ctypes.data, self.stems[done:].ctypes.data, int(self._has_stems))
+            mix_block.call(*places, *into)
+            done += count
+        return out
 
 
 @contextmanager
@@ -81,3 +107,14 @@ def shared(cores: int) -> Iterator[Callable[..., Any]]:
         return
     with ThreadPoolExecutor(cores, "part") as threads:
         yield threads.map
+
+
+def computed_ahead(items: Iterator[T]) -> Iterator[T]:
+    """Yield items, each of which is computed in a thread while the one before is used."""
+    end: Any = object()
+    with ThreadPoolExecutor(1, "ahead") as thread:
+        item = thread.submit(next, items, end).result()
+        while item is not end:
+            coming = thread.submit(next, items, end)
+            yield item
+            item = coming.result()

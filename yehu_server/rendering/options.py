@@ -5,27 +5,11 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field, fields
 
-import numpy as np
-
-from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import Calibration
-from yehu_server.core.player.rows import BEND
 from yehu_server.core.stage.image_sources import EARS
 from yehu_server.playing.style import Style
 from yehu_server.scores.score import Score
-
-
-def target_pitch(instrument: Instrument) -> float | None:
-    """Return the pitch of the sounding key with its bend (fractional MIDI note), if one sounds.
-
-    Meters tell it too, but only those of an instrument that the callback plays.
-    """
-    player = np.frombuffer(instrument.memory, RIG, count=1)["player"][0]
-    sounding = int(player["sounding"])
-    return None if sounding < 0 else float(player["held_pitch"][sounding] + player["value"][BEND])
-
 
 BLOCK = 4096  # frames; the sound does not depend on it
 

@@ -10,12 +10,14 @@ import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import RIG
 from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.rows import BEND
 from yehu_server.params.table import find
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.parts import number_of_instruments
 from yehu_server.playing.section_instruments import part_specs
-from yehu_server.rendering.cores import Cores, shared
+from yehu_server.rendering.cores import Cores, Sounded, computed_ahead, shared
 from yehu_server.rendering.options import Options, Part
 from yehu_server.scores.score import Score, ScoreEvent, Setting, notes_of
 
@@ -130,25 +132,36 @@ class Performance:
         self.instrument, self.wishes = self.ensemble.first, self.players[0].wishes
         duration_s = max(part.score.duration_s for part in parts)
         self.score_frames = self.instrument.frames(duration_s * 1e3)
-        self.stems: list[Samples] = []  # of the last block: of each part, then the room
+        # Of the last block: the sound of each part, then of the room; the pitch that each part is
+        # asked for at its end (fractional MIDI note).
+        self.stems: list[Samples] = []
+        self.target_pitches: list[float | None] = []
 
     def blocks(self) -> Iterator[Samples]:
         """Yield the samples of score and tail, relative to full scale.
 
         They have the shape (frames, 2), or (frames,) where `Options.is_mono`.
         """
-        with shared(min(self._options.cores, len(self.ensemble.instruments))) as share:
+        many = self._options.cores
+        with shared(min(many, len(self.ensemble.instruments))) as share:
             cores = Cores(self.ensemble, share, has_stems=self._has_stems)
-            position = 0
-            while position < self.score_frames:
-                end = min(position + self._options.block, self.score_frames)
-                for player in self.players:
-                    player.play_before(end)
-                yield self._process(cores, end - position)
-                position = end
-            for player in self.players:
-                player.finish(position)
+            sounded = self._sounded(cores)
+            for block, self.target_pitches in sounded if many == 1 else computed_ahead(sounded):
+                yield self._mixed(cores, block)
             yield from self._tail(cores)
+
+    def _sounded(self, cores: Cores) -> Iterator[tuple[Sounded, list[float | None]]]:
+        """Yield the blocks of the score before they are mixed, and the pitches at their ends."""
+        position = 0
+        while position < self.score_frames:
+            end = min(position + self._options.block, self.score_frames)
+            for player in self.players:
+                player.play_before(end)
+            block = cores.sound(end - position)
+            position = end
+            yield block, self._pitches()
+        for player in self.players:
+            player.finish(position)
 
     def _tail(self, cores: Cores) -> Iterator[Samples]:
         if self._options.tail_s is not None:
@@ -167,14 +180,29 @@ class Performance:
                 return
 
     def _process(self, cores: Cores, frames: int) -> Samples:
-        channels = self._options.sound_channels
-        out = np.zeros(frames if channels == 1 else (frames, channels), np.float32)
-        if len(self.ensemble.instruments) == 1 and not self._has_stems:
-            self.ensemble.process(out)
-            return out
-        cores.process(out)
+        block = cores.sound(frames)
+        self.target_pitches = self._pitches()
+        return self._mixed(cores, block)
+
+    def _mixed(self, cores: Cores, block: Sounded) -> Samples:
+        """The samples of a block; sets `stems`."""
+        out: Samples = cores.mix(block)
+        is_mono = self._options.is_mono
         if self._has_stems:
-            stems = cores.stems.mean(axis=2) if channels == 1 else cores.stems
+            stems = cores.stems.mean(axis=2) if is_mono else cores.stems
             own = [stems[:, place].sum(axis=1) for place in self._places]
             self.stems = [stem.astype(np.float32) for stem in (*own, stems[:, -1])]
-        return out
+        return out.reshape(-1) if is_mono else out
+
+    def _pitches(self) -> list[float | None]:
+        return [target_pitch(player.instruments[0]) for player in self.players]
+
+
+def target_pitch(instrument: Instrument) -> float | None:
+    """Return the pitch of the sounding key with its bend (fractional MIDI note), if one sounds.
+
+    Meters tell it too, but only those of an instrument that the callback plays.
+    """
+    player = np.frombuffer(instrument.memory, RIG, count=1)["player"][0]
+    sounding = int(player["sounding"])
+    return None if sounding < 0 else float(player["held_pitch"][sounding] + player["value"][BEND])

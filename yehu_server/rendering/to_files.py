@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from yehu_server.errors import OutputError
-from yehu_server.rendering.options import Options, Part, target_pitch
+from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance, Samples
 from yehu_server.rendering.pipe import PIPE, sound_pipe
 from yehu_server.rendering.plot_data import PlotData
@@ -132,7 +132,6 @@ def _takes(
         yield [samples, *performance.stems][:files]
         frames += len(samples)
         if watch is not None:
-            asked = [target_pitch(player.instruments[0]) for player in performance.players]
-            watch.take(samples, asked)
+            watch.take(samples, performance.target_pitches)
         if progress is not None:
             progress(frames / rate, total)

@@ -23,6 +23,7 @@ FOLDERS = {
     "mappings": ("tests/surfaces", "tests/test_mappings_files.py"),
     "docs": ("tests/test_docs.py", "tests/documentation"),
 }
+_RUN = re.compile(rf"\"({PACKAGE}(?:\.\w+)+)\"")  # a module that a process of its own runs
 _MODULE = re.compile(rf"\b{PACKAGE}(?:\.\w+)+")
 _IMPORT = re.compile(rf"^\s*from ({PACKAGE}[\w.]*) import \(?([\w\s,]+)", re.MULTILINE)
 _HELPER = re.compile(r"^(?:from|import) ([a-z_][\w.]*)", re.MULTILINE)
@@ -65,6 +66,10 @@ def distances(changed: set[str], files: Iterable[Path]) -> dict[Path, int]:
 def _distances_of_modules(changed: set[str]) -> dict[str, int]:
     """The number of imports from each module to one that changed."""
     graph = grimp.build_graph(PACKAGE, cache_dir=str(ROOT / ".import_linter_cache"))
+    for file in (ROOT / PACKAGE).rglob("*.py"):
+        name = _name(file).removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+        for run in set(_RUN.findall(file.read_text(encoding="utf-8"))) & graph.modules:
+            graph.add_import(importer=name, imported=run)
     names = (name.removesuffix(".py").removesuffix("/__init__") for name in changed)
     level = {name.replace("/", ".") for name in names} & graph.modules
     near: dict[str, int] = {}

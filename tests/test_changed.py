@@ -31,3 +31,8 @@ def test_files_that_are_no_modules_reach_the_tests_of_their_folder():
     assert distances({"web/main.js"}, ALL) == {PAGE: 1}
     assert distances({"LICENSE"}, ALL) == {}
     assert all((ROOT / place).exists() for places in FOLDERS.values() for place in places)
+
+
+def test_what_a_process_of_its_own_runs_reaches_those_who_start_it():
+    stream = TESTS / "live" / "test_stream.py"
+    assert stream in distances({"yehu_server/live/audio/stream.py"}, [stream])

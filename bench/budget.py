@@ -77,7 +77,7 @@ def tune_row(name: str) -> Callable[[], int]:
             del settings[address]
         if row == name:
             break
-    made = Options(style=Style(settings=tuple(settings.items())), **ROWS[name][1])
+    made = Options(style=Style(settings=tuple(settings.items())), jobs=1, **ROWS[name][1])
 
     def work() -> int:
         return sum(len(samples) for samples in Performance(score, made).blocks())

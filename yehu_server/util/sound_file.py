@@ -88,7 +88,8 @@ class SoundWriter:
         if self._limit is not None and self.frames > self._limit:
             instead = "; use FLAC" if self._channels <= flac_stream.MOST_CHANNELS else ""
             raise OutputError(f"{self._target}: too long for a WAV file (4 GiB){instead}")
-        self.peak = max(self.peak, float(np.abs(samples).max(initial=0.0)))
+        highest, lowest = samples.max(initial=0.0), samples.min(initial=0.0)
+        self.peak = max(self.peak, float(highest), -float(lowest))
         self._power += float(np.square(samples, dtype=np.float64).sum())
         with self._converting_errors():
             self._stream.write(samples)

@@ -11,7 +11,7 @@ from yehu_server.core.stage.image_sources import EARS
 from yehu_server.playing.style import Style
 from yehu_server.scores.score import Score
 
-BLOCK = 4096  # frames; the sound does not depend on it
+BLOCK = 1 << 14  # frames; the sound does not depend on it
 
 
 @dataclass(frozen=True)

@@ -91,6 +91,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 QUIET = 1e-4  # 80 dB below full scale
 QUIET_S = 0.2  # the tail ends after this time of quiet
 LONGEST_TAIL_S = 5.0
+LEAST_AHEAD = 2048  # frames of a block for which another thread costs less than it saves
 
 
 class Performance:
@@ -142,11 +143,13 @@ class Performance:
 
         They have the shape (frames, 2), or (frames,) where `Options.is_mono`.
         """
-        many = self._options.cores
-        with shared(min(many, len(self.ensemble.instruments))) as share:
+        options = self._options
+        with shared(min(options.cores, len(self.ensemble.instruments))) as share:
             cores = Cores(self.ensemble, share, has_stems=self._has_stems)
-            sounded = self._sounded(cores)
-            for block, self.target_pitches in sounded if many == 1 else computed_ahead(sounded):
+            blocks = self._sounded(cores)
+            if options.cores > 1 and options.block >= LEAST_AHEAD:
+                blocks = computed_ahead(blocks)
+            for block, self.target_pitches in blocks:
                 yield self._mixed(cores, block)
             yield from self._tail(cores)
 

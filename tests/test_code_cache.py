@@ -179,4 +179,4 @@ def test_numba_calls_what_we_put_in_the_place_of_its_cache():
     again = jit.compiled(double)
     assert again(3) == 6
     assert sum(again.stats.cache_hits.values()) == 1
-    assert isinstance(again, numba.core.registry.CPUDispatcher)
+    assert isinstance(again.value, numba.core.registry.CPUDispatcher)

@@ -11,6 +11,7 @@ from pitch import cents
 from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics import string as string_module
 from yehu_server.core.physics.grid import intervals, least_spacing
+from yehu_server.core.physics.kernel import derive
 from yehu_server.core.physics.quantities import Quantities, StringQuantities
 from yehu_server.core.physics.string import advance_nodes, prepare_strings, support
 
@@ -30,6 +31,7 @@ def prepared(string: StringQuantities, rate: float, N: int | None = None):
         if N is not None:
             patch.setattr(string_module, "intervals", lambda *_: N)
         prepare_strings(model[0], replace(YEHU, string_1=string, string_2=string))
+    derive.call(model.ctypes.data)
     return model[0]
 
 

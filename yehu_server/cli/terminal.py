@@ -40,21 +40,16 @@ def warn_of_compiling(arguments: argparse.Namespace, *, plays: bool = True) -> N
     plays : bool
         Whether the command plays the instrument, which is what code is made of in advance.
     """
-    from yehu_server.compile.bitcode.start import why_not
-    from yehu_server.compile.jit import WHY_NOT_CACHED, cache_folder, source_hash
+    from yehu_server.compile.jit import WHY_NOT_CACHED, cache_folder
+    from yehu_server.core.engine.warming import is_warm
 
     if arguments.quiet:
         return
-    if WHY_NOT_CACHED:
+    is_ready = is_warm() if plays else any(cache_folder().glob("*.code"))
+    if WHY_NOT_CACHED and not (plays and is_ready):
         warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
-    elif any(cache_folder().glob("*.code")):
-        return
-    elif not plays:
-        warn("compiling for this machine, once ...")
-    elif reason := why_not(source_hash()):
-        warn(f"compiling for this machine, once, for half a minute: {reason}")
-    else:
-        warn("preparing for this processor, once ...")
+    elif not is_ready:
+        warn("compiling for this machine, once, for half a minute ...")
 
 
 @contextlib.contextmanager

@@ -6,33 +6,30 @@ so the cache folder is keyed by all sources that may be compiled.
 
 from __future__ import annotations
 
+import ctypes
 import errno
+import importlib
 import os
+import re
 import shutil
 import time
-from collections.abc import Callable, Iterable, Sequence
-from functools import cache, cached_property
+from collections.abc import Callable, Sequence
+from functools import cache, cached_property, update_wrapper
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
-import numba
-from llvmlite import binding
-from numba import extending, types
-from numba.core import sigutils
-from numba.core.ccallback import CFunc
-from numba.core.compiler import Compiler
 from platformdirs import user_cache_dir
 
-from yehu_server.compile.bitcode import start
-from yehu_server.compile.bitcode.capture import Capture
-from yehu_server.compile.cache import CodeCache
+from yehu_server.compile import machine_code
 from yehu_server.errors import YehuError
 from yehu_server.util import PACKAGE
 from yehu_server.util.source_key import key_of
 
 # NUMBA_DISABLE_JIT=1: what would be compiled runs as plain Python, under a debugger or coverage.
-IS_PLAIN = bool(numba.config.DISABLE_JIT)
+IS_PLAIN = os.environ.get("NUMBA_DISABLE_JIT", "0") not in {"", "0"}
 
+imported = importlib.import_module
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -47,7 +44,7 @@ FOLDERS = ("core", "params", "compile", "lab/regimes")
 def source_hash() -> str:
     """Key of all source that compiled code comes from or reads constants of (16 hex digits)."""
     sources = [source for folder in FOLDERS for source in sorted((PACKAGE / folder).rglob("*.py"))]
-    return key_of(sources, numba.__version__)
+    return key_of(sources, version("numba"))
 
 
 def cache_folder() -> Path:
@@ -81,23 +78,44 @@ WHY_NOT_CACHED = _open_cache()
 IS_CACHED = not WHY_NOT_CACHED  # else everything is compiled anew at each start
 
 
-def _cached(made: Any, function: Callable[..., Any]) -> Any:
-    """Give numba's object for a function our cache, before anything is compiled."""
-    if IS_CACHED:
-        made._cache = CodeCache(cache_folder(), function)  # noqa: SLF001 - there is no other way
-    return made
+class Deferred:
+    """Stands for something of numba's, made when it is first needed.
 
+    Where machine code is kept nothing is, and numba is not even imported.
 
-class NoAliasCompiler(Compiler):  # type: ignore[misc]
-    """numba's compiler, told that no two arguments of a function overlap, as C's `restrict` does.
-
-    Else each loop over several rows of one record first compares their addresses, a tenth of the
-    kernel's time.
+    Parameters
+    ----------
+    make : callable
+        Makes it.
     """
 
-    def __init__(self, *arguments: Any) -> None:
-        super().__init__(*arguments)
-        self.state.flags.noalias = True
+    def __init__(self, make: Callable[[], Any]) -> None:
+        self._make = make
+
+    @cached_property
+    def value(self) -> Any:
+        """What it stands for."""
+        return self._make()
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """Call what it stands for."""
+        return self.value(*arguments, **named)
+
+    def __getattr__(self, name: str) -> Any:
+        """An attribute of what it stands for."""
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.value, name)
+
+
+class Compiled(Deferred):
+    """A function that is compiled when it is first called, or with the first that calls it."""
+
+    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
+        compiler = "yehu_server.compile.numba_compiler"
+        super().__init__(lambda: imported(compiler).dispatcher(function, **options))
+        update_wrapper(self, function)
+        self.py_func = function
 
 
 def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
@@ -106,15 +124,8 @@ def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
     # Without forced inlining, arrays cross calls as ten words each: a fifth of the time. A wrapper
     # for callbacks in C, which `Native` makes where it is wanted, would be compiled with all of
     # what it calls: a third of the time that a first start takes.
-    jit = numba.njit(
-        nogil=True,
-        error_model="numpy",
-        fastmath=FASTMATH,
-        forceinline=True,
-        no_cfunc_wrapper=True,
-        **options,
-    )
-    return cast("Callable[P, R]", _cached(jit(function), function))
+    options |= {"fastmath": FASTMATH, "forceinline": True, "one_version": False}
+    return cast("Callable[P, R]", Compiled(function, **options))
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
@@ -125,12 +136,12 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     raise to. It makes no arrays, so none are counted (``_nrt``): each row taken of one would be
     two atomic additions, by calls that put away all registers.
     """
-    return _compiled(function, pipeline_class=NoAliasCompiler, _nrt=False)
+    return _compiled(function, no_alias=True, _nrt=False)
 
 
 def compiled_with_aliasing(function: Callable[P, R]) -> Callable[P, R]:
     """Compile as `compiled` does, for a function whose arguments overlap, or that makes views."""
-    return _compiled(function)
+    return _compiled(function, no_alias=False)
 
 
 def compiled_exactly(function: Callable[P, R]) -> Callable[P, R]:
@@ -139,7 +150,7 @@ def compiled_exactly(function: Callable[P, R]) -> Callable[P, R]:
     No sum is reordered and no multiply-add fused, so that a decision doesn't depend on the
     processor. Constants make no versions of their own.
     """
-    return _compiled_exactly(function)
+    return _compiled_exactly(function, no_alias=False)
 
 
 def compiled_exactly_apart(function: Callable[P, R]) -> Callable[P, R]:
@@ -147,34 +158,32 @@ def compiled_exactly_apart(function: Callable[P, R]) -> Callable[P, R]:
 
     It becomes a part of its callers, where loops over several rows become vectors.
     """
-    return _compiled_exactly(function, forceinline=True, pipeline_class=NoAliasCompiler)
+    return _compiled_exactly(function, forceinline=True, no_alias=True)
 
 
 def _compiled_exactly(function: Callable[P, R], **options: Any) -> Callable[P, R]:
     if IS_PLAIN:
         return function
-    made = numba.njit(
-        nogil=True,
-        error_model="numpy",
-        fastmath=False,  # said, as a function without the word has its caller's
-        no_cfunc_wrapper=True,
-        _nrt=False,
-        **options,
-    )(function)
-    versions = made.get_call_template
-
-    def one_version(arguments: Any, named: Any) -> Any:
-        return versions([types.unliteral(argument) for argument in arguments], named)
-
-    made.get_call_template = one_version
-    return cast("Callable[P, R]", _cached(made, function))
+    # fastmath is said, as a function without the word has its caller's.
+    options |= {"fastmath": False, "one_version": True, "_nrt": False}
+    return cast("Callable[P, R]", Compiled(function, **options))
 
 
 def intrinsic(plain: Callable[..., Any]) -> Callable[[Callable[..., Any]], Any]:
     """numba's ``intrinsic``; without the JIT, a plain function instead."""
     if IS_PLAIN:
         return lambda _function: plain
-    return cast("Callable[..., Any]", extending.intrinsic)
+    return lambda function: Deferred(lambda: imported("numba.extending").intrinsic(function))
+
+
+C_TYPES: dict[str, Any] = {
+    "void": None,
+    "voidptr": ctypes.c_void_p,
+    "int32": ctypes.c_int32,
+    "int64": ctypes.c_int64,
+    "uint64": ctypes.c_uint64,
+    "float64": ctypes.c_double,
+}
 
 
 class Native:
@@ -196,47 +205,43 @@ class Native:
         self.full_name = f"{function.__module__}.{function.__qualname__}"
 
     @cached_property
-    def _made(self) -> Any:
-        signature = sigutils.normalize_signature(self.signature)
-        options = {"nopython": True, "error_model": "numpy", "fastmath": FASTMATH}
-        return _cached(CFunc(self.function, signature, {}, options), self.function)
+    def made(self) -> Any:
+        """numba's object for it, which may not be compiled yet."""
+        return imported("yehu_server.compile.numba_compiler").c_function(
+            self.function, self.signature
+        )
 
     @cached_property
     def compiled(self) -> Any:
         """numba's object for it, with ``inspect_llvm()``."""
-        make_of_shipped([self])
         for other in self.calls:
-            binding.add_symbol(other.name, other.address)
-        self._made.compile()
-        return self._made
+            machine_code.add_symbol(other.name, other.address)
+        self.made.compile()
+        return self.made
 
     def keep(self) -> None:
         """Compile it into the cache, in a process that won't call it."""
         for other in self.calls:
-            binding.add_symbol(other.name, 1)  # an address is wanted to finish, not to call
-        self._made.compile()
-
-    def capture(self, into: Capture) -> None:
-        """Compile it to be shipped, in a process that won't call it."""
-        into.export(self._made, self.full_name)
-        self.keep()
+            machine_code.add_symbol(other.name, 1)  # one is wanted to finish, not to call
+        self.made.compile()
 
     @property
     def file(self) -> Path:
         """Its file in the cache."""
-        return Path(self._made._cache.path(self._made._sig))  # noqa: SLF001
+        return Path(self.made._cache.path(self.made._sig))  # noqa: SLF001
 
     @property
     def is_cached(self) -> bool:
         """Whether its code is in the cache, so that its first use takes no time."""
-        return IS_CACHED and self._made._cache.holds(self._made._sig)  # noqa: SLF001
+        return IS_CACHED and self.made._cache.holds(self.made._sig)  # noqa: SLF001
 
     @cached_property
     def call(self) -> Callable[..., Any]:
         """The function for Python, which runs without the GIL."""
         if IS_PLAIN:
             return self.function
-        return cast("Callable[..., Any]", self.compiled.ctypes)
+        returned, *arguments = (C_TYPES[word] for word in re.findall(r"\w+", self.signature))
+        return ctypes.CFUNCTYPE(returned, *arguments)(self.address)
 
     @property
     def symbol(self) -> Any:
@@ -246,10 +251,10 @@ class Native:
         """
         if IS_PLAIN:
             return self.function
-        arguments, returned = sigutils.normalize_signature(self.signature)
-        return types.ExternalFunction(self.name, returned(*arguments))
+        compiler = "yehu_server.compile.numba_compiler"
+        return Deferred(lambda: imported(compiler).external(self.name, self.signature))
 
-    @property
+    @cached_property
     def address(self) -> int:
         """The function's address, for C.
 
@@ -260,22 +265,8 @@ class Native:
         """
         if IS_PLAIN:
             raise YehuError("NUMBA_DISABLE_JIT: plain Python has no address for C")
-        return int(self.compiled.address)
-
-
-_asked_for: set[str] = set()  # of this process: each is made of what is shipped, or not, once
-
-
-def make_of_shipped(functions: Iterable[Native]) -> None:
-    """Make machine code of what is shipped for those that are not in the cache, where possible."""
-    wanted = [
-        function
-        for function in functions
-        if IS_CACHED and function.full_name not in _asked_for and not function.is_cached
-    ]
-    _asked_for.update(function.full_name for function in wanted)
-    if wanted:
-        start.make({function.full_name: function.file for function in wanted}, source_hash())
+        kept = machine_code.loaded(cache_folder(), source_hash()).get(self.name)
+        return int(self.compiled.address) if kept is None else kept
 
 
 def native(signature: str, calls: Sequence[Native] = ()) -> Callable[[Callable[..., Any]], Native]:

@@ -9,10 +9,8 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import carray as compiled_carray
-from numba import types
 
-from yehu_server.compile.jit import IS_PLAIN, intrinsic
+from yehu_server.compile.jit import IS_PLAIN, Deferred, imported, intrinsic
 
 
 class Record(np.record):  # type: ignore[misc]  # NumPy's stubs call it final
@@ -60,7 +58,9 @@ def _plain_carray(address: int, shape: tuple[int, ...], kind: Any) -> Any:
 
 
 # The array of a shape and dtype at an address; nothing is copied.
-carray: Callable[..., Any] = _plain_carray if IS_PLAIN else compiled_carray
+carray: Callable[..., Any] = (
+    _plain_carray if IS_PLAIN else Deferred(lambda: imported("numba").carray)
+)
 
 
 def _plain_address_of(record: Any) -> int:
@@ -70,6 +70,7 @@ def _plain_address_of(record: Any) -> int:
 @intrinsic(plain=_plain_address_of)
 def address_of(_context: Any, record: Any) -> Any:
     """The address of a record, for what is compiled apart; nothing is copied."""
+    types = imported("numba").types
 
     def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         return builder.bitcast(arguments[0], context.get_value_type(types.voidptr))

@@ -9,11 +9,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
-from numba import types
 
-from yehu_server.compile.jit import intrinsic
+from yehu_server.compile.jit import Deferred, imported, intrinsic
 from yehu_server.compile.memory import carray
+
+# Imported where something is compiled.
+ir = Deferred(lambda: imported("llvmlite.ir"))
+types = Deferred(lambda: imported("numba").types)
 
 WORD = 8  # bytes
 

@@ -11,11 +11,12 @@ import sys
 import time
 from typing import Any
 
-from llvmlite import ir
-from numba import types
-from numba.core import cgutils
+from yehu_server.compile.jit import Deferred, imported, intrinsic
 
-from yehu_server.compile.jit import intrinsic
+# Imported where something is compiled.
+ir = Deferred(lambda: imported("llvmlite.ir"))
+types = Deferred(lambda: imported("numba").types)
+cgutils = Deferred(lambda: imported("numba.core.cgutils"))
 
 # Clocks of clock_gettime; time.monotonic_ns() reads the first.
 MONOTONIC, THREAD_CPU = (8, 16) if sys.platform == "darwin" else (1, 3)

@@ -12,9 +12,8 @@ import os
 import subprocess
 import sys
 
-from yehu_server.compile.bitcode.capture import capturing
-from yehu_server.compile.bitcode.shipped import Shipped
-from yehu_server.compile.jit import IS_CACHED, IS_PLAIN, make_of_shipped
+from yehu_server.compile import machine_code
+from yehu_server.compile.jit import IS_CACHED, IS_PLAIN, cache_folder, source_hash
 from yehu_server.core.engine.intake import interpret_events
 from yehu_server.core.engine.mixing import mix, mix_block
 from yehu_server.core.engine.native import (
@@ -29,14 +28,17 @@ from yehu_server.core.engine.native import (
 )
 from yehu_server.core.engine.sounding import sound, sound_block
 from yehu_server.core.midi.interpret_events import NATIVE_FUNCTIONS, interpret
+from yehu_server.core.physics.kernel import derive
 from yehu_server.core.player.listening import attend
 from yehu_server.core.player.wishes import fulfil
+from yehu_server.util.sealed import SealError
 
 # Compiled at a time: the model and the player in a process of their own, and what is sent to them.
 MODEL = (sound, fulfil, attend, mix)
 BESIDE = (
     *NATIVE_FUNCTIONS,
     interpret,
+    derive,
     publish,
     read_meters,
     frame_at,
@@ -50,9 +52,8 @@ ALL_FUNCTIONS = (*MODEL, *BESIDE, interpret_events, sound_block, mix_block, call
 
 def warm_up() -> None:
     """Compile all functions that playing needs, or load them from the cache."""
-    if IS_PLAIN:
+    if IS_PLAIN or is_warm():
         return
-    make_of_shipped(ALL_FUNCTIONS)
     with contextlib.ExitStack() as stack:
         beside = None
         if IS_CACHED and (os.cpu_count() or 1) > 1 and not sound.is_cached:
@@ -65,19 +66,16 @@ def warm_up() -> None:
             beside.wait()
     for function in ALL_FUNCTIONS:
         _ = function.address
-
-
-def capture() -> Shipped:
-    """What to ship, for a shorter first start; in a new process, with an empty cache."""
-    with capturing() as captured:
-        for function in ALL_FUNCTIONS:
-            function.capture(captured)
-    return captured.shipped()
+    if IS_CACHED:
+        with contextlib.suppress(OSError, SealError):  # the cache has told of it
+            machine_code.keep(cache_folder(), source_hash(), ALL_FUNCTIONS)
+            machine_code.loaded.cache_clear()
 
 
 def is_warm() -> bool:
-    """Whether all functions that playing needs are in the cache."""
-    return all(function.is_cached for function in ALL_FUNCTIONS)
+    """Whether all functions that playing needs are kept, ready to be called."""
+    kept = machine_code.loaded(cache_folder(), source_hash())
+    return all(function.name in kept for function in ALL_FUNCTIONS)
 
 
 if __name__ == "__main__":

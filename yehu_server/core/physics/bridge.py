@@ -56,9 +56,14 @@ def prepare_bridge(model: Any, quantities: Quantities) -> None:
             raise ParameterError(
                 f"bridge_x {quantities.bridge_x} m is too near a string's end for this grid"
             )
-        weights = model["bridge_weights"][i]
-        model["bridge_first"][i] = place_cubic(position, int(model["N"][i]), weights)
-    set_bridge_compliance(model)
+
+
+@compiled
+def place_bridge(model: Model) -> None:
+    """Write which nodes of the strings the bridge touches."""
+    for i in range(STRINGS):
+        position = model.bridge_x / model.h[i]
+        model.bridge_first[i] = place_cubic(position, model.N[i], model.bridge_weights[i])
 
 
 @compiled

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from yehu_server.compile.jit import compiled
+from yehu_server.compile.jit import compiled, native
+from yehu_server.compile.memory import carray
 from yehu_server.core.physics.bow import (
     advance_hair,
     choose_string,
@@ -22,6 +23,7 @@ from yehu_server.core.physics.bridge import (
     advance_bridge,
     eliminate_tension_and_bridge,
     move_modes,
+    place_bridge,
     prepare_bridge,
     set_bridge_compliance,
 )
@@ -108,7 +110,24 @@ def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
     prepare_heat(record, quantities)
     prepare_fingers(record, quantities)
     prepare_radiation(record, quantities.body)
+    derive.call(model.ctypes.data)
     return model
+
+
+@native("void(voidptr)")
+def derive(model: Any) -> None:
+    """Write what follows from quantities and grids: as compiled code does when a string is retuned.
+
+    Parameters
+    ----------
+    model : pointer to a record of dtype MODEL, otherwise prepared
+    """
+    m = carray(model, (1,), MODEL)[0]
+    place_bridge(m)
+    for i in range(STRINGS):
+        set_string_weights(m, i, m.T[i], m.sigma_0[i], m.sigma_1[i])
+        set_tension_gain(m, i)
+    set_bridge_compliance(m)
 
 
 def at_rest(model: Any) -> Any:

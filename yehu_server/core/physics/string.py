@@ -14,13 +14,14 @@ from yehu_server.core.physics.records import Array, Model, Motion, Work
 
 
 def prepare_strings(model: Any, quantities: Quantities) -> None:
-    """Write the strings' grids and coefficients into `model`. Source: [Yehu] eq. (57)."""
+    """Write the strings' grids and quantities into `model`. Source: [Yehu] eq. (57)."""
     for i, string in enumerate(quantities.strings):
         N = intervals(string, model["k"], quantities.tension_headroom)
         model["N"][i], model["h"][i] = N, string.L / N
         model["inside"][i, GHOST + 1 : GHOST + N] = 1.0
         model["rho_A"][i], model["EI"][i] = string.rho_A, string.EI
-        set_string_weights(model, i, string.T, string.sigma_0, string.sigma_1)
+        model["T"][i], model["sigma_0"][i] = string.T, string.sigma_0
+        model["sigma_1"][i] = string.sigma_1
 
 
 @compiled

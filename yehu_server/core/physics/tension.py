@@ -30,7 +30,6 @@ def prepare_tension(model: Any, quantities: Quantities) -> None:
     for i, string in enumerate(quantities.strings):
         EA = quantities.tension_modulation * string.EA
         model["stretch_stiffness"][i] = EA / (4.0 * string.L * model["h"][i])
-        set_tension_gain(model, i)
 
 
 @compiled

@@ -1,0 +1,68 @@
+"""Writes the machine code that releases bring, so that their first start compiles nothing.
+
+    .venv/bin/python scripts/machine_code.py [LEVEL ...]
+
+For systems of this kind, numba as installed here, and the sources as they are. Run it before a
+wheel is built. Takes half a minute for each level of processors.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from yehu_server.compile import machine_code
+from yehu_server.util.sealed import read_sealed, write_sealed
+
+COMPILE = """
+from yehu_server.compile import jit, machine_code
+from yehu_server.core.engine.warming import warm_up
+warm_up()
+print(machine_code.processor()[0], machine_code.file_in(jit.cache_folder()), sep="\\n")
+"""
+# numba's order of things follows Python's hashes; and no feature of this processor is wanted.
+SETTINGS = {"PYTHONHASHSEED": "0", "NUMBA_CPU_FEATURES": ""}
+
+
+def write(level: str, folder: Path) -> Path:
+    """Compile all for a level of processors, and write its file; return where."""
+    with tempfile.TemporaryDirectory() as empty:
+        settings = {**SETTINGS, "NUMBA_CPU_NAME": level, "NUMBA_CACHE_DIR": empty}
+        told = subprocess.run(  # noqa: S603 - our own
+            [sys.executable, "-c", COMPILE],
+            env={**os.environ, **settings},
+            check=True,
+            stdout=subprocess.PIPE,
+            text=True,
+        ).stdout
+        system, made = told.splitlines()
+        payload = read_sealed(Path(made))
+    if payload is None:
+        raise SystemExit(f"{level}: nothing was compiled")
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{system}-{level}.code"
+    write_sealed(path, payload)
+    return path
+
+
+def main() -> None:
+    """Write the files of all levels, or of those that are named."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    levels = list(machine_code.LEVELS[platform.machine()])
+    parser.add_argument("levels", metavar="LEVEL", nargs="*", choices=[*levels, []])
+    parser.add_argument("-o", metavar="FOLDER", type=Path, default=machine_code.SHIPPED)
+    arguments = parser.parse_args()
+    for level in arguments.levels or levels:
+        path = write(level, arguments.o)
+        print(f"{path}: {path.stat().st_size // 1000} kB")
+
+
+if __name__ == "__main__":
+    main()

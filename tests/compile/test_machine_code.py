@@ -1,0 +1,182 @@
+"""Machine code that is kept, or that a release brings, plays without numba."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import subprocess
+import sys
+import tomllib
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from yehu_server.cli.terminal import warn_of_compiling
+from yehu_server.compile import jit, machine_code
+from yehu_server.compile.jit import source_hash
+from yehu_server.core.engine.warming import ALL_FUNCTIONS, warm_up
+from yehu_server.util.sealed import read_sealed, write_sealed
+
+ROOT = Path(__file__).parents[2]
+PLAY = """
+import sys
+import numpy as np
+from yehu_server.core.engine import warming
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.playing.wishes import Key, WishPoster
+warming.warm_up()
+instrument = Instrument(InstrumentSpec(44100.0))
+WishPoster(instrument).note_on(Key(0, 69))
+block = np.zeros(22050, np.float32)
+instrument.process(block)
+print("numba" in sys.modules, np.sqrt(np.mean(np.square(block))))
+"""
+"""Plays a note; prints whether numba was there, and how loud it was."""
+
+
+@pytest.fixture(scope="module")
+def kept() -> bytes:
+    """The file of this processor."""
+    warm_up()
+    payload = read_sealed(machine_code.file_in(jit.cache_folder()))
+    assert payload is not None
+    return payload
+
+
+def changed(payload: bytes, **fields: object) -> bytes:
+    head, _, body = payload.partition(b"\n")
+    return json.dumps(json.loads(head) | fields).encode() + b"\n" + body
+
+
+def written(folder: Path, payload: bytes) -> dict[str, int]:
+    """What is loaded of a file with a payload in an otherwise empty cache."""
+    write_sealed(machine_code.file_in(folder), payload)
+    machine_code.loaded.cache_clear()
+    return machine_code.loaded(folder, source_hash())
+
+
+@pytest.fixture(autouse=True)
+def _nothing_is_shipped(tmp_path, monkeypatch):
+    monkeypatch.setattr(machine_code, "SHIPPED", tmp_path / "shipped")
+    yield
+    machine_code.loaded.cache_clear()
+
+
+@pytest.mark.usefixtures("kept")
+def test_a_note_from_what_is_kept_needs_no_numba():
+    played = subprocess.run(
+        [sys.executable, "-c", PLAY], check=True, capture_output=True, text=True
+    )
+    assert played.stdout.split()[0] == "False"
+
+
+def test_all_that_playing_needs_is_in_one_file(kept, tmp_path):
+    assert {function.name for function in ALL_FUNCTIONS} <= set(written(tmp_path, kept))
+
+
+def test_what_was_made_for_something_else_is_left_alone(kept, tmp_path, caplog):
+    *this, sources = [*machine_code.processor(), source_hash()]
+    for other in (
+        [*this, "0" * 16],
+        ["riscv", *this[1:], sources],
+        [this[0], "z80", this[2], sources],
+    ):
+        assert written(tmp_path, changed(kept, **{"made for": other})) == {}
+    assert written(tmp_path, changed(kept, format=0)) == {}
+    assert caplog.messages == []
+
+
+def test_a_damaged_file_is_told_and_left_alone(kept, tmp_path, caplog):
+    file = machine_code.file_in(tmp_path)
+    for damaged in (b"", kept[: len(kept) // 2], b"not ours", changed(kept, functions=None)):
+        caplog.clear()
+        assert written(tmp_path, damaged) == {}
+        assert caplog.messages[0].startswith(f"{file}: ")
+    caplog.clear()
+    file.write_bytes(b"0" * 100)
+    machine_code.loaded.cache_clear()
+    assert machine_code.loaded(tmp_path, source_hash()) == {}
+    assert "damaged" in caplog.messages[0]
+
+
+def shipped(folder: Path, payload: bytes, level: str) -> None:
+    system = machine_code.processor()[0]
+    made_for = [system, level, "", source_hash()]
+    folder.mkdir(exist_ok=True)
+    write_sealed(folder / f"{system}-{level}.code", changed(payload, **{"made for": made_for}))
+
+
+def test_of_what_is_shipped_the_highest_level_is_taken_that_the_processor_has(
+    kept, tmp_path, monkeypatch
+):
+    system = machine_code.processor()[0]
+    levels = {"high": {"a feature of the future"}, "middle": set(), "low": set()}
+    monkeypatch.setitem(machine_code.LEVELS, system.partition("-")[0], levels)
+    for level in levels:
+        shipped(tmp_path / "shipped", kept, level)
+    assert [path.name for path, _ in machine_code.shipped_files()] == [
+        f"{system}-middle.code", f"{system}-low.code",
+    ]  # fmt: skip
+    machine_code.loaded.cache_clear()
+    assert machine_code.loaded(tmp_path / "empty", source_hash())
+
+
+def test_code_of_a_level_is_not_taken_for_that_of_a_processor_asked_for(monkeypatch):
+    monkeypatch.setenv("NUMBA_CPU_NAME", "generic")
+    assert list(machine_code.shipped_files()) == []
+
+
+def told(capsys, **options) -> str:
+    warn_of_compiling(argparse.Namespace(quiet=False), **options)
+    return capsys.readouterr().err
+
+
+def test_commands_tell_that_something_is_compiled(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(jit, "cache_folder", lambda: tmp_path)
+    assert "compiling for this machine, once" in told(capsys, plays=False)
+    (tmp_path / "of_before.code").touch()
+    assert told(capsys, plays=False) == ""
+    warm_up()
+    assert told(capsys) == ""
+    monkeypatch.setattr(machine_code, "loaded", cache(lambda *_: {}))
+    assert "compiling for this machine, once" in told(capsys)
+
+
+def test_a_release_takes_the_files_along():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    (pattern,) = project["tool"]["hatch"]["build"]["artifacts"]
+    shipped_folder = Path(machine_code.__file__).parent / "shipped"
+    assert (shipped_folder / "a.code").relative_to(ROOT).match(pattern)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="a level of x86-64")
+def test_code_for_a_level_of_processors_plays_without_numba(tmp_path):
+    """It may round otherwise than code for this very processor, but a moment sounds alike."""
+    script = [
+        sys.executable,
+        ROOT / "scripts" / "machine_code.py",
+        "x86-64",
+        "-o",
+        tmp_path / "made",
+    ]
+    subprocess.run(script, check=True, stdout=subprocess.DEVNULL)
+    [made] = (tmp_path / "made").iterdir()
+    of_level = f"""
+from yehu_server.compile import machine_code
+machine_code.SHIPPED = machine_code.Path({str(made.parent)!r})
+{PLAY}"""
+    found = []
+    for script, settings in ((of_level, {"NUMBA_CACHE_DIR": str(tmp_path / "empty")}), (PLAY, {})):
+        ran = subprocess.run(
+            [sys.executable, "-c", script],
+            env={**os.environ, **settings}, check=True, capture_output=True, text=True,
+        )  # fmt: skip
+        found.append(ran.stdout.split())
+    (was_there, level), (_, own_level) = found
+    assert was_there == "False"
+    assert float(level) == pytest.approx(float(own_level), rel=0.05)

@@ -1,0 +1,178 @@
+"""Machine code of all functions that playing calls, kept in one file and loaded without numba.
+
+A file in the cache is for this very processor. Releases bring one for each of a few levels of
+processors, which is used where there is none in the cache, so that a first start compiles nothing.
+
+The file is sealed. Inside are a line of JSON, which tells what it was made for and all sizes, and
+the functions' object files, compressed; each comes after those that it calls.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import io
+import json
+import logging
+import os
+import pickle
+import zlib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from yehu_server.util.sealed import SealError, read_sealed, write_sealed
+
+log = logging.getLogger(__name__)
+
+FORMAT = 1
+# What numba's wrappers call where a function raises or counts references. None of ours does.
+NEVER_CALLED = (
+    "NRT_Free",
+    "NRT_MemInfo_call_dtor",
+    "numba_do_raise",
+    "numba_gil_ensure",
+    "numba_gil_release",
+    "numba_runtime_build_excinfo_struct",
+    "numba_unpickle",
+)
+
+
+def add_symbol(name: str, address: int) -> None:
+    """Let what is loaded from now on find a function by its name."""
+    from llvmlite import binding
+
+    binding.add_symbol(name, address)
+
+
+def processor() -> list[str]:
+    """The processor that code is made for, in full: system, name and features."""
+    from llvmlite import binding
+
+    # numba's own words, by which it takes this processor for another one.
+    name = os.environ.get("NUMBA_CPU_NAME") or binding.get_host_cpu_name()
+    features = os.environ.get("NUMBA_CPU_FEATURES")
+    if features is None:
+        features = binding.get_host_cpu_features().flatten()
+    return [binding.get_process_triple(), name, features]
+
+
+def file_in(folder: Path) -> Path:
+    """The file of this processor in a cache folder."""
+    key = zlib.crc32(json.dumps(processor()).encode())
+    return folder / f"machine-{key:08x}.code"
+
+
+def keep(folder: Path, sources: str, functions: Iterable[Any]) -> None:
+    """Write the file, of functions that are in the cache, each after those that it calls.
+
+    Parameters
+    ----------
+    functions : iterable of jit.Native
+
+    Raises
+    ------
+    OSError
+        Where it cannot be written.
+    SealError
+        Where the cache is damaged.
+    """
+    sizes, objects = [], []
+    for function in _in_order(functions):
+        payload = read_sealed(function.file)
+        if payload is None:
+            return
+        _, kind, parts = pickle.load(io.BytesIO(payload))  # noqa: S301 - it is sealed
+        if kind != "object":
+            return
+        entry = function.compiled._wrapper_name  # noqa: SLF001 - there is no other way
+        sizes.append([function.name, entry, len(parts[0])])
+        objects.append(parts[0])
+    head = {"format": FORMAT, "made for": [*processor(), sources], "functions": sizes}
+    body = zlib.compress(b"".join(objects), 1)
+    write_sealed(file_in(folder), json.dumps(head).encode() + b"\n" + body)
+
+
+def _in_order(functions: Iterable[Any]) -> dict[Any, None]:
+    found: dict[Any, None] = {}
+    for function in functions:
+        found |= _in_order(function.calls) | {function: None}
+    return found
+
+
+SHIPPED = Path(__file__).parent / "shipped"
+_V3 = {"avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"}
+_V4 = _V3 | {"avx512bw", "avx512cd", "avx512dq", "avx512f", "avx512vl"}
+# Levels that a release has code for, the highest first, with the features that they need. By LLVM's
+# names of processors and of features.
+LEVELS: dict[str, dict[str, set[str]]] = {
+    "x86_64": {"x86-64-v4": _V4, "x86-64-v3": _V3, "x86-64": set()},
+    "aarch64": {"generic": set()},
+    "arm64": {"generic": set()},
+}
+
+
+def shipped_files() -> Iterator[tuple[Path, list[str]]]:
+    """The files of a release that this processor can run, and what each was made for."""
+    from llvmlite import binding
+
+    if os.environ.get("NUMBA_CPU_NAME"):
+        return
+    triple, features = binding.get_process_triple(), binding.get_host_cpu_features()
+    for level, needs in LEVELS.get(triple.partition("-")[0], {}).items():
+        if all(features.get(feature) for feature in needs):
+            yield SHIPPED / f"{triple}-{level}.code", [triple, level, ""]
+
+
+@functools.cache
+def loaded(folder: Path, sources: str) -> dict[str, int]:
+    """Load what is kept in a cache folder, or was shipped.
+
+    Parameters
+    ----------
+    sources : str
+        Key of the source that it has to be made from.
+
+    Returns
+    -------
+    dict
+        The functions' addresses by name; empty where they have to be compiled.
+    """
+    for path, made_for in ((file_in(folder), processor()), *shipped_files()):
+        try:
+            payload = read_sealed(path)
+            if payload is None:
+                continue
+            head, _, body = payload.partition(b"\n")
+            about = json.loads(head)
+            if about["format"] == FORMAT and about["made for"] == [*made_for, sources]:
+                return _load(about["functions"], zlib.decompress(body))
+        except (SealError, ValueError, LookupError, TypeError, zlib.error) as error:
+            log.warning("%s: %s; compiling anew", path, error)
+    return {}
+
+
+_engines: list[Any] = []  # they hold the code
+
+
+def _load(functions: list[list[Any]], code: bytes) -> dict[str, int]:
+    from llvmlite import binding
+
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    machine = binding.Target.from_default_triple().create_target_machine(jit=True)
+    engine = binding.create_mcjit_compiler(binding.parse_assembly(""), machine)
+    _engines.append(engine)
+    library = ctypes.CDLL(None if os.name == "posix" else "msvcrt")
+    abort = ctypes.cast(library.abort, ctypes.c_void_p).value or 0
+    for name in NEVER_CALLED:
+        binding.add_symbol(name, abort)
+    found, begin = {}, 0
+    for name, symbol, size in functions:
+        data = code[begin : begin + size]
+        engine.add_object_file(binding.object_file.ObjectFileRef.from_data(data))
+        engine.finalize_object()
+        found[name] = engine.get_function_address(symbol)
+        binding.add_symbol(name, found[name])
+        begin += size
+    return found

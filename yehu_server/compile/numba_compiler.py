@@ -1,0 +1,84 @@
+"""numba, as this package uses it. Imported only where something has to be compiled.
+
+What is compiled names other functions and intrinsics as `jit.Deferred`; numba sees what these stand
+for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+from numba import extending, types
+from numba.core import sigutils
+from numba.core.ccallback import CFunc
+from numba.core.compiler import Compiler
+from numba.core.registry import cpu_target
+
+from yehu_server.compile import jit
+from yehu_server.compile.cache import CodeCache
+
+OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+
+
+class NoAliasCompiler(Compiler):  # type: ignore[misc]
+    """numba's compiler, told that no two arguments of a function overlap, as C's `restrict` does.
+
+    Else each loop over several rows of one record first compares their addresses, a tenth of the
+    kernel's time.
+    """
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self.state.flags.noalias = True
+
+
+@extending.typeof_impl.register(jit.Deferred)  # type: ignore[untyped-decorator]
+def _type_of(deferred: jit.Deferred, _context: Any) -> Any:
+    value, typing = deferred.value, cpu_target.typing_context
+    typing.refresh()  # numba knows only then of an intrinsic that is new
+    return typing.resolve_value_type(value)
+
+
+def dispatcher(
+    function: Callable[..., Any], *, no_alias: bool, one_version: bool, **options: Any
+) -> Any:
+    """numba's object for a function that others call.
+
+    Parameters
+    ----------
+    no_alias : bool
+        Whether no two of its arguments overlap.
+    one_version : bool
+        Whether constants make no versions of their own.
+    """
+    if no_alias:
+        options["pipeline_class"] = NoAliasCompiler
+    made = _cached(numba.njit(**OPTIONS, **options)(function), function)
+    if one_version:
+        versions = made.get_call_template
+        made.get_call_template = lambda arguments, named: versions(
+            [types.unliteral(argument) for argument in arguments], named
+        )
+    return made
+
+
+def c_function(function: Callable[..., Any], signature: str) -> Any:
+    """numba's object for a function that is called by address."""
+    options = {"nopython": True, "error_model": "numpy", "fastmath": jit.FASTMATH}
+    made = CFunc(function, sigutils.normalize_signature(signature), {}, options)
+    return _cached(made, function)
+
+
+def external(name: str, signature: str) -> Any:
+    """A function that compiled ones find by its name."""
+    arguments, returned = sigutils.normalize_signature(signature)
+    return types.ExternalFunction(name, returned(*arguments))
+
+
+def _cached(made: Any, function: Callable[..., Any]) -> Any:
+    """Give numba's object for a function our cache, before anything is compiled."""
+    if jit.IS_CACHED:
+        made._cache = CodeCache(jit.cache_folder(), function)  # noqa: SLF001 - there is no other way
+    return made

@@ -46,7 +46,8 @@ def test_an_acceleration_is_from_rest_to_the_speed_of_the_gesture():
     [
         {"bow_force": [0.4, -0.4, 0.7]},
         {"controls.bow_velocity": [0.1, 0.25], "instrument.bow.mu_S": [0.9, 1.0]},
-        {"bow_acceleration": [3.0, 12.0], "bow_position": [0.25, 0.27]},
+        # Within a regime: at its border, another rounding leads to another one.
+        {"bow_acceleration": [2.0, 12.0], "bow_position": [0.258, 0.267]},
         {"duration": [0.12, 0.15], "sample_rate": [44100, 48000]},
     ],
     ids=",".join,

@@ -14,8 +14,6 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any, TextIO
 
-import segno
-
 from yehu_server.cli.arguments import add_command, add_folder, add_options
 from yehu_server.cli.converters import port
 from yehu_server.cli.terminal import print_result
@@ -37,6 +35,8 @@ def show(text: str, stream: TextIO) -> None:
 
 def drawn(text: str) -> list[str]:
     """The lines of a QR code of a text, with their colours."""
+    import segno
+
     rows = [bytes(row) for row in segno.make_qr(text).matrix_iter(border=QUIET)]
     white = bytes(len(rows[0]))
     pairs = zip_longest(rows[::2], rows[1::2], fillvalue=white)

@@ -9,8 +9,6 @@ import socket
 from collections.abc import Iterable
 from functools import lru_cache
 
-import ifaddr
-
 from yehu_server.errors import ParameterError
 
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
@@ -89,6 +87,8 @@ def lan_address() -> str:
 
 def lan_interface() -> ipaddress.IPv4Interface:
     """Find this machine's address on its network, with that network's mask."""
+    import ifaddr
+
     address = lan_address()
     for adapter in ifaddr.get_adapters():
         for own in adapter.ips:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
+import ifaddr
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -87,5 +88,5 @@ def test_the_network_is_as_wide_as_the_interface_says(monkeypatch, own, network)
     told = [("::1", 128), ("127.0.0.1", 8), ("192.168.5.5", 22)]
     ips = [SimpleNamespace(ip=ip, network_prefix=prefix) for ip, prefix in told]
     monkeypatch.setattr(addresses, "lan_address", lambda: own)
-    monkeypatch.setattr(addresses.ifaddr, "get_adapters", lambda: [SimpleNamespace(ips=ips)])
+    monkeypatch.setattr(ifaddr, "get_adapters", lambda: [SimpleNamespace(ips=ips)])
     assert str(lan_interface().network) == network

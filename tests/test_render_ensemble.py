@@ -11,9 +11,7 @@ import pytest
 import soundfile
 from scores import midi_file, notes
 
-from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.playing.style import Style
-from yehu_server.rendering.cores import Cores
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
 from yehu_server.scores.reading import part_of
@@ -117,23 +115,15 @@ def parts(trio) -> list[Part]:
     return [Part(part_of(score, channel), style=Style(seed=channel)) for channel in (0, 1, 4)]
 
 
-def test_any_number_of_cores_and_any_block_give_the_samples_of_the_callback(parts, monkeypatch):
+def test_any_number_of_cores_and_any_block_give_the_samples_of_the_callback(parts):
     def sound(**how: object) -> np.ndarray:
         return np.concatenate([*Performance(parts, Options(tail_s=0.3, **how)).blocks()])
 
-    by_cores = [sound(jobs=1), sound(jobs=2), sound(jobs=3, block=500)]
-    monkeypatch.setattr(Cores, "sound", lambda _, frames: frames)
-    monkeypatch.setattr(Cores, "mix", in_turn)
     in_callback = sound(jobs=1)
+    by_cores = [sound(jobs=1, block=500), sound(jobs=2), sound(jobs=3, block=2500)]
     assert np.abs(in_callback).max() > 0.1
     for samples in by_cores:
         np.testing.assert_array_equal(samples, in_callback)
-
-
-def in_turn(cores: Cores, frames: int) -> np.ndarray:
-    out = np.zeros((frames, 2), np.float32)
-    Ensemble.process(cores._ensemble, out)
-    return out
 
 
 def test_the_order_of_the_other_parts_changes_a_part_by_nothing(parts):

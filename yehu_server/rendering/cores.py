@@ -28,17 +28,20 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Sounded:
-    """A block that is computed and not mixed yet.
+    """A block that is computed.
 
     Attributes
     ----------
     first : int
         Number of its first frame.
     pieces : list of (frames, ndarray [shape=(instruments, chunks), dtype=SOUNDED])
+    mixed : ndarray, optional
+        Its samples, where the callback made them on one core.
     """
 
     first: int
     pieces: list[tuple[int, Array]] = field(default_factory=list)
+    mixed: Array | None = None
 
 
 class Cores:
@@ -50,6 +53,8 @@ class Cores:
         As `map`, for all cores: calls a function with each item.
     has_stems : bool
         Whether `stems` is wanted.
+    is_in_turn : bool
+        Whether the callback computes it all, on one core. It makes no stems.
 
     Attributes
     ----------
@@ -58,13 +63,23 @@ class Cores:
     """
 
     def __init__(
-        self, ensemble: Ensemble, share: Callable[..., Any], *, has_stems: bool = False
+        self,
+        ensemble: Ensemble,
+        share: Callable[..., Any],
+        *,
+        has_stems: bool = False,
+        is_in_turn: bool = False,
     ) -> None:
-        self._ensemble, self._share, self._has_stems = ensemble, share, has_stems
+        self._ensemble, self._share = ensemble, share
+        self._has_stems, self._is_in_turn = has_stems, is_in_turn
         self.stems = np.zeros((0, len(ensemble.instruments) + 1, EARS))
 
     def sound(self, frames: int) -> Sounded:
         """Compute the next frames; the block before may be mixed meanwhile."""
+        if self._is_in_turn:
+            out = self._zeros(frames)
+            self._ensemble.process(out)
+            return Sounded(self._ensemble.frame - frames, mixed=out)
         block, done = Sounded(self._ensemble.frame), 0
         while done < frames:
             end = interpret_events.call(self._ensemble.address, block.first + frames) - block.first
@@ -86,8 +101,10 @@ class Cores:
 
     def mix(self, block: Sounded) -> Array:
         """Mix a block; return its samples [shape=(frames, channels), float32]."""
+        if block.mixed is not None:
+            return block.mixed
         frames = sum(count for count, _ in block.pieces)
-        out = np.zeros((frames, self._ensemble.channels), np.float32)
+        out = self._zeros(frames)
         if self._has_stems:
             self.stems = np.zeros((frames, len(self._ensemble.instruments) + 1, EARS))
         done = 0
@@ -97,6 +114,9 @@ class Cores:
             mix_block.call(*places, *into)
             done += count
         return out
+
+    def _zeros(self, frames: int) -> Array:
+        return np.zeros((frames, self._ensemble.channels), np.float32)
 
 
 @contextmanager

@@ -144,10 +144,14 @@ class Performance:
         They have the shape (frames, 2), or (frames,) where `Options.is_mono`.
         """
         options = self._options
-        with shared(min(options.cores, len(self.ensemble.instruments))) as share:
-            cores = Cores(self.ensemble, share, has_stems=self._has_stems)
+        is_ahead = options.cores > 1 and options.block >= LEAST_AHEAD
+        own = min(options.cores, len(self.ensemble.instruments))
+        is_in_turn = own == 1 and not is_ahead and not self._has_stems
+        with shared(own) as share:
+            form = {"has_stems": self._has_stems, "is_in_turn": is_in_turn}
+            cores = Cores(self.ensemble, share, **form)
             blocks = self._sounded(cores)
-            if options.cores > 1 and options.block >= LEAST_AHEAD:
+            if is_ahead:
                 blocks = computed_ahead(blocks)
             for block, self.target_pitches in blocks:
                 yield self._mixed(cores, block)

@@ -14,7 +14,7 @@ from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import MIDI, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.params.table import TABLE
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy

@@ -8,7 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numba
 import pytest
 
-from yehu_server.compile import cache, jit
+from yehu_server.compile import function_cache as cache
+from yehu_server.compile import jit
 from yehu_server.util import sealed
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.compile import cache, jit
+from yehu_server.compile import function_cache as cache
+from yehu_server.compile import jit
 from yehu_server.util import PACKAGE
 from yehu_server.util.source_key import key_of, without_prose
 

@@ -17,7 +17,7 @@ from yehu_server.cli.devices import devices_report
 from yehu_server.cli.report import bindings_table, mapping_report, status_line
 from yehu_server.errors import FIRST, LAST, one_line, shortened
 from yehu_server.live.audio.devices import AudioDevice
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
 
 EVIL = "\x1b]0;owned\x07\x1b[31mred\x9b2J\r\n\u202eevil\udcff[bold]:smile:"

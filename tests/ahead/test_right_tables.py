@@ -17,7 +17,7 @@ from yehu_server.core.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, TABLES
 from yehu_server.core.player.rows import ROW, ROWS
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
-from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables

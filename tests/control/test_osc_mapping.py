@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
 
 VOLUME = "/playing/volume"

@@ -17,7 +17,7 @@ from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, is_l
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
 from yehu_server.playing import learn as learned
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.learn import LearnedSource
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping

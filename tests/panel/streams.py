@@ -10,7 +10,7 @@ from typing import Any
 from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import TABLE
 from yehu_server.playing import sources
-from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.mapping_file import MappingFile
 

@@ -7,8 +7,8 @@ import pytest
 from physics.runs import play
 
 from yehu_server.core.physics import kernel
-from yehu_server.core.physics.hair import static_coefficient
 from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.rosin_heat import static_coefficient
 from yehu_server.errors import ParameterError
 
 YEHU = Quantities()

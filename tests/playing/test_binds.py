@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from yehu_server.core.midi.curves import PICKUP_WINDOW
 from yehu_server.params.spec import Curve
-from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.bind import Bind, Breakpoints
 
 PRESSURE = "/playing/pressure"
 units = st.floats(0.0, 1.0)

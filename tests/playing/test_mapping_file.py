@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from yehu_server.errors import MappingError
 from yehu_server.params.spec import Curve
-from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping import load, mapping_folder, shipped_mappings, user_mappings
 from yehu_server.playing.mapping_file import (
     document_of,

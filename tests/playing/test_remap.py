@@ -8,7 +8,7 @@ import mido
 import pytest
 
 from yehu_server.errors import MappingError
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping, load
 from yehu_server.playing.mapping_watch import MappingWatch
 from yehu_server.playing.midi_player import MidiPlayer

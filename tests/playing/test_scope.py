@@ -5,7 +5,7 @@ from __future__ import annotations
 import mido
 import pytest
 
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.live_player import ELSEWHERE
 from yehu_server.playing.mapping import Mapping, load
 from yehu_server.playing.midi_player import MidiPlayer

@@ -20,7 +20,7 @@ from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.player import wishes as kinds
 from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.section_instruments import section_specs

@@ -7,7 +7,7 @@ import pytest
 from curves import from_unit
 
 from yehu_server.params.spec import Curve
-from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.midi_player import MidiPlayer
 

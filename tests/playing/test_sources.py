@@ -8,7 +8,7 @@ import pytest
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.sources import canonical

@@ -24,7 +24,7 @@ from yehu_server.errors import MappingError, ParameterError
 
 if TYPE_CHECKING:
     from yehu_server.live.osc.client import OscClient
-    from yehu_server.playing.binds import Bind
+    from yehu_server.playing.bind import Bind
     from yehu_server.playing.mapping import Mapping
 
 EXAMPLES = """\

@@ -17,7 +17,7 @@ from numba.core.compiler import Compiler
 from numba.core.registry import cpu_target
 
 from yehu_server.compile import jit
-from yehu_server.compile.cache import CodeCache
+from yehu_server.compile.function_cache import CodeCache
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 

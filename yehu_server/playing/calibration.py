@@ -1,7 +1,7 @@
 """Tune the model by bowing it: string tensions, and finger positions for each pitch.
 
 Each open string is tuned by its tension; each stopped note is bowed at several speeds, and the
-finger moved until it is in tune. `playing.calibrations` keeps the results, under a key of
+finger moved until it is in tune. `playing.calibration_store` keeps the results, under a key of
 everything that they depend on.
 """
 

@@ -13,7 +13,7 @@ from yehu_server.core.midi.registered_parameters import RPN_COARSE as RPN
 from yehu_server.errors import MappingError
 from yehu_server.params.table import find
 from yehu_server.playing import sources
-from yehu_server.playing.binds import Bind, override_key
+from yehu_server.playing.bind import Bind, override_key
 from yehu_server.playing.mapping import Mapping, mapping_folder, user_folder, with_bases
 from yehu_server.playing.mapping_file import MappingFile, read_mapping_file, text_of
 from yehu_server.playing.mapping_values import settable_param

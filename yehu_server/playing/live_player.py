@@ -17,7 +17,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.midi.events import LEAVE
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import TABLE, find
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.learn import LearnedSource, Learner
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.style import Style

@@ -17,7 +17,7 @@ from platformdirs import user_config_path
 
 from yehu_server.core.midi.tables import MOST_BINDS, MOST_POINTS
 from yehu_server.errors import MappingError
-from yehu_server.playing.binds import Bind, Breakpoints, override_key
+from yehu_server.playing.bind import Bind, Breakpoints, override_key
 from yehu_server.playing.mapping_file import MappingFile, document_of, read_mapping_file
 from yehu_server.playing.sources import is_address
 from yehu_server.util.files import shipped_folder

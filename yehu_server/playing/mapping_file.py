@@ -14,7 +14,7 @@ from yehu_server.errors import MappingError
 from yehu_server.params.spec import Curve, Param
 from yehu_server.playing import mapping_values as entries
 from yehu_server.playing import sources
-from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.util.documents import MOST_ERRORS, Document, Fields
 from yehu_server.util.values import flag, line, number
 

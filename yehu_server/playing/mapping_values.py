@@ -9,7 +9,7 @@ from typing import Any
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import find
-from yehu_server.playing.binds import Breakpoints
+from yehu_server.playing.bind import Breakpoints
 from yehu_server.playing.sources import CHANNELS
 from yehu_server.util.documents import Fields
 from yehu_server.util.values import brief, choice, number, whole

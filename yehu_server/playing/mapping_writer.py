@@ -13,7 +13,7 @@ from tomlkit.items import AoT
 
 from yehu_server.errors import MappingError
 from yehu_server.params.table import find
-from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping_file import MappingFile, read_mapping_file
 
 

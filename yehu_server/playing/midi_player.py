@@ -25,7 +25,7 @@ from yehu_server.core.player.rows import ROW
 from yehu_server.errors import YehuError
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE, find
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import NOTE, POLY_PRESSURE, STEPS, VELOCITY, is_address
 from yehu_server.playing.wishes import Key, WishPoster

@@ -15,7 +15,7 @@ from yehu_server.params.preset_file import Preset
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
 from yehu_server.playing import sources
-from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping as Binds
 from yehu_server.playing.tuning import KEYS, RangePolicy, Tuning
 

@@ -13,7 +13,7 @@ from fractions import Fraction
 import mido
 
 from yehu_server.params.table import find
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.scores.score import Score, Setting
 from yehu_server.scores.written.clock import WrittenClock

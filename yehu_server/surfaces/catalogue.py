@@ -10,7 +10,7 @@ from pathlib import Path
 from yehu_server.errors import OutputError
 from yehu_server.live.addresses import OSC_ADDRESS, Address
 from yehu_server.surfaces import max as max_patch
-from yehu_server.surfaces import open_stage_control, page, puredata, touchosc
+from yehu_server.surfaces import open_stage_control, parameter_reference, puredata, touchosc
 from yehu_server.surfaces.layout import ALL, for_part
 from yehu_server.util.files import replacing
 
@@ -33,7 +33,7 @@ SURFACES = (
     Surface("yehu.maxpat", "Max", max_patch.make),
     Surface("yehu.pd", "Pure Data", puredata.make),
     Surface("open-stage-control.json", "Open Stage Control", open_stage_control.make),
-    Surface("parameters.html", "a browser", page.make),
+    Surface("parameters.html", "a browser", parameter_reference.make),
 )
 
 

@@ -20,7 +20,7 @@ from yehu_server.core.midi.tables import MOST_BINDS
 from yehu_server.errors import EnsembleError, MappingError, ParameterError, PresetError
 from yehu_server.params.preset_file import SAVED
 from yehu_server.params.table import BY_ADDRESS, TABLE, find
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping, with_bases
 from yehu_server.playing.mapping_file import (
     MappingFile,

@@ -1,7 +1,7 @@
 """Events: all that a part can be sent, each at a frame.
 
-A wish (``player.wishes``) may also be posted directly as an event, as a replay does.
-replay, posts them, and they pass on to the players of the part. Beside them:
+A wish (``player.wishes``) may also be posted as an event, as a replay does; it passes on to the
+players of the part. Beside them:
 
 | kind | index | value | other |
 |---|---|---|---|

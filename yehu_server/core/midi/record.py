@@ -128,7 +128,7 @@ MIDI = np.dtype(
         ("values", np.int64),
         ("values_row", np.int64, ROWS),
         ("values_value", np.float64, ROWS),
-        # Onsets: see ``section_timing``.
+        # Onsets: see ``section_players``.
         ("stream", np.int64),  # of random numbers; 0: not begun
         ("drawn", np.int64),
         ("share", np.float64, PEOPLE),

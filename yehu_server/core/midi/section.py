@@ -1,7 +1,7 @@
 """A section: several people who play one part, each an instrument of their own. Compiled.
 
 Wishes are passed on to the players: notes at the frame at which each of them begins, which is at
-most ``section_timing.LATEST_MS`` after the planned one; all else as it is wished, but not before
+most ``section_players.LATEST_MS`` after the planned one; all else as it is wished, but not before
 the note that was wished earlier. Keys struck within `CHORD_MS` are a chord, whose notes the players
 divide; one line is played by all. Where a note of a chord ends, its players rest until the next
 note, which is theirs.

@@ -35,7 +35,7 @@ def choice(default: str, *others: str, source: str) -> Any:
 
 TABLE_1 = "[Yehu] table 1"
 DATA_SET = "[YehuData]"
-SMITH = "chosen: see heat.py; [Smith]"
+SMITH = "chosen: see rosin_heat.py; [Smith]"
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.ownership import USUAL_MS, move, take_back
-from yehu_server.core.player.plain_notes import varied_landing, vibrato_cents, vibrato_delay_ms
+from yehu_server.core.player.phrasing import varied_landing, vibrato_cents, vibrato_delay_ms
 from yehu_server.core.player.rows import (
     FINGER_COUNT,
     FINGER_POSITION,

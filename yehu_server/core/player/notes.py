@@ -25,7 +25,7 @@ from yehu_server.core.player.ownership import (
     take_back,
     write_directly,
 )
-from yehu_server.core.player.plain_notes import slide_of_leap_ms, varied_semitones, vary_next_note
+from yehu_server.core.player.phrasing import slide_of_leap_ms, varied_semitones, vary_next_note
 from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.right_hand import SLURRED_MS, wished_speed
 from yehu_server.core.player.rows import (

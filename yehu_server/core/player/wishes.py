@@ -29,7 +29,7 @@ from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.player import left_hand, notes
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.core.player.ownership import USUAL_MS, forget, ramp_to, release, write_directly
-from yehu_server.core.player.plain_notes import begin_sequence
+from yehu_server.core.player.phrasing import begin_sequence
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.rows import (
     ASSIST,

@@ -1,1 +1,1 @@
-"""How people reach the instrument live: OSC and MIDI."""
+"""OSC: packets, sockets, limits on senders, calls, subscriptions, the status."""

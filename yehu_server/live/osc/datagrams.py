@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.live.addresses import Address
-from yehu_server.live.osc.listening import DATAGRAM_BYTES, SO_RXQ_OVFL, SO_TIMESTAMPNS
+from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, SO_RXQ_OVFL, SO_TIMESTAMPNS
 
 log = logging.getLogger(__name__)
 

@@ -67,7 +67,7 @@ class WebTraffic:
     web_sockets: int = 0  # open now
 
 
-def answer_bytes(times: int = 1) -> TokenBucket:
+def answer_bucket(times: int = 1) -> TokenBucket:
     """The bytes of answers to a port, or to several together."""
     return TokenBucket(times * ANSWERED_BYTES, times * ANSWERED_BYTES)
 

@@ -25,7 +25,7 @@ from yehu_server.live.osc.datagrams import datagrams
 from yehu_server.live.osc.fair_queue import FairQueue
 from yehu_server.live.osc.framing import FramingError
 from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.listening import DATAGRAM_BYTES, open_both, widen
+from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, open_both, widen
 from yehu_server.live.osc.peers import (
     TO_A_HOST,
     TO_ALL_HOSTS,
@@ -33,7 +33,7 @@ from yehu_server.live.osc.peers import (
     TcpPeer,
     Traffic,
     UdpPeer,
-    answer_bytes,
+    answer_bucket,
 )
 
 log = logging.getLogger(__name__)
@@ -71,8 +71,8 @@ class OscPorts:
         self._accept_from = math.inf  # monotonic s
         self._warned = 0.0  # monotonic s
         self._peer = lru_cache(MOST_PEERS)(self._new_peer)
-        self._to_all = answer_bytes(TO_ALL_HOSTS)
-        self._to_host = lru_cache(MOST_PEERS)(lambda _host: answer_bytes(TO_A_HOST))
+        self._to_all = answer_bucket(TO_ALL_HOSTS)
+        self._to_host = lru_cache(MOST_PEERS)(lambda _host: answer_bucket(TO_A_HOST))
         self._streams: set[TcpPeer] = set()
         self._selector = selectors.DefaultSelector()
         self._udp, self._tcp = open_both(host, port)
@@ -237,7 +237,7 @@ class OscPorts:
 
     def _new_peer(self, address: Address) -> UdpPeer:
         host = address[0]
-        buckets = [answer_bytes()] if is_here(host) else [self._to_host(host), self._to_all]
+        buckets = [answer_bucket()] if is_here(host) else [self._to_host(host), self._to_all]
         return UdpPeer(self._udp, address, self.traffic, buckets)
 
     def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:

@@ -26,7 +26,7 @@ from yehu_server.params.preset_file import SAVED, Preset
 from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.playing import learn, sources
-from yehu_server.playing.binds import Bind
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.live_player import ELSEWHERE
 from yehu_server.playing.mapping import DEFAULT, load, shipped_mappings
 from yehu_server.playing.mapping import Mapping as ControllerMapping

@@ -7,7 +7,6 @@ import pytest
 
 from yehu_server.live.osc.call_table import CALLS
 from yehu_server.params.table import TABLE
-from yehu_server.surfaces import page
 
 VOID = ("meta", "input", "br")
 
@@ -37,7 +36,7 @@ class Reader(HTMLParser):
 
 @pytest.fixture(scope="module")
 def text():
-    return page.make(("127.0.0.1", 9000)).decode()
+    return parameter_reference.make(("127.0.0.1", 9000)).decode()
 
 
 @pytest.fixture(scope="module")

@@ -7,6 +7,7 @@ import pytest
 
 from yehu_server.live.osc.call_table import CALLS
 from yehu_server.params.table import TABLE
+from yehu_server.surfaces import parameter_reference
 
 VOID = ("meta", "input", "br")
 

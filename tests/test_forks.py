@@ -17,7 +17,9 @@ CODES = {
     "a sentence": "raise SystemExit('no such thing')",
     "a signal": "import os; os.kill(os.getpid(), 15)",
     "a reader that is gone": "import os; os.close(1); print(1)",
-    "an interrupt": "import _thread; _thread.interrupt_main()\nwhile True: pass",
+    # A shell's background jobs ignore interrupts, and what they start does.
+    "an interrupt": "import _thread, signal; signal.signal(2, signal.default_int_handler)\n"
+    "_thread.interrupt_main()\nwhile True: pass",
     "what is left at the end": (
         "import atexit, threading, time; atexit.register(print, 'second');"
         "threading.Thread(target=lambda: (time.sleep(0.1), print('first'))).start()"

@@ -80,6 +80,8 @@ def test_what_no_parameter_can_take_is_answered_and_changes_nothing(still):
 def test_a_number_of_any_type_comes_over_the_wire(shared_server, value, tags):
     client = shared_server.client()
     accepted = f32(min(max(value, 0.0), 5.0))
+    # None of them: who sets what is there already is told nothing.
+    shared_server.player.write("/bow/force", 2.5, frame=0)
     client.tell("/bow/force", value, tags=tags)
     assert client.wait_for("/bow/force") == [accepted]
     assert client.value("/bow/force") == accepted

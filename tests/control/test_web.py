@@ -27,7 +27,7 @@ def port(shared_web) -> int:
     return shared_web.server.web.port
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def nodes(port):
     return dict(walk(ask(port, "/").json))
 

@@ -25,6 +25,7 @@ from yehu_server.live.midi.ports import MidiOptions, MidiPorts
 from yehu_server.live.midi.routes import Router, is_wanted, stable_names
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
+from yehu_server.params.table import FINGERS
 from yehu_server.playing.style import Style
 
 RATE, PERIOD = 48000, 1024
@@ -228,17 +229,21 @@ def test_the_default_mapping_reaches_the_instrument(keys, until):
     assert moves("90 4a 50", "/bow/pressure") == pytest.approx(0.4575, rel=1e-3)  # of velocity 80
     assert heard.player.pitch == 74.0
     assert abs(applied["/bow/speed"][1]) == pytest.approx(0.2, rel=1e-3)
-    assert applied["/finger/1/press"][1] == pytest.approx(1.5)
-    place = applied["/finger/1/position"][1]
+    presses = {
+        n: applied[f"/finger/{n}/press"][1] for n in FINGERS if f"/finger/{n}/press" in applied
+    }
+    finger = max(presses, key=presses.get)  # which one lands depends on what was played before
+    assert presses[finger] == pytest.approx(1.5)
+    place = applied[f"/finger/{finger}/position"][1]
 
-    assert moves("e0 7f 7f", "/finger/1/position") > place  # the wheel up: two semitones
+    assert moves("e0 7f 7f", f"/finger/{finger}/position") > place  # the wheel up: two semitones
     assert heard.player.pitch == 76.0
-    assert moves("d0 7f", "/finger/1/press") == pytest.approx(5.0)
+    assert moves("d0 7f", f"/finger/{finger}/press") == pytest.approx(5.0)
     assert abs(moves("b0 01 7f", "/bow/speed")) == pytest.approx(0.26, rel=1e-3)
 
     # Reset all controllers.
     assert abs(moves("b0 79 00", "/bow/speed")) == pytest.approx(0.2, rel=1e-3)
-    assert applied["/finger/1/press"][1] == pytest.approx(1.5)
+    assert applied[f"/finger/{finger}/press"][1] == pytest.approx(1.5)
     assert heard.player.pitch == 74.0
 
     assert moves("80 4a 40", "/bow/side") == 0.0

@@ -17,7 +17,7 @@ import pytest
 
 from yehu_server.errors import DeviceError
 from yehu_server.live.addresses import Allowed
-from yehu_server.live.osc import listening, sockets
+from yehu_server.live.osc import open_sockets, sockets
 from yehu_server.live.osc.fair_queue import MOST_BYTES
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import ANSWERED_BYTES, TO_ALL_HOSTS
@@ -178,12 +178,12 @@ def test_longer_datagrams_are_dropped_and_counted(
     listen, client, keeper, until, monkeypatch, kernel_filters
 ):
     if not kernel_filters:
-        monkeypatch.setattr(listening, "FILTER", ((6, 0, 0, 0xFFFFFFFF),))
+        monkeypatch.setattr(open_sockets, "FILTER", ((6, 0, 0, 0xFFFFFFFF),))
     elif sys.platform != "linux":
         pytest.skip("only Linux filters")
     ports = listen()
     sender = client(ports)
-    for size in (listening.DATAGRAM_BYTES + 1, 65507):
+    for size in (open_sockets.DATAGRAM_BYTES + 1, 65507):
         sender.take(b"x" * size)
     sender.take(b"/a\0\0")
     until(lambda: keeper.packets, "the short one")

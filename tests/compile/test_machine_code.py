@@ -31,9 +31,9 @@ from yehu_server.playing.wishes import Key, WishPoster
 warming.warm_up()
 instrument = Instrument(InstrumentSpec(44100.0))
 WishPoster(instrument).note_on(Key(0, 69))
-block = np.zeros(22050, np.float32)
+block = np.zeros(3 * 44100, np.float32)
 instrument.process(block)
-print("numba" in sys.modules, np.sqrt(np.mean(np.square(block))))
+print("numba" in sys.modules, np.sqrt(np.mean(np.square(block[44100:]))), block[:64].tolist())
 """
 """Plays a note; prints whether numba was there, and how loud it was."""
 
@@ -177,6 +177,7 @@ machine_code.SHIPPED = machine_code.Path({str(made.parent)!r})
             env={**os.environ, **settings}, check=True, capture_output=True, text=True,
         )  # fmt: skip
         found.append(ran.stdout.split())
-    (was_there, level), (_, own_level) = found
+    (was_there, level, *begins), (_, own_level, *own_begins) = found
     assert was_there == "False"
+    assert begins == own_begins
     assert float(level) == pytest.approx(float(own_level), rel=0.05)

@@ -6,7 +6,7 @@ Nanoseconds of processor time a frame. Each row of the tune has all that the row
 one thing more. The rows are measured in turn, round after round, so that a slow minute of the
 machine meets all of them; what a row adds is the median of its differences within a round. With
 `--beside` the same is measured of another checkout (one of before), in a process of its own, a row
-of each in turn. Where memory and stack of a process lie makes it up to 3 % faster or slower, so
+of each in turn. Where memory and stack of a process lie makes it up to 5 % faster or slower, so
 each few rounds have processes of their own. Only processor time of the thread that computes
 counts, so other work on the machine matters little.
 """
@@ -22,6 +22,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -112,13 +113,8 @@ def answer() -> None:
     for line in sys.stdin:
         name = line.strip()
         if name not in works:
-            works[name] = (
-                kernel_row()
-                if name == KERNEL
-                else writing_row()
-                if name == WRITING
-                else tune_row(name)
-            )
+            make = {KERNEL: kernel_row, WRITING: writing_row}.get(name, partial(tune_row, name))
+            works[name] = make()
             works[name]()  # once, which does not count
         start = time.thread_time_ns()
         frames = works[name]()

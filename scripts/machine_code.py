@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import platform
 import subprocess
 import sys
 import tempfile
@@ -55,7 +54,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    levels = list(machine_code.LEVELS[platform.machine()])
+    levels = list(machine_code.levels())
     parser.add_argument("levels", metavar="LEVEL", nargs="*", choices=[*levels, []])
     parser.add_argument("-o", metavar="FOLDER", type=Path, default=machine_code.SHIPPED)
     arguments = parser.parse_args()

@@ -112,6 +112,11 @@ LEVELS: dict[str, dict[str, set[str]]] = {
 }
 
 
+def levels() -> dict[str, set[str]]:
+    """The levels of processors of this kind of system, as LEVELS has them; none of a rare kind."""
+    return LEVELS.get(processor()[0].partition("-")[0], {})
+
+
 def shipped_files() -> Iterator[tuple[Path, list[str]]]:
     """The files of a release that this processor can run, and what each was made for."""
     from llvmlite import binding
@@ -119,7 +124,7 @@ def shipped_files() -> Iterator[tuple[Path, list[str]]]:
     if os.environ.get("NUMBA_CPU_NAME"):
         return
     triple, features = binding.get_process_triple(), binding.get_host_cpu_features()
-    for level, needs in LEVELS.get(triple.partition("-")[0], {}).items():
+    for level, needs in levels().items():
         if all(features.get(feature) for feature in needs):
             yield SHIPPED / f"{triple}-{level}.code", [triple, level, ""]
 

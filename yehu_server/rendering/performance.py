@@ -202,10 +202,10 @@ class Performance:
         return out.reshape(-1) if is_mono else out
 
     def _pitches(self) -> list[float | None]:
-        return [target_pitch(player.instruments[0]) for player in self.players]
+        return [_target_pitch(player.instruments[0]) for player in self.players]
 
 
-def target_pitch(instrument: Instrument) -> float | None:
+def _target_pitch(instrument: Instrument) -> float | None:
     """Return the pitch of the sounding key with its bend (fractional MIDI note), if one sounds.
 
     Meters tell it too, but only those of an instrument that the callback plays.

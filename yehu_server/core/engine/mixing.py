@@ -176,7 +176,7 @@ def add_room(stage: Any, inputs: Any, first: int, frames: int) -> None:
         if (first + begin) % EVERY == 0:
             row = inputs[begin]
             set_room(r, row[SIZE_NOW], row[DECAY_NOW], row[DAMPING_NOW])
-        end = end_of_room(r, inputs, first, begin, frames)
+        end = steady_until(r, inputs, first, begin, frames)
         if begin <= stage.silenced_at < end:
             end = stage.silenced_at + 1
         sound = stage.bus[begin:end, SEND : SEND + EARS]
@@ -191,8 +191,8 @@ def add_room(stage: Any, inputs: Any, first: int, frames: int) -> None:
 
 
 @compiled_with_aliasing
-def end_of_room(r: Any, inputs: Any, first: int, begin: int, frames: int) -> int:
-    """The row up to which the room stays as it is, from a row on."""
+def steady_until(r: Any, inputs: Any, first: int, begin: int, frames: int) -> int:
+    """The row before which the room can be computed at once, from a row on: it stays as it is."""
     for n in range(begin + 1, frames):
         row = inputs[n]
         if (first + n) % EVERY == 0 and not is_settled(

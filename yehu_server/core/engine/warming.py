@@ -1,8 +1,8 @@
 """Compile what playing needs, before the first sound; or load it from the cache.
 
-At the first start machine code is made of the bitcode that is shipped. Where none is for this
-machine and these sources, all is compiled, half of it in a process of its own, which leaves it
-in the cache: parts call each other by name, so they can be compiled at a time.
+Where no machine code is kept or shipped for this processor and these sources, all is compiled, half
+of it in a process of its own, which leaves it in the cache: parts call each other by name, so they
+can be compiled at a time.
 """
 
 from __future__ import annotations

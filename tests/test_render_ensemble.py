@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import mido
 import numpy as np
@@ -12,6 +13,7 @@ import soundfile
 from scores import midi_file, notes
 
 from yehu_server.playing.style import Style
+from yehu_server.rendering import cores
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
 from yehu_server.scores.reading import part_of
@@ -124,6 +126,29 @@ def test_any_number_of_cores_and_any_block_give_the_samples_of_the_callback(part
     assert np.abs(in_callback).max() > 0.1
     for samples in by_cores:
         np.testing.assert_array_equal(samples, in_callback)
+
+
+def test_a_block_whose_events_are_taken_in_piece_by_piece_gives_the_same_samples(
+    parts, monkeypatch
+):
+    def sound() -> tuple[np.ndarray, np.ndarray]:
+        performance = Performance(parts, Options(tail_s=0.0, jobs=2), has_stems=True)
+        pairs = [(mix, performance.stems[0].copy()) for mix in performance.blocks()]
+        mix, stem = map(np.concatenate, zip(*pairs, strict=True))
+        return mix, stem
+
+    whole = sound()
+    at = [0]
+    take_in = cores.interpret_events.call
+
+    def some(address: int, end: int) -> int:
+        """As where many events fall into a block."""
+        at[0] = take_in(address, min(end, at[0] + 700))
+        return at[0]
+
+    monkeypatch.setattr(cores, "interpret_events", SimpleNamespace(call=some))
+    for one, other in zip(whole, sound(), strict=True):
+        np.testing.assert_array_equal(one, other)
 
 
 def test_the_order_of_the_other_parts_changes_a_part_by_nothing(parts):

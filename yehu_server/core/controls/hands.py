@@ -52,6 +52,7 @@ FAST_SHARE, FAST = 0.6, 0.35  # m/s
 ONSET_FROM = 0.4  # of /vibrato/onset, below which there is no vibrato
 # In tremolo the bow's speed is a sine times this, clipped to -1..1: mostly full speed.
 TURN = 3.0
+ARRIVED = 1e-6  # m; as near as this to where the sounding length ends, the bow's place is there
 LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction when tremolo ends
 
 
@@ -123,7 +124,10 @@ def stop_strings(c: Any, control: Array) -> None:
             if c.finger_up[j] >= c.park_after:
                 x_f = PARK_X
         control[column], control[column + 1] = x_f, press
-    c.sounding_from = one_pole(c.sounding_from, stop, c.follow)
+    if c.sounding_from != stop:  # a bow that comes to rest costs less than one that never does
+        c.sounding_from = one_pole(c.sounding_from, stop, c.follow)
+        if abs(c.sounding_from - stop) < ARRIVED:
+            c.sounding_from = stop
 
 
 @compiled

@@ -111,7 +111,8 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
         first = c.frame
         count = take_in_events(rigs, first + min(block - done, CHUNK)) - first
         for part in range(parts):
-            sound_chunk(at(rigs, part * RIG_BYTES), count)
+            rig = at(rigs, part * RIG_BYTES)
+            sound_chunk(rig, count, at(rig, SOUNDED_AT))
         here = at(output, 4 * channels * done)
         mix_chunk(rigs, at(rigs, SOUNDED_AT), RIG_BYTES, first, count, here, here, 0)
         done += count

@@ -50,7 +50,6 @@ from yehu_server.core.engine.rig import (
     READ_AT,
     REPORTED_AT,
     REPORTS_AT,
-    SOUNDED_AT,
     STATE_AT,
 )
 from yehu_server.core.engine.telemetry import METERS, close_window, hear
@@ -109,9 +108,9 @@ def retune(model: Array, state: Array, c: Any) -> None:
             kernel.retune(model, state, i, T, c.sigma_0[i] * loss, c.sigma_1[i] * loss)
 
 
-@native("void(voidptr, int64)", calls=[fulfil, attend])
-def sound(rig: Any, wanted: int) -> None:
-    """Compute the next frames of an instrument, at most CHUNK, into its record of dtype OUTPUT.
+@native("void(voidptr, int64, voidptr)", calls=[fulfil, attend])
+def sound(rig: Any, wanted: int, into: Any) -> None:
+    """Compute the next frames of an instrument, at most CHUNK, into a record of dtype SOUNDED.
 
     The samples do not depend on how many are computed at a time.
 
@@ -121,7 +120,7 @@ def sound(rig: Any, wanted: int) -> None:
     state = carray(at(rig, STATE_AT), (1,), STATE)
     c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
-    sounded = carray(at(rig, SOUNDED_AT), (1,), SOUNDED)[0]
+    sounded = carray(into, (1,), SOUNDED)[0]
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
     p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
@@ -159,7 +158,7 @@ def sound(rig: Any, wanted: int) -> None:
                 end = done
             kernel.advance(model, state, o.controls[begin:end], o.probes[begin:end], None)
             begin = end
-        write_output(rig, first, start, done)
+        write_output(rig, sounded.dry, first, start, done)
         if silenced:
             kernel.come_to_rest(model[0], state[0])
             clear_filters(o)
@@ -168,11 +167,10 @@ def sound(rig: Any, wanted: int) -> None:
 
 
 @compiled_with_aliasing
-def write_output(rig: Any, first: int, start: int, end: int) -> None:
+def write_output(rig: Any, dry: Array, first: int, start: int, end: int) -> None:
     """Make samples of some rows of the probes, which begin at frame `first`; tell the ear."""
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
-    dry = carray(at(rig, SOUNDED_AT), (1,), SOUNDED)[0].dry
     heard = carray(at(rig, EAR_BUFFER_AT), (2 * EAR_SAMPLES,), np.float64)
     for n in range(start, end):
         remember(heard, first + n - start, o.probes[n, RELATIVE_VELOCITY])
@@ -193,11 +191,9 @@ def sound_block(rig: Any, frames: int, sounded: Any) -> None:
         Written: one for each CHUNK of the frames.
     """
     mode = flush_denormals()
-    own = carray(at(rig, SOUNDED_AT), (1,), SOUNDED)
     done, chunk = 0, 0
     while done < frames:
-        sound_chunk(rig, frames - done)
-        carray(at(sounded, chunk * SOUNDED_BYTES), (1,), SOUNDED)[0] = own[0]
+        sound_chunk(rig, frames - done, at(sounded, chunk * SOUNDED_BYTES))
         done += CHUNK
         chunk += 1
     restore_denormals(mode)

@@ -156,7 +156,7 @@ empty_venv() {
 install() (
     trap 'exit 130' INT
     pip=(env PATH="$venv/bin:$PATH" "$venv/bin/python" -I -m pip --disable-pip-version-check
-        --no-input install --progress-bar off)
+        --no-input install --no-compile --progress-bar off)
     lock=$(lock_of "$1")
     made_from=$(fingerprint)
     cd "$root" || exit

@@ -29,6 +29,7 @@ from yehu_server.core.physics.quantities import Quantities
 FRAMES, RUNS, STEPPED = 4410, 300, 100
 SETTLED_S = 0.5
 VIBRATO_HZ, VIBRATO_M = 6.0, 1e-3
+SPEED, BOW_X, FINGER_X, PRESS = 0.2, 0.26, 0.1, 1.5  # m/s, m, m, N
 SINGLE_STEP = 9  # PTRACE_SINGLESTEP
 
 # Number of fingers, of fingers that are down, bow force (N).
@@ -73,7 +74,7 @@ class Kernel:
         """Controls, one row a sample, and room for probes."""
         fingers, down, force, vibrato, is_idle = self.playing
         rows = np.zeros((frames, layout.control_columns(fingers)))
-        rows[:, [layout.F_N, layout.V_B, layout.X_B]] = force, 0.2 * (force > 0.0), 0.26
+        rows[:, [layout.F_N, layout.V_B, layout.X_B]] = force, SPEED * (force > 0.0), BOW_X
         # Keeps the strings that are not bowed in motion, clear of denormals.
         noise = 0.0 if is_idle else 1e-3
         rows[:, layout.F_HAMMER] = noise * np.random.default_rng(1).normal(size=frames)
@@ -81,9 +82,9 @@ class Kernel:
         for j in range(fingers):
             at = layout.FINGER_CONTROLS + layout.CONTROLS_PER_FINGER * j
             if j < down:
-                rows[:, at] = 0.1 if down == 1 else 0.03 + 0.03 * j
+                rows[:, at] = FINGER_X if down == 1 else 0.03 + 0.03 * j
                 rows[:, at] += VIBRATO_M * swing * vibrato
-                rows[:, at + 1] = 1.5
+                rows[:, at + 1] = PRESS
             else:
                 rows[:, at] = 0.012
         return rows, np.zeros((frames, layout.probe_columns(fingers)))

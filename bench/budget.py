@@ -1,10 +1,11 @@
 """What a rendered frame costs: the whole way by feature and by stage, and beside another checkout.
 
-    .venv/bin/python bench/budget.py [--processes 6] [--beside CHECKOUT] [--save FILE.json]
+    .venv/bin/python bench/budget.py [--beside CHECKOUT] [--save bench/results/budget.json]
 
 Nanoseconds of processor time a frame. Each row of the tune has all that the rows above it have, and
 one thing more. The rows are measured in turn, round after round, so that a slow minute of the
-machine meets all of them; what a row adds is the median of its differences within a round. With
+machine meets all of them; what a row adds is the median of its differences within a round, told
+with the quartiles. `scripts/generate.py` puts the saved budget into docs/performance.md. With
 `--beside` the same is measured of another checkout (one of before), in a process of its own, a row
 of each in turn. Where memory and stack of a process lie makes it up to 5 % faster or slower, so
 each few rounds have processes of their own. Only processor time of the thread that computes
@@ -24,9 +25,12 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import report
+
+if TYPE_CHECKING:
+    from yehu_server.rendering.performance import Performance
 
 ROOT = Path(__file__).resolve().parent.parent
 TUNE = ROOT / "examples" / "slow_air.mid"
@@ -38,15 +42,19 @@ BARE = {
 }
 # What each row adds to the one above: settings as shipped, and options of the render.
 ROWS: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
-    "mono, dry, steady hands, no hair, no ear": ((), {"is_dry": True, "is_mono": True}),
+    "the tune: mono, dry, steady hands, no hair, no ear": ((), {"is_dry": True, "is_mono": True}),
     "hair": (("/bow/noise",), {"is_dry": True, "is_mono": True}),
     "hands that vary": (("/playing/variation",), {"is_dry": True, "is_mono": True}),
     "ear": (("/playing/listening",), {"is_dry": True, "is_mono": True}),
     "stereo": ((), {"is_dry": True}),
-    "room": (("/body/width",), {}),
+    "room, and a body that sounds differently to both sides": (("/body/width",), {}),
 }
-KERNEL, WRITING = "the kernel alone, one finger, bowed", "writing the WAV"
+KERNEL, WRITING = "the kernel alone, one finger, bowed", "writing a WAV of 24 bits"
 ALL = (KERNEL, *ROWS, WRITING)
+# Not of the budget, but measured likewise, for run.py.
+PLAIN = "callback and posting: mono, dry, steady hands, no hair, no ear"
+WITH_ALL = "callback and posting: all on, as by default"
+BLOCK, POSTED = 128, 1 << 14  # frames: of the callback, and for which notes are posted at once
 ROUNDS = 2  # in one process
 
 
@@ -65,8 +73,8 @@ def kernel_row() -> Callable[[], int]:
     return work
 
 
-def tune_row(name: str) -> Callable[[], int]:
-    """The tune, from its score to samples, with all that rows up to this one have."""
+def performances(name: str) -> Callable[[], Performance]:
+    """Performances of the tune on one core, with all that rows up to this one have."""
     from yehu_server.playing.style import Style
     from yehu_server.rendering.options import Options
     from yehu_server.rendering.performance import Performance
@@ -79,9 +87,31 @@ def tune_row(name: str) -> Callable[[], int]:
         if row == name:
             break
     made = Options(style=Style(settings=tuple(settings.items())), jobs=1, **ROWS[name][1])
+    return lambda: Performance(score, made)
+
+
+def tune_row(name: str) -> Callable[[], int]:
+    """The tune, from its score to samples."""
+    perform = performances(name)
+    return lambda: sum(len(samples) for samples in perform().blocks())
+
+
+def callback_row(name: str) -> Callable[[], int]:
+    """The tune as the audio callback computes it, block by block, its notes being posted."""
+    import numpy as np
+
+    perform = performances(name)
 
     def work() -> int:
-        return sum(len(samples) for samples in Performance(score, made).blocks())
+        performance = perform()
+        (player,), ensemble = performance.players, performance.ensemble
+        out = np.zeros((BLOCK, ensemble.channels), np.float32)
+        ends = range(POSTED, performance.score_frames, POSTED)
+        for end in ends:
+            player.play_before(end)
+            for _ in range(POSTED // BLOCK):
+                ensemble.process(out)
+        return len(ends) * POSTED
 
     return work
 
@@ -107,14 +137,22 @@ def writing_row() -> Callable[[], int]:
     return work
 
 
+MAKE: dict[str, Callable[[], Callable[[], int]]] = {
+    KERNEL: kernel_row,
+    **{name: partial(tune_row, name) for name in ROWS},
+    WRITING: writing_row,
+    PLAIN: partial(callback_row, next(iter(ROWS))),
+    WITH_ALL: partial(callback_row, next(reversed(ROWS))),
+}
+
+
 def answer() -> None:
     """Be a worker: for each name of a row on stdin, write the nanoseconds that a frame takes."""
     works: dict[str, Callable[[], int]] = {}
     for line in sys.stdin:
         name = line.strip()
         if name not in works:
-            make = {KERNEL: kernel_row, WRITING: writing_row}.get(name, partial(tune_row, name))
-            works[name] = make()
+            works[name] = MAKE[name]()
             works[name]()  # once, which does not count
         start = time.thread_time_ns()
         frames = works[name]()
@@ -170,14 +208,15 @@ def table(found: dict[str, dict[str, list[float]]]) -> dict[str, dict[str, float
         if name in ROWS:
             if before is not None:
                 pairs = zip(here[name], before, strict=True)
-                row["adds"] = statistics.median(now - was for now, was in pairs)
+                adds = [now - was for now, was in pairs]
+                row["adds, from"], row["adds"], row["adds, to"] = statistics.quantiles(adds)
             before = here[name]
         if "beside" in found:
             other = found["beside"][name]
             row["beside"] = statistics.median(other)
             ratios = [now / was for now, was in zip(here[name], other, strict=True)]
             row["ratio"] = statistics.median(ratios)
-            row["from"], row["to"] = min(ratios), max(ratios)
+            row["ratio, from"], row["ratio, to"] = min(ratios), max(ratios)
         rows[name] = row
     return rows
 

@@ -80,21 +80,23 @@ def show(rows: Mapping[str, Mapping[str, Any]], title: str | None = None) -> Non
     Console(width=None if sys.stdout.isatty() else 160).print(table)
 
 
-def timed(work: Callable[[], object], runs: int) -> list[float]:
+def timed(
+    work: Callable[[], object], runs: int, clock: Callable[[], float] = time.perf_counter
+) -> list[float]:
     """Seconds of each run, after a first one that does not count."""
     times = []
     for _ in range(runs + 1):
-        start = time.perf_counter()
+        start = clock()
         work()
-        times.append(time.perf_counter() - start)
+        times.append(clock() - start)
     return times[1:]
 
 
 def spread(values: Sequence[float], unit: str = "") -> dict[str, Any]:
     """Median and extremes of runs, and all of them."""
     middle = statistics.median(values)
-    found = {"median": middle, "from": min(values), "to": max(values), "unit": unit}
-    return {**found, "all": list(values)}
+    found = {"median": middle, "from": min(values), "to": max(values)}
+    return {**found, **({"unit": unit} if unit else {}), "all": list(values)}
 
 
 def quantiles(values: Sequence[float]) -> dict[str, float]:

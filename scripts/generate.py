@@ -4,16 +4,19 @@
 
 In a page, a table stands between `<!-- table NAME -->` and `<!-- end -->`. A figure of a sentence
 stands behind `<!--=CONSTANT-->` or `<!--=CONSTANT:UNIT-->`: a constant by its path in yehu_server,
-such as `playing.delay.HANDLING_MS`, in a unit of UNITS where that is another than its own.
+such as `playing.delay.HANDLING_MS`, in a unit of UNITS where that is another than its own. What was
+measured is read from bench/results/.
 """
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -74,6 +77,57 @@ def parameters(place: Place) -> str:
     )
 
 
+def measured(name: str) -> dict[str, Any]:
+    """The figures that a program of bench/ saved."""
+    text = (ROOT / "bench" / "results" / f"{name}.json").read_text(encoding="utf-8")
+    found: dict[str, Any] = json.loads(text)["figures"]
+    return found
+
+
+def to(low: float, high: float, form: str) -> str:
+    return f"{low:{form}} to {high:{form}}"
+
+
+def ratios() -> str:
+    return table(
+        "of, plain C++ over ours, range, ours: times real time, plain C++: times real time",
+        (
+            [
+                name,
+                f"{row['median']:.2f}",
+                to(row["from"], row["to"], ".2f"),
+                f"{row['ours, x real time']:.0f}",
+                f"{row['plain C++, x real time']:.0f}",
+            ]
+            for name, row in measured("run")["ratios"].items()
+        ),
+    )
+
+
+def kernels() -> str:
+    return table(
+        "of, times real time, range",
+        (
+            [name, f"{row['median']:.0f}", to(row["from"], row["to"], ".0f")]
+            for name, row in measured("run")["kernels"].items()
+        ),
+    )
+
+
+def budget() -> str:
+    return table(
+        "row, ns a frame, adds",
+        (
+            [
+                name,
+                f"{row['ns a frame']:.0f}",
+                to(row["adds, from"], row["adds, to"], ".0f") if "adds" in row else "",
+            ]
+            for name, row in measured("budget").items()
+        ),
+    )
+
+
 MADE: dict[str, Callable[[], str]] = {
     "layers": layers,
     "parameters-of-the-player": lambda: parameters(Place.PLAYER),
@@ -82,6 +136,9 @@ MADE: dict[str, Callable[[], str]] = {
     "status-of-a-part": lambda: table(
         "of a part, what", ([f"`{row.name}`", row.doc] for row in PART_STATUS)
     ),
+    "ratios": ratios,
+    "kernels": kernels,
+    "budget": budget,
     "controls-of-gestures": lambda: table(
         "control, unit, range, default, what",
         (

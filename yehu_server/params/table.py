@@ -91,6 +91,9 @@ TABLE: tuple[Param, ...] = (
     _engine("/body/width", "", "1", 0.0, 1.0, 0.3,
         "How much the sound of the body differs to both sides, above some 1.5 kHz; 0: not at all.",
         smooth_ms=20.0),
+    _owned("/body/brilliance", "", "dB", -24.0, 24.0, 0.0,
+        "Gain of what lies above some 1.3 kHz, from the player's bow: harder and nearer to the "
+        "bridge is brighter.", smooth_ms=20.0),
     _engine("/room/size", "", "m", 2.0, 40.0, 5.0,
         "Length of the room; its width and height go with it.", curve=Curve.EXP, is_shared=True),
     _engine("/room/decay", "", "s", 0.1, 10.0, 0.4,
@@ -119,6 +122,9 @@ TABLE: tuple[Param, ...] = (
     Param("/playing/pressure", "", "1", 0.05, 2.0, 0.4,
         "Bow force relative to bow speed: flautando up to 0.2, ordinary to 0.6, scratching "
         "from 1."),
+    Param("/playing/brilliance", "", "1", 0.0, 2.0, 1.0,
+        "How much brighter a harder bow sounds, or one nearer to the bridge, than the model has it: "
+        "0 not at all, 1 as in recordings of fiddles."),
     Param("/playing/bow_position", "", "1", 0.05, 0.3, 0.13,
         "Distance of the bow from the bridge as a fraction of the sounding length."),
     Param("/playing/tremolo", "", "1/s", 0.0, 20.0, 0.0,

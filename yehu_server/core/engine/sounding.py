@@ -10,6 +10,7 @@ from yehu_server.compile.jit import compiled, compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.hands import write_controls
 from yehu_server.core.controls.ramps import (
+    TO_BAND,
     TO_BODY,
     TO_LIMITER,
     amplitude,
@@ -18,7 +19,15 @@ from yehu_server.core.controls.ramps import (
     move,
 )
 from yehu_server.core.controls.record import CHUNK, CONTROLS
-from yehu_server.core.controls.slots import BLEND, BODY, LIMITER, LOSS, STAGE_INPUTS, TUNING
+from yehu_server.core.controls.slots import (
+    BLEND,
+    BODY,
+    BRILLIANCE,
+    LIMITER,
+    LOSS,
+    STAGE_INPUTS,
+    TUNING,
+)
 from yehu_server.core.engine.atomics import at, load_acquire, store_release
 from yehu_server.core.engine.mailbox import (
     APPLIED_AT_ONCE,
@@ -144,6 +153,7 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
             o.gain[done] = gain
             o.body[done] = amplitude(c, TO_BODY, c.value[BODY])
             o.blend[done] = c.value[BLEND]
+            o.brilliance[done] = amplitude(c, TO_BAND, c.value[BRILLIANCE])
             sounded.soft[done] = amplitude(c, TO_LIMITER, c.value[LIMITER])
             for k in range(len(STAGE_INPUTS)):
                 sounded.stage_inputs[done, k] = c.value[STAGE_INPUTS[k]]

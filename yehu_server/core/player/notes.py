@@ -11,7 +11,7 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.slots import SILENCE, SPEED
-from yehu_server.core.player import left_hand, right_hand, velocity
+from yehu_server.core.player import brilliance, left_hand, right_hand, velocity
 from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import FIRST_OPEN, choose, stay
@@ -43,6 +43,7 @@ from yehu_server.core.player.rows import (
     PORTAMENTO,
     PORTAMENTO_TIME,
     POSITION,
+    PRESSURE,
     RELEASE,
     TREMOLO,
     VOLUME,
@@ -231,6 +232,7 @@ def draw_by_hand(p: Any, c: Any, speed: float, force: float) -> None:
         side = 1.0 if p.string < 0 else side_of(p)
     write_directly(p, c, BOW_SIDE, side, False)
     p.speed = abs(speed)
+    p.effort = force * p.value[POSITION] / c.schelleng[max(p.string, 0)]
     even_out(p, c)
 
 
@@ -272,6 +274,14 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 def set_bow_pressure(p: Any, c: Any) -> None:
     """Set the bow's pressure and position."""
     right_hand.set_bow_pressure(p, c, note_pitch(p), p.sounding >= 0)
+    set_brilliance(p, c)
+
+
+@compiled_exactly
+def set_brilliance(p: Any, c: Any) -> None:
+    """Set the gain of the high band, as the bow is wished or drawn by hand."""
+    effort = wished_speed(p) * p.value[PRESSURE]
+    brilliance.set_brilliance(p, c, p.effort if p.by_hand != 0 else effort)
 
 
 @compiled_exactly
@@ -289,6 +299,7 @@ def even_out(p: Any, c: Any) -> None:
         pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
         speed = p.speed if p.by_hand != 0 else wished_speed(p)
         velocity.even_out(p, c, pitch, speed)
+        set_brilliance(p, c)
 
 
 @compiled_exactly

@@ -50,6 +50,7 @@ PLAYER = np.dtype(
         ("note_began", np.int64),  # the frame at which the note did
         ("by_hand", np.int64),  # whether the bow is drawn by hand
         ("speed", np.float64),  # of a bow drawn by hand (m/s)
+        ("effort", np.float64),  # the same times its force, as a share of Schelleng's limit
         # The left hand.
         ("finger_pitch", np.float64),  # the pitch that a finger last stopped
         ("finger", np.int64),  # which was put down last

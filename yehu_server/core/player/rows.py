@@ -25,10 +25,11 @@ FINGER_PRESS = np.array([ROW[f"/finger/{number}/press"] for number in FINGERS])
 VIBRATO_DEPTH, VIBRATO_RATE = ROW["/vibrato/depth"], ROW["/vibrato/rate"]
 VIBRATO_PRESS, VIBRATO_ONSET = ROW["/vibrato/press"], ROW["/vibrato/onset"]
 PLUCK_FORCE = ROW["/pluck/force"]
+BODY_BRILLIANCE = ROW["/body/brilliance"]
 OUTPUT_LEVEL, OUTPUT_BALANCE = ROW["/output/level"], ROW["/output/balance"]
 
 # What it is wished.
-EVENNESS = ROW["/body/evenness"]
+EVENNESS, BRILLIANCE = ROW["/body/evenness"], ROW["/playing/brilliance"]
 DYNAMICS, SPEED = ROW["/playing/dynamics"], ROW["/playing/speed"]
 PRESSURE, POSITION = ROW["/playing/pressure"], ROW["/playing/bow_position"]
 TREMOLO, PIZZICATO = ROW["/playing/tremolo"], ROW["/playing/pizzicato"]

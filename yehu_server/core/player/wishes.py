@@ -36,6 +36,7 @@ from yehu_server.core.player.rows import (
     BEND,
     BOW_FORCE,
     BOW_SPEED,
+    BRILLIANCE,
     CALIBRATION,
     DYNAMICS,
     EVENNESS,
@@ -188,6 +189,8 @@ def follow(p: Any, c: Any, row: int) -> None:
         notes.set_assist(p, c)
     elif row in (VOLUME, EXPRESSION):
         notes.set_level(p, c)
+    elif row == BRILLIANCE:
+        notes.set_brilliance(p, c)
     elif row == EVENNESS:
         notes.even_out(p, c)
     elif row == VELOCITY:

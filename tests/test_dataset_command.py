@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import soundfile
 from clusters import cluster_in, wait_until
+from commands import results_in
 from forks import start
 
 from yehu_server.lab.dataset import making
@@ -54,19 +55,11 @@ def lines(out: Path) -> list[dict]:
     return [json.loads(line) for line in (out / "manifest.jsonl").read_text().splitlines()]
 
 
-def files(out: Path) -> dict[str, bytes]:
-    return {
-        str(path.relative_to(out)): path.read_bytes()
-        for path in out.rglob("*")
-        if path.is_file() and ".yehu-server" not in path.parts
-    }
-
-
 # ---------------------------------------------------------------- what is there
 
 
 def test_the_manifest_tells_all_files_and_their_hashes(made):
-    found = files(made / "out")
+    found = results_in(made / "out")
     told = lines(made / "out")
     assert [line["number"] for line in told] == list(range(COUNT))
     assert set(found) == {line[name] for line in told for name in ("file", "arrays")} | {
@@ -101,7 +94,7 @@ def test_splits_have_their_shares(made):
 
 def test_one_core_makes_the_same_bytes_as_two(made, command, tmp_path):
     assert command("dataset", made / "d.toml", "-o", tmp_path / "one", "--jobs", 1)[0] == 0
-    assert files(tmp_path / "one") == files(made / "out")
+    assert results_in(tmp_path / "one") == results_in(made / "out")
 
 
 @pytest.mark.slow
@@ -135,13 +128,13 @@ def test_another_entry_changes_no_other_draw(made):
 def test_a_sound_that_is_gone_or_changed_is_made_again(made, command, tmp_path):
     words = ("dataset", made / "d.toml", "-o", tmp_path / "out")
     command(*words)
-    before = files(tmp_path / "out")
-    assert before == files(made / "out")
+    before = results_in(tmp_path / "out")
+    assert before == results_in(made / "out")
     (tmp_path / "out" / lines(tmp_path / "out")[0]["file"]).unlink()
     (tmp_path / "out" / lines(tmp_path / "out")[39]["arrays"]).write_bytes(b"")
     _, out, _ = command(*words)
     assert "24 made, 16 up to date" in out  # in parts of sixteen
-    assert files(tmp_path / "out") == before
+    assert results_in(tmp_path / "out") == before
 
 
 @pytest.mark.parametrize(
@@ -161,9 +154,9 @@ def test_an_interrupted_data_set_goes_on_where_it_was(command, tmp_path, signum)
     code, out, _ = command("dataset", *words)
     assert code == 0
     assert "16 up to date" in out or "32 up to date" in out
-    whole = files(tmp_path / "out")
+    whole = results_in(tmp_path / "out")
     command("dataset", tmp_path / "d.toml", "-o", tmp_path / "whole")
-    assert whole == files(tmp_path / "whole")
+    assert whole == results_in(tmp_path / "whole")
 
 
 # ---------------------------------------------------------------- on a cluster
@@ -177,7 +170,7 @@ def test_a_cluster_makes_the_same_bytes(made, command, tmp_path):
         words = ("dataset", made / "d.toml", "-o", tmp_path / "out", "--dask", processes.file)
         code, _, err = command(*words)
     assert (code, err) == (0, "")
-    assert files(tmp_path / "out") == files(made / "out")
+    assert results_in(tmp_path / "out") == results_in(made / "out")
 
 
 def test_sounds_travel_where_the_folder_is_not_seen(made, tmp_path):
@@ -187,8 +180,8 @@ def test_sounds_travel_where_the_folder_is_not_seen(made, tmp_path):
     told = making.perform(far, lambda _done, _total: None)
     assert len(told.files) == 4
     assert list(making.received(part, told)) == lines(made / "out")[:2]
-    for name, data in files(tmp_path / "out").items():
-        assert data == files(made / "out")[name]
+    for name, data in results_in(tmp_path / "out").items():
+        assert data == results_in(made / "out")[name]
     assert making.split_up_to_date([part]) == ([], lines(made / "out")[:2])
 
 

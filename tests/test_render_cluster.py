@@ -8,7 +8,7 @@ from typing import Self
 
 import pytest
 from clusters import cluster_in, wait_until
-from commands import is_one_line
+from commands import is_one_line, results_in
 from forks import start
 from scores import midi_file, notes
 
@@ -33,15 +33,6 @@ def tune(path: Path, note: int, seconds: float = 0.2) -> None:
     midi_file(path, notes((0.0, seconds, note, 90)))
 
 
-def made(out: Path) -> dict[str, bytes]:
-    """All results, and the manifest."""
-    return {
-        str(path.relative_to(out)): path.read_bytes()
-        for path in out.rglob("*")
-        if path.is_file() and ".yehu-server" not in path.parts
-    }
-
-
 @pytest.fixture
 def songs(tmp_path) -> Path:
     """A folder of scores, one of them broken, and what becomes of them on this machine."""
@@ -55,7 +46,7 @@ def songs(tmp_path) -> Path:
 def alone(songs, command) -> dict[str, bytes]:
     code, _, _ = command("render", songs / "in", "-o", songs / "alone", *DRY, "--jobs", 1)
     assert code == 1
-    return made(songs / "alone")
+    return results_in(songs / "alone")
 
 
 # ---------------------------------------------------------------- a real cluster
@@ -74,7 +65,7 @@ def test_a_worker_that_is_killed_changes_nothing_of_the_results(songs, alone, tm
         assert processes.workers[1].poll() is None
     assert err == "yehu-server: broken.mid: has a damaged header at byte 0\n"
     assert run.returncode == 1
-    found = made(songs / "out")
+    found = results_in(songs / "out")
     assert len(found.pop("0/long.wav")) > 20 * 44100 * 3
     lines = found.pop("manifest.jsonl").decode().splitlines()
     others = [line for line in lines if "long" not in line]
@@ -92,7 +83,7 @@ def test_the_same_command_goes_on_without_the_cluster(songs, alone, tmp_path, co
     code, out, _ = command(*words)
     assert code == 1
     assert f"0 rendered, {SCORES} up to date, 1 failed (1 as before" in out
-    assert made(songs / "out") == alone
+    assert results_in(songs / "out") == alone
 
 
 @pytest.mark.parametrize(
@@ -153,7 +144,7 @@ def test_scores_and_sounds_travel_where_workers_do_not_see_them(
     code, _, err = command("render", home / "in", "-o", home / "out", *DRY, "--dask", "x")
     assert code == 1
     assert err == "yehu-server: broken.mid: has a damaged header at byte 0\n"
-    assert made(home / "out") == alone
+    assert results_in(home / "out") == alone
     code, out, _ = command("render", home / "in", "-o", home / "out", *DRY)
     assert f"0 rendered, {SCORES} up to date, 1 failed" in out
 

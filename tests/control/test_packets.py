@@ -158,6 +158,7 @@ def test_bundles_go_as_deep_in_bundles_as_is_allowed_and_no_deeper(wire):
         b"/a\0\0,d\0\0\0\0\0\0",
         b"/a\0\0,s\0\0abcd",
         b"/a\0\0,b\0\0\0\0\0\x08abcd",
+        b"/a\0\0,b\0\0\xff\xff\xff\xff",  # a blob of less than nothing
         b"/a\0\0,[i\0\0\0\0\1",
         b"/a\0\0,i]\0\0\0\0\1",
         b"/\xff\xff\0",

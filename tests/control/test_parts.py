@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import time
 
+import numpy as np
 import pytest
 from web_client import walk
 from wire import f32
 
 from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.live.osc import handler
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import PART_STATUS, STATUS
@@ -16,11 +18,13 @@ from yehu_server.live.part_addresses import OF_PARTS, group
 from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, is_listenable, node_at
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
+from yehu_server.params.table import find as param
 from yehu_server.playing import learn as learned
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.learn import LearnedSource
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.parts import places
 from yehu_server.playing.style import Style
 
 VOLUME = "/playing/volume"
@@ -345,6 +349,15 @@ def test_the_tree_has_each_part_with_all_that_is_its_own(still, players):
 )
 def test_one_may_listen_to_what_the_parts_have(address, is_one):
     assert is_listenable(address, 3) == is_one
+
+
+def test_parts_sit_side_by_side_within_the_room():
+    pan = param("/room/pan")
+    for count in range(2, MOST_PARTS + 1):
+        pans = [dict(place)["/room/pan"] for place in places(count)]
+        assert pan.lo < pans[0] == pytest.approx(-pans[-1])
+        assert pans[-1] < pan.hi
+        assert np.diff(pans) == pytest.approx((pans[-1] - pans[0]) / (count - 1))
 
 
 # ---------------------------------------------------------------- a whole server

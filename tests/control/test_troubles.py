@@ -1,4 +1,4 @@
-"""What goes wrong while playing is told in few lines."""
+"""What is done beside playing: the delay is kept, what goes wrong is told in few lines."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.live import housekeeper
-from yehu_server.live.housekeeper import CounterReport
+from yehu_server.live.housekeeper import CounterReport, Housekeeper
+from yehu_server.playing.delay import Delay
 
 DROPS, LOSSES = "packets were dropped", "the state was lost"
 
@@ -45,3 +48,22 @@ def test_a_flood_of_one_trouble_hides_no_other(clock):
         seen.look({DROPS: count, LOSSES: count // 10})
         clock.now += 0.05
     assert said == [f"{DROPS} (1 so far)", f"{LOSSES} (1 so far)"]
+
+
+def test_the_players_delay_follows_the_devices_period(until):
+    instrument = Instrument(InstrumentSpec(48000))
+    told = instrument._rig["published"]
+    player = SimpleNamespace(delay=0, know_programs=lambda: None)
+    ensemble = SimpleNamespace(lost_states=0, instruments=[instrument])
+    keeper = Housekeeper(ensemble, [player], Delay(instrument, 128), [], lambda: 0, print)
+
+    def is_followed() -> bool:
+        told["ahead_window"] += 1
+        told["ahead"] = told["longest"] = 1024
+        return player.delay > 1024
+
+    keeper.start()
+    try:
+        until(is_followed, "a delay of more than a period")
+    finally:
+        keeper.stop()

@@ -146,10 +146,13 @@ def test_the_host_is_told_as_it_was_reached(make_live):
     assert (info["OSC_IP"], info["WS_IP"]) == (HOST, HOST)
 
 
-def test_answers_are_json_and_not_kept(port):
-    headers = ask(port, "/").headers
-    assert headers["Content-Type"] == "application/json"
-    assert headers["Cache-Control"] == "no-store"
+def test_answers_are_json_and_no_answer_is_kept_or_taken_for_another_type(port):
+    assert ask(port, "/").headers["Content-Type"] == "application/json"
+    answers = [ask(port, "/"), ask(port, "/yehu/nothing"), ask(port, "/", Host="evil.example")]
+    assert [answer.status for answer in answers] == [200, 404, 403]
+    for answer in answers:
+        assert answer.headers["Cache-Control"] == "no-store"
+        assert answer.headers["X-Content-Type-Options"] == "nosniff"
 
 
 def test_head_answers_without_a_body(port):

@@ -83,6 +83,12 @@ def live(rate: float = RATE) -> Instrument:
     return Instrument(InstrumentSpec(rate), is_live=True)
 
 
+def reporting(instrument: Instrument) -> Instrument:
+    """An instrument, made to report the wishes that it applies."""
+    instrument.report_wishes()
+    return instrument
+
+
 # ---------------------------------------------------------------- the ring between threads
 
 _post = numba.njit(native.post.function)
@@ -150,8 +156,7 @@ def collect(
 @pytest.mark.parametrize("make", [offline, live], ids=["offline", "live"])
 @pytest.mark.parametrize(("post", "count"), [(post_by_storm, 100_000), (post_by_python, 20_000)])
 def test_wishes_come_whole_and_in_order_from_thread_to_thread(make, post, count):
-    instrument = make()
-    instrument.report_wishes()
+    instrument = reporting(make())
     out = np.zeros(64, np.float32)
     mail = instrument._rig["mail"]
     refused = []
@@ -266,22 +271,13 @@ def test_wishes_come_whole_and_in_order_from_another_process():
 
 @pytest.mark.parametrize("make", [offline, live], ids=["offline", "live"])
 def test_a_full_ring_drops_and_counts_what_comes_and_keeps_what_it_has(make):
-    instrument = make()
-    instrument.report_wishes()
-    for number in range(RING):
-        assert post_numbered(instrument, number)
-    for number in range(RING, RING + 10):
-        assert not post_numbered(instrument, number)
-    assert instrument.dropped_events == 10
-    run(instrument, 2 * RING // (LIVE_BUDGET // 64) + 1000)
-    np.testing.assert_array_equal(numbers(instrument.applied_wishes()), np.arange(RING))
-    # And afterwards it is as before.
-    for number in range(RING):
-        assert post_numbered(instrument, number)
-    assert not post_numbered(instrument, RING)
-    assert instrument.dropped_events == 11
-    run(instrument, 2 * RING // (LIVE_BUDGET // 64) + 1000)
-    np.testing.assert_array_equal(numbers(instrument.applied_wishes()), np.arange(RING))
+    instrument = reporting(make())
+    for dropped in (10, 20):  # and afterwards it is as before
+        for number in range(RING + 10):
+            assert post_numbered(instrument, number) == (number < RING)
+        assert instrument.dropped_events == dropped
+        run(instrument, 2 * RING // (LIVE_BUDGET // 64) + 1000)
+        np.testing.assert_array_equal(numbers(instrument.applied_wishes()), np.arange(RING))
 
 
 def test_a_ring_that_is_drained_a_little_has_room_for_as_much():
@@ -295,8 +291,7 @@ def test_a_ring_that_is_drained_a_little_has_room_for_as_much():
 
 
 def test_reports_nobody_reads_are_dropped_and_counted_and_the_older_kept():
-    instrument = Instrument(InstrumentSpec(RATE))
-    instrument.report_wishes()
+    instrument = reporting(offline())
     for number in range(RING):
         post_numbered(instrument, number)
     run(instrument, 4096)
@@ -384,8 +379,7 @@ def postings(frames: int, most: int) -> st.SearchStrategy:
 @settings(max_examples=20)
 @given(st.one_of(postings(100, 30), postings(5, 60), postings(2, 120)))
 def test_wishes_apply_by_frame_and_then_as_posted_whatever_the_order_of_posting(batches):
-    instrument, model = Instrument(InstrumentSpec(RATE)), Model()
-    instrument.report_wishes()
+    instrument, model = reporting(offline()), Model()
     start = values(instrument)
     seen = []
     for wishes, frames in [*batches, ([], 130)]:
@@ -406,8 +400,7 @@ def test_wishes_apply_by_frame_and_then_as_posted_whatever_the_order_of_posting(
 @settings(max_examples=20)
 @given(postings(300, 60), st.sampled_from([64, 100, 333, 4096]))
 def test_within_longer_blocks_they_apply_on_the_same_frames(batches, block):
-    instrument, model = Instrument(InstrumentSpec(RATE)), Model()
-    instrument.report_wishes()
+    instrument, model = reporting(offline()), Model()
     for wishes, frames in [*batches, ([], 600)]:
         for frame, index in wishes:
             post_ramp(instrument, frame, index, model.post(frame, index))
@@ -419,8 +412,7 @@ def test_within_longer_blocks_they_apply_on_the_same_frames(batches, block):
 
 def test_thousands_in_any_order_come_out_sorted():
     chance = random.Random(1)
-    instrument = Instrument(InstrumentSpec(RATE))
-    instrument.report_wishes()
+    instrument = reporting(offline())
     frames = [chance.randrange(2000) for _ in range(HEAP)]
     for number, frame in enumerate(frames):
         post_numbered(instrument, number, frame)
@@ -435,8 +427,7 @@ def test_thousands_in_any_order_come_out_sorted():
 
 
 def test_wishes_for_frames_that_have_passed_apply_at_once_and_are_counted():
-    instrument = Instrument(InstrumentSpec(RATE))
-    instrument.report_wishes()
+    instrument = reporting(offline())
     run(instrument, 1000)
     for number, frame in enumerate([999, 0, -5, 1000, 1001]):
         post_numbered(instrument, number, frame)
@@ -448,8 +439,7 @@ def test_wishes_for_frames_that_have_passed_apply_at_once_and_are_counted():
 
 
 def test_at_most_so_many_wishes_apply_on_one_frame_and_the_rest_on_the_next():
-    instrument = Instrument(InstrumentSpec(RATE))
-    instrument.report_wishes()
+    instrument = reporting(offline())
     for number in range(3 * APPLIED_AT_ONCE + 4):
         post_numbered(instrument, number, 50)
     for number in range(3 * APPLIED_AT_ONCE + 4, 3 * APPLIED_AT_ONCE + 10):
@@ -464,8 +454,7 @@ def test_at_most_so_many_wishes_apply_on_one_frame_and_the_rest_on_the_next():
 
 
 def test_more_than_wait_at_once_in_the_order_of_frames_apply_on_their_frames():
-    instrument = Instrument(InstrumentSpec(RATE))
-    instrument.report_wishes()
+    instrument = reporting(offline())
     count = HEAP + HEAP // 2
     for number in range(count):
         post_numbered(instrument, number, 100 + number // 10)
@@ -507,8 +496,7 @@ def test_a_wish_of_no_kind_or_for_no_parameter_changes_nothing():
 
 
 def test_a_reset_leaves_nothing_to_apply():
-    instrument = Instrument(InstrumentSpec(RATE))
-    instrument.report_wishes()
+    instrument = reporting(offline())
     post_numbered(instrument, 1, 200)
     run(instrument, 100)
     post_numbered(instrument, 2, 0)
@@ -519,8 +507,7 @@ def test_a_reset_leaves_nothing_to_apply():
 
 
 def test_a_reset_leaves_nothing_to_tell_of():
-    instrument = Instrument(InstrumentSpec(RATE))
-    instrument.report_wishes()
+    instrument = reporting(offline())
     run(instrument, 100)
     post_numbered(instrument, 1, 0)
     run(instrument, 100)
@@ -540,8 +527,7 @@ def waiting_wishes() -> tuple[Ensemble, list[int]]:
     """An instrument that many wishes in any order wait in, and their numbers as they will come."""
     chance = random.Random(5)
     ensemble = sound.alone(RATE)
-    instrument = ensemble.first
-    instrument.report_wishes()
+    instrument = reporting(ensemble.first)
     frames = [chance.randrange(500, 600) for _ in range(MANY)]
     for number, frame in enumerate(frames):
         post_numbered(instrument, number, frame)
@@ -558,8 +544,7 @@ def died(ensemble: Ensemble) -> None:
 
 def test_a_heap_that_is_out_of_order_is_put_in_order_again():
     ensemble, expected = waiting_wishes()
-    instrument = ensemble.first
-    heap = instrument._rig["events"][0]
+    instrument, heap = ensemble.first, ensemble.first._rig["events"][0]
     heap[:MANY] = heap[np.random.default_rng(1).permutation(MANY)]
     died(ensemble)
     run(ensemble, 1000)
@@ -571,8 +556,7 @@ def test_a_wish_that_came_while_the_process_died_comes_once_and_no_other_is_lost
     # While an entry comes or leaves, others move up or down by copies: one of them is there twice,
     # and the one that moves may be nowhere. It is still counted, or no longer.
     ensemble, expected = waiting_wishes()
-    instrument = ensemble.first
-    heap = instrument._rig["events"][0]
+    instrument, heap = ensemble.first, ensemble.first._rig["events"][0]
     number = int(heap["order"][lost])
     heap[lost] = heap[MANY // 2]
     died(ensemble)
@@ -584,8 +568,7 @@ def test_a_wish_that_came_while_the_process_died_comes_once_and_no_other_is_lost
 
 def test_wishes_that_come_after_a_heap_was_mended_find_their_place():
     ensemble, expected = waiting_wishes()
-    instrument = ensemble.first
-    heap = instrument._rig["events"][0]
+    instrument, heap = ensemble.first, ensemble.first._rig["events"][0]
     heap[:MANY] = heap[:MANY][::-1].copy()
     died(ensemble)
     post_numbered(instrument, MANY, 300)
@@ -612,8 +595,7 @@ def test_an_empty_heap_and_one_that_is_in_order_need_no_mending():
 def crowded(block: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sound, reports and last parameters of a crowded half second."""
     chance = random.Random(3)
-    instrument = Instrument(InstrumentSpec(RATE))
-    instrument.report_wishes()
+    instrument = reporting(offline())
     instrument.write("/bow/side", 1.0)
     instrument.write("/bow/speed", 0.2)
     speed, side, level = SLOT["/bow/speed"], SLOT["/bow/side"], SLOT["/output/level"]
@@ -645,8 +627,7 @@ def test_a_crowd_of_wishes_sounds_the_same_in_blocks_of_any_size(whole, block):
 
 def test_even_more_than_can_wait_at_once_apply_the_same_in_blocks_of_any_size():
     def applied(block: int) -> np.ndarray:
-        instrument = Instrument(InstrumentSpec(RATE))
-        instrument.report_wishes()
+        instrument = reporting(offline())
         for number in range(HEAP):
             post_numbered(instrument, number, 10 + number // 20)
         for number in range(500):

@@ -413,16 +413,16 @@ def test_while_a_device_does_not_start_time_goes_on(monkeypatch):
     instrument = stage.first
     try:
         way_out.begin(stage)  # waits once
-        longest, last, since = 0.0, instrument.frame, time.monotonic()
-        start = since
+        longest, own, last, since = 0.0, 0.0, instrument.frame, time.monotonic()
+        start = looked = since
         while (now := time.monotonic()) < start + 2.5:
             if instrument.frame != last:
                 last, since = instrument.frame, now
-            longest = max(longest, now - since)
+            longest, own, looked = max(longest, now - since), max(own, now - looked), now
             time.sleep(0.005)
     finally:
         way_out.end()
-    assert longest < 0.5
+    assert longest < 0.5 + 2.0 * own  # a busy machine holds this thread up, too
 
 
 def open_files() -> set[str]:

@@ -26,7 +26,15 @@ from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import find
 from yehu_server.playing import practice as practising
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.practice import Passage, Practice, Search
+from yehu_server.playing.practice import (
+    BEFORE_S,
+    EACH_S,
+    EARLY_S,
+    LATE_S,
+    Passage,
+    Practice,
+    Search,
+)
 from yehu_server.playing.practice_files import (
     FORMAT,
     HIGHEST,
@@ -242,12 +250,13 @@ def test_a_tuning_moves_each_note_to_its_nearest_pitch():
     assert [tuned[note] for note in (65, 66, 67, 68, 69)] == [65.0, 66.3, 66.9, 68.0, 68.6]
 
 
-def test_with_a_tuning_notes_are_practised_at_its_pitches(monkeypatch):
-    played = []
+def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late(monkeypatch):
+    played, heard_s = [], []
 
     def speaks(instrument, _near):
         player = instrument._rig["player"][0]
         played.append(float(player["held_pitch"][player["sounding"]]))
+        heard_s.append(instrument.frame / RATE)
         return True, 0.0
 
     monkeypatch.setattr(practising, "_speaks", speaks)
@@ -255,6 +264,10 @@ def test_with_a_tuning_notes_are_practised_at_its_pitches(monkeypatch):
     manner = default_recipes()[0, PLACE, 70 - FIRST]
     assert practice.score(Search(0, 70, PLACE, manner), manner, PASSAGES) == 1.0
     assert set(played) == {70.35}
+    each_s = BEFORE_S + EACH_S
+    told = [BEFORE_S + at for at in (EARLY_S, LATE_S)]
+    expected = [each_s * number + at for number in range(len(PASSAGES)) for at in told]
+    assert heard_s == pytest.approx(expected, abs=0.001)
 
 
 @pytest.fixture

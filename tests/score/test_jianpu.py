@@ -11,7 +11,7 @@ import pytest
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.reader import MOST_BYTES, parse_jianpu, read_jianpu
-from yehu_server.scores.score import notes_of
+from yehu_server.scores.score import Metre, notes_of
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.written.notated import Note, Written
 from yehu_server.scores.written.performed import performed
@@ -142,6 +142,13 @@ def test_a_pickup_is_bar_0():
     score = written("3/4,4 5 1 1 1 2 2 2")
     assert [score.place(note.beat)[0] for note in score.parts[0].notes] == [
         "0", "1", "1", "1", "2", "2", "2",
+    ]  # fmt: skip
+
+
+def test_before_the_first_metre_bars_have_four_quarters():
+    score = Written((), metres=(Metre(8.0, 3.0),))
+    assert [score.place(Fraction(beat)) for beat in (3, 4, 10, 11)] == [
+        ("1", 3), ("2", 0), ("3", 2), ("4", 0),
     ]  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """Body files: written, played, and read again with what was measured."""
 
 import json
+import math
 import tomllib
 from dataclasses import replace
 
@@ -109,6 +110,25 @@ def test_damaged_measurements_are_told(whole_fit, tmp_path, where, value):
     data = json.loads((tmp_path / "mine.json").read_text())
     (tmp_path / "mine.json").write_text(json.dumps(damaged(data, where, value)))
     with pytest.raises(MeasurementError, match=r"mine\.json"):
+        read_fit(tmp_path / "mine.json")
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (lambda column: column[::-1], "do not rise"),
+        (lambda column: [0.0, *column[1:]], "do not rise"),
+        (lambda column: [*column[:-1], column[-2]], "do not rise"),
+        (lambda column: [*column[:-1], math.inf], "not finite"),
+    ],
+)
+def test_frequencies_that_no_measurement_has_are_told(whole_fit, tmp_path, change, told):
+    whole_fit.save(tmp_path / "mine.json")
+    data = json.loads((tmp_path / "mine.json").read_text())
+    curve = data["measured"]["admittance"]
+    curve["frequency_hz"] = change(curve["frequency_hz"])
+    (tmp_path / "mine.json").write_text(json.dumps(data))
+    with pytest.raises(MeasurementError, match=told):
         read_fit(tmp_path / "mine.json")
 
 

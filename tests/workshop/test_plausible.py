@@ -59,6 +59,14 @@ def test_wrong_units_are_named(factor):
         check_radiation(Curve(HZ, factor * factor * radiation(HZ)))
 
 
+@pytest.mark.parametrize("factor", [1e60, 1e-60])
+def test_what_no_unit_makes_of_a_measurement_is_refused(factor):
+    with pytest.raises(MeasurementError, match="too large or too small"):
+        checked(factor * MEASURED["mobility"], "mobility")
+    with pytest.raises(MeasurementError, match="too large or too small"):
+        check_radiation(Curve(HZ, factor * radiation(HZ)))
+
+
 def test_unusual_sizes_are_warned_of():
     assert len(checked(50.0 * MEASURED["mobility"], "mobility")) == 1
     assert len(check_radiation(Curve(HZ, 50.0 * radiation(HZ)))) == 1

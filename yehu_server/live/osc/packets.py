@@ -149,7 +149,7 @@ class _Reader:
         if tag == "b":
             (size,) = struct.unpack_from(">i", self._data, self.place)
             start = self.place + 4
-            if size < 0 or start + size > len(self._data):
+            if size < 0:
                 raise PacketError("a blob has a wrong length")
             self._skip_to(start + size)
             return self._bytes[start : start + size]

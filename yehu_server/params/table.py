@@ -123,7 +123,7 @@ TABLE: tuple[Param, ...] = (
         "Bow force relative to bow speed: flautando up to 0.2, ordinary to 0.6, scratching "
         "from 1."),
     Param("/playing/brilliance", "", "1", 0.0, 2.0, 1.0,
-        "How much brighter a harder bow sounds, or one nearer to the bridge, than the model has it: "
+        "How much brighter a harder bow sounds, or one nearer to the bridge, than by the model: "
         "0 not at all, 1 as in recordings of fiddles."),
     Param("/playing/bow_position", "", "1", 0.05, 0.3, 0.13,
         "Distance of the bow from the bridge as a fraction of the sounding length."),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.arguments import check_output, instrument_of
 from yehu_server.cli.ensemble_parts import Players, players_of
 from yehu_server.cli.render_pipe import is_piped
-from yehu_server.cli.stage_options import check_stage, room_of, stem_files
+from yehu_server.cli.stage_options import check_stage, room_of
 from yehu_server.cli.style_options import style_of
 from yehu_server.cli.terminal import progress_bar, warn, warn_of_compiling
 from yehu_server.errors import OutputError
@@ -172,6 +172,8 @@ def _stems(arguments: argparse.Namespace, options: Options, players: Players) ->
     """The files of the stems that are asked for; checks that they may be written."""
     if arguments.stems is None:
         return []
+    from yehu_server.rendering.to_files import stem_files
+
     form = "wav" if options.format_name == "raw" else options.format_name
     stems = stem_files(arguments.stems, players.parts, form, is_dry=options.is_dry)
     make_folder(arguments.stems)

@@ -10,7 +10,7 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
-from yehu_server.compile.jit import FOLDERS
+from yehu_server.compile.cache_folder import SOURCE_FOLDERS
 from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.controls.slots import SLOTS
 from yehu_server.core.midi.record import MIDI
@@ -18,7 +18,9 @@ from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.rows import ROWS
 
 PACKAGE = Path(__file__).parents[2] / "yehu_server"
-SOURCES = [path for folder in (*FOLDERS, "playing") for path in (PACKAGE / folder).rglob("*.py")]
+SOURCES = [
+    path for folder in (*SOURCE_FOLDERS, "playing") for path in (PACKAGE / folder).rglob("*.py")
+]
 ROWS_MODULE, SLOTS_MODULE = "yehu_server.core.player.rows", "yehu_server.core.controls.slots"
 ROW, SLOT = "a row", "a slot"
 OTHER = {ROW: SLOT, SLOT: ROW}

@@ -17,12 +17,12 @@ import pytest
 
 from yehu_server.errors import DeviceError
 from yehu_server.live.addresses import Allowed
-from yehu_server.live.osc import open_sockets, sockets
+from yehu_server.live.osc import open_sockets, receiving
+from yehu_server.live.osc.answering import ANSWERED_BYTES, TO_ALL_HOSTS
 from yehu_server.live.osc.fair_queue import MOST_BYTES
 from yehu_server.live.osc.packets import pack
-from yehu_server.live.osc.peers import ANSWERED_BYTES, TO_ALL_HOSTS
+from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.osc.schedule import AHEAD_S
-from yehu_server.live.osc.sockets import OscPorts
 
 HOST = "127.0.0.1"
 BURST = 20_000
@@ -293,7 +293,7 @@ def test_a_stream_is_not_read_further_before_it_is_handled(listen, client, keepe
     for sender in senders:
         sender.start()
     time.sleep(SETTLE_S)
-    assert ports._queue.bytes <= len(streams) * 2 * sockets.STREAM_BYTES
+    assert ports._queue.bytes <= len(streams) * 2 * receiving.STREAM_BYTES
     keeper.go_on.set()
     until(lambda: len(keeper.packets) == 80, "all packets")
     for sender in senders:
@@ -367,7 +367,7 @@ def test_answers_to_other_hosts_are_bounded_for_each_and_for_all(
 ):
     """An address may be forged: a hundred ports of one host must not get a hundred answers."""
     ports, net = listen(), Net()
-    monkeypatch.setattr(sockets, "is_here", lambda _host: is_here)
+    monkeypatch.setattr(receiving, "is_here", lambda _host: is_here)
     monkeypatch.setattr(ports, "_udp", net)
     for number in range(100):
         peer = ports._peer((f"203.0.113.{number % hosts}", 1 + number))
@@ -426,9 +426,9 @@ def test_connections_that_come_and_go_leave_nothing(listen, client, until):
     until(lambda: len(ports._selector.get_map()) == kept, "no socket to be left")
 
 
-@pytest.mark.parametrize("many", [sockets.MOST_OF_A_HOST, sockets.MOST_CONNECTIONS])
+@pytest.mark.parametrize("many", [receiving.MOST_OF_A_HOST, receiving.MOST_CONNECTIONS])
 def test_there_is_room_for_so_many_connections(listen, client, keeper, until, monkeypatch, many):
-    monkeypatch.setattr(sockets, "MOST_OF_A_HOST", many)
+    monkeypatch.setattr(receiving, "MOST_OF_A_HOST", many)
     ports = listen()
     streams = [client(ports, "slip") for _ in range(many)]
     for stream in streams:
@@ -446,8 +446,8 @@ def test_there_is_room_for_so_many_connections(listen, client, keeper, until, mo
 def test_connections_that_never_say_a_thing_shut_nobody_out(
     listen, client, keeper, until, monkeypatch
 ):
-    monkeypatch.setattr(sockets, "MOST_CONNECTIONS", 3)
-    monkeypatch.setattr(sockets, "SPEAKS_WITHIN_S", 0.3)
+    monkeypatch.setattr(receiving, "MOST_CONNECTIONS", 3)
+    monkeypatch.setattr(receiving, "SPEAKS_WITHIN_S", 0.3)
     ports = listen()
     half, silent, speaks = (client(ports, "prefixed") for _ in range(3))
     half.socket.sendall(struct.pack(">I", 100) + b"/half")
@@ -467,8 +467,8 @@ def test_connections_that_never_say_a_thing_shut_nobody_out(
 def test_who_is_silent_for_long_gives_its_place_to_who_comes_unless_it_listens(
     listen, client, keeper, until, monkeypatch
 ):
-    monkeypatch.setattr(sockets, "MOST_CONNECTIONS", 3)
-    monkeypatch.setattr(sockets, "QUIET_S", 0.5)
+    monkeypatch.setattr(receiving, "MOST_CONNECTIONS", 3)
+    monkeypatch.setattr(receiving, "QUIET_S", 0.5)
     ports = listen()
     listens, silent, speaks = (client(ports, "prefixed") for _ in range(3))
     for number, stream in enumerate((listens, silent, speaks)):

@@ -12,7 +12,7 @@ import pytest
 from web_client import BINARY, CLOSE, TEXT, Refused, WebSocket, ask
 from wire import Message, Wire
 
-from yehu_server.live.osc.peers import MOST_UNSENT_BYTES, WebTraffic
+from yehu_server.live.osc.answering import MOST_UNSENT_BYTES, WebTraffic
 from yehu_server.live.web.server import MOST_CONNECTIONS, MOST_WEB_SOCKETS, SWEEP_S, WebOptions
 from yehu_server.live.web.web_sockets import FRAME_BYTES, WebPeer
 from yehu_server.params.table import TABLE

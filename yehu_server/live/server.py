@@ -24,7 +24,7 @@ from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
 from yehu_server.live.osc.call_table import more_calls
 from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.sockets import OscPorts
+from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.page.pages import Pages
 from yehu_server.live.services import Services
 from yehu_server.live.web.server import Sources, WebServer

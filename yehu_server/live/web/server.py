@@ -20,10 +20,10 @@ from aiohttp import web
 
 from yehu_server.errors import DeviceError, one_line
 from yehu_server.live.addresses import Address, Allowed, format_address, plain
+from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.call_table import Call
 from yehu_server.live.osc.clients import Clients
-from yehu_server.live.osc.peers import WebTraffic
-from yehu_server.live.osc.sockets import OscPorts
+from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web import query
 from yehu_server.live.web.guard import check, own_names
 from yehu_server.live.web.loops import LoopThread

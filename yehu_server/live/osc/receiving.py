@@ -1,4 +1,4 @@
-"""Serve OSC by UDP and TCP at one address, in one thread.
+"""Receives OSC by UDP and TCP at one address, in one thread.
 
 The UDP socket is emptied before packets are parsed, so that memory holds a burst and not the
 kernel's small buffer; packets of a sender that has too many waiting are dropped and counted. A
@@ -21,12 +21,7 @@ from collections.abc import Callable, Iterator
 from functools import lru_cache
 
 from yehu_server.live.addresses import Address, Allowed, is_here
-from yehu_server.live.osc.datagrams import datagrams
-from yehu_server.live.osc.fair_queue import FairQueue
-from yehu_server.live.osc.framing import FramingError
-from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, open_both, widen
-from yehu_server.live.osc.peers import (
+from yehu_server.live.osc.answering import (
     TO_A_HOST,
     TO_ALL_HOSTS,
     Peer,
@@ -35,6 +30,11 @@ from yehu_server.live.osc.peers import (
     UdpPeer,
     answer_bucket,
 )
+from yehu_server.live.osc.datagrams import datagrams
+from yehu_server.live.osc.fair_queue import FairQueue
+from yehu_server.live.osc.framing import FramingError
+from yehu_server.live.osc.handler import OscHandler
+from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, open_both, widen
 
 log = logging.getLogger(__name__)
 

@@ -67,7 +67,7 @@ def kernel_row() -> Callable[[], int]:
 
 def tune_row(name: str) -> Callable[[], int]:
     """The tune, from its score to samples, with all that rows up to this one have."""
-    from yehu_server.playing.style import Style
+    from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Options
     from yehu_server.rendering.performance import Performance
     from yehu_server.scores.smf.reader import read_score
@@ -78,7 +78,9 @@ def tune_row(name: str) -> Callable[[], int]:
             del settings[address]
         if row == name:
             break
-    made = Options(style=Style(settings=tuple(settings.items())), jobs=1, **ROWS[name][1])
+    made = Options(
+        playing=PlayingOptions(settings=tuple(settings.items())), jobs=1, **ROWS[name][1]
+    )
 
     def work() -> int:
         return sum(len(samples) for samples in Performance(score, made).blocks())

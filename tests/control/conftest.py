@@ -32,7 +32,7 @@ from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import SLOT
 from yehu_server.playing import live_player
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0  # for other threads, on a busy machine
@@ -128,16 +128,16 @@ class StillServer:
     def __init__(self, clock: StillTime, block: int = 128) -> None:
         self.clock = clock
         self.block = block
-        style = Style()
+        playing = PlayingOptions()
         calibration = calibration_for(float(self.RATE))
-        self.instrument = Instrument(style.spec(self.RATE, calibration))
+        self.instrument = Instrument(playing.spec(self.RATE, calibration))
         self._moves = Moves(self.instrument)
         self.instrument.frame_at = self._frame_at
         self.others: list[Instrument] = []  # more instruments, played along
         self.pace = 1.0  # of the device, relative to its nominal rate
         self._began = (clock.now, 0)
         self.player = live_player.LivePlayer(
-            self.instrument, style, delay_ms=1e3 * block / self.RATE + 1.0
+            self.instrument, playing, delay_ms=1e3 * block / self.RATE + 1.0
         )
         self.player.write("/playing/variation", 0.0, frame=0)
         self.services = Services()
@@ -342,7 +342,7 @@ class LiveServer:
         self.said: list[str] = []
         output = OutputOptions(device="null", blocksize=options.pop("blocksize", 128))
         handler = options.pop("osc", (HOST, 0))
-        own = {name: options.pop(name) for name in ("style", "reread") if name in options}
+        own = {name: options.pop(name) for name in ("playing", "reread") if name in options}
         parts = [PartOptions(**own)] * options.pop("parts", 1)
         serve = ServeOptions(output=output, osc=handler, midi=None, parts=parts, recordings=folder)
         self.server = Server(replace(serve, **options), self.said.append)

@@ -21,7 +21,7 @@ from yehu_server.playing.bind import Bind
 from yehu_server.playing.learn import LearnedSource
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 VOLUME = "/playing/volume"
 SHARED = [param.address for param in TABLE if param.is_shared]
@@ -33,10 +33,12 @@ def players(still) -> list[LivePlayer]:
     """Those of three parts; the first is the server's own."""
     more = []
     for part in range(1, PARTS):
-        instrument = Instrument(Style().spec(still.RATE, still.instrument.spec.calibration))
+        instrument = Instrument(
+            PlayingOptions().spec(still.RATE, still.instrument.spec.calibration)
+        )
         instrument.frame_at = still.instrument.frame_at
         still.others.append(instrument)
-        more.append(LivePlayer(instrument, Style(), delay_ms=3.0, part=part))
+        more.append(LivePlayer(instrument, PlayingOptions(), delay_ms=3.0, part=part))
     still.handler = handler.OscHandler([still.player, *more], still.services)
     return [still.player, *more]
 

@@ -7,7 +7,7 @@ import pytest
 from midi_input import receive
 
 from yehu_server.playing.mapping import load
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 BIND = '[[bind]]\nsource = "cc {}"\ntarget = "/playing/volume"\n'
 
@@ -22,7 +22,7 @@ def path(tmp_path):
 @pytest.fixture
 def watched(make_live, path):
     mapping = load(str(path))
-    return make_live(style=Style(mapping=mapping), reread=lambda: load(str(path)))
+    return make_live(playing=PlayingOptions(mapping=mapping), reread=lambda: load(str(path)))
 
 
 def test_a_changed_file_is_taken_up_while_a_note_sounds_or_refused_whole(watched, path, until):
@@ -48,7 +48,7 @@ def test_a_changed_file_is_taken_up_while_a_note_sounds_or_refused_whole(watched
 
 
 def test_without_it_a_file_is_read_once(make_live, path):
-    live = make_live(style=Style(mapping=load(str(path))))
+    live = make_live(playing=PlayingOptions(mapping=load(str(path))))
     path.write_text("wrong")
     live.wait_frames(60_000)
     assert live.said == []

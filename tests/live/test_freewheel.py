@@ -13,13 +13,13 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.live.audio.output import Output, OutputOptions
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 RATE = 48000
 FIRST = 20 * RATE  # by then the device has taken over
 FRAMES = 4 * RATE
 BLOCKS = [64, *(pytest.param(block, marks=pytest.mark.slow) for block in (100, 128, 333, 1024))]
-STYLE = Style(mapping=load("keyboard"), seed=3)
+STYLE = PlayingOptions(mapping=load("keyboard"), seed=3)
 
 
 def stage_of(memory: object = None) -> Ensemble:

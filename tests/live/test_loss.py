@@ -26,7 +26,7 @@ from yehu_server.live.audio.output import Output, OutputOptions, SharedMemory
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.rendering.replay import blocks
 from yehu_server.scores.capture import read_capture
@@ -258,7 +258,7 @@ def stopped(jackd, until) -> Iterator[Callable[..., Stopped]]:
                 output=OutputOptions(device="system, JACK"),
                 midi=None,
                 osc=("127.0.0.1", 0),
-                parts=[PartOptions(Style(settings=(("/playing/variation", 0.0),)))],
+                parts=[PartOptions(PlayingOptions(settings=(("/playing/variation", 0.0),)))],
             )
             server = Server(options, lambda _line: None)
             ending.callback(server.stop)
@@ -350,11 +350,11 @@ def finger(instrument: Instrument, wishes: WishPoster) -> None:
 @pytest.mark.parametrize("play", [bow, pytest.param(finger, marks=pytest.mark.slow)])
 def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_path, play):
     memory = SharedMemory()
-    style = Style(seed=3)
+    playing = PlayingOptions(seed=3)
     calibration = calibration_for(48000.0)
-    stage = Ensemble([style.spec(48000.0, calibration)], memory=memory.buffer)
+    stage = Ensemble([playing.spec(48000.0, calibration)], memory=memory.buffer)
     live = stage.first
-    wishes = style.wishes(live)
+    wishes = playing.wishes(live)
     live.report_wishes()
     capture = CaptureWriter(
         tmp_path / "take.jsonl", beginning=session_start_of([live], has_room=True)

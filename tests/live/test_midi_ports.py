@@ -26,7 +26,7 @@ from yehu_server.live.midi.routes import Router, is_wanted, stable_names
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
 from yehu_server.params.table import FINGERS
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 RATE, PERIOD = 48000, 1024
 LISTENS_AFTER_S = 0.2  # see test_a_port_is_listened_to_before_it_is_open
@@ -115,7 +115,9 @@ class Witness:
             osc=("127.0.0.1", 0),
             parts=[
                 PartOptions(
-                    Style(settings=(("/playing/variation", 0.0),), bowing=default_recipes())
+                    PlayingOptions(
+                        settings=(("/playing/variation", 0.0),), bowing=default_recipes()
+                    )
                 )
             ],
         )

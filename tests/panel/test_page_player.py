@@ -23,8 +23,8 @@ from yehu_server.params.table import find
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.mapping_writer import as_toml
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import Presets
-from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, STANDARD_A4, Tuning, read_tuning
 from yehu_server.playing.wishes import UNMAPPED, Key, WishPoster
@@ -69,8 +69,8 @@ class Server(LivePlayer):
 
     def __init__(self, mappings: dict[str, Mapping], tunings: dict[str, Tuning], presets) -> None:
         recorder = Recorder()
-        style = Style(mapping=UNMAPPED, presets=presets)
-        super().__init__(recorder, style, delay_ms=0.0, wishes=WishPoster([recorder]))
+        options = PlayingOptions(mapping=UNMAPPED, presets=presets)
+        super().__init__(recorder, options, delay_ms=0.0, wishes=WishPoster([recorder]))
         self._mappings, self._tunings = mappings, tunings
         self._key: Key | None = None
         self.remap(mappings[facts.DEFAULT], frame=None)
@@ -99,7 +99,7 @@ class Server(LivePlayer):
             self.load(self.presets.load(given[0]).values, frame=frame)
         elif method == "remap":
             self.remap(self._mappings[given[0]], frame=frame)
-        elif method == "applyTuning":  # a style of the server's does not change
+        elif method == "applyTuning":  # options of the server's do not change
             self._wishes._tuning = self._tunings[values[0]]
             in_use = self._wishes.record["tables"]
             self.instrument.tables[in_use] = self._midi._tables()[0]

@@ -27,15 +27,15 @@ from yehu_server.live.page.players import PagePlayers
 from yehu_server.params.table import FINGERS
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.live_player import LivePlayer
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 PRESSURE, SPEED, VELOCITY = "/playing/pressure", "/playing/speed", "/playing/velocity"
 
 
 @pytest.fixture(scope="module")
 def instrument():
-    style = Style()
-    instrument = Instrument(style.spec(48000.0, calibration_for(48000.0)))
+    options = PlayingOptions()
+    instrument = Instrument(options.spec(48000.0, calibration_for(48000.0)))
     instrument.report_wishes()
     return instrument
 
@@ -44,7 +44,7 @@ def instrument():
 def player(instrument) -> LivePlayer:
     instrument.reset()
     instrument.report_wishes()
-    return LivePlayer(instrument, Style(), delay_ms=0.0)
+    return LivePlayer(instrument, PlayingOptions(), delay_ms=0.0)
 
 
 @pytest.fixture

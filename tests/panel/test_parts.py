@@ -20,7 +20,7 @@ from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.page.pages import PageOptions
 from yehu_server.live.page.sockets import LOOK, NO_PART, NOW
 from yehu_server.live.server import Server
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0
@@ -38,7 +38,7 @@ def until(condition: Callable[[], Any], what: str) -> None:
 @pytest.fixture(scope="module")
 def server() -> Iterator[Server]:
     """A server of two parts, of which the second is a section."""
-    section = Style(start=(("/playing/section", float(SECTION)),))
+    section = PlayingOptions(start=(("/playing/section", float(SECTION)),))
     options = ServeOptions(
         output=OutputOptions(device="null"),
         midi=None,

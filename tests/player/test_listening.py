@@ -17,8 +17,8 @@ from yehu_server.core.player.tuning_by_ear import LASTING, begin_tuning, jumps
 from yehu_server.core.player.wishes import STOP
 from yehu_server.params.table import FINGERS, TABLE
 from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.pitch_and_level import cents, pitch_hz
-from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, WishPoster
 
 RATE = 44100
@@ -30,9 +30,9 @@ class Play:
     """A player with calibrated fingers, whose strings are then detuned, and what is heard of it."""
 
     def __init__(self, listening: float = 1.0, detuned: float = 0.0, **values: float) -> None:
-        style = Style()
-        self.instrument = Instrument(style.spec(RATE, calibration_for(float(RATE))))
-        self.wishes: WishPoster = style.wishes(self.instrument)
+        playing = PlayingOptions()
+        self.instrument = Instrument(playing.spec(RATE, calibration_for(float(RATE))))
+        self.wishes: WishPoster = playing.wishes(self.instrument)
         self.wishes.write("/playing/variation", 0.0)
         self.wishes.write("/playing/listening", listening)
         self.detune(detuned)
@@ -117,7 +117,7 @@ def test_a_reset_forgets_what_was_learnt():
     play.instrument.reset()
     assert not play.player["learnt"].any()
     again = Play.__new__(Play)
-    again.instrument, again.wishes = play.instrument, Style().wishes(play.instrument)
+    again.instrument, again.wishes = play.instrument, PlayingOptions().wishes(play.instrument)
     again.wishes.write("/playing/variation", 0.0)
     again.detune(-30.0)
     run_for(again.instrument, 0.05)

@@ -11,8 +11,8 @@ import pytest
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.params.table import find
 from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.pitch_and_level import a_weighted_db
-from yehu_server.playing.style import Style
 
 RATE = 44100
 VELOCITIES = (1, 20, 50, 80, 110, 127)
@@ -22,14 +22,14 @@ NOTES = (66, 69, 74, 82)  # on both strings
 @cache
 def struck(note: int, velocity: int) -> np.ndarray:
     """The sound of a note on the shipped keyboard mapping, evened out and without variation."""
-    style = Style()
-    assert style.mapping.name == "keyboard"
-    instrument = Instrument(style.spec(RATE, calibration_for(float(RATE))))
-    wishes = style.wishes(instrument)
+    playing = PlayingOptions()
+    assert playing.mapping.name == "keyboard"
+    instrument = Instrument(playing.spec(RATE, calibration_for(float(RATE))))
+    wishes = playing.wishes(instrument)
     wishes.write("/playing/variation", 0.0)
     instrument.write("/bow/noise", 0.0, ramp_ms=0.0)  # A4 at the body's mode minds it by a decibel
     wishes.write("/body/evenness", 1.0)
-    style.midi(wishes).receive(mido.Message("note_on", note=note, velocity=velocity))
+    playing.midi(wishes).receive(mido.Message("note_on", note=note, velocity=velocity))
     sound = np.zeros(round(1.2 * RATE), np.float32)
     instrument.process(sound)
     return sound

@@ -39,7 +39,7 @@ from yehu_server.core.player.wishes import (
 )
 from yehu_server.errors import OutputError, ScoreError, YehuError
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import Key
 from yehu_server.rendering.replay import blocks, replay
 from yehu_server.scores.capture import read_capture
@@ -326,11 +326,14 @@ def wish_something(instrument, wishes, chance) -> None:
 def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
     """Of calibrated instruments, in a room; also where the process died in it."""
     chance, said = random.Random(seed), []
-    styles = [
-        Style(seed=seed + i, open_strings=list(OpenStrings)[seed % 3]) for i in range(players)
+    per_part = [
+        PlayingOptions(seed=seed + i, open_strings=list(OpenStrings)[seed % 3])
+        for i in range(players)
     ]
-    stage = Ensemble([style.spec(RATE, measured(seed), body=style.seed) for style in styles])
-    asked = [style.wishes(one) for style, one in zip(styles, stage.instruments, strict=True)]
+    stage = Ensemble(
+        [playing.spec(RATE, measured(seed), body=playing.seed) for playing in per_part]
+    )
+    asked = [playing.wishes(one) for playing, one in zip(per_part, stage.instruments, strict=True)]
     for one in stage.instruments:
         one.report_wishes()
     capture = LiveCapture(stage, tmp_path / "c", said.append, has_room=True)

@@ -68,21 +68,21 @@ def test_all_that_marks_set_is_put_back():
 
 def test_a_preset_is_what_marks_are_put_back_to():
     options = Options(tail_s=0.0, is_dry=True, is_mono=True)
-    style = options.style.__class__(start=(("/playing/bow_position", 0.18),))
+    playing = options.playing.__class__(start=(("/playing/bow_position", 0.18),))
     note = Note(Fraction(0), Fraction(1), 67.0, (Mark("harmonic"),))
     near = Note(Fraction(1), Fraction(1), 77.0, (Mark("harmonic"),))
     score = performed(Written((Part("", (note, near)),), (Tempo(Fraction(0), 60.0),)))
-    performance = Performance(score, Options(tail_s=0.0, style=style))
+    performance = Performance(score, Options(tail_s=0.0, playing=playing))
     for _ in performance.blocks():
         pass
     assert performance.wishes.value("/playing/bow_position") == 0.18
 
 
 def test_what_is_held_by_the_command_line_stays():
-    style = Options().style.__class__(settings=(("/playing/bow_position", 0.18),))
+    playing = Options().playing.__class__(settings=(("/playing/bow_position", 0.18),))
     note = Note(Fraction(0), Fraction(1), 77.0, (Mark("harmonic"),))
     score = performed(Written((Part("", (note,)),)))
-    performance = Performance(score, Options(tail_s=0.0, style=style))
+    performance = Performance(score, Options(tail_s=0.0, playing=playing))
     next(performance.blocks())
     assert performance.wishes.value("/playing/bow_position") == 0.18
 

@@ -14,7 +14,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import memory_bytes
 from yehu_server.core.midi.events import START
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
 Array = Any
@@ -37,10 +37,10 @@ def image(rate: float) -> Array:
     ndarray [dtype=int64]
         First word, number of words, the words; again; to the end.
     """
-    memory, style = bytearray(memory_bytes(1)), Style()
-    spec = style.spec(rate, calibration_for(rate))
+    memory, playing = bytearray(memory_bytes(1)), PlayingOptions()
+    spec = playing.spec(rate, calibration_for(rate))
     first = Ensemble([spec], memory=memory, is_live=True).first
-    first.lead(style.tables(Controls()))
+    first.lead(playing.tables(Controls()))
     first.tables["program_row"] = 0.0  # not read, as there are no programs
     first.post(START)
     words = np.frombuffer(memory, np.int64)

@@ -20,9 +20,9 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
 from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.practice_files import read_practice
 from yehu_server.playing.preset_folders import Presets
-from yehu_server.playing.style import Style
 from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 
 LOWEST_A4, HIGHEST_A4 = 390.0, 480.0  # Hz; as of --a4
@@ -34,7 +34,7 @@ class PlayingSetup:
 
     sample_rate: int
     quantities: Quantities
-    style: Style
+    playing: PlayingOptions
 
 
 def playing_setup_of(
@@ -68,7 +68,7 @@ def playing_setup_of(
     if out_of_range not in policies:
         raise ParameterError(f"out_of_range: {out_of_range!r} is not one of {', '.join(policies)}")
     most = find("/engine/seed").hi
-    style = Style(
+    playing = PlayingOptions(
         mapping=load(name_of(mapping, "mapping"), user_first=False),
         presets=presets,
         preset=file,
@@ -81,4 +81,4 @@ def playing_setup_of(
         bowing=None if practice is None else read_practice(path_of(practice, "practice")),
         practice=None if practice is None else path_of(practice, "practice"),
     )
-    return PlayingSetup(rate, quantities_of(instrument), style)
+    return PlayingSetup(rate, quantities_of(instrument), playing)

@@ -14,12 +14,12 @@ from yehu_server.errors import ParameterError
 
 if TYPE_CHECKING:
     from yehu_server.playing.mapping import Mapping
-    from yehu_server.playing.style import Style
+    from yehu_server.playing.options import PlayingOptions
     from yehu_server.playing.tuning import Tuning
 
 
 def add_playing(group: Any) -> None:
-    """Add the options of playing that serve and render share; see `style_of`."""
+    """Add the options of playing that serve and render share; see `playing_options_of`."""
     add_tables(group)
     add_options(
         group,
@@ -38,7 +38,7 @@ def add_playing(group: Any) -> None:
 
 
 def add_tables(group: Any) -> None:
-    """Add the options of how messages are interpreted; see `interpreted_style_of`."""
+    """Add the options of how messages are interpreted; see `table_options_of`."""
     add_options(
         group,
         """
@@ -119,8 +119,8 @@ def add_presets_folder(group: Any) -> None:
     )
 
 
-def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
-    """The style of playing given by the options of `add_playing`; see `interpreted_style_of`.
+def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
+    """What the options of `add_playing` ask for; see `table_options_of`.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
     from yehu_server.playing.practice_files import read_practice
 
     return replace(
-        interpreted_style_of(arguments, is_live=is_live),
+        table_options_of(arguments, is_live=is_live),
         settings=tuple(assignment(text) for text in arguments.set),
         open_strings=OpenStrings(arguments.open_strings),
         seed=arguments.seed,
@@ -141,8 +141,8 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
     )
 
 
-def interpreted_style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
-    """The part of a style that the options of `add_tables` give.
+def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
+    """What the options of `add_tables` ask for.
 
     In live playing, mappings and presets of the user's own precede shipped ones of the same
     name. Else they must be named explicitly, so that the result of a rendering depends on its
@@ -153,8 +153,8 @@ def interpreted_style_of(arguments: argparse.Namespace, *, is_live: bool = False
     YehuError
         Where a file or value is wrong.
     """
+    from yehu_server.playing.options import PlayingOptions
     from yehu_server.playing.preset_folders import Presets
-    from yehu_server.playing.style import Style
     from yehu_server.playing.tuning import RangePolicy
 
     user_first = is_live or arguments.presets is not None
@@ -167,7 +167,7 @@ def interpreted_style_of(arguments: argparse.Namespace, *, is_live: bool = False
         start = tuple(preset.values.items())
         for remark in preset.remarks():
             warn(remark)
-    return Style(
+    return PlayingOptions(
         mapping=mapping_of(arguments, is_live=is_live),
         presets=presets,
         preset=file,

@@ -23,7 +23,7 @@ from yehu_server.playing.wishes import WishPoster
 
 
 @dataclass(frozen=True)
-class Style:
+class PlayingOptions:
     """How to play; see ``yehu-server render --help``.
 
     Attributes
@@ -65,7 +65,7 @@ class Style:
         start_values: Values[str, float] | None = None,
         body: int = 0,
     ) -> InstrumentSpec:
-        """An instrument at a rate (Hz), calibrated, with a player of this style.
+        """An instrument at a rate (Hz), calibrated, with a player with these options.
 
         Parameters
         ----------
@@ -86,11 +86,11 @@ class Style:
         )
 
     def wishes(self, instruments: Instrument | Sequence[Instrument]) -> WishPoster:
-        """What posts wishes of this style to an instrument, or to those of a section."""
+        """What posts wishes with these options to an instrument, or to those of a section."""
         return WishPoster(instruments, self.policy, self.tuning, self.a4)
 
     def tables(self, controls: Controls) -> Any:
-        """The tables of this style (``midi.tables``), with named controls numbered as given."""
+        """The tables of these options (``midi.tables``), with named controls numbered as given."""
         return make_tables(
             self.mapping,
             controls,
@@ -102,6 +102,6 @@ class Style:
         )
 
     def midi(self, wishes: WishPoster, channels: set[int] | None = None) -> MidiPlayer:
-        """A MIDI player of this style; `channels` as in `MidiPlayer`."""
+        """A MIDI player with these options; `channels` as in `MidiPlayer`."""
         programs = self.presets.programs() if self.programs else None
         return MidiPlayer(wishes, self.mapping, channels, start=self.start, programs=programs)

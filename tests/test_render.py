@@ -14,8 +14,8 @@ import mido
 import numpy as np
 import pytest
 import soundfile
+from midi_files import midi_file, notes
 from pitch import cents, hertz, pitch_of
-from scores import midi_file, notes
 from sound import rms
 
 from yehu_server.playing.options import PlayingOptions

@@ -10,7 +10,7 @@ import mido
 import numpy as np
 import pytest
 import soundfile
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering import cores

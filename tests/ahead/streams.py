@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 from interpreted import Leader
-from panel import streams as calls
+from live.page import streams as calls
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import RIG

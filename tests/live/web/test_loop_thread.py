@@ -11,7 +11,7 @@ import urllib.request
 import pytest
 
 from yehu_server.live.web import server
-from yehu_server.live.web.loops import LoopThread
+from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.server import WebOptions
 from yehu_server.util.retry import Backoff
 

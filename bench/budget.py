@@ -75,7 +75,7 @@ def kernel_row() -> Callable[[], int]:
 
 def performances(name: str) -> Callable[[], Performance]:
     """Performances of the tune on one core, with all that rows up to this one have."""
-    from yehu_server.playing.style import Style
+    from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Options
     from yehu_server.rendering.performance import Performance
     from yehu_server.scores.smf.reader import read_score
@@ -86,7 +86,9 @@ def performances(name: str) -> Callable[[], Performance]:
             del settings[address]
         if row == name:
             break
-    made = Options(style=Style(settings=tuple(settings.items())), jobs=1, **ROWS[name][1])
+    made = Options(
+        playing=PlayingOptions(settings=tuple(settings.items())), jobs=1, **ROWS[name][1]
+    )
     return lambda: Performance(score, made)
 
 

@@ -22,7 +22,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.midi.events import MESSAGE, START
 from yehu_server.core.midi.packing import packed
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
 RATE, BLOCK, MESSAGES = 48000.0, 128, 1000
@@ -50,10 +50,10 @@ class Player:
     """Plays one note, and what comes with it."""
 
     def __init__(self) -> None:
-        style = replace(Style(), programs=True)
-        self._ensemble = Ensemble([style.spec(RATE, calibration_for(RATE))], is_live=True)
+        playing = replace(PlayingOptions(), programs=True)
+        self._ensemble = Ensemble([playing.spec(RATE, calibration_for(RATE))], is_live=True)
         self._first = self._ensemble.first
-        self._first.lead(style.tables(Controls()))
+        self._first.lead(playing.tables(Controls()))
         self._first.post(START)
         self._out = np.zeros((BLOCK, 2), np.float32)
 

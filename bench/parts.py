@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 import report
 
-from yehu_server.compile import jit
+from yehu_server.compile import cache_folder, jit
 from yehu_server.core.physics import finger, kernel, layout
 from yehu_server.core.physics.quantities import Quantities
 
@@ -174,7 +174,7 @@ PARTS = {
 
 def leave_out(name: str) -> None:
     """Replace a part in this process, before anything is compiled."""
-    jit.IS_CACHED = False
+    cache_folder.IS_CACHED = False
     part, module = PARTS[name]
     again: list[tuple[Any, str]] = [
         (kernel, name) for name in ("measure", "solve_contacts", "step", "advance")

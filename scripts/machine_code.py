@@ -19,10 +19,11 @@ from yehu_server.compile import machine_code
 from yehu_server.util.sealed import read_sealed, write_sealed
 
 COMPILE = """
-from yehu_server.compile import jit, machine_code
+from yehu_server.compile import machine_code
+from yehu_server.compile.cache_folder import cache_folder
 from yehu_server.core.engine.warming import warm_up
 warm_up()
-print(machine_code.processor()[0], machine_code.file_in(jit.cache_folder()), sep="\\n")
+print(machine_code.processor()[0], machine_code.file_in(cache_folder()), sep="\\n")
 """
 # numba's order of things follows Python's hashes; and no feature of this processor is wanted.
 SETTINGS = {"PYTHONHASHSEED": "0", "NUMBA_CPU_FEATURES": ""}

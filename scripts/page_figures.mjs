@@ -3,7 +3,7 @@
 //   scripts/yehu page --port 8010 &
 //   node scripts/page_figures.mjs http://127.0.0.1:8010/ /usr/bin/chromium docs/figures
 
-import { FLAGS, SIZES, open, run } from "../tests/panel/browser.mjs";
+import { FLAGS, SIZES, open, run } from "../tests/live/page/browser.mjs";
 
 const [, , folder] = process.argv.slice(2);
 const PICTURES = [

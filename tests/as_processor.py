@@ -1,6 +1,6 @@
 """Runs a command as another x86-64 processor would run it, rounding for rounding.
 
-    .venv/bin/python tests/as_processor.py generic .venv/bin/pytest tests/physics
+    .venv/bin/python tests/as_processor.py generic .venv/bin/pytest tests/core/physics
 
 numba compiles for that processor; numpy, its linear algebra and the C library do not use the code
 that they have for newer ones. Where this processor can't run the other's code, the script says so

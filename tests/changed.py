@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = "yehu_server"
 # What other files reach. A change of anything else reaches the files of tests that name it.
 FOLDERS = {
-    "web": ("tests/panel", "tests/ahead"),
+    "web": ("tests/live/page", "tests/ahead"),
     "mappings": ("tests/surfaces", "tests/test_mappings_files.py"),
     "docs": ("tests/test_docs.py", "tests/documentation"),
 }

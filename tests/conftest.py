@@ -23,7 +23,7 @@ settings.load_profile("yehu")
 
 
 CHANGED_S = 60.0  # how long tests of a change begin
-NEED_THE_PAGE = {"ahead", "documentation", "panel"}  # folders; it is compiled beside the others
+NEED_THE_PAGE = {"ahead", "documentation", "page"}  # folders; it is compiled beside the others
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import Key
 
 RATE = 44100
@@ -19,9 +19,9 @@ class Playing:
     """A player; keyword arguments are values of parameters under ``/playing``."""
 
     def __init__(self, seed: int = 0, **values: float) -> None:
-        style = Style(seed=seed)
-        self.instrument = Instrument(style.spec(RATE, calibration_for(float(RATE))))
-        self.wishes = style.wishes(self.instrument)
+        playing = PlayingOptions(seed=seed)
+        self.instrument = Instrument(playing.spec(RATE, calibration_for(float(RATE))))
+        self.wishes = playing.wishes(self.instrument)
         for name, value in values.items():
             self.wishes.write(f"/playing/{name}", value)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from changed import FOLDERS, ROOT, distances
 
 TESTS = ROOT / "tests"
-SCALE = TESTS / "score" / "test_jianpu.py"
-PHYSICS = TESTS / "physics" / "test_energy.py"
-PAGE = TESTS / "panel" / "test_page_views.py"
+SCALE = TESTS / "scores" / "test_jianpu.py"
+PHYSICS = TESTS / "core" / "physics" / "test_energy.py"
+PAGE = TESTS / "live" / "page" / "test_page_views.py"
 ALL = [SCALE, PHYSICS, PAGE]
 
 
@@ -23,8 +23,8 @@ def test_what_imports_a_module_directly_is_nearer_than_what_does_so_by_others():
 
 
 def test_a_changed_test_is_the_nearest_and_its_helpers_count_as_it():
-    assert distances({"tests/physics/test_energy.py"}, ALL) == {PHYSICS: 0}
-    assert distances({"tests/panel/browser.py"}, ALL) == {PAGE: 0}
+    assert distances({"tests/core/physics/test_energy.py"}, ALL) == {PHYSICS: 0}
+    assert distances({"tests/live/page/browser.py"}, ALL) == {PAGE: 0}
 
 
 def test_files_that_are_no_modules_reach_the_tests_of_their_folder():
@@ -34,5 +34,5 @@ def test_files_that_are_no_modules_reach_the_tests_of_their_folder():
 
 
 def test_what_a_process_of_its_own_runs_reaches_those_who_start_it():
-    stream = TESTS / "live" / "test_stream.py"
+    stream = TESTS / "live" / "real_time" / "test_stream.py"
     assert stream in distances({"yehu_server/live/audio/stream.py"}, [stream])

@@ -18,7 +18,7 @@ import pytest
 import soundfile
 from commands import COMMAND, is_one_line
 from forks import start
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 
 import yehu_server
 from yehu_server.util.sound_file import sound_file

@@ -9,7 +9,7 @@ import numba
 import pytest
 
 from yehu_server.compile import function_cache as cache
-from yehu_server.compile import jit
+from yehu_server.compile import jit, numba_compiler
 from yehu_server.util import sealed
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
@@ -23,8 +23,8 @@ class Kept:
 
     def __init__(self, folder, monkeypatch) -> None:
         self.folder = folder
-        monkeypatch.setattr(jit, "cache_folder", lambda: folder)
-        monkeypatch.setattr(jit, "IS_CACHED", True)
+        monkeypatch.setattr(numba_compiler, "cache_folder", lambda: folder)
+        monkeypatch.setattr(numba_compiler, "IS_CACHED", True)
         monkeypatch.setattr(cache, "_reported", set())
 
     def start(self, function=third_of) -> tuple[int, bool]:

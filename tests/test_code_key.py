@@ -9,13 +9,14 @@ from pathlib import Path
 import pytest
 
 from yehu_server.compile import function_cache as cache
-from yehu_server.compile import jit
+from yehu_server.compile import jit, numba_compiler
+from yehu_server.compile.cache_folder import SOURCE_FOLDERS
 from yehu_server.util import PACKAGE
 from yehu_server.util.source_key import key_of, without_prose
 
 KEYED = [
     path
-    for folder in (*jit.FOLDERS, "playing")
+    for folder in (*SOURCE_FOLDERS, "playing")
     for path in sorted((PACKAGE / folder).rglob("*.py"))
 ]
 LAYOUT = {
@@ -102,8 +103,8 @@ def edited(folder: Path, old: str, new: str) -> str:
 def test_a_comment_compiles_nothing_anew(tmp_path, monkeypatch):
     folder = tmp_path / "cache"
     folder.mkdir()
-    monkeypatch.setattr(jit, "cache_folder", lambda: folder)
-    monkeypatch.setattr(jit, "IS_CACHED", True)
+    monkeypatch.setattr(numba_compiler, "cache_folder", lambda: folder)
+    monkeypatch.setattr(numba_compiler, "IS_CACHED", True)
     monkeypatch.setattr(cache, "_reported", set())
 
     def was_there(source: str) -> bool:

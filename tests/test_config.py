@@ -66,11 +66,11 @@ def test_any_option_may_stand_in_the_file(file):
     assert read.output.latency == 0.01
     assert read.midi.patterns == ["keystep", "breath"]
     assert read.osc == ("127.0.0.1", 9100)
-    assert read.parts[0].style.settings == (("/bow/position", 0.1),)
+    assert read.parts[0].playing.settings == (("/bow/position", 0.1),)
     assert "10.1.2.3" in read.allowed
     assert "192.168.0.1" not in read.allowed
     assert read.jitter_ms == 5.0
-    assert read.parts[0].style.programs
+    assert read.parts[0].playing.programs
     assert read.parts[0].reread is None
     assert read.announce is False
     assert read.http is None
@@ -89,7 +89,7 @@ def test_an_option_that_may_be_repeated_adds_to_those_of_the_file(file):
     words = ("--midi-in", "breath", "--set", "/playing/volume=0.25")
     read = options(*words, "--config", str(file))
     assert read.midi.patterns == ["keystep", "breath"]
-    assert read.parts[0].style.settings == (("/playing/volume", 0.5), ("/playing/volume", 0.25))
+    assert read.parts[0].playing.settings == (("/playing/volume", 0.5), ("/playing/volume", 0.25))
 
 
 def test_a_file_counts_for_its_own_command_line_only(file):

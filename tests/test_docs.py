@@ -249,10 +249,19 @@ def test_what_a_page_names_is_there(page: Page):
 
 
 @pytest.mark.parametrize("block", page("CONTRIBUTING.md").blocks("diff"))
-def test_a_change_that_is_shown_is_of_a_file_with_such_lines(block):
+def test_a_change_that_is_shown_can_be_made_or_was(block):
     head, *lines = block.splitlines()
-    around = " ".join(line for line in lines if line.startswith(" "))
-    assert set(re.findall(r"\w+", around)) <= sources()[ROOT / head.removeprefix("--- ")]
+    text = (ROOT / head.removeprefix("--- ")).read_text("utf-8")
+    states = (
+        "".join(f"{line[1:]}\n" for line in lines if line[0] in kept) for kept in (" -", " +")
+    )
+    assert any(state and text.count(state) == 1 for state in states)
+
+
+@pytest.mark.parametrize("block", page("CONTRIBUTING.md").blocks("python"))
+def test_what_a_piece_of_a_program_imports_is_there(block):
+    for line in re.findall(r"^(?:from|import) .*", block, re.MULTILINE):
+        exec(line, {})  # noqa: S102 - our own documentation
 
 
 @each_page

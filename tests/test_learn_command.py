@@ -16,9 +16,9 @@ from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.server import Server
 from yehu_server.playing.mapping import load
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
-PLAIN, WIND = (PartOptions(Style(mapping=load(name))) for name in ("keyboard", "wind"))
+PLAIN, WIND = (PartOptions(PlayingOptions(mapping=load(name))) for name in ("keyboard", "wind"))
 
 
 @contextlib.contextmanager

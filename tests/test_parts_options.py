@@ -36,8 +36,8 @@ def test_each_part_has_its_own_mapping_preset_and_settings():
         *("--set", "/playing/volume=0.5", "--part-set", "3=/room/pan=-0.25"),
         *("--part-mapping", "2=mpe"),
     )
-    first, second, third = (part.style for part in options.parts)
-    assert [style.mapping.name for style in (first, second, third)] == ["wind", "mpe", "wind"]
+    first, second, third = (part.playing for part in options.parts)
+    assert [playing.mapping.name for playing in (first, second, third)] == ["wind", "mpe", "wind"]
     assert second.mapping.mpe
     assert first.start == second.start == third.start != ()
     volume = ("/playing/volume", 0.5)
@@ -58,8 +58,8 @@ def test_a_file_has_the_parts_too(tmp_path):
     )
     options = served("--config", str(path))
     assert options.midi.routes == [Route(0, "keystep"), Route(1, "seaboard")]
-    assert options.parts[1].style.mapping.name == "mpe"
-    assert options.parts[1].style.settings == (("/room/pan", 0.5),)
+    assert options.parts[1].playing.mapping.name == "mpe"
+    assert options.parts[1].playing.settings == (("/room/pan", 0.5),)
 
 
 def test_each_part_follows_the_files_of_its_mapping():
@@ -69,7 +69,7 @@ def test_each_part_follows_the_files_of_its_mapping():
 
 def test_mpe_is_of_the_parts_without_a_mapping_of_their_own():
     options = served("--parts", "2", "--mpe", "--part-mapping", "2=wind")
-    assert [part.style.mapping.mpe for part in options.parts] == [True, False]
+    assert [part.playing.mapping.mpe for part in options.parts] == [True, False]
 
 
 @pytest.mark.parametrize(

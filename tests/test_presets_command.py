@@ -8,7 +8,7 @@ from pathlib import Path
 
 import mido
 import pytest
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 
 from yehu_server.playing.preset_folders import Presets
 

@@ -14,11 +14,11 @@ import mido
 import numpy as np
 import pytest
 import soundfile
+from midi_files import midi_file, notes
 from pitch import cents, hertz, pitch_of
-from scores import midi_file, notes
 from sound import rms
 
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.to_files import render
@@ -69,8 +69,10 @@ def play(command, tmp_path):
 
 def samples(path: Path, **options) -> np.ndarray:
     """The sound of a score, before it is written to a file."""
-    style = Style(**{name: options.pop(name) for name in ("seed", "settings") if name in options})
-    return played(read_score(path), Options(style=style, is_dry=True, is_mono=True, **options))
+    playing = PlayingOptions(
+        **{name: options.pop(name) for name in ("seed", "settings") if name in options}
+    )
+    return played(read_score(path), Options(playing=playing, is_dry=True, is_mono=True, **options))
 
 
 def played(score: Score, options: Options) -> np.ndarray:

@@ -10,7 +10,7 @@ import pytest
 from clusters import cluster_in, wait_until
 from commands import is_one_line, results_in
 from forks import start
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 
 from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.workers import Event

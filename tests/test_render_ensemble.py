@@ -10,9 +10,9 @@ import mido
 import numpy as np
 import pytest
 import soundfile
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering import cores
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
@@ -114,7 +114,9 @@ def test_a_part_sounds_as_it_does_alone_with_its_seed(play, trio, tmp_path):
 @pytest.fixture
 def parts(trio) -> list[Part]:
     score = read_score(trio)
-    return [Part(part_of(score, channel), style=Style(seed=channel)) for channel in (0, 1, 4)]
+    return [
+        Part(part_of(score, channel), playing=PlayingOptions(seed=channel)) for channel in (0, 1, 4)
+    ]
 
 
 def test_any_number_of_cores_and_any_block_give_the_samples_of_the_callback(parts):
@@ -158,7 +160,7 @@ def test_the_order_of_the_other_parts_changes_a_part_by_nothing(parts):
         return np.concatenate([performance.stems[of].copy() for _ in performance.blocks()])
 
     # Its level on the way to the limiter, which is that of the first part, is not reached.
-    quiet = [Part(each.score, style=each.style, gain_db=-20.0) for each in parts]
+    quiet = [Part(each.score, playing=each.playing, gain_db=-20.0) for each in parts]
     np.testing.assert_array_equal(stem(quiet, 0), stem(quiet[::-1], 2))
 
 

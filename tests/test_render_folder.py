@@ -17,7 +17,7 @@ import pytest
 import soundfile
 from commands import COMMAND, is_one_line
 from forks import start
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 
 from yehu_server.cli import _parser, folder_records, folder_tasks, render_one
 from yehu_server.errors import OutputError

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import mido
 import pytest
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 
 from yehu_server.playing.learn import LearnedSource, learn
 from yehu_server.playing.mapping import load, mapping_folder

@@ -14,7 +14,7 @@ import pytest
 import soundfile
 from commands import COMMAND, is_one_line
 from forks import run, start
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 
 from yehu_server.cli.render_pipe import BROKEN_PIPE
 

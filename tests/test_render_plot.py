@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 
 from yehu_server.rendering.plot_data import COLUMNS, PlotData
 

@@ -9,7 +9,7 @@ import mido
 import numpy as np
 import pytest
 import soundfile
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 from sound import rms
 
 from yehu_server.playing.pitch_and_level import a_weighted_db

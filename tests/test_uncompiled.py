@@ -9,7 +9,7 @@ from commands import COMMAND, is_one_line
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import Key
 
 RATE = 44100.0
@@ -19,10 +19,10 @@ PLAIN = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
 
 def phrase() -> tuple[Instrument, np.ndarray]:
     """Play two notes, a bend, their ends, a bow by hand, panic and one more, in small blocks."""
-    style = Style(seed=1)
-    instrument = Instrument(style.spec(RATE, calibration_for(RATE)))
-    wishes = style.wishes(instrument)
-    midi = style.midi(wishes)
+    playing = PlayingOptions(seed=1)
+    instrument = Instrument(playing.spec(RATE, calibration_for(RATE)))
+    wishes = playing.wishes(instrument)
+    midi = playing.midi(wishes)
     wishes.note_on(Key(0, 70), {"/playing/pressure": 0.5}, frame=0)
     wishes.write("/playing/bend", 0.3, frame=20)
     wishes.write("/playing/vibrato", 30.0, frame=20)

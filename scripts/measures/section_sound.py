@@ -11,9 +11,9 @@ from measures.section_take import SectionTake
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.calibration import OPEN_NOTES
 from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.pitch_and_level import a_weighted_db, cents, pitch_hz
 from yehu_server.playing.section_instruments import section_specs
-from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 
 PEOPLE = 8
@@ -112,11 +112,11 @@ def loudness(rate: float, seed: int) -> dict[str, Any]:
     levels: dict[int, tuple[float, float]] = {}
     for people in (1, 2, 4, 8):
         alone = scale(rate, seed, people).sum(axis=0)
-        style = Style(seed=seed)
-        specs = section_specs(style, rate, calibration_for(rate), people=people)
+        playing = PlayingOptions(seed=seed)
+        specs = section_specs(playing, rate, calibration_for(rate), people=people)
         ensemble = Ensemble(specs)
-        wishes = style.wishes(ensemble.instruments)
-        midi = style.midi(wishes)
+        wishes = playing.wishes(ensemble.instruments)
+        midi = playing.midi(wishes)
         for number, note in enumerate(NOTES):
             midi.note_on(Key(0, note), 80 / 127.0, round(number * BEAT_S * rate))
             midi.note_off(Key(0, note), round((number * BEAT_S + NOTE_S) * rate))

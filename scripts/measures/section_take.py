@@ -11,8 +11,8 @@ import numpy as np
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.wishes import BEGIN
 from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.section_instruments import SECTION, section_specs
-from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 from yehu_server.rendering.cores import Cores, shared
 
@@ -23,15 +23,15 @@ class SectionTake:
     """A section of a number of people, without a room."""
 
     def __init__(self, rate: float, seed: int, people: int) -> None:
-        style = replace(Style(seed=seed), start=((SECTION, float(people)),))
-        specs = section_specs(style, rate, calibration_for(rate), people=people)
+        playing = replace(PlayingOptions(seed=seed), start=((SECTION, float(people)),))
+        specs = section_specs(playing, rate, calibration_for(rate), people=people)
         self.rate = rate
         self._ensemble = Ensemble(specs, has_room=False)
         self.instruments = self._ensemble.instruments
         for instrument in self.instruments:
             instrument.report_wishes()
-        self.wishes = style.wishes(self.instruments)
-        self.midi = style.midi(self.wishes)
+        self.wishes = playing.wishes(self.instruments)
+        self.midi = playing.midi(self.wishes)
         self.begun: list[list[int]] = [[] for _ in self.instruments]  # frames of onsets
 
     def note(self, note: float, begin_s: float, end_s: float, velocity: int = 80) -> None:

@@ -20,8 +20,8 @@ from yehu_server.core.player.calibration import Calibration, wave_speed
 from yehu_server.params.table import FINGERS, find
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import Presets
-from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 
 NOTES = range(65, 90)  # F4 to F6
@@ -103,17 +103,19 @@ class Take:
     ) -> None:
         self.rate = setup.rate
         start = tuple(Presets().load(preset).values.items()) if mapping == DEFAULT else ()
-        style = Style(start=start, mapping=load(mapping), seed=setup.seed, bowing=setup.bowing)
+        playing = PlayingOptions(
+            start=start, mapping=load(mapping), seed=setup.seed, bowing=setup.bowing
+        )
         usual = calibrated(setup.rate, setup.own)
         quantities = quantities or setup.own
         first, second = usual.tensions
         strung = replace(usual, tensions=(tension * first, tension * second))
-        self.instrument = Instrument(style.spec(setup.rate, strung, quantities))
+        self.instrument = Instrument(playing.spec(setup.rate, strung, quantities))
         _believe(self.instrument, usual.tuned(quantities))
-        self.wishes = style.wishes(self.instrument)
+        self.wishes = playing.wishes(self.instrument)
         self.wishes.write("/playing/variation", setup.variation, frame=0, hold=True)
-        self.midi = style.midi(self.wishes)
-        self._channel = 1 if style.mapping.mpe else 0  # a member of the zone
+        self.midi = playing.midi(self.wishes)
+        self._channel = 1 if playing.mapping.mpe else 0  # a member of the zone
         for address, value in (settings or {}).items():
             self.wishes.write(address, value, frame=0, hold=True)
 

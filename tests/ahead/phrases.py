@@ -11,7 +11,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, END, HOLD
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 RATE = 48000.0
 FRAMES = 72000
@@ -48,7 +48,7 @@ def played(wishes, frames=FRAMES, block=BLOCK, channels=2) -> tuple[np.ndarray, 
         Of the one instrument, at the end.
     """
     calibration = calibration_for(RATE)
-    ensemble = Ensemble([Style().spec(RATE, calibration)], channels=channels)
+    ensemble = Ensemble([PlayingOptions().spec(RATE, calibration)], channels=channels)
     for frame, kind, index, value, other in wishes:
         assert ensemble.first.post(kind, frame=frame, index=index, value=value, other=other)
     out = np.zeros((frames, channels), np.float32)

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 from interpreted import Leader
-from panel import streams as calls
+from live.page import streams as calls
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import RIG
@@ -28,8 +28,8 @@ from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import find
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import Presets
-from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning, read_tuning
 
@@ -100,11 +100,11 @@ class Maker:
         self._mappings: dict[str, Mapping] = some | shipped
         self._parts = calls.Streams(seed, [*some, *shipped])
         self._controls, self._presets = Controls(), Presets()
-        self._style: dict[str, Any] = {}
+        self._options: dict[str, Any] = {}
         self._frame, self._key = 0, 60.0
         self.stream = Stream([], [])
         for _ in range(parts):
-            self._style = self._some_style()
+            self._options = self._some_options()
             self._map()
             self._post(events.START, 0, 0.0, 0.0)
             for name, *arguments in self._parts.next():
@@ -112,9 +112,9 @@ class Maker:
                 if self._chance.random() < OWN_CALLS:
                     self._call_own()
 
-    def _some_style(self) -> dict[str, Any]:
+    def _some_options(self) -> dict[str, Any]:
         chance = self._chance
-        style = {
+        options = {
             "mapping": chance.choice([*self._mappings]),
             "tuning": chance.choice([*TUNINGS]),
             "a4": chance.choice([440.0, 440.0, 392.0, 480.5]),
@@ -123,8 +123,8 @@ class Maker:
             "channels": chance.choice([None, None, None, [0, 9]]),
         }
         if chance.random() < 0.2:
-            style["preset"] = chance.choice(calls.PRESETS)
-        return style
+            options["preset"] = chance.choice(calls.PRESETS)
+        return options
 
     def _call_own(self) -> None:
         """Call what no page calls: named controls, holds, and a beginning anew."""
@@ -152,17 +152,19 @@ class Maker:
         self._step("post", event, event)
 
     def _map(self) -> None:
-        style, programs = self._style, self._presets.programs()
-        tuning: Tuning = TUNINGS[style["tuning"]]
+        options, programs = self._options, self._presets.programs()
+        tuning: Tuning = TUNINGS[options["tuning"]]
         made = make_tables(
-            self._mappings[style["mapping"]],
+            self._mappings[options["mapping"]],
             self._controls,
-            start=self._presets.load(style["preset"]).values.items() if "preset" in style else (),
+            start=self._presets.load(options["preset"]).values.items()
+            if "preset" in options
+            else (),
             tuning=tuning,
-            a4=style["a4"],
-            policy=RangePolicy(style["policy"]),
-            received=style["channels"],
-            programs=programs if style["programs"] else None,
+            a4=options["a4"],
+            policy=RangePolicy(options["policy"]),
+            received=options["channels"],
+            programs=programs if options["programs"] else None,
         )
         self.stream.tables.append(made)
         count = len(self.stream.tables)
@@ -174,10 +176,10 @@ class Maker:
         if name == "midi":
             self._midi(arguments[0], given[2])
         elif name == "remap":
-            self._style["mapping"] = given[0]
+            self._options["mapping"] = given[0]
             self._map()
         elif name == "applyTuning":
-            self._style["tuning"] = self._chance.choice([*TUNINGS])
+            self._options["tuning"] = self._chance.choice([*TUNINGS])
             self._map()
         elif name == "applyPreset":
             for address, value in self._presets.load(given[0]).values.items():
@@ -234,7 +236,7 @@ def stream_of(seed: int, parts: int) -> Stream:
 def interpreted(stream: Stream) -> list[list[Event]]:
     """What each event of a stream comes to, interpreted alone."""
     leader = Leader()
-    leader.lead(Style().tables(Controls()))
+    leader.lead(PlayingOptions().tables(Controls()))
     found = [leader.interpret(0, events.START, 0, 0.0, 0.0)]
     tables = iter(stream.tables)
     for step in stream.steps:
@@ -247,9 +249,9 @@ def interpreted(stream: Stream) -> list[list[Event]]:
 
 def played(stream: Stream) -> np.ndarray:
     """Play a stream by the server's instrument; return its record [shape=(1,), dtype=RIG]."""
-    ensemble = Ensemble([Style().spec(RATE, calibration_for(RATE))], is_live=True)
+    ensemble = Ensemble([PlayingOptions().spec(RATE, calibration_for(RATE))], is_live=True)
     first = ensemble.first
-    first.lead(Style().tables(Controls()))
+    first.lead(PlayingOptions().tables(Controls()))
     first.report_wishes()
     assert first.post(events.START)
     tables = iter(stream.tables)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from interpreted import Leader
-from panel import streams
+from live.page import streams
 
 from yehu_server.ahead.table_checks import CHECKS
 from yehu_server.core.midi import events

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from yehu_server.ahead.build import build
-from yehu_server.ahead.images import image
 from yehu_server.ahead.link import page_linker
+from yehu_server.ahead.memory_images import image
 from yehu_server.ahead.source_hash import section_of, with_section
 from yehu_server.cli import main
 from yehu_server.core.engine.mailbox import SERVER
@@ -20,8 +20,8 @@ from yehu_server.core.midi.events import START
 from yehu_server.core.midi.tables import TABLES
 from yehu_server.errors import ParameterError, YehuError
 from yehu_server.playing.mapping import load
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import Presets
-from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls
 from yehu_server.playing.tuning import RangePolicy, read_tuning
 
@@ -103,7 +103,7 @@ def test_build_tables_writes_what_a_style_has(tmp_path, capsys):
     options = ["--mapping", "wind", "--tuning", "chaozhou-seven-equal", "--a4", "430"]
     options += ["--range", "skip", "--preset", "sul-tasto", "--programs"]
     assert main(["build", "tables", *options, "-o", str(output)]) == 0
-    style = Style(
+    playing = PlayingOptions(
         mapping=load("wind"),
         tuning=read_tuning(Path("chaozhou-seven-equal")),
         a4=430.0,
@@ -111,7 +111,7 @@ def test_build_tables_writes_what_a_style_has(tmp_path, capsys):
         start=tuple(Presets().load("sul-tasto").values.items()),
         programs=True,
     )
-    assert output.read_bytes() == style.tables(Controls()).tobytes()
+    assert output.read_bytes() == playing.tables(Controls()).tobytes()
     assert len(output.read_bytes()) == TABLES.itemsize
     assert capsys.readouterr().out.split() == [str(output)]
 
@@ -130,7 +130,7 @@ def test_build_tables_replaces_nothing_unasked(tmp_path, capsys):
     assert output.read_text() == "mine"
     assert "--overwrite" in capsys.readouterr().err
     assert main(["build", "tables", "-o", str(output), "--overwrite"]) == 0
-    assert output.read_bytes() == Style().tables(Controls()).tobytes()
+    assert output.read_bytes() == PlayingOptions().tables(Controls()).tobytes()
 
 
 def test_build_tables_names_what_is_wrong(tmp_path, capsys):
@@ -150,7 +150,7 @@ def test_an_image_begins_as_serve_does():
         memory[first : first + count] = words[2 : 2 + count]
         words = words[2 + count :]
     rig = np.frombuffer(memory, RIG, count=1)[0]
-    wanted = Style().tables(Controls())[0]
+    wanted = PlayingOptions().tables(Controls())[0]
     for name in TABLES.names or ():
         if name != "program_row":  # not read, as there are no programs
             assert np.array_equal(rig["tables"][0][name], wanted[name], equal_nan=True), name

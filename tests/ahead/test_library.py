@@ -17,7 +17,7 @@ from yehu_server.ahead.source_hash import sources_hash
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.player.wishes import KINDS
 from yehu_server.params.table import find
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
@@ -86,7 +86,7 @@ def test_it_needs_the_c_library_alone(library):
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="the counter is for glibc")
 def test_it_allocates_nothing_neither_as_it_is_prepared_nor_as_it_plays(library, tmp_path):
     program = compiled(library, tmp_path / "allocate", "allocate.c", "counted.c")
-    (tmp_path / "tables").write_bytes(Style().tables(Controls()).tobytes())
+    (tmp_path / "tables").write_bytes(PlayingOptions().tables(Controls()).tobytes())
     kinds = len(KINDS) + len(EVENTS) - 1  # but for TABLES_TO, which `yehu_map` posts
     command = [program, str(200_000), str(kinds), tmp_path / "tables"]
     told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()

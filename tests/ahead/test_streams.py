@@ -34,7 +34,7 @@ from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.player.wishes import KINDS, RAMP
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
 HERE = Path(__file__).parent
@@ -197,7 +197,7 @@ def mapped(instrument: Instrument, tables, frame: int = 0) -> int:
 def test_tables_are_taken_one_after_another_and_those_in_use_are_not_touched(instrument):
     out = np.zeros(BLOCK, np.float32)
     for number in range(1, 6):
-        tables = Style(a4=440.0 - number).tables(Controls())
+        tables = PlayingOptions(a4=440.0 - number).tables(Controls())
         slot = int(instrument.midi["tables"])
         before = instrument.tables[[slot, (slot - 1) % SLOTS]].tobytes()
         assert mapped(instrument, tables, instrument.frame + 200) == 1
@@ -212,7 +212,7 @@ def test_tables_are_taken_one_after_another_and_those_in_use_are_not_touched(ins
 
 def test_tables_wait_where_the_ring_is_full(instrument):
     given(instrument, bytes([0xD0, 1] * RING))
-    tables = Style().tables(Controls())
+    tables = PlayingOptions().tables(Controls())
     assert mapped(instrument, tables) == 0
     for _ in range(RING // 1024):
         instrument.process(np.zeros(BLOCK, np.float32))
@@ -220,7 +220,7 @@ def test_tables_wait_where_the_ring_is_full(instrument):
 
 
 def test_tables_of_another_size_are_refused(instrument):
-    tables = Style().tables(Controls())
+    tables = PlayingOptions().tables(Controls())
     for size in (-1, 0, TABLES.itemsize - 8, TABLES.itemsize + 8):
         assert use_tables.call(instrument.address, 0, tables.ctypes.data, size) == -1
     assert instrument.posted == 0

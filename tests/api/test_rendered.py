@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import soundfile
+from midi_files import midi_file, notes
 from pitch import cents, pitch_of
-from scores import midi_file, notes
 
 import yehu_server as yehu
 from yehu_server import Note, YehuError

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 from yehu_server.cli.terminal import warn_of_compiling
-from yehu_server.compile import jit, machine_code
-from yehu_server.compile.jit import source_hash
+from yehu_server.compile import cache_folder, machine_code
+from yehu_server.compile.cache_folder import source_hash
 from yehu_server.core.engine.warming import ALL_FUNCTIONS, warm_up
 from yehu_server.util.sealed import read_sealed, write_sealed
 
@@ -42,7 +42,7 @@ print("numba" in sys.modules, np.sqrt(np.mean(np.square(block[44100:]))), block[
 def kept() -> bytes:
     """The file of this processor."""
     warm_up()
-    payload = read_sealed(machine_code.file_in(jit.cache_folder()))
+    payload = read_sealed(machine_code.file_in(cache_folder.cache_folder()))
     assert payload is not None
     return payload
 
@@ -136,7 +136,7 @@ def told(capsys, **options) -> str:
 
 
 def test_commands_tell_that_something_is_compiled(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(jit, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(cache_folder, "cache_folder", lambda: tmp_path)
     assert "compiling for this machine, once" in told(capsys, plays=False)
     (tmp_path / "of_before.code").touch()
     assert told(capsys, plays=False) == ""

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 import soundfile
+from live.page.browser import drive, missing
 from markdown_it import MarkdownIt
 from pages import PAGES, ROOT, Page
-from panel.browser import drive, missing
 
 import yehu_server as yehu
 from yehu_server import plot

@@ -310,7 +310,7 @@ def result() -> bytes:
 
 
 def laboratory() -> dict[str, dict[str, bytes]]:
-    from workshop.bodies import admittance
+    from lab.body.bodies import admittance
 
     from yehu_server.core.physics.quantities import measured_body
     from yehu_server.lab.body.body_file import as_text

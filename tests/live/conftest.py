@@ -1,419 +1,492 @@
-"""A JACK server for each file of tests, a recorder in another process, and `serve`."""
+"""A server on a still clock, and real servers with clients."""
 
 from __future__ import annotations
 
 import contextlib
-import ctypes.util
-import functools
-import os
-import re
-import shutil
-import signal
+import logging
 import socket
-import subprocess
+import struct
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
-import forks
 import numpy as np
 import pytest
+from moves import Moves
+from wire import FakePeer, Message, StillTime, Wire
 
-from yehu_server.core.engine.warming import warm_up
-from yehu_server.live.osc.packets import pack, unpack
-from yehu_server.live.osc.status import STATUS
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.player.record import SILENT
+from yehu_server.errors import OutputError
+from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.options import PartOptions, ServeOptions
+from yehu_server.live.osc import clients, handler, schedule
+from yehu_server.live.osc.status import PART_STATUS, STATUS
+from yehu_server.live.server import Server
+from yehu_server.live.web.server import WebOptions
+from yehu_server.params.table import SLOT
+from yehu_server.playing import live_player
+from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.options import PlayingOptions
 
-RECORDER = Path(__file__).with_name("recorder.py")
-RATE = 48000
-STARTED_WITHIN_S = 120.0  # where everything has to be compiled first
+HOST = "127.0.0.1"
+PATIENCE_S = 20.0  # for other threads, on a busy machine
+QUIET_S = 0.15  # silence after which nothing more is expected
 
 
-def until(condition: Callable[[], Any], within_s: float, what: str) -> Any:
+def until(condition: Callable[[], Any], what: str, within_s: float = PATIENCE_S) -> Any:
     """Wait for something to be true, and return it."""
     deadline = time.monotonic() + within_s
     while not (value := condition()):
         assert time.monotonic() < deadline, f"not within {within_s} s: {what}"
-        time.sleep(0.005)
+        time.sleep(0.002)
     return value
+
+
+def target_of(instrument: Instrument, address: str) -> float:
+    """The target of an engine parameter on the audio side."""
+    return float(instrument._rig["controls"]["target"][0, SLOT[address]])
+
+
+@pytest.fixture(scope="session")
+def wire() -> type[Wire]:
+    return Wire
 
 
 @pytest.fixture(scope="session", name="until")
 def until_fixture() -> Callable[..., Any]:
+    """Wait for something to be true, and return it."""
     return until
 
 
-@functools.cache
-def missing() -> str:
-    for program in ("jackd", "jack_lsp"):
-        if shutil.which(program) is None:
-            return f"{program} is not installed"
-    for library in ("jack", "portaudio"):
-        if ctypes.util.find_library(library) is None:
-            return f"lib{library} is not installed"
-    return ""
+# ---------------------------------------------------------------- peers
 
 
-# ---------------------------------------------------------------- JACK
+@pytest.fixture
+def peer() -> FakePeer:
+    return FakePeer()
 
 
-class Jackd:
-    """A JACK server that pretends to have a sound card."""
+@pytest.fixture
+def still_time(monkeypatch) -> StillTime:
+    clock = StillTime(time.monotonic() + 100.0)  # later than anything on the true clock
+    for module in (clients, schedule, handler, live_player):
+        monkeypatch.setattr(module, "time", clock)
+    return clock
 
-    def __init__(self, name: str) -> None:
-        self.name = name
-        self.environment = os.environ | {
-            "JACK_DEFAULT_SERVER": name,
-            "JACK_NO_START_SERVER": "1",
-            "JACK_NO_AUDIO_RESERVATION": "1",
-        }
-        self._process: subprocess.Popen | None = None
-        self._card: dict[str, int] = {}
 
-    @property
-    def pid(self) -> int:
-        assert self._process is not None
-        return self._process.pid
+# ---------------------------------------------------------------- a server on a still clock
 
-    def start(self, period: int = 128, *, rate: int = RATE, channels: int = 2) -> None:
-        """Start the server, or restart it with another card."""
-        card = {"-p": period, "-r": rate, "-P": channels, "-C": 1}
-        if self._process is not None and self._process.poll() is None and card == self._card:
-            return
-        self.stop()
-        self._card = card
-        words = [str(word) for option in card.items() for word in option]
-        safe = ("--no-realtime", "--no-mlock", "-p", "128")
-        program = ["jackd", *safe, "-n", self.name, "-d", "dummy", *words]
 
-        def is_up() -> bool:
-            if self._process is None or self._process.poll() is not None:
-                # It ends at once where the one before has not left JACK's registry yet.
-                self._process = subprocess.Popen(
-                    program,
-                    env=self.environment,
-                    stdout=subprocess.DEVNULL,
-                    stderr=subprocess.DEVNULL,
-                )
-            try:
-                return "system:playback_1" in self.ports(3.0)
-            except subprocess.TimeoutExpired:  # JACK sometimes hangs as it begins, too
-                self._process.kill()
-                self._process.wait()
-                return False
+class Services:
+    """Services of a server that record their calls."""
 
-        until(is_up, 20.0, "a JACK server")
+    def __init__(self) -> None:
+        self.names: list[str] = []
+        self.changed: list[str] = []
+        self.said: list[str] = []
 
-    def restart(self) -> None:
-        """Start the same again after a kill."""
-        card = self._card
-        self.start(card["-p"], rate=card["-r"], channels=card["-P"])
+    def status(self) -> dict[str, float | str]:
+        told = dict.fromkeys((value.name for value in STATUS), 0.0)
+        return told | {"load": 0.5, "recording": "".join(self.names[-1:])}
 
-    def kill(self, number: int = signal.SIGKILL) -> None:
-        assert self._process is not None
-        self._process.send_signal(signal.SIGCONT)
-        self._process.send_signal(number)
-        try:
-            self._process.wait(3.0)
-        except subprocess.TimeoutExpired:  # JACK sometimes hangs as it ends
-            self._process.kill()
-            self._process.wait()
+    def part_status(self, part: int) -> dict[str, float]:
+        return dict.fromkeys((value.name for value in PART_STATUS), float(part))
 
-    def stop(self) -> None:
-        if self._process is not None and self._process.poll() is None:
-            self.kill(signal.SIGTERM)
+    def call_soon(self, action: Callable[[], None]) -> None:
+        action()
 
-    def ports(self, timeout_s: float = 10.0) -> list[str]:
-        found = subprocess.run(
-            ["jack_lsp", "-s", self.name],  # noqa: S607
-            env=self.environment,
-            capture_output=True,
-            text=True,
-            timeout=timeout_s,
-            check=False,
+    def run_in_background(self, action: Callable[[], None]) -> None:
+        action()
+
+    def tree_changed(self, path: str) -> None:
+        self.changed.append(path)
+
+    def log(self, line: str) -> None:
+        self.said.append(line)
+
+    def start_recording(self, name: str) -> str:
+        self.names.append(name)
+        return f"{name}.wav"
+
+    def stop_recording(self) -> str:
+        if not self.names:
+            raise OutputError("nothing is being recorded")
+        return f"{self.names.pop()}.wav"
+
+
+class StillServer:
+    """An OSC handler and its instrument, on a still clock."""
+
+    RATE = 48000
+
+    def __init__(self, clock: StillTime, block: int = 128) -> None:
+        self.clock = clock
+        self.block = block
+        playing = PlayingOptions()
+        calibration = calibration_for(float(self.RATE))
+        self.instrument = Instrument(playing.spec(self.RATE, calibration))
+        self._moves = Moves(self.instrument)
+        self.instrument.frame_at = self._frame_at
+        self.others: list[Instrument] = []  # more instruments, played along
+        self.pace = 1.0  # of the device, relative to its nominal rate
+        self._began = (clock.now, 0)
+        self.player = live_player.LivePlayer(
+            self.instrument, playing, delay_ms=1e3 * block / self.RATE + 1.0
         )
-        return found.stdout.split("\n")
+        self.player.write("/playing/variation", 0.0, frame=0)
+        self.services = Services()
+        self.handler = handler.OscHandler([self.player], self.services)
+        self.peer = FakePeer()
+        self.events: list[tuple[int, str, float]] = []
+
+    def _frame_at(self, time_ns: int) -> float:
+        moment, frame = self._began
+        return frame + (1e-9 * time_ns - moment) * self.RATE * self.pace
+
+    def take(self, packet: bytes, peer: FakePeer | None = None) -> None:
+        """Receive a packet now."""
+        for _ in self.handler.handle(packet, peer or self.peer, self.clock.monotonic_ns()):
+            pass
+
+    def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
+        self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
+
+    def ask(self, address: str, *arguments: Any, tags: str | None = None) -> list[Message]:
+        """Send a message; return the answers up to the next flush."""
+        self.peer.received()
+        self.tell(address, *arguments, tags=tags)
+        self.clock.now += 0.02
+        self.handler.tick()
+        return self.peer.received()
+
+    def pass_time(self, seconds: float) -> np.ndarray:
+        """Play on at the device's pace; return the sound."""
+        out = []
+        end = self.clock.now + seconds
+        while self.clock.now < end:
+            while self.instrument.frame <= self._frame_at(self.clock.monotonic_ns()):
+                sound = np.zeros(self.block, np.float32)
+                self.instrument.process(sound)
+                out.append(sound)
+                for other in self.others:
+                    other.process(np.zeros(self.block, np.float32))
+            self.clock.now += 0.001
+            self.handler.tick()
+        self.events += [move[:3] for move in self._moves.seen()]
+        assert self._moves.are_those_of_the_audio_side()
+        return np.concatenate(out) if out else np.zeros(0, np.float32)
+
+    def value(self, address: str) -> float:
+        """The value of a parameter, after everything said up to now was played."""
+        self.pass_time(0.01)
+        return self.player.value(address)
+
+    def target(self, address: str) -> float:
+        return target_of(self.instrument, address)
+
+    def frames(self, address: str) -> list[int]:
+        """The frames at which a parameter was moved, so far."""
+        return [frame for frame, moved, _ in self.events if moved == address]
+
+    def late(self) -> int:
+        """Number of events that came after their frame."""
+        return int(self.instrument.meters()["late_events"])
+
+
+@pytest.fixture
+def make_still(still_time) -> Callable[..., StillServer]:
+    return lambda block=128: StillServer(still_time, block)
+
+
+@pytest.fixture
+def still(make_still) -> StillServer:
+    return make_still()
+
+
+# ---------------------------------------------------------------- clients of a real server
+
+
+class Client:
+    """A client by UDP."""
+
+    def __init__(self, port: int, host: str = HOST) -> None:
+        self.server = (host, port)
+        family = socket.AF_INET6 if ":" in host else socket.AF_INET
+        self.socket = socket.socket(family, socket.SOCK_DGRAM)
+        self.socket.bind((host, 0))
+        self.port = self.socket.getsockname()[1]
+
+    def take(self, packet: bytes) -> None:
+        self.socket.sendto(packet, self.server)
+
+    def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
+        self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
+
+    def next(self, within_s: float = PATIENCE_S) -> Message | None:
+        """The next message, if one comes within the time."""
+        self.socket.settimeout(within_s)
+        try:
+            packet, sender = self.socket.recvfrom(1 << 16)
+        except TimeoutError:
+            return None
+        assert sender[:2] == self.server  # from the listening port
+        return Wire.read(packet)
+
+    def all(self, quiet_s: float = QUIET_S) -> list[Message]:
+        """All messages until none comes for a while."""
+        return list(iter(lambda: self.next(quiet_s), None))
+
+    def wait_for(self, address: str, within_s: float = PATIENCE_S) -> list[Any]:
+        """The arguments of the next message of an address."""
+        deadline = time.monotonic() + within_s
+        while message := self.next(max(0.001, deadline - time.monotonic())):
+            if message.address == "/yehu" + address:
+                return message.arguments
+        raise AssertionError(f"no {address} within {within_s} s")
+
+    def sync(self) -> None:
+        """Wait until all messages sent so far are handled; discard the answers."""
+        token = time.monotonic_ns()
+        self.tell("/ping", token)
+        while self.wait_for("/pong") != [token]:
+            pass
+
+    def value(self, address: str) -> float:
+        """The value of a parameter."""
+        self.sync()
+        self.tell("/get", address)
+        (value,) = self.wait_for(address)
+        return value
+
+    def close(self) -> None:
+        self.socket.close()
+
+
+class Stream:
+    """A client by TCP, in either framing."""
+
+    def __init__(self, port: int, *, slip: bool = False, host: str = HOST) -> None:
+        self.slip = slip
+        self.socket = socket.create_connection((host, port), timeout=PATIENCE_S)
+        self._buffer = b""
+
+    def wrap(self, packet: bytes) -> bytes:
+        if not self.slip:
+            return struct.pack(">I", len(packet)) + packet
+        escaped = packet.replace(b"\xdb", b"\xdb\xdd").replace(b"\xc0", b"\xdb\xdc")
+        return b"\xc0" + escaped + b"\xc0"
+
+    def take(self, packet: bytes) -> None:
+        self.socket.sendall(self.wrap(packet))
+
+    def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
+        self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
+
+    def next(self, within_s: float = PATIENCE_S) -> Message | None:
+        """The next message; None after the time, or when the server closed the connection."""
+        self.socket.settimeout(within_s)
+        while (packet := self._packet()) is None:
+            try:
+                data = self.socket.recv(1 << 16)
+            except (TimeoutError, ConnectionError):
+                return None
+            if not data:
+                return None
+            self._buffer += data
+        return Wire.read(packet)
+
+    def _packet(self) -> bytes | None:
+        if not self.slip:
+            size = int.from_bytes(self._buffer[:4], "big")
+            if len(self._buffer) < 4 + size or len(self._buffer) < 4:
+                return None
+            packet, self._buffer = self._buffer[4 : 4 + size], self._buffer[4 + size :]
+            return packet
+        frame, end, rest = self._buffer.lstrip(b"\xc0").partition(b"\xc0")
+        if not end:
+            return None
+        self._buffer = rest
+        return frame.replace(b"\xdb\xdc", b"\xc0").replace(b"\xdb\xdd", b"\xdb")
+
+    all = Client.all
+    wait_for = Client.wait_for
+    sync = Client.sync
+    value = Client.value
+
+    def has_ended(self, within_s: float = PATIENCE_S) -> bool:
+        """Whether the server closes the connection within the time."""
+        self.socket.settimeout(within_s)
+        try:
+            while self.socket.recv(1 << 16):
+                pass
+        except TimeoutError:
+            return False
+        except ConnectionError:
+            return True
+        return True
+
+    def close(self) -> None:
+        self.socket.close()
+
+
+class LiveServer:
+    """A server without a device, and its clients."""
+
+    def __init__(self, folder: Path, ending: contextlib.ExitStack, **options: Any) -> None:
+        self.said: list[str] = []
+        output = OutputOptions(device="null", blocksize=options.pop("blocksize", 128))
+        handler = options.pop("osc", (HOST, 0))
+        own = {name: options.pop(name) for name in ("playing", "reread") if name in options}
+        parts = [PartOptions(**own)] * options.pop("parts", 1)
+        serve = ServeOptions(output=output, osc=handler, midi=None, parts=parts, recordings=folder)
+        self.server = Server(replace(serve, **options), self.said.append)
+        self.ports = self.server.osc
+        self.handler = self.server.handler
+        self.instrument = self.server.instrument
+        self.player = self.server.player
+        self._moves = Moves(self.instrument)
+        self._ending = ending
+        self.server.start()
+        ending.callback(self.end)
+
+    def end(self) -> None:
+        self.server.stop()
+
+    def client(self) -> Client:
+        client = Client(self.ports.port, self.ports.host)
+        self._ending.callback(client.close)
+        return client
+
+    def stream(self, *, slip: bool = False) -> Stream:
+        stream = Stream(self.ports.port, slip=slip, host=self.ports.host)
+        self._ending.callback(stream.close)
+        return stream
+
+    def moves(self) -> list[tuple[int, str, float]]:
+        """What was moved since the last call: frame, address, value."""
+        self.wait_frames(1)
+        return [move[:3] for move in self._moves.seen()]
+
+    def settle(self) -> list[tuple[int, str, float]]:
+        """Wait until everything decided so far is played; return what was moved."""
+        self.wait_frames(2 * self.player.delay + 1024)
+        return self.moves()
+
+    def wait_frames(self, frames: int) -> None:
+        end = self.instrument.frame + frames
+        until(lambda: self.instrument.frame >= end, f"frame {end}")
+
+    def target(self, address: str) -> float:
+        return target_of(self.instrument, address)
+
+    def level(self, seconds: float = 0.2) -> float:
+        """RMS of the sound from now on for some seconds."""
+        start = self.instrument.frame
+        self.wait_frames(round(seconds * self.instrument.rate))
+        _, sound = self.server.ensemble.taped(start)
+        return float(np.sqrt(np.mean(np.square(sound, dtype=np.float64))))
+
+    def is_at_rest(self) -> bool:
+        """Whether no note sounds or is held."""
+        performer = self.instrument._rig["player"][0]
+        return (
+            self.player.pitch is None
+            and not self.player._wishes.held()
+            and performer["held"] == 0
+            and performer["sounding"] == SILENT
+            and self.target("/bow/speed") == 0.0
+            and self.target("/bow/side") == 0.0
+            and self.handler.waiting == 0
+        )
+
+    def is_well(self) -> bool:
+        """Whether the server listens, and no message has met a defect."""
+        return self.ports._thread.is_alive() and self.ports.traffic.failures == 0
 
 
 @contextlib.contextmanager
-def free_name() -> Iterator[str]:
-    """A server name that no other run of the tests uses.
+def run_live(folder: Path, **options: Any) -> Iterator[LiveServer]:
+    interval = sys.getswitchinterval()
+    before = set(threading.enumerate())
+    try:
+        with contextlib.ExitStack() as ending:
+            yield LiveServer(folder, ending, **options)
+    finally:
+        sys.setswitchinterval(interval)
+    assert set(threading.enumerate()) <= before
 
-    There are only six: JACK has room for eight names, those of killed servers included.
-    """
-    import fcntl
 
-    for number in range(6):
-        with Path(tempfile.gettempdir(), f"yehu-tests-jack-{number}").open("a") as lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                continue
-            yield f"yehu-tests-{number}"
-            return
-    pytest.skip("six other runs of the tests have a JACK server each")
+@pytest.fixture
+def make_live(tmp_path) -> Iterator[Callable[..., LiveServer]]:
+    """Open a server with options."""
+    with contextlib.ExitStack() as ending:
+        yield lambda **options: ending.enter_context(run_live(tmp_path / "takes", **options))
+
+
+@pytest.fixture
+def live(make_live) -> LiveServer:
+    return make_live()
 
 
 @pytest.fixture(scope="module")
-def jackd() -> Iterator[Jackd]:
-    if missing():
-        pytest.skip(missing())
-    warm_up()  # what an audio process had to compile would come too late
-    with free_name() as name, pytest.MonkeyPatch.context() as patch:
-        server = Jackd(name)
-        for variable in ("JACK_DEFAULT_SERVER", "JACK_NO_START_SERVER"):
-            patch.setenv(variable, server.environment[variable])
-        yield server
-        server.stop()
-        for left in Path("/dev/shm").glob(f"jack_sem.*_{server.name}_*"):  # noqa: S108
-            left.unlink(missing_ok=True)
+def shared_server(tmp_path_factory) -> Iterator[LiveServer]:
+    """One server for all tests of a file; each leaves it as it was."""
+    with run_live(tmp_path_factory.mktemp("live")) as live:
+        yield live
 
 
-# ---------------------------------------------------------------- recorder
+@pytest.fixture(scope="module")
+def shared_web(tmp_path_factory) -> Iterator[LiveServer]:
+    """The same, with OSCQuery."""
+    http = WebOptions((HOST, 0))
+    with run_live(tmp_path_factory.mktemp("live"), http=http) as live:
+        yield live
 
 
-class Recording:
-    """A recorder's samples [shape=(channels, frames)], and the time of each block."""
+@contextlib.contextmanager
+def python_is_busy() -> Iterator[None]:
+    """Keep a thread of this process busy within the block."""
+    ending = threading.Event()
 
-    def __init__(self, path: Path) -> None:
-        with np.load(path) as file:
-            self.samples = file["samples"]
-            self.times = file["times"]  # of blocks: JACK's frame, frames, monotonic ns
-            self.xruns = int(file["xruns"])
+    def count() -> None:
+        number = 0
+        while not ending.is_set():
+            for _ in range(10_000):
+                number += 1
 
-    @property
-    def is_whole(self) -> bool:
-        """Whether JACK called the recorder for every block, without an xrun."""
-        frames, sizes = self.times[:, 0], self.times[:, 1]
-        return self.xruns == 0 and bool((np.diff(frames) == sizes[:-1]).all())
-
-
-class Recorder:
-    """Records the instrument's ports, in another process."""
-
-    def __init__(self, jackd: Jackd, folder: Path, channels: int = 2) -> None:
-        self._folder = folder
-        self._process = subprocess.Popen(
-            [sys.executable, RECORDER, jackd.name, str(channels)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-            env=jackd.environment,
-        )
-        self._expect("ready")
-
-    def connected(self) -> Recorder:
-        """Wait until every port is connected."""
-        self._tell("connect")
-        self._expect("connected")
-        return self
-
-    def freewheel(self, *, on: bool) -> None:
-        self._tell("freewheel on" if on else "freewheel off")
-        self._expect("freewheel")
-
-    def forget(self) -> None:
-        """Begin the recording now."""
-        self._tell("forget")
-        self._expect("forgotten")
-
-    def recording(self) -> Recording:
-        target = self._folder / f"{time.monotonic_ns()}.npz"
-        self._tell(f"save {target}")
-        self._expect("saved")
-        return Recording(target)
-
-    def close(self) -> None:
-        for pipe in (self._process.stdin, self._process.stdout):
-            with contextlib.suppress(OSError):
-                pipe.close()
-        try:
-            self._process.wait(2.0)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-
-    def _tell(self, order: str) -> None:
-        self._process.stdin.write(order + "\n")
-        self._process.stdin.flush()
-
-    def _expect(self, word: str) -> None:
-        heard = self._process.stdout.readline().strip()
-        assert heard == word
-
-
-@pytest.fixture
-def recorder(jackd, tmp_path) -> Iterator[Callable[..., Recorder]]:
-    with contextlib.ExitStack() as ending:
-
-        def make(channels: int = 2) -> Recorder:
-            made = Recorder(jackd, tmp_path, channels)
-            ending.callback(made.close)
-            return made
-
-        yield make
-
-
-# ---------------------------------------------------------------- serve
-
-
-class Osc:
-    """An OSC client."""
-
-    def __init__(self, port: int) -> None:
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.connect(("127.0.0.1", port))
-
-    def send(self, address: str, *arguments: float | str) -> None:
-        with contextlib.suppress(ConnectionRefusedError):  # told of an earlier packet
-            self._socket.send(pack(f"/yehu{address}", *arguments))
-
-    def ask(self, address: str, *arguments: float | str, last: str = "") -> dict[str, Any]:
-        """Send, and return the answers by address: up to `last`, or until none comes for 0.1 s."""
-        self._socket.setblocking(False)
-        with contextlib.suppress(OSError):
-            while True:
-                self._socket.recv(65536)
-        self.send(address, *arguments)
-        return self.hear(2.0, last)
-
-    def hear(self, within_s: float, last: str = "") -> dict[str, Any]:
-        heard = {}
-        self._socket.settimeout(within_s)
-        with contextlib.suppress(TimeoutError, ConnectionRefusedError):
-            while not last or last not in heard:
-                for message in unpack(self._socket.recv(65536)):
-                    heard[message.address.removeprefix("/yehu")] = message.arguments
-                self._socket.settimeout(within_s if last else 0.1)
-        return heard
-
-    def status(self) -> dict[str, Any]:
-        """The whole status: asked for again where a datagram is lost."""
-        names = [value.name for value in STATUS]
-
-        def ask() -> dict[str, Any]:
-            heard = self.ask("/status", last=f"/status/{names[-1]}")
-            told = {name: heard[at][0] for name in names if (at := f"/status/{name}") in heard}
-            return told if len(told) == len(names) else {}
-
-        return until(ask, 20.0, "the whole status")
-
-    def close(self) -> None:
-        self._socket.close()
-
-
-class Serve:
-    """``yehu-server serve``, as a command."""
-
-    def __init__(self, environment: dict[str, str], *words: object) -> None:
-        self.lines: list[str] = []
-        self._told = threading.Condition()
-        self._clients: list[Osc] = []
-        self._family: set[int] = set()
-        self.process = forks.start(
-            *("serve", *words), env=environment, stdout=subprocess.DEVNULL, start_new_session=True
-        )
-        self._listener = threading.Thread(target=self._listen)
-        self._listener.start()
-
-    def _listen(self) -> None:
-        for line in self.process.stderr:
-            with self._told:
-                self.lines.append(line.rstrip())
-                self._told.notify_all()
-
-    def said(self, pattern: str, within_s: float = 10.0, after: int = 0) -> re.Match[str]:
-        """Wait for a line that matches; the first one after `after` lines."""
-
-        def found() -> re.Match[str] | None:
-            fitting = (re.search(pattern, line) for line in self.lines[after:])
-            return next((match for match in fitting if match), None)
-
-        with self._told:
-            self._told.wait_for(found, within_s)
-            match = found()
-        assert match, f"{pattern!r} not within {within_s} s among {self.lines}"
-        return match
-
-    def osc(self) -> Osc:
-        """A client of the server, once it listens."""
-        port = int(self.said(r"OSC at [\d.]+:(\d+)", STARTED_WITHIN_S)[1])
-        self.said("Ctrl-C ends")
-        self._clients.append(Osc(port))
-        return self._clients[-1]
-
-    def family(self) -> set[int]:
-        """All processes that it has started so far and that are alive."""
-        for entry in Path("/proc").glob("[0-9]*/stat"):
-            with contextlib.suppress(OSError):
-                fields = entry.read_text().rpartition(")")[2].split()
-                if int(fields[1]) == self.process.pid:
-                    self._family.add(int(entry.parent.name))
-        return {pid for pid in self._family if _lives(pid)}
-
-    def end(self, number: int = signal.SIGTERM) -> int:
-        """End it; return its exit code. No process that it started may be left."""
-        self.family()
-        self.process.send_signal(number)
-        return self.wait()
-
-    def wait(self, within_s: float = 10.0) -> int:
-        code = self.process.wait(within_s)
-        self._listener.join()
-        until(lambda: not self.family(), 2.0, "all its processes to be gone")
-        return code
-
-    def close(self) -> None:
-        self.family()
-        for pid in {*self._family, self.process.pid}:
-            if _lives(pid):
-                os.kill(pid, signal.SIGKILL)
-        self.process.wait()
-        self._listener.join()
-        self.process.stderr.close()
-        for client in self._clients:
-            client.close()
-
-
-def _lives(pid: int) -> bool:
+    thread = threading.Thread(target=count)
+    thread.start()
     try:
-        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except OSError:
-        return False
-    return state != "Z"
+        yield
+    finally:
+        ending.set()
+        thread.join()
 
 
 @pytest.fixture
-def serve(jackd) -> Iterator[Callable[..., Serve]]:
-    """Start ``yehu-server serve`` with options, with OSC at a free port by default.
-
-    Its page is one more process to start, of half a second: `panel` asks for it.
-    """
-    with contextlib.ExitStack() as ending:
-
-        def start(*words: object, panel: bool = False) -> Serve:
-            osc = () if "--osc" in words else ("--osc", "127.0.0.1:0")
-            page = () if panel else ("--no-panel",)
-            made = Serve(jackd.environment, *osc, "--http", "127.0.0.1:0", *page, *words)
-            ending.callback(made.close)
-            return made
-
-        yield start
+def busy() -> Callable[[], contextlib.AbstractContextManager[None]]:
+    return python_is_busy
 
 
-@pytest.fixture
-def silent() -> Iterator[Callable[..., Serve]]:
-    """Start ``yehu-server serve`` with options, on a silent clock and without MIDI."""
-    warm_up()
-    words = ("--audio-device", "null", "--midi-api", "none", "--osc", "127.0.0.1:0", "--no-http")
-    with contextlib.ExitStack() as ending:
+@pytest.fixture(autouse=True)
+def _quiet() -> Iterator[None]:
+    """Keep python-osc's thousands of warnings about odd bytes out of the log."""
 
-        def start(*more: object) -> Serve:
-            made = Serve(dict(os.environ), *words, *more)
-            ending.callback(made.close)
-            return made
+    def is_ours(record: logging.LogRecord) -> bool:
+        return "pythonosc" not in record.pathname
 
-        yield start
+    logging.getLogger().addFilter(is_ours)
+    yield
+    logging.getLogger().removeFilter(is_ours)
+
+
+@pytest.fixture(scope="session")
+def kit() -> SimpleNamespace:
+    """The client classes, for tests that connect to servers of their own."""
+    return SimpleNamespace(Client=Client, Stream=Stream)

@@ -22,7 +22,7 @@ from yehu_server.playing.calibration import calibration_key
 from yehu_server.playing.calibration_store import SHIPPED, calibration_for
 from yehu_server.playing.mapping import load
 from yehu_server.playing.midi_player import MidiPlayer
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import WishPoster
 
 RATES = (44100.0, 48000.0, 96000.0)
@@ -86,7 +86,7 @@ def test_the_sharpening_is_read_at_its_notes_and_speeds():
 def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 440.0) -> float:
     """The pitch (Hz) of a note, from 0.1 s after it began."""
     tuned = calibration_for(rate, a4=a4)
-    instrument = Instrument(Style().spec(rate, tuned))
+    instrument = Instrument(PlayingOptions().spec(rate, tuned))
     midi = MidiPlayer(WishPoster(instrument), load("keyboard"))
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
@@ -122,7 +122,7 @@ def test_without_evenness_the_body_has_its_way():
 def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None = None) -> float:
     """A-weighted level (dB) of a note once it has settled."""
     tuned = calibration_for(44100.0)
-    instrument = Instrument(Style().spec(44100.0, tuned))
+    instrument = Instrument(PlayingOptions().spec(44100.0, tuned))
     player = WishPoster(instrument)
     if evenness is not None:
         player.write("/body/evenness", evenness)

@@ -19,7 +19,7 @@ from yehu_server.core.player.wishes import WRITE
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import TABLE
 from yehu_server.playing.live_player import Arrivals, LivePlayer
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 RATE = 48000.0
 
@@ -33,7 +33,7 @@ def instrument() -> Instrument:
 
 @pytest.fixture
 def live(instrument) -> LivePlayer:
-    return LivePlayer(instrument, Style(), delay_ms=3.0)
+    return LivePlayer(instrument, PlayingOptions(), delay_ms=3.0)
 
 
 def test_a_note_is_heard_at_its_frame(live, instrument):

@@ -11,7 +11,7 @@ from sound import run_for
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import Key, WishPoster
 
 RATE = 44100
@@ -21,8 +21,10 @@ class Stand:
     """A player and an instrument; times in seconds."""
 
     def __init__(self, **wishes: float) -> None:
-        self.instrument: Instrument = Instrument(Style().spec(RATE, calibration_for(float(RATE))))
-        self.player: WishPoster = Style().wishes(self.instrument)
+        self.instrument: Instrument = Instrument(
+            PlayingOptions().spec(RATE, calibration_for(float(RATE)))
+        )
+        self.player: WishPoster = PlayingOptions().wishes(self.instrument)
         self.wish(0.0, variation=0.0, **wishes)
 
     def wish(self, seconds: float, **wishes: float) -> None:

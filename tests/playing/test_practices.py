@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import soundfile
 from commands import is_one_line
-from scores import midi_file, notes
+from midi_files import midi_file, notes
 
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import (

@@ -24,6 +24,7 @@ from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import load
 from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import (
     MOST_BYTES,
     MOST_NAMED,
@@ -31,7 +32,6 @@ from yehu_server.playing.preset_folders import (
     Presets,
     read_preset,
 )
-from yehu_server.playing.style import Style
 
 HEAD = "version = 1\n"
 RATE = 44100.0
@@ -304,8 +304,8 @@ def instrument() -> Instrument:
     return instrument
 
 
-def live_player(instrument: Instrument, **style) -> LivePlayer:
-    return LivePlayer(instrument, Style(**style), delay_ms=3.0)
+def live_player(instrument: Instrument, **playing) -> LivePlayer:
+    return LivePlayer(instrument, PlayingOptions(**playing), delay_ms=3.0)
 
 
 def test_a_load_sets_what_it_names_and_leaves_the_rest(instrument):
@@ -454,9 +454,9 @@ def test_an_unknown_program_is_ignored_and_counted(instrument, presets):
 
 def heard(name: str, note: int, seconds: float = 0.5) -> np.ndarray:
     values = Presets(Path(os.devnull)).load(name).values | {"/playing/variation": 0.0}
-    style = Style(start=tuple(values.items()))
-    instrument = Instrument(style.spec(RATE, calibration_for(RATE)))
-    midi = style.midi(style.wishes(instrument))
+    playing = PlayingOptions(start=tuple(values.items()))
+    instrument = Instrument(playing.spec(RATE, calibration_for(RATE)))
+    midi = playing.midi(playing.wishes(instrument))
     midi.receive(mido.Message("note_on", note=note, velocity=64), frame=0)
     return run(instrument, round(RATE * seconds)).astype(np.float64)
 

@@ -23,8 +23,8 @@ from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.section_instruments import section_specs
-from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.rendering.cores import Cores
 
@@ -114,10 +114,10 @@ class Told:
 kinds_of_settings = (kinds.WRITE, kinds.HOLD, kinds.EXPRESS)
 
 
-def section(people: int, style: Style | None = None) -> SimpleNamespace:
+def section(people: int, playing: PlayingOptions | None = None) -> SimpleNamespace:
     told: list[Told] = []
     told += [Told(number, told) for number in range(people)]
-    return SimpleNamespace(told=told, wishes=(style or Style()).wishes(told))
+    return SimpleNamespace(told=told, wishes=(playing or PlayingOptions()).wishes(told))
 
 
 @pytest.fixture
@@ -421,11 +421,11 @@ def test_a_panic_comes_after_the_notes_that_were_wished_before_it(four):
             assert told.of(kinds.BEGIN, kinds.END, kinds.STOP)[-1].kind == kinds.STOP
 
 
-def played(style: Style, people: int, block: int, seconds: float = 1.5) -> np.ndarray:
+def played(playing: PlayingOptions, people: int, block: int, seconds: float = 1.5) -> np.ndarray:
     """The sound of each player of a chord and a line."""
-    stage = Ensemble(section_specs(style, RATE, ideal(), people=people), has_room=False)
+    stage = Ensemble(section_specs(playing, RATE, ideal(), people=people), has_room=False)
     cores = Cores(stage, map, has_stems=True)
-    midi = style.midi(style.wishes(stage.instruments))
+    midi = playing.midi(playing.wishes(stage.instruments))
     events = [(0.1, "note_on", 67), (0.1, "note_on", 74), (0.6, "note_off", 67)]
     events += [(0.6, "note_off", 74), (0.6, "note_on", 70), (1.1, "note_off", 70)]
     frames = round(seconds * RATE)
@@ -440,9 +440,9 @@ def played(style: Style, people: int, block: int, seconds: float = 1.5) -> np.nd
 
 
 def test_the_same_wishes_give_the_same_samples_in_blocks_of_any_size():
-    style = replace(Style(seed=9), start=(("/playing/section", 2.0),))
-    sounds = played(style, 2, 4096)
-    assert np.array_equal(sounds, played(style, 2, 100))
+    playing = replace(PlayingOptions(seed=9), start=(("/playing/section", 2.0),))
+    sounds = played(playing, 2, 4096)
+    assert np.array_equal(sounds, played(playing, 2, 100))
     level = np.sqrt((sounds[:, round(0.3 * RATE) : round(0.5 * RATE)] ** 2).mean(axis=1))
     assert level.min() > 1e-3  # both play their notes of the chord
     assert not np.array_equal(sounds[0], sounds[1])
@@ -453,10 +453,10 @@ def test_the_same_wishes_give_the_same_samples_in_blocks_of_any_size():
 def test_no_note_hangs_whatever_is_played(seed):
     random = np.random.default_rng(seed)
     people = int(random.integers(2, 7))
-    style = replace(Style(), start=(("/playing/section", float(people)),))
-    part = section(people, style)
+    playing = replace(PlayingOptions(), start=(("/playing/section", float(people)),))
+    part = section(people, playing)
     told, wishes = part.told, part.wishes
-    midi = style.midi(wishes)
+    midi = playing.midi(wishes)
     frame = 0
     for number in range(400):
         frame += int(random.choice([0, 0, 100, 1500, 6000, 20000]))
@@ -484,17 +484,17 @@ def power(sound: np.ndarray) -> float:
 
 
 def test_players_add_up_as_people_do_and_not_as_copies_of_one():
-    style = replace(Style(seed=2), start=(("/playing/section", 8.0),))
-    sounds = played(style, 8, 4096)
+    playing = replace(PlayingOptions(seed=2), start=(("/playing/section", 8.0),))
+    sounds = played(playing, 8, 4096)
     powers = sum(power(sound) for sound in sounds)
     assert 0.4 * powers < power(sounds.sum(axis=0)) < 2.5 * powers  # copies: 8 times
 
 
 def test_a_reset_lets_all_play_that_played_at_the_start():
-    style = replace(Style(), start=(("/playing/section", 4.0),))
-    part = section(4, style)
+    playing = replace(PlayingOptions(), start=(("/playing/section", 4.0),))
+    part = section(4, playing)
     told, wishes = part.told, part.wishes
-    midi = style.midi(wishes)
+    midi = playing.midi(wishes)
     wishes.write("/playing/section", 1.0, frame=10)
     midi.reset_to_start_values(frame=20)
     assert wishes.value("/playing/section") == 4.0

@@ -14,6 +14,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.radiation import response
 from yehu_server.core.player.calibration import wave_speed
 from yehu_server.core.player.rows import ROW
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.section_instruments import (
     MODE,
     SIZE,
@@ -22,7 +23,6 @@ from yehu_server.playing.section_instruments import (
     section_specs,
     vary,
 )
-from yehu_server.playing.style import Style
 
 SEEDS = range(20)
 
@@ -108,9 +108,9 @@ def test_strings_hair_and_rosin_differ_within_the_tolerances_of_one_maker():
 
 
 def test_each_player_of_a_section_has_an_instrument_and_sides_of_their_own():
-    style = Style(seed=3)
-    specs = section_specs(style, 44100.0, ideal(), people=4)
-    alone = style.spec(44100.0, ideal())
+    playing = PlayingOptions(seed=3)
+    specs = section_specs(playing, 44100.0, ideal(), people=4)
+    alone = playing.spec(44100.0, ideal())
     assert specs[0].quantities == alone.quantities  # the first has the measured one
     bodies = [spec.quantities.body for spec in specs]
     assert len({body.frequency_hz for body in bodies}) == 4
@@ -147,20 +147,20 @@ def test_bodies_radiate_about_alike(seed):
 
 
 def test_a_mapping_preset_or_setting_asks_for_players():
-    assert section_size(Style()) == 1
-    assert section_size(Style(start=(("/playing/section", 4.0),))) == 4
-    assert section_size(Style(settings=(("/playing/section", 8.0),))) == 8
+    assert section_size(PlayingOptions()) == 1
+    assert section_size(PlayingOptions(start=(("/playing/section", 4.0),))) == 4
+    assert section_size(PlayingOptions(settings=(("/playing/section", 8.0),))) == 8
 
 
 def test_a_part_of_one_player_is_the_instrument_of_its_style():
-    style = Style(seed=3)
+    playing = PlayingOptions(seed=3)
     out = []
     for spec in (
-        *section_specs(style, 44100.0, ideal(), people=1),
-        style.spec(44100.0, ideal()),
+        *section_specs(playing, 44100.0, ideal(), people=1),
+        playing.spec(44100.0, ideal()),
     ):
         instrument = Instrument(spec)
-        wishes = style.wishes(instrument)
+        wishes = playing.wishes(instrument)
         wishes.draw(0.2, 0.6, frame=0)
         out.append(np.zeros(4410, np.float32))
         instrument.process(out[-1])

@@ -11,7 +11,7 @@ from sound import run_for
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import Key, WishPoster
 
 RATE = 44100
@@ -23,9 +23,9 @@ def level(samples: np.ndarray) -> float:
 
 
 def player_at(rate: float) -> tuple[WishPoster, Instrument]:
-    style = Style()
-    instrument = Instrument(style.spec(rate, calibration_for(float(rate))))
-    return style.wishes(instrument), instrument
+    playing = PlayingOptions()
+    instrument = Instrument(playing.spec(rate, calibration_for(float(rate))))
+    return playing.wishes(instrument), instrument
 
 
 # ---------------------------------------------------------------- notes

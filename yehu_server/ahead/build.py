@@ -16,8 +16,8 @@ from typing import Any
 
 from yehu_server.ahead import interface, link
 from yehu_server.ahead.header import header
-from yehu_server.ahead.images import image
 from yehu_server.ahead.interpreter import INTERPRETER
+from yehu_server.ahead.memory_images import image
 from yehu_server.ahead.module import PAGE, Target, here, joined
 from yehu_server.ahead.source_hash import sources_hash, with_section
 from yehu_server.errors import OutputError, ParameterError, YehuError

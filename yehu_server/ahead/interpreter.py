@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.ahead.images import runs
+from yehu_server.ahead.memory_images import runs
 from yehu_server.compile.jit import Native, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.engine.atomics import at

@@ -8,7 +8,7 @@ from pathlib import Path
 from yehu_server.ahead.build import PAGE_FILE, build
 from yehu_server.ahead.link import page_linker
 from yehu_server.ahead.source_hash import section_of, sources_hash
-from yehu_server.compile.jit import data_folder
+from yehu_server.compile.cache_folder import data_folder
 from yehu_server.errors import YehuError
 from yehu_server.util.processes import machine_lock
 

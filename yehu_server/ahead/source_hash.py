@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from yehu_server.compile.jit import source_hash
+from yehu_server.compile.cache_folder import source_hash
 from yehu_server.util import PACKAGE
 from yehu_server.util.source_key import key_of
 

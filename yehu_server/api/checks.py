@@ -10,7 +10,8 @@ from numbers import Real
 from pathlib import Path
 from typing import Any
 
-from yehu_server.compile.jit import IS_PLAIN, cache_folder
+from yehu_server.compile.cache_folder import cache_folder
+from yehu_server.compile.jit import IS_PLAIN
 from yehu_server.core.physics.quantities import Quantities, override, read_quantities
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find

@@ -8,7 +8,7 @@ from typing import Any
 from yehu_server.api.checks import PathLike, get_ready, number, setting, whole
 from yehu_server.api.observing import Run, curves_of
 from yehu_server.api.pitches import pitch_of, playable
-from yehu_server.api.styles import playing_setup_of
+from yehu_server.api.playing_options import playing_setup_of
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument as Engine
 from yehu_server.core.physics.quantities import Quantities
@@ -95,11 +95,11 @@ class Instrument:
             seed=seed,
         )
         get_ready(plays=True)
-        self._rate, self._style = make.sample_rate, make.style
+        self._rate, self._playing = make.sample_rate, make.playing
         self._channels = 2 if stereo else 1
-        calibration = calibration_for(float(self._rate), make.quantities, a4=self._style.a4)
+        calibration = calibration_for(float(self._rate), make.quantities, a4=self._playing.a4)
 
-        spec = self._style.spec(float(self._rate), calibration, make.quantities)
+        spec = self._playing.spec(float(self._rate), calibration, make.quantities)
         self._stage: Ensemble | Engine
         if stereo:
             self._stage = Ensemble([spec])
@@ -359,12 +359,12 @@ class Instrument:
     def _begin(self) -> None:
         """Give all parameters the values that preset and settings begin with."""
         self._dropped = 0
-        self._wishes = self._style.wishes(self._engine)
-        for address, value in self._style.start:
+        self._wishes = self._playing.wishes(self._engine)
+        for address, value in self._playing.start:
             if find(address).place is Place.ENGINE:
                 self._engine.write(address, value, ramp_ms=0.0)
             self._wishes.write(address, value)
-        for address, value in self._style.settings:
+        for address, value in self._playing.settings:
             self._wishes.start_with(address, value)
 
     def _frame(self, at: float | None) -> int | None:

@@ -12,7 +12,7 @@ import numpy as np
 from yehu_server.api.checks import PathLike, get_ready, number, path_of, whole
 from yehu_server.api.notes import Note, score_of
 from yehu_server.api.playback import Player, write_sound
-from yehu_server.api.styles import playing_setup_of
+from yehu_server.api.playing_options import playing_setup_of
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 from yehu_server.playing.calibration_store import calibration_for
@@ -195,14 +195,14 @@ def render(
     is_file = isinstance(score, str) or hasattr(score, "__fspath__")
     if phrasing is None:
         usual = PHRASING if is_file else 0.0
-        phrasing = dict(make.style.settings).get("/playing/phrasing", usual)
+        phrasing = dict(make.playing.settings).get("/playing/phrasing", usual)
     share = number(phrasing, "phrasing", 0.0, 1.0)
     options = Options(
         rate=make.sample_rate,
         channels=_channels(channels),
         tail_s=None if tail is None else number(tail, "tail", 0.0, LONGEST_TAIL_S),
         gain_db=None if gain_db is None else number(gain_db, "gain_db", *GAIN_DB),
-        style=make.style,
+        playing=make.playing,
         quantities=make.quantities,
         block=BLOCK,
         is_dry=bool(dry),
@@ -213,11 +213,11 @@ def render(
     score = phrased(read, share)
     options = replace(options, phrasing=0.0 if is_fingered(score) else share)
     get_ready(plays=True)
-    calibration = calibration_for(float(options.rate), options.quantities, a4=options.style.a4)
+    calibration = calibration_for(float(options.rate), options.quantities, a4=options.playing.a4)
     options = replace(options, calibration=calibration)
     sound, asked, summary = _played(score, replace(options, normalize=bool(normalize)), progress)
     warnings = (*score.warnings, *_remarks(summary))
-    return Rendering(sound, options.rate, score.name, warnings, summary, asked, options.style.a4)
+    return Rendering(sound, options.rate, score.name, warnings, summary, asked, options.playing.a4)
 
 
 def _played(

@@ -8,7 +8,7 @@ from typing import Any
 
 from yehu_server.cli.arguments import Parser, add_command, add_folder, add_options
 from yehu_server.cli.converters import positive, target
-from yehu_server.cli.style_options import add_tables, interpreted_style_of
+from yehu_server.cli.playing_options import add_tables, table_options_of
 from yehu_server.cli.terminal import print_result
 
 EXAMPLES = """\
@@ -79,12 +79,12 @@ def write_tables(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.tables import Controls
     from yehu_server.util.files import anything, nothing, replacing
 
-    style, controls = interpreted_style_of(arguments), Controls()
-    tables = style.tables(controls)
+    playing, controls = table_options_of(arguments), Controls()
+    tables = playing.tables(controls)
     with replacing(arguments.output, anything if arguments.overwrite else nothing) as partial:
         partial.write_bytes(tables.tobytes())
     print_result(str(arguments.output))
-    for address in style.mapping.addresses:
+    for address in playing.mapping.addresses:
         print_result(f"control {controls.number(address)}: {address}")
     return 0
 

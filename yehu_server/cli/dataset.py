@@ -135,7 +135,7 @@ def _check_folder(folder: Path) -> None:
 
 def _key(description: str) -> str:
     """Key of description and code."""
-    from yehu_server.compile.jit import source_hash
+    from yehu_server.compile.cache_folder import source_hash
     from yehu_server.util import PACKAGE
     from yehu_server.util.source_key import key_of
 

@@ -16,7 +16,7 @@ from yehu_server.errors import EnsembleError, ParameterError, YehuError
 
 if TYPE_CHECKING:
     from yehu_server.core.physics.quantities import Quantities
-    from yehu_server.playing.style import Style
+    from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Part
     from yehu_server.scores.ensemble_file import EnsembleFile, PartEntry
     from yehu_server.scores.score import Score
@@ -44,7 +44,7 @@ class Players:
 def players_of(
     arguments: argparse.Namespace,
     scores: Sequence[Score],
-    style: Style,
+    playing: PlayingOptions,
     quantities: Quantities,
     phrasing: float,
 ) -> Players:
@@ -52,7 +52,7 @@ def players_of(
 
     Parameters
     ----------
-    style, quantities, phrasing
+    playing, quantities, phrasing
         Of all players, where an ensemble file does not say otherwise.
 
     Raises
@@ -78,10 +78,10 @@ def players_of(
         entries, room = list(ensemble.parts), ensemble.room
         if ensemble.room_name is not None:
             with _at(ensemble.room_where):
-                room = room_of(ensemble.room_name, style.presets)
+                room = room_of(ensemble.room_name, playing.presets)
         files.append(ensemble.path)
-    styles = seated([_style(entry, style, room) for entry in entries])
-    for entry, own in zip(entries, styles, strict=True):
+    per_part = seated([_options_of(entry, playing, room) for entry in entries])
+    for entry, own in zip(entries, per_part, strict=True):
         instrument = quantities
         if entry.instrument is not None:
             with _at(entry.where):
@@ -91,7 +91,7 @@ def players_of(
         part = _part(entry, scores, instrument, phrasing, arguments)
         seed = own.seed if entry.seed is None else entry.seed
         gain_db = _gain_db(own, entry, len(entries), arguments)
-        parts.append(replace(part, style=replace(own, seed=seed), gain_db=gain_db))
+        parts.append(replace(part, playing=replace(own, seed=seed), gain_db=gain_db))
     if ensemble is not None:
         _warn_of_unplayed(ensemble, scores)
     return Players(tuple(parts), tuple(files), spare)
@@ -164,22 +164,27 @@ def _at(where: str) -> Iterator[None]:
         raise EnsembleError(f"{where}: {error}") from error
 
 
-def _style(entry: PartEntry, style: Style, room: Values) -> Style:
-    """The style of a part: that of all, with its own mapping, preset, settings and place."""
+def _options_of(entry: PartEntry, playing: PlayingOptions, room: Values) -> PlayingOptions:
+    """The options of a part: those of all, with its own mapping, preset, settings and place."""
     from yehu_server.playing.mapping import load
 
     with _at(entry.where):
         if entry.mapping is not None:
-            style = replace(style, mapping=load(entry.mapping))
+            playing = replace(playing, mapping=load(entry.mapping))
         if entry.preset is not None:
-            file, preset = style.presets.find_file(entry.preset), style.presets.find(entry.preset)
-            kept = (pair for pair in style.start if is_of_room(pair[0]))  # of --room
-            style = replace(style, preset=file, start=(*preset.values.items(), *kept))
+            file, preset = (
+                playing.presets.find_file(entry.preset),
+                playing.presets.find(entry.preset),
+            )
+            kept = (pair for pair in playing.start if is_of_room(pair[0]))  # of --room
+            playing = replace(playing, preset=file, start=(*preset.values.items(), *kept))
     own = dict(entry.settings)
-    settings = (pair for pair in style.settings if pair[0] not in own)
+    settings = (pair for pair in playing.settings if pair[0] not in own)
     place = {"/room/pan": entry.pan, "/room/distance": entry.distance, SECTION: entry.section}
     start = ((address, float(value)) for address, value in place.items() if value is not None)
-    return replace(style, start=(*style.start, *room, *start), settings=(*settings, *own.items()))
+    return replace(
+        playing, start=(*playing.start, *room, *start), settings=(*settings, *own.items())
+    )
 
 
 def _part(
@@ -213,9 +218,11 @@ def _name(entry: PartEntry) -> str:
     return f"channel {entry.channel + 1}" if entry.channel is not None else f"track {entry.track}"
 
 
-def _gain_db(style: Style, entry: PartEntry, parts: int, arguments: argparse.Namespace) -> float:
+def _gain_db(
+    playing: PlayingOptions, entry: PartEntry, parts: int, arguments: argparse.Namespace
+) -> float:
     """The gain of a part: as asked for, or so that all are about as loud together as one alone."""
     gain_db: float | None = arguments.gain_db
     if gain_db is None:
-        gain_db = dict(style.start).get("/output/gain", 0.0) - 10.0 * math.log10(parts)
+        gain_db = dict(playing.start).get("/output/gain", 0.0) - 10.0 * math.log10(parts)
     return gain_db + entry.gain_db

@@ -121,10 +121,10 @@ def _check_settings(arguments: argparse.Namespace, cluster: Cluster) -> None:
 
 def _settings(arguments: argparse.Namespace) -> list[Path]:
     """Files of settings that options name, beside those that are shipped."""
-    from yehu_server.cli.style_options import style_of
+    from yehu_server.cli.playing_options import playing_options_of
     from yehu_server.util.files import shipped_folder
 
-    named = [arguments.instrument, arguments.ensemble, *style_of(arguments).files]
+    named = [arguments.instrument, arguments.ensemble, *playing_options_of(arguments).files]
     files = [path.absolute() for path in named if isinstance(path, Path)]
     shipped = shipped_folder("mappings").parent
     return [path for path in files if not path.is_relative_to(shipped)]

@@ -63,7 +63,7 @@ def _seconds(line: Line) -> float:
 
 def base_key(arguments: argparse.Namespace) -> str:
     """Key of version and options."""
-    from yehu_server.compile.jit import source_hash
+    from yehu_server.compile.cache_folder import source_hash
     from yehu_server.util import PACKAGE, __version__
     from yehu_server.util.source_key import key_of
 

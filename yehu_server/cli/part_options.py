@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_options
 from yehu_server.cli.converters import whole_within
-from yehu_server.cli.style_options import mapping_of, style_of
+from yehu_server.cli.playing_options import mapping_of, playing_options_of
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError, YehuError
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from yehu_server.live.midi.routes import Route
     from yehu_server.live.options import PartOptions
-    from yehu_server.playing.style import Style
+    from yehu_server.playing.options import PlayingOptions
 
 MOST = 16  # engine.rig.MOST_PARTS, which takes a second to import
 
@@ -64,14 +64,14 @@ def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
             if not 1 <= number <= arguments.parts:
                 name = f"--{option.replace('_', '-')} {number}={text}"
                 raise ParameterError(f"{name}: {no_part(number, arguments.parts)}")
-    usual = style_of(arguments, is_live=True)
+    usual = playing_options_of(arguments, is_live=True)
     options = []
     for number in range(1, arguments.parts + 1):
         own = _own(arguments, number)
-        style = usual if own is None else _style(own, number)
+        playing = usual if own is None else _options_of(own, number)
         reread = partial(mapping_of, own or arguments, is_live=True) if arguments.watch else None
-        options.append(PartOptions(style, reread))
-    number_of_instruments([part.style for part in options])
+        options.append(PartOptions(playing, reread))
+    number_of_instruments([part.playing for part in options])
     return options
 
 
@@ -92,7 +92,7 @@ def routes_of(arguments: argparse.Namespace, parts: Sequence[PartOptions]) -> li
             check_routes(routes, len(parts))
         except ParameterError as error:
             raise ParameterError(f"--part {number}={text}: {error}") from error
-        if routes[-1].channel is not None and parts[number - 1].style.mapping.mpe:
+        if routes[-1].channel is not None and parts[number - 1].playing.mapping.mpe:
             raise ParameterError(f"--part {number}={text}: MPE takes all channels of its input")
     return routes
 
@@ -117,22 +117,22 @@ def _own(arguments: argparse.Namespace, number: int) -> argparse.Namespace | Non
     return own
 
 
-def _style(own: argparse.Namespace, number: int) -> Style:
-    """The style of a part with arguments of its own."""
+def _options_of(own: argparse.Namespace, number: int) -> PlayingOptions:
+    """The options of a part with arguments of its own."""
     from yehu_server.live.part_addresses import check_own, group
     from yehu_server.params.table import assignment, find
 
     try:
-        style = style_of(own, is_live=True)
+        playing = playing_options_of(own, is_live=True)
         for part, text in own.part_set:
             if part == number:
                 check_own(group(part - 1), assignment(text)[0])
     except YehuError as error:
         raise type(error)(f"part {number}: {error}") from error
-    shared = [address for address, _ in style.start if find(address).is_shared]
+    shared = [address for address, _ in playing.start if find(address).is_shared]
     if shared and number > 1 and own.part_preset:
         warn(f"part {number}: {shared[0]} of its preset is one for all parts, and left out")
-    return style
+    return playing
 
 
 # ---------------------------------------------------------------- converters

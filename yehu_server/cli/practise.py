@@ -14,7 +14,7 @@ from yehu_server.cli.arguments import (
     instrument_of,
 )
 from yehu_server.cli.converters import target
-from yehu_server.cli.style_options import add_tuning, tuning_of
+from yehu_server.cli.playing_options import add_tuning, tuning_of
 from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
 
 A4 = 440.0  # Hz

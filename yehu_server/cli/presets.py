@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
-from yehu_server.cli.style_options import add_presets_folder
+from yehu_server.cli.playing_options import add_presets_folder
 from yehu_server.cli.terminal import print_result, warn
 
 EXAMPLES = """\

@@ -24,6 +24,7 @@ from yehu_server.cli.converters import (
     target,
     whole,
 )
+from yehu_server.cli.playing_options import add_playing
 from yehu_server.cli.render_one import rendered
 from yehu_server.cli.render_pipe import (
     is_piped,
@@ -35,7 +36,6 @@ from yehu_server.cli.render_pipe import (
     tell_beside,
 )
 from yehu_server.cli.stage_options import add_stage
-from yehu_server.cli.style_options import add_playing
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.scores.score import MAX_DURATION_H
 

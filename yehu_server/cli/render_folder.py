@@ -74,8 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _check(arguments: argparse.Namespace) -> str:
     """Check the options before any file is looked at; return the format to write."""
+    from yehu_server.cli.playing_options import playing_options_of
     from yehu_server.cli.stage_options import check_stage
-    from yehu_server.cli.style_options import style_of
     from yehu_server.core.physics.grid import check_rate
     from yehu_server.util.sound_file import check_format
 
@@ -103,7 +103,7 @@ def _check(arguments: argparse.Namespace) -> str:
     check_stage(arguments)
     check_format(form, arguments.subtype or "24", 1 if arguments.mono else 2)
     instrument_of(arguments)
-    style_of(arguments)
+    playing_options_of(arguments)
     if arguments.plot is not None:
         from yehu_server.util.extras import need
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import check_output, instrument_of
 from yehu_server.cli.ensemble_parts import Players, players_of
+from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.cli.render_pipe import is_piped
-from yehu_server.cli.stage_options import check_stage, room_of, stem_files
-from yehu_server.cli.style_options import style_of
+from yehu_server.cli.stage_options import check_stage, room_of
 from yehu_server.cli.terminal import progress_bar, warn, warn_of_compiling
 from yehu_server.errors import OutputError
 from yehu_server.util.files import anything, make_folder
@@ -20,7 +20,7 @@ from yehu_server.util.files import anything, make_folder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from yehu_server.playing.style import Style
+    from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Options, Part
     from yehu_server.rendering.summary import PartSummary, Summary
     from yehu_server.scores.score import Score
@@ -62,18 +62,20 @@ def rendered(
 
     check_rate(arguments.rate)
     check_stage(arguments)
-    style = style_of(arguments)
+    playing = playing_options_of(arguments)
     if arguments.room is not None:
-        style = replace(style, start=(*style.start, *room_of(arguments.room, style.presets)))
+        playing = replace(
+            playing, start=(*playing.start, *room_of(arguments.room, playing.presets))
+        )
     phrasing = arguments.phrasing
     if phrasing is None:
-        phrasing = dict(style.settings).get("/playing/phrasing", PHRASING)
+        phrasing = dict(playing.settings).get("/playing/phrasing", PHRASING)
     instrument = [] if arguments.instrument is None else [arguments.instrument]
     outputs = _outputs(arguments)
-    check_distinct(outputs, [*arguments.midi, *style.files, *instrument])
+    check_distinct(outputs, [*arguments.midi, *playing.files, *instrument])
     form = _format(arguments)
     may_replace = anything if is_piped(arguments.output) else check_output(arguments)
-    _warn_of_own(arguments, style)
+    _warn_of_own(arguments, playing)
     channels = arguments.channel
     options = Options(
         rate=arguments.rate,
@@ -83,7 +85,7 @@ def rendered(
         tail_s=arguments.tail,
         gain_db=arguments.gain_db,
         normalize=arguments.normalize,
-        style=style,
+        playing=playing,
         quantities=instrument_of(arguments),
         is_dry=arguments.dry,
         is_mono=arguments.mono,
@@ -91,7 +93,7 @@ def rendered(
     )
     scores = _scores(arguments)
     players = _players(arguments, scores, options, phrasing)
-    read = [*arguments.midi, *style.files, *instrument, *players.files]
+    read = [*arguments.midi, *playing.files, *instrument, *players.files]
     stems = _stems(arguments, options, players)
     check_distinct({**outputs, **{f"stem {stem.name}": stem for stem in stems}}, read)
     for warning in players.parts[0].score.warnings:
@@ -99,13 +101,13 @@ def rendered(
     warn_of_compiling(arguments)
     warm_up()
     parts = _calibrated(arguments, players.parts, float(options.rate))
-    key = calibration_key(float(options.rate), options.quantities, style.a4)
+    key = calibration_key(float(options.rate), options.quantities, playing.a4)
     watch = None
     if arguments.plot is not None:
         from yehu_server.rendering.plot_data import PlotData
 
         longest_s = max(part.score.duration_s for part in parts)
-        watch = PlotData(float(options.rate), longest_s, len(parts), style.a4)
+        watch = PlotData(float(options.rate), longest_s, len(parts), playing.a4)
         options = replace(options, block=PLOTTED_BLOCK)
     with progress_bar(arguments, "rendering") as progress:
         summary = render(
@@ -119,7 +121,7 @@ def rendered(
         title = f"{parts[0].score.name}: {voices}{options.rate / 1000.0:g} kHz"
         write_picture(watch, arguments.plot, title, overwrite=arguments.overwrite)
     summary = replace(summary, percussion_notes=summary.percussion_notes + players.percussion_notes)
-    fields = {**_fields(summary, style, stems), "phrasing": phrasing, "calibration": key}
+    fields = {**_fields(summary, playing, stems), "phrasing": phrasing, "calibration": key}
     return Rendered(summary, fields, read)
 
 
@@ -162,7 +164,7 @@ def _players(
     from yehu_server.scores.score import concatenate
 
     if arguments.ensemble is not None:
-        return players_of(arguments, scores, options.style, options.quantities, phrasing)
+        return players_of(arguments, scores, options.playing, options.quantities, phrasing)
     score = concatenate([phrased(each, phrasing) for each in scores])
     part = options.solo(score)
     return Players((replace(part, phrasing=0.0 if is_fingered(score) else phrasing),))
@@ -172,6 +174,8 @@ def _stems(arguments: argparse.Namespace, options: Options, players: Players) ->
     """The files of the stems that are asked for; checks that they may be written."""
     if arguments.stems is None:
         return []
+    from yehu_server.rendering.to_files import stem_files
+
     form = "wav" if options.format_name == "raw" else options.format_name
     stems = stem_files(arguments.stems, players.parts, form, is_dry=options.is_dry)
     make_folder(arguments.stems)
@@ -189,7 +193,7 @@ def _calibrated(arguments: argparse.Namespace, parts: Sequence[Part], rate: floa
     calibrated = []
     with progress_bar(arguments, "calibrating", "notes") as progress:
         for part in parts:
-            a4 = part.style.a4
+            a4 = part.playing.a4
             key = calibration_key(rate, part.quantities, a4)
             if key not in known:
                 known[key] = calibration_for(rate, part.quantities, a4=a4, progress=progress)
@@ -197,15 +201,15 @@ def _calibrated(arguments: argparse.Namespace, parts: Sequence[Part], rate: floa
     return calibrated
 
 
-def _fields(summary: Summary, style: Style, stems: Sequence[Path]) -> dict[str, Any]:
+def _fields(summary: Summary, playing: PlayingOptions, stems: Sequence[Path]) -> dict[str, Any]:
     """What --json tells of a rendering."""
     fields = _counts(summary)
     fields["parts"] = [*map(_counts, summary.parts)]
     fields["stems"] = [*map(str, stems)]
     fields["policy"] = summary.policy.value
-    fields["mapping"] = {"name": style.mapping.name, "files": [*map(str, style.mapping.files)]}
-    fields["preset"] = None if style.preset is None else str(style.preset)
-    fields["practice"] = "shipped" if style.practice is None else str(style.practice)
+    fields["mapping"] = {"name": playing.mapping.name, "files": [*map(str, playing.mapping.files)]}
+    fields["preset"] = None if playing.preset is None else str(playing.preset)
+    fields["practice"] = "shipped" if playing.practice is None else str(playing.practice)
     return fields
 
 
@@ -240,10 +244,10 @@ def _scores(arguments: argparse.Namespace) -> list[Score]:
     return scores
 
 
-def _warn_of_own(arguments: argparse.Namespace, style: Style) -> None:
+def _warn_of_own(arguments: argparse.Namespace, playing: PlayingOptions) -> None:
     """Warn where serve would use the user's own mapping of this name."""
     from yehu_server.playing.mapping import MINE, user_mappings
 
-    own = style.mapping.files[0].stem
+    own = playing.mapping.files[0].stem
     if (arguments.mapping or own) == own and own in user_mappings() and not arguments.quiet:
         warn(f"mapping {own}: the shipped one; --mapping {MINE}{own} is your own")

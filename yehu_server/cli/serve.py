@@ -132,7 +132,8 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         server = Server(options, report, progress)
     if server.output.state.problem and arguments.audio_device != "null":
         report(f"{server.output.state.problem}: playing on a silent clock")
-    for mapping in {part.style.mapping.name: part.style.mapping for part in options.parts}.values():
+    mappings = [part.playing.mapping for part in options.parts]
+    for mapping in {each.name: each for each in mappings}.values():
         if is_own(mapping):
             report(f"mapping {mapping.name}, your own: {mapping.files[0]}")
     server.start()

@@ -10,7 +10,7 @@ from yehu_server.cli.arguments import Parser, add_options
 from yehu_server.cli.config import add_config
 from yehu_server.cli.converters import number_within, port, positive, target, whole_within, within
 from yehu_server.cli.part_options import add_parts, part_options, routes_of
-from yehu_server.cli.style_options import add_playing
+from yehu_server.cli.playing_options import add_playing
 from yehu_server.cli.terminal import LEVELS
 from yehu_server.live.addresses import (
     ANYWHERE,
@@ -145,7 +145,7 @@ def options_of(arguments: argparse.Namespace) -> Any:
     config = [] if arguments.config is None else [arguments.config]
     check_distinct(
         {name: path for name, path in outputs.items() if path is not None},
-        [*(file for part in parts for file in part.style.files), *config],
+        [*(file for part in parts for file in part.playing.files), *config],
     )
     midi = None
     if arguments.midi_api != "none":

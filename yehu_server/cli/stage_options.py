@@ -11,10 +11,7 @@ from yehu_server.cli.converters import positive, target
 from yehu_server.errors import ParameterError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from yehu_server.playing.preset_folders import Presets
-    from yehu_server.rendering.options import Part
 
 Values = tuple[tuple[str, float], ...]  # addresses and values
 
@@ -87,15 +84,3 @@ def room_of(name: str, presets: Presets) -> Values:
 def is_of_room(address: str) -> bool:
     """Whether a parameter is one of the room, or how the body sounds in it."""
     return address.startswith("/room/") or address == "/body/width"
-
-
-def stem_files(folder: Path, parts: Sequence[Part], ending: str, *, is_dry: bool) -> list[Path]:
-    """The files of stems: one for each part, numbered, and one for the room."""
-    names = [f"{number:02}-{_plain(part.name)}" for number, part in enumerate(parts, start=1)]
-    return [folder / f"{name}.{ending}" for name in (*names, *(() if is_dry else ("room",)))]
-
-
-def _plain(name: str) -> str:
-    """A name as part of a file's name: letters, digits, dots and hyphens."""
-    plain = "".join(each if each.isalnum() or each in "._-" else "-" for each in name)
-    return plain[:60].strip("-.") or "part"

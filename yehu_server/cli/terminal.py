@@ -40,7 +40,7 @@ def warn_of_compiling(arguments: argparse.Namespace, *, plays: bool = True) -> N
     plays : bool
         Whether the command plays the instrument, which is what code is made of in advance.
     """
-    from yehu_server.compile.jit import WHY_NOT_CACHED, cache_folder
+    from yehu_server.compile.cache_folder import WHY_NOT_CACHED, cache_folder
     from yehu_server.core.engine.warming import is_warm
 
     if arguments.quiet:

@@ -1,30 +1,19 @@
-"""How this package compiles its hot code: one decorator, one cache.
-
-numba does not notice when a compiled function's callee changes in another file,
-so the cache folder is keyed by all sources that may be compiled.
-"""
+"""How this package compiles its hot code: decorators of functions, and what they make of them."""
 
 from __future__ import annotations
 
 import ctypes
-import errno
 import importlib
 import os
 import re
-import shutil
-import time
 from collections.abc import Callable, Sequence
-from functools import cache, cached_property, update_wrapper
-from importlib.metadata import version
+from functools import cached_property, update_wrapper
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
-from platformdirs import user_cache_dir
-
 from yehu_server.compile import machine_code
+from yehu_server.compile.cache_folder import IS_CACHED, cache_folder, source_hash
 from yehu_server.errors import YehuError
-from yehu_server.util import PACKAGE
-from yehu_server.util.source_key import key_of
 
 # NUMBA_DISABLE_JIT=1: what would be compiled runs as plain Python, under a debugger or coverage.
 IS_PLAIN = os.environ.get("NUMBA_DISABLE_JIT", "0") not in {"", "0"}
@@ -36,46 +25,6 @@ R = TypeVar("R")
 # Sums may be reordered and multiply-adds fused, which lets loops vectorise. NaN and
 # infinity keep their meaning: a lost state has to be seen.
 FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
-# Of all source that is compiled, or that compiled code reads constants of.
-FOLDERS = ("core", "params", "compile", "lab/regimes")
-
-
-@cache
-def source_hash() -> str:
-    """Key of all source that compiled code comes from or reads constants of (16 hex digits)."""
-    sources = [source for folder in FOLDERS for source in sorted((PACKAGE / folder).rglob("*.py"))]
-    return key_of(sources, version("numba"))
-
-
-def cache_folder() -> Path:
-    """Where compiled code is kept; ``NUMBA_CACHE_DIR`` moves it."""
-    root = os.environ.get("NUMBA_CACHE_DIR") or user_cache_dir("yehu-server", appauthor=False)
-    return Path(root) / f"{FOLDER}{source_hash()}"
-
-
-def data_folder() -> Path:
-    """Where else is kept what takes long to find, such as calibrations."""
-    return cache_folder().parent
-
-
-def _open_cache() -> str:
-    """Make the cache folder and drop what older sources left; return why nothing can be kept."""
-    folder = cache_folder()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        os.utime(folder)
-        for other in folder.parent.glob(f"{FOLDER}*"):
-            if time.time() - other.stat().st_mtime > UNUSED_AFTER_S:
-                shutil.rmtree(other, ignore_errors=True)
-    except OSError as error:
-        return error.strerror or repr(error)
-    return "" if os.access(folder, os.W_OK) else os.strerror(errno.EACCES)
-
-
-FOLDER = "compiled-"
-UNUSED_AFTER_S = 14 * 24 * 3600.0
-WHY_NOT_CACHED = _open_cache()
-IS_CACHED = not WHY_NOT_CACHED  # else everything is compiled anew at each start
 
 
 class Deferred:

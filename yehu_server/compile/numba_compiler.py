@@ -17,6 +17,7 @@ from numba.core.compiler import Compiler
 from numba.core.registry import cpu_target
 
 from yehu_server.compile import jit
+from yehu_server.compile.cache_folder import IS_CACHED, cache_folder
 from yehu_server.compile.function_cache import CodeCache
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
@@ -79,6 +80,6 @@ def external(name: str, signature: str) -> Any:
 
 def _cached(made: Any, function: Callable[..., Any]) -> Any:
     """Give numba's object for a function our cache, before anything is compiled."""
-    if jit.IS_CACHED:
-        made._cache = CodeCache(jit.cache_folder(), function)  # noqa: SLF001 - there is no other way
+    if IS_CACHED:
+        made._cache = CodeCache(cache_folder(), function)  # noqa: SLF001 - there is no other way
     return made

@@ -14,14 +14,14 @@ from yehu_server.live.midi.ports import MidiOptions
 from yehu_server.live.page.pages import PageOptions
 from yehu_server.live.web.server import WebOptions
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 
 @dataclass
 class PartOptions:
     """Options of one part."""
 
-    style: Style = field(default_factory=Style)
+    playing: PlayingOptions = field(default_factory=PlayingOptions)
     reread: Callable[[], Mapping] | None = (
         None  # reads the mapping's files; None: they are not watched
     )

@@ -24,7 +24,7 @@ from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
 from yehu_server.live.osc.call_table import more_calls
 from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.sockets import OscPorts
+from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.page.pages import Pages
 from yehu_server.live.services import Services
 from yehu_server.live.web.server import Sources, WebServer
@@ -76,22 +76,22 @@ class Server:
         self.options = options
         self._on_message = on_message
         with contextlib.ExitStack() as undo:
-            styles = seated([part.style for part in options.parts])
-            number = number_of_instruments(styles)
+            per_part = seated([part.playing for part in options.parts])
+            number = number_of_instruments(per_part)
             self.output = Output(replace(options.output, parts=number), on_message)
             undo.callback(self.output.end)
             warm_up()  # meanwhile the device is looked for
             rate = self.output.find()
-            calibration = calibration_for(rate, a4=styles[0].a4, progress=progress)
+            calibration = calibration_for(rate, a4=per_part[0].a4, progress=progress)
             memory = self.output.memory.buffer
             self.ensemble, instruments = assemble(
-                styles, rate, calibration, memory=memory, has_room=options.has_room
+                per_part, rate, calibration, memory=memory, has_room=options.has_room
             )
             self.delay = Delay(self.instrument, options.output.blocksize, options.jitter_ms)
             delay_ms = 1e3 * self.delay.frames / rate
             self.parts = tuple(
-                Part(player_of(part, style, own, delay_ms=delay_ms), own)
-                for part, (style, own) in enumerate(zip(styles, instruments, strict=True))
+                Part(player_of(part, playing, own, delay_ms=delay_ms), own)
+                for part, (playing, own) in enumerate(zip(per_part, instruments, strict=True))
             )
             self.players = tuple(part.player for part in self.parts)
             self.player.presets.all()  # read now, so that listing them is quick later
@@ -115,8 +115,8 @@ class Server:
             if options.capture is not None:
                 for instrument in self.ensemble.instruments:
                     instrument.report_wishes()
-            for player, style in zip(self.players, styles, strict=True):
-                for address, value in style.settings:
+            for player, playing in zip(self.players, per_part, strict=True):
+                for address, value in playing.settings:
                     player.hold(address, value)
             undo.pop_all()
         self.takes = Recordings(self.ensemble, options.recordings, on_message)

@@ -10,9 +10,9 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.live.audio.output import Output
 from yehu_server.live.audio.recordings import Recordings
 from yehu_server.live.midi.ports import MidiPorts
+from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.peers import WebTraffic
-from yehu_server.live.osc.sockets import OscPorts
+from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.osc.status import PartSources, StatusSources, read_part_status, read_status
 from yehu_server.live.part_addresses import part_of
 from yehu_server.live.web.query import Snapshot

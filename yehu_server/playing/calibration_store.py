@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import data_folder
+from yehu_server.compile.cache_folder import data_folder
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration, Tables
 from yehu_server.errors import ParameterError

@@ -20,7 +20,7 @@ from yehu_server.params.table import TABLE, find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.learn import LearnedSource, Learner
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import Key, WishPoster
 
 ELSEWHERE = -1  # the channel of notes that do not come from MIDI
@@ -67,7 +67,7 @@ class LivePlayer:
         Which of the parts on the stage it plays, counted from 0. What all parts share is the
         first one's.
     wishes : WishPoster, optional
-        What its wishes go through; by default those of the style, to the instrument.
+        What its wishes go through; by default those of its options, to the instrument.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class LivePlayer:
     def __init__(
         self,
         instrument: Instrument,
-        style: Style,
+        playing: PlayingOptions,
         *,
         delay_ms: float,
         part: int = 0,
@@ -86,11 +86,11 @@ class LivePlayer:
     ) -> None:
         self.instrument = instrument
         self.part = part
-        self.presets = style.presets
+        self.presets = playing.presets
         self.delay = instrument.frames(delay_ms)
         self._lock = threading.RLock()
-        self._wishes = style.wishes(instrument) if wishes is None else wishes
-        self._midi = style.midi(self._wishes)
+        self._wishes = playing.wishes(instrument) if wishes is None else wishes
+        self._midi = playing.midi(self._wishes)
         self._learner = Learner()
         self._found: Callable[[LearnedSource], None] | None = None
         self.on_learning_changed: Callable[[], None] = lambda: None

@@ -13,8 +13,8 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.errors import ParameterError
 from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.section_instruments import part_specs, section_size
-from yehu_server.playing.style import Style
 
 WIDEST = 0.7  # pan of the outermost players; by ear: the room stays around them
 
@@ -41,32 +41,32 @@ class Part:
     instruments: Sequence[Instrument]
 
 
-def number_of_instruments(styles: Sequence[Style]) -> int:
-    """How many instruments the parts of some styles take.
+def number_of_instruments(per_part: Sequence[PlayingOptions]) -> int:
+    """How many instruments some parts take together.
 
     Raises
     ------
     ParameterError
         Where they are more than a stage has.
     """
-    count = sum(map(section_size, styles))
+    count = sum(map(section_size, per_part))
     if count > MOST_PARTS:
         raise ParameterError(f"{count} players, of all parts and sections: at most {MOST_PARTS}")
     return count
 
 
-def seated(styles: Sequence[Style]) -> list[Style]:
-    """Styles with a default pan and seed for each part; values that a style sets itself win."""
+def seated(per_part: Sequence[PlayingOptions]) -> list[PlayingOptions]:
+    """Options with a default pan and seed for each part; values that they set themselves win."""
     own, number = [], 0
-    for style, place in zip(styles, places(len(styles)), strict=True):
-        seed = (style.seed + number) % SEEDS
-        own.append(replace(style, start=(*place, *style.start), seed=seed))
-        number += section_size(style)
+    for playing, place in zip(per_part, places(len(per_part)), strict=True):
+        seed = (playing.seed + number) % SEEDS
+        own.append(replace(playing, start=(*place, *playing.start), seed=seed))
+        number += section_size(playing)
     return own
 
 
 def assemble(
-    styles: Sequence[Style],
+    per_part: Sequence[PlayingOptions],
     rate: float,
     calibration: Calibration,
     *,
@@ -77,15 +77,15 @@ def assemble(
 
     Parameters
     ----------
-    styles : sequence of Style
+    per_part : sequence of PlayingOptions
         Those of `seated`, one for each part.
     memory : buffer
         See `Ensemble`.
     """
     specs: list[InstrumentSpec] = []
     ends = []
-    for style in styles:
-        specs += part_specs(style, rate, calibration, number=len(specs))
+    for playing in per_part:
+        specs += part_specs(playing, rate, calibration, number=len(specs))
         ends.append(len(specs))
     ensemble = Ensemble(specs, has_room=has_room, memory=memory, is_live=True)
     begins = [0, *ends]
@@ -93,8 +93,8 @@ def assemble(
 
 
 def player_of(
-    part: int, style: Style, instruments: Sequence[Instrument], *, delay_ms: float
+    part: int, playing: PlayingOptions, instruments: Sequence[Instrument], *, delay_ms: float
 ) -> LivePlayer:
     """The player of a part, counted from 0: its wishes go to all of its instruments."""
-    wishes = style.wishes(instruments)
-    return LivePlayer(instruments[0], style, delay_ms=delay_ms, part=part, wishes=wishes)
+    wishes = playing.wishes(instruments)
+    return LivePlayer(instruments[0], playing, delay_ms=delay_ms, part=part, wishes=wishes)

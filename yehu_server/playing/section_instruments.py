@@ -18,7 +18,7 @@ from yehu_server.core.physics.quantities import Body, Quantities, StringQuantiti
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import find
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 SECTION = "/playing/section"
 
@@ -32,14 +32,14 @@ TUNED_CENTS = 1.5  # how well a player tunes
 MOST_HAIRS = 65536
 
 
-def section_size(style: Style) -> int:
-    """How many players a style asks for."""
-    asked = dict(style.mapping.start) | dict(style.start) | dict(style.settings)
+def section_size(playing: PlayingOptions) -> int:
+    """How many players are asked for."""
+    asked = dict(playing.mapping.start) | dict(playing.start) | dict(playing.settings)
     return round(find(SECTION).accept(asked.get(SECTION, 1.0)))
 
 
 def part_specs(
-    style: Style,
+    playing: PlayingOptions,
     rate: float,
     calibration: Calibration,
     quantities: Quantities | None = None,
@@ -53,21 +53,21 @@ def part_specs(
     number : int
         How many others are on the stage already.
     """
-    people = section_size(style)
+    people = section_size(playing)
     if people > 1:
-        return section_specs(style, rate, calibration, quantities, people=people)
-    return [style.spec(rate, calibration, quantities, body=number)]
+        return section_specs(playing, rate, calibration, quantities, people=people)
+    return [playing.spec(rate, calibration, quantities, body=number)]
 
 
 def section_specs(
-    style: Style,
+    playing: PlayingOptions,
     rate: float,
     calibration: Calibration,
     quantities: Quantities | None = None,
     *,
     people: int,
 ) -> list[InstrumentSpec]:
-    """The instruments of a section; the first has that of ``Style.spec``.
+    """The instruments of a section; the first has that of ``PlayingOptions.spec``.
 
     Parameters
     ----------
@@ -80,13 +80,13 @@ def section_specs(
     base = quantities or Quantities()
 
     def spec(number: int) -> InstrumentSpec:
-        seed = round(own_value(ROW[OWN_SEED], float(style.seed), number, people))
+        seed = round(own_value(ROW[OWN_SEED], float(playing.seed), number, people))
         tuned, own = (calibration, base) if number == 0 else vary(calibration, base, seed)
         values = {
             address: own_value(ROW[address], find(address).default, number, people)
             for address in (GAIN, PAN, DISTANCE)
         }
-        player, body = replace(style, seed=seed), seed if number else 0
+        player, body = replace(playing, seed=seed), seed if number else 0
         return player.spec(rate, tuned, own, start_values=values, body=body)
 
     return [spec(number) for number in range(people)]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.stage.image_sources import EARS
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.scores.score import Score
 
 BLOCK = 1 << 14  # frames; the sound does not depend on it
@@ -32,7 +32,7 @@ class Part:
 
     score: Score
     name: str = ""
-    style: Style = field(default_factory=Style)
+    playing: PlayingOptions = field(default_factory=PlayingOptions)
     channels: frozenset[int] | None = None
     phrasing: float = 0.0
     quantities: Quantities = field(default_factory=Quantities)
@@ -55,7 +55,7 @@ class Options:
     gain_db: float | None = None
     normalize: bool = False
     phrasing: float = 0.0
-    style: Style = field(default_factory=Style)
+    playing: PlayingOptions = field(default_factory=PlayingOptions)
     quantities: Quantities = field(default_factory=Quantities)
     calibration: Calibration | None = None
     block: int = BLOCK

@@ -37,14 +37,14 @@ class PartPlayer:
 
     def __init__(self, part: Part, instruments: Sequence[Instrument]) -> None:
         self.part, self.instruments = part, instruments
-        style = part.style
-        self.wishes = style.wishes(instruments)
-        self.midi = style.midi(self.wishes, None if part.channels is None else set(part.channels))
+        playing = part.playing
+        self.wishes = playing.wishes(instruments)
+        self.midi = playing.midi(self.wishes, None if part.channels is None else set(part.channels))
         self.wishes.write("/playing/phrasing", part.phrasing)
-        for address, value in style.start:
+        for address, value in playing.start:
             self.wishes.jump(address, value)
         gain = () if part.gain_db is None else (("/output/gain", part.gain_db),)
-        for address, value in (*gain, *style.settings):
+        for address, value in (*gain, *playing.settings):
             self.wishes.start_with(address, value)
         self._sound = self.midi.sound()  # what settings of the score are put back to
         self._lengths_s = {note.begins: note.length_s for note in notes_of(part.score)}
@@ -114,13 +114,13 @@ class Performance:
     ) -> None:
         parts = [options.solo(played)] if isinstance(played, Score) else list(played)
         self._options, self._has_stems = options, has_stems
-        number_of_instruments([part.style for part in parts])
+        number_of_instruments([part.playing for part in parts])
         specs: list[InstrumentSpec] = []
         self._places: list[slice] = []  # of the instruments of each part
         for part in parts:
-            style, quantities, rate = part.style, part.quantities, float(options.rate)
-            calibration = part.calibration or calibration_for(rate, quantities, a4=style.a4)
-            own = part_specs(style, rate, calibration, quantities, number=len(specs))
+            playing, quantities, rate = part.playing, part.quantities, float(options.rate)
+            calibration = part.calibration or calibration_for(rate, quantities, a4=playing.a4)
+            own = part_specs(playing, rate, calibration, quantities, number=len(specs))
             self._places.append(slice(len(specs), len(specs) + len(own)))
             specs += own
         self.ensemble = Ensemble(

@@ -24,6 +24,18 @@ NORMALIZED_PEAK = 10.0 ** (-1.0 / 20.0)
 CHUNK = 1 << 18  # bytes that are read again at a time: whole frames
 
 
+def stem_files(folder: Path, parts: Sequence[Part], ending: str, *, is_dry: bool) -> list[Path]:
+    """The files of stems: one for each part, numbered, and one for the room."""
+    names = [f"{number:02}-{_plain(part.name)}" for number, part in enumerate(parts, start=1)]
+    return [folder / f"{name}.{ending}" for name in (*names, *(() if is_dry else ("room",)))]
+
+
+def _plain(name: str) -> str:
+    """A name as part of a file's name: letters, digits, dots and hyphens."""
+    plain = "".join(each if each.isalnum() or each in "._-" else "-" for each in name)
+    return plain[:60].strip("-.") or "part"
+
+
 def write_normalized(
     takes: Iterable[Sequence[Samples]], files: Sequence[SoundWriter], folder: Path | None
 ) -> None:

@@ -9,7 +9,7 @@ import llvmlite
 import numpy as np
 from llvmlite import binding
 
-from yehu_server.compile.jit import source_hash
+from yehu_server.compile.cache_folder import source_hash
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.player.wishes import (
     BEGIN,

@@ -16,7 +16,7 @@ from yehu_server.live.addresses import Address
 from yehu_server.params.spec import Param
 from yehu_server.surfaces import layout
 from yehu_server.surfaces.layout import Frame, Group, full
-from yehu_server.surfaces.network import QUIET_MS, Network, width_of
+from yehu_server.surfaces.patch_cords import QUIET_MS, Network, width_of
 
 PORT = 7400  # at which the patch receives values from the server; that of part N at N more
 

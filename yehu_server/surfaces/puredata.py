@@ -14,7 +14,7 @@ from yehu_server.params.spec import Curve, Param
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.surfaces import layout
 from yehu_server.surfaces.layout import Group, full, local
-from yehu_server.surfaces.network import QUIET_MS, Network
+from yehu_server.surfaces.patch_cords import QUIET_MS, Network
 
 MOVED = ".moved"
 KEY, END, LIFT, RELEASE, PANIC = "key", "end", "lift", "release", "panic"

@@ -14,15 +14,15 @@ from yehu_server.live.midi.input_process import Input
 from yehu_server.live.midi.routes import Router
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import load, shipped_mappings
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 
 PORTS = 4
 MOST_MESSAGES = 1000
 
 
 @functools.cache
-def styles() -> list[Style]:
-    return [Style(mapping=load(name), programs=True) for name in shipped_mappings()]
+def with_each_mapping() -> list[PlayingOptions]:
+    return [PlayingOptions(mapping=load(name), programs=True) for name in shipped_mappings()]
 
 
 class MidiIn:
@@ -43,10 +43,10 @@ def midi_messages(data: bytes) -> None:
     the port in two, and milliseconds since the one before.
     """
     program = Program(data)
-    every = styles()
+    every = with_each_mapping()
     instrument = Instrument()
-    style = every[program.byte() % len(every)]
-    player = LivePlayer(instrument, style, delay_ms=3.0, wishes=style.wishes([instrument]))
+    playing = every[program.byte() % len(every)]
+    player = LivePlayer(instrument, playing, delay_ms=3.0, wishes=playing.wishes([instrument]))
 
     def post(_time_ns: int, kind: int, index: int) -> bool:
         return instrument.post(kind, frame=player.frame_of(), index=index)

@@ -24,8 +24,8 @@ from yehu_server.params.table import PREFIX, TABLE, UNIT
 from yehu_server.playing import live_player
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import load
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import Presets
-from yehu_server.playing.style import Style
 
 MOST_PACKETS = 200
 ADDRESSES = [
@@ -137,8 +137,10 @@ def osc_calls(data: bytes) -> None:
     """
     with still_time() as clock:
         instrument, services, peer = Instrument(), Services(), FakePeer(host="peer")
-        style = Style(mapping=mapping(), presets=Presets(scratch() / "config" / "presets"))
-        player = LivePlayer(instrument, style, delay_ms=3.0, wishes=style.wishes([instrument]))
+        playing = PlayingOptions(
+            mapping=mapping(), presets=Presets(scratch() / "config" / "presets")
+        )
+        player = LivePlayer(instrument, playing, delay_ms=3.0, wishes=playing.wishes([instrument]))
         handler = OscHandler([player], services)
 
         def take(what: bytes) -> None:

@@ -13,7 +13,8 @@ import subprocess
 import sys
 
 from yehu_server.compile import machine_code
-from yehu_server.compile.jit import IS_CACHED, IS_PLAIN, cache_folder, source_hash
+from yehu_server.compile.cache_folder import IS_CACHED, cache_folder, source_hash
+from yehu_server.compile.jit import IS_PLAIN
 from yehu_server.core.engine.intake import interpret_events
 from yehu_server.core.engine.mixing import mix, mix_block
 from yehu_server.core.engine.native import (

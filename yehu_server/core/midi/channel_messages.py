@@ -10,7 +10,13 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
-from yehu_server.core.midi.binds import (
+from yehu_server.core.midi.channels import (
+    begin_port,
+    forget_channel,
+    is_in_zone,
+    plays,
+)
+from yehu_server.core.midi.controllers import (
     follow_native,
     move,
     move_coarse,
@@ -19,27 +25,12 @@ from yehu_server.core.midi.binds import (
     press_key,
     set_directly,
 )
-from yehu_server.core.midi.channels import (
-    begin_port,
-    forget_channel,
-    is_in_zone,
-    plays,
-)
 from yehu_server.core.midi.emit_wishes import stop_sound, write_native
 from yehu_server.core.midi.held_keys import list_key
-from yehu_server.core.midi.notes import (
-    end_all,
-    end_channel,
-    end_notes,
-    end_notes_native,
-    hold_by_pedal,
-    lift_pedal,
-    lift_pedal_native,
-    list_channel,
-    note_off,
-    note_on,
-)
+from yehu_server.core.midi.note_ends import end_all, end_notes, end_notes_native, list_channel
+from yehu_server.core.midi.notes import end_channel, note_off, note_on
 from yehu_server.core.midi.packing import BYTE, LENGTH_AT, PORT_AT
+from yehu_server.core.midi.pedals import SUSTAIN, hold_by_pedal, lift_pedal, lift_pedal_native
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, MIDI, NONE, PORTS
 from yehu_server.core.midi.registered_parameters import (
     DATA_ENTRY,
@@ -68,7 +59,6 @@ PROGRAM_CHANGE, CHANNEL_PRESSURE, PITCH_BEND, SYSTEM = 0xC0, 0xD0, 0xE0, 0xF0
 SYSTEM_RESET = 0xFF
 # Control changes with a meaning of their own.
 BANK, BANK_FINE = 0, 32
-SUSTAIN = 64
 ALL_SOUND_OFF, RESET_CONTROLLERS, ALL_NOTES_OFF = 120, 121, 123
 PAIRS = 32  # controllers with a fine half, as many higher
 
@@ -159,7 +149,7 @@ def change_control_native(
     elif control >= ALL_NOTES_OFF:  # the mode messages 124-127 include it
         all_notes_off(m, t, frame, channel)
     elif control == RESET_CONTROLLERS:
-        change_control_of_pedal(m, t, frame, channel)
+        reset_sustain(m, t, frame, channel)
         m.is_registered[channel] = 1
         m.coarse[channel] = m.fine[channel] = NONE
         reset_controllers(m, t, frame, channel)
@@ -181,7 +171,7 @@ def change_control(m: Any, t: Any, frame: int, channel: int, control: int, value
 
 
 @compiled_exactly
-def change_control_of_pedal(m: Any, t: Any, frame: int, channel: int) -> None:
+def reset_sustain(m: Any, t: Any, frame: int, channel: int) -> None:
     """Lift the sustain pedal, or what is bound to it."""
     if is_bound(t, SUSTAIN):
         move_both(m, t, frame, channel, SUSTAIN, 0)

@@ -9,20 +9,19 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
-from yehu_server.core.midi.binds import (
-    follow_native,
-    move_control,
-    move_native,
-    set_directly,
-)
 from yehu_server.core.midi.channel_messages import (
-    SUSTAIN,
     change_control_native,
     disconnect,
     is_bound,
     receive,
     reset,
     reset_native,
+)
+from yehu_server.core.midi.controllers import (
+    follow_native,
+    move_control,
+    move_native,
+    set_directly,
 )
 from yehu_server.core.midi.emit_wishes import (
     begin_key,
@@ -52,16 +51,9 @@ from yehu_server.core.midi.events import (
     TABLES_TO,
 )
 from yehu_server.core.midi.held_keys import list_key
-from yehu_server.core.midi.notes import (
-    end_all,
-    end_notes,
-    end_notes_native,
-    lift_pedal,
-    lift_pedal_native,
-    note_off,
-    note_on,
-    note_on_native,
-)
+from yehu_server.core.midi.note_ends import end_all, end_notes, end_notes_native
+from yehu_server.core.midi.notes import note_off, note_on, note_on_native
+from yehu_server.core.midi.pedals import SUSTAIN, lift_pedal, lift_pedal_native
 from yehu_server.core.midi.record import CHANNELS, MIDI, NONE, emit
 from yehu_server.core.midi.remapping import change_binds, change_binds_native, start
 from yehu_server.core.midi.resets import (

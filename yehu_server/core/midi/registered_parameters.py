@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.midi.binds import follow, move_coarse, move_fine, step
 from yehu_server.core.midi.channels import (
     bend_range,
     configure_zone,
@@ -18,6 +17,7 @@ from yehu_server.core.midi.channels import (
     is_in_zone,
     master_of,
 )
+from yehu_server.core.midi.controllers import follow, move_coarse, move_fine, step
 from yehu_server.core.midi.emit_wishes import in_range
 from yehu_server.core.midi.notes import end_channel
 from yehu_server.core.midi.record import IN_PORT, NONE

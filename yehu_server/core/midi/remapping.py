@@ -13,7 +13,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
-from yehu_server.core.midi.binds import (
+from yehu_server.core.midi.controllers import (
     set_directly,
 )
 from yehu_server.core.midi.emit_wishes import write, write_native

@@ -6,11 +6,11 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
-from yehu_server.core.midi.binds import (
+from yehu_server.core.midi.channels import add_active, forget_moves, moves_all
+from yehu_server.core.midi.controllers import (
     follow,
     follow_native,
 )
-from yehu_server.core.midi.channels import add_active, forget_moves, moves_all
 from yehu_server.core.midi.emit_wishes import write
 from yehu_server.core.midi.record import CHANNELS, MIDI, NONE
 from yehu_server.core.midi.tables import (

@@ -20,7 +20,7 @@ from yehu_server.core.player.rows import BODY_BRILLIANCE, BRILLIANCE, POSITION
 USUAL_DB, HARDER_DB, NEARER_DB = 5.0, 7.0, 11.0
 USUAL_EFFORT = 0.08  # m/s, speed times share of Schelleng's limit
 USUAL_PLACE = 0.13
-LEAST_DB, MOST_DB = -12.0, 18.0
+LEAST_DB, MOST_DB = -6.0, 18.0
 
 
 @compiled_exactly

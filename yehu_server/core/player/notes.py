@@ -15,7 +15,7 @@ from yehu_server.core.player import brilliance, left_hand, right_hand, velocity
 from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import FIRST_OPEN, choose, stay
-from yehu_server.core.player.held import NOT_HELD, add_key, find_key, remove_key
+from yehu_server.core.player.held_keys import NOT_HELD, add_key, find_key, remove_key
 from yehu_server.core.player.left_hand import LIFTING_MS, side_of
 from yehu_server.core.player.ownership import (
     USUAL_MS,

@@ -14,7 +14,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.lab.dataset.description import A4, Description
 from yehu_server.lab.dataset.sound import Sound, calibrated, regimes
 from yehu_server.lab.simulation import signals
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import Key
 
 Array = Any
@@ -38,9 +38,9 @@ def melody(description: Description, number: int) -> Sound:
     }
     drawn["notes"] = _written(description, number, int(drawn["notes"]))
     _, calibration = calibrated(description)
-    spec = Style(seed=number % 65536).spec(rate, calibration, description.quantities)
+    spec = PlayingOptions(seed=number % 65536).spec(rate, calibration, description.quantities)
     instrument = Instrument(spec)
-    wishes = Style().wishes(instrument)
+    wishes = PlayingOptions().wishes(instrument)
     for address in description.draws:
         if address.startswith("/"):
             wishes.write(address, drawn[address])

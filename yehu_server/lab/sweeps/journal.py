@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import source_hash
+from yehu_server.compile.cache_folder import source_hash
 from yehu_server.errors import OutputError
 from yehu_server.lab.regimes.judge import FINDING
 from yehu_server.lab.sweeps.study import Study

@@ -9,8 +9,8 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 
 from yehu_server.errors import shortened
+from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.packets import pack
-from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.status import STATUS_PREFIX
 from yehu_server.live.osc.subscriptions import (
     ERRORS_A_SECOND,

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import pack
-from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.request import Request
 from yehu_server.params.table import PREFIX
 from yehu_server.playing.live_player import LivePlayer

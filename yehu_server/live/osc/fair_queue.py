@@ -15,8 +15,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
+from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.memory_quota import LITTLE_BYTES, OVERHEAD_BYTES, MemoryQuota
-from yehu_server.live.osc.peers import Peer
 
 MOST_BYTES = 16 << 20  # of all waiting packets
 TURN_NS, SLICE_NS = 2_000_000, 500_000  # of one call of `work`, and of one peer's turn in it

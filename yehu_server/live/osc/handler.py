@@ -12,14 +12,14 @@ from collections.abc import Mapping as Values
 from functools import cache, partial
 
 from yehu_server.errors import YehuError
+from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.context import Act, CallContext, ServerServices
 from yehu_server.live.osc.fair_queue import FairQueue
-from yehu_server.live.osc.names import fitting, near, parameter_of, readable
+from yehu_server.live.osc.osc_addresses import fitting, near, parameter_of, readable
 from yehu_server.live.osc.packets import Message, PacketError, answer, pack, steps, unpack
 from yehu_server.live.osc.part_calls import PartCalls, port_of, within_an_hour
 from yehu_server.live.osc.patterns import is_pattern
-from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
 from yehu_server.live.osc.status import Counts

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from functools import partial
 
 from yehu_server.errors import ParameterError, YehuError
+from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.context import CallContext, PlayerCalls
-from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.request import Request
 from yehu_server.live.part_addresses import check_own, split_group
 from yehu_server.params.table import PREFIX, UNIT

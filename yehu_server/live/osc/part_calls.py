@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from functools import partial
 
 from yehu_server.errors import RefusedError
+from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.call_table import LONGEST_SUBSCRIPTION_S
 from yehu_server.live.osc.context import CallContext, PlayerCalls
 from yehu_server.live.osc.learn_calls import LearnCalls
-from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.preset_calls import PresetCalls
 from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from yehu_server.core.engine.instrument import Instrument
     from yehu_server.live.audio.output import OutputState
     from yehu_server.live.midi.ports import MidiPorts
-    from yehu_server.live.osc.peers import Traffic, WebTraffic
+    from yehu_server.live.osc.answering import Traffic, WebTraffic
     from yehu_server.playing.delay import Delay
     from yehu_server.playing.live_player import LivePlayer
 

@@ -10,7 +10,7 @@ from typing import Any
 from yehu_server.ahead.build import RATES
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, MPE
-from yehu_server.playing.style import Style
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.scores.capture_header import SessionStart, header_of
 from yehu_server.scores.score import ScoreEvent
 from yehu_server.scores.smf.reader import read_score
@@ -30,7 +30,7 @@ def write_capture_headers(folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for rate in RATES:
-        spec = Style().spec(rate, calibration_for(rate))
+        spec = PlayingOptions().spec(rate, calibration_for(rate))
         header = header_of(SessionStart((spec,), has_room=True))
         header["build"] |= PROCESSOR
         written.append(folder / f"{rate:.0f}.json")

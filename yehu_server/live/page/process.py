@@ -22,7 +22,7 @@ from yehu_server.live.addresses import Allowed
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.page.site import HEADERS, Site
 from yehu_server.live.page.sockets import MOST_PAGES, PageSockets
-from yehu_server.live.web.guard import check, own_names
+from yehu_server.live.web.origin_check import check, own_names
 from yehu_server.util.processes import Child, Message, Parent
 
 NICE = 5  # after the processes that play

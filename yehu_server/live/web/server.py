@@ -20,14 +20,14 @@ from aiohttp import web
 
 from yehu_server.errors import DeviceError, one_line
 from yehu_server.live.addresses import Address, Allowed, format_address, plain
+from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.call_table import Call
 from yehu_server.live.osc.clients import Clients
-from yehu_server.live.osc.peers import WebTraffic
-from yehu_server.live.osc.sockets import OscPorts
+from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web import query
-from yehu_server.live.web.guard import check, own_names
-from yehu_server.live.web.loops import LoopThread
+from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.metrics import Metrics
+from yehu_server.live.web.origin_check import check, own_names
 from yehu_server.live.web.web_sockets import WebSockets
 from yehu_server.params.table import PREFIX
 from yehu_server.util.retry import why

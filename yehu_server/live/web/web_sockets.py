@@ -12,9 +12,9 @@ from typing import Any
 from aiohttp import WSMsgType, web
 
 from yehu_server.errors import shortened
+from yehu_server.live.osc.answering import MOST_UNSENT_BYTES, WebTraffic
 from yehu_server.live.osc.clients import Clients
-from yehu_server.live.osc.peers import MOST_UNSENT_BYTES, WebTraffic
-from yehu_server.live.osc.sockets import OscPorts
+from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web.query import is_listenable
 from yehu_server.params.table import PREFIX
 

@@ -99,7 +99,7 @@ TEXTS: Mapping[str, Action] = {
     **_marks({"tr": "trill", "颤音": "trill", "泛音": "harmonic"}),
 }
 
-BRACKETS: Mapping[str, Action] = {
+SLURS_AND_TIES: Mapping[str, Action] = {
     "(": Action(Act.SLUR),
     ")": Action(Act.SLUR_END),
     "~": Action(Act.TIE),
@@ -129,7 +129,7 @@ def action_of(word: str) -> Action | None:
         return FINGERING.get(word.removeprefix("Fr="))
     if len(word) == 2 and word[0] in "-_^" and word[1] in SHORT:
         return COMMANDS[SHORT[word[1]]]
-    return BRACKETS.get(word)
+    return SLURS_AND_TIES.get(word)
 
 
 def _text(text: str) -> Action | None:

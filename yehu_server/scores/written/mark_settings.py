@@ -53,7 +53,7 @@ class Node(NamedTuple):
 
 # Those that speak: a finger of 20 mN at a node of the open string, the bow near the bridge. Of the
 # third and fourth of the F string and the fourth of the C string others come. Measured
-# (tests/score/test_harmonics.py); G6 is above the range of stopped notes.
+# (tests/scores/test_harmonics.py); G6 is above the range of stopped notes.
 SOUNDING_LENGTH = 0.2986  # m
 HARMONICS: Mapping[float, Node] = {
     77.0: Node(INNER_OPEN, INNER, SOUNDING_LENGTH / 2.0),

@@ -1,0 +1,229 @@
+"""No row of a parameter stands where a slot of the engine does, nor the reverse.
+
+Both are plain whole numbers to compiled code, and many have one name in ``player.rows`` and another
+meaning in ``controls.slots``; so what the sources say is checked here.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+from yehu_server.compile.cache_folder import SOURCE_FOLDERS
+from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.controls.slots import SLOTS
+from yehu_server.core.midi.record import MIDI
+from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.rows import ROWS
+
+PACKAGE = Path(__file__).parents[3] / "yehu_server"
+SOURCES = [
+    path for folder in (*SOURCE_FOLDERS, "playing") for path in (PACKAGE / folder).rglob("*.py")
+]
+ROWS_MODULE, SLOTS_MODULE = "yehu_server.core.player.rows", "yehu_server.core.controls.slots"
+ROW, SLOT = "a row", "a slot"
+OTHER = {ROW: SLOT, SLOT: ROW}
+MAPS = {"ROW": ROW, "SLOT": SLOT, "SLOT_OF": SLOT}  # from an address, or a row
+OF_ROWS = {"SLOT_OF", "IS_OWNED", "IS_ENGINES", "SMOOTH_MS", "LOWEST", "HIGHEST"}  # vectors
+POSTED = {"RAMP": SLOT, **dict.fromkeys(("WRITE", "HOLD", "EXPRESS", "SET", "LOAD"), ROW)}
+LISTS = ("target", "values_row", "values_value")  # of MIDI: indexed by place, not by row
+
+
+def fields(record, length, kind):
+    """The fields of a record that have a number for each row, or slot."""
+    return {name: kind for name in record.names if record[name].shape == (length,)}
+
+
+# By the names that records have in all compiled code.
+INDEXED = {
+    "c": fields(CONTROLS, SLOTS, SLOT),
+    "p": fields(PLAYER, ROWS, ROW),
+    "m": {name: ROW for name in fields(MIDI, ROWS, ROW) if name not in LISTS},
+}
+INDEXED |= {"controls": INDEXED["c"], "player": INDEXED["p"]}
+
+
+class Module:
+    """What the names of a module stand for."""
+
+    def __init__(self, text: str) -> None:
+        self.tree = ast.parse(text)
+        self.kinds = {"row": ROW, "slot": SLOT}
+        self.vectors: dict[str, str] = {}
+        self.imported: dict[str, tuple[str, str]] = {}
+        self.twice: list[tuple[int, str]] = []
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.ImportFrom):
+                self._take(node)
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.Assign):
+                self._assign(node.targets[0], node.value)
+
+    def _take(self, node: ast.ImportFrom) -> None:
+        for alias in node.names:
+            name, module = alias.asname or alias.name, node.module or ""
+            before = self.imported.get(name)
+            if {module, before and before[0]} == {ROWS_MODULE, SLOTS_MODULE}:
+                self.twice.append((node.lineno, f"{name} is a row and a slot"))
+            self.imported[name] = module, alias.name
+            if module in (ROWS_MODULE, SLOTS_MODULE):
+                own = ROW if module == ROWS_MODULE else SLOT
+                if alias.name in OF_ROWS:
+                    self.vectors[name] = own
+                elif alias.name in numbers_of(module):
+                    self.kinds[name] = own
+
+    def _assign(self, target: ast.expr, value: ast.expr) -> None:
+        if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+            for each, its in zip(target.elts, value.elts, strict=True):
+                self._assign(each, its)
+        elif isinstance(target, ast.Name):
+            inside = {self.kind_of(node) for node in ast.walk(value) if is_looked_up(node)}
+            if len(inside) == 1 and isinstance(value, ast.Subscript | ast.Call):
+                self.kinds[target.id] = inside.pop() or ""
+
+    def kind_of(self, node: ast.expr) -> str | None:
+        """Whether an expression is a row or a slot, if that is plain."""
+        if isinstance(node, ast.Name):
+            return self.kinds.get(node.id)
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            module = ".".join(self.imported.get(node.value.id, ()))
+            kind = {ROWS_MODULE: ROW, SLOTS_MODULE: SLOT}.get(module)
+            return kind if kind and node.attr in numbers_of(module) else None
+        if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name):
+            return MAPS.get(node.value.id) or self.kinds.get(node.value.id)
+        return None
+
+
+def is_looked_up(node: ast.AST) -> bool:
+    return (
+        isinstance(node, ast.Subscript)
+        and isinstance(node.value, ast.Name)
+        and node.value.id in MAPS
+    )
+
+
+def numbers_of(module: str) -> set[str]:
+    """The names in a module that are rows, or slots."""
+    if module not in KNOWN:
+        KNOWN[module] = set()  # while it is read
+        read = Module(source_of(module).read_text(encoding="utf-8"))
+        KNOWN[module] = {name for name in read.kinds if name.isupper()} | {"SILENCE"}
+    return KNOWN[module]
+
+
+KNOWN: dict[str, set[str]] = {}
+
+
+def source_of(module: str) -> Path:
+    return PACKAGE.parent / f"{module.replace('.', '/')}.py"
+
+
+def places(module: Module, functions: dict[tuple[str, str], list[str]], own: str):
+    """Each place for a row or a slot: its line, which of both, the expression there."""
+    for node in ast.walk(module.tree):
+        if isinstance(node, ast.Subscript):
+            kind = kind_of_index(module, node.value)
+            if kind:
+                yield node.lineno, kind, node.slice
+        elif isinstance(node, ast.Call):
+            given = [*node.args, *(word.value for word in node.keywords)]
+            names = {getattr(each, "id", getattr(each, "attr", None)) for each in given}
+            for kind in {POSTED[name] for name in names & set(POSTED)}:
+                yield from ((node.lineno, kind, each) for each in given)
+            if isinstance(node.func, ast.Name):
+                called = module.imported.get(node.func.id, (own, node.func.id))
+                for parameter, each in zip(functions.get(called, []), node.args, strict=False):
+                    if parameter in ("row", "slot"):
+                        yield node.lineno, ROW if parameter == "row" else SLOT, each
+
+
+def kind_of_index(module: Module, value: ast.expr) -> str | None:
+    """What an array is indexed by, if that is known."""
+    if isinstance(value, ast.Attribute) and isinstance(value.value, ast.Name):
+        return INDEXED.get(value.value.id, {}).get(value.attr)
+    return module.vectors.get(value.id) if isinstance(value, ast.Name) else None
+
+
+def functions_in(name: str, module: Module) -> Iterator[tuple[tuple[str, str], list[str]]]:
+    for node in ast.walk(module.tree):
+        if isinstance(node, ast.FunctionDef):
+            arguments = [argument.arg for argument in node.args.args]
+            is_take = (name, node.name) == ("yehu_server.core.controls.ramps", "take")
+            yield (name, node.name), ["c", "slot"] if is_take else arguments
+
+
+def name_of(path: Path) -> str:
+    return ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts)
+
+
+ALL = {name_of(path): Module(path.read_text(encoding="utf-8")) for path in SOURCES}
+FUNCTIONS = dict(each for name, module in ALL.items() for each in functions_in(name, module))
+
+
+def mixed(module: Module, own: str = "") -> list[str]:
+    """Where a module takes one for the other."""
+    found = [
+        f"line {line}: {ast.unparse(node)} is {OTHER[kind]}, {kind} is wanted"
+        for line, kind, node in places(module, FUNCTIONS, own)
+        if module.kind_of(node) == OTHER[kind]
+    ]
+    return found + [f"line {line}: {what}" for line, what in module.twice]
+
+
+def test_no_module_takes_a_row_for_a_slot_or_a_slot_for_a_row():
+    found = {name: mixed(module, name) for name, module in ALL.items()}
+    assert {name: lines for name, lines in found.items() if lines} == {}
+
+
+def test_most_places_are_known():
+    known = [
+        module.kind_of(node) == kind
+        for name, module in ALL.items()
+        for _, kind, node in places(module, FUNCTIONS, name)
+    ]
+    assert sum(known) > 250
+
+
+ROWS_OF, SLOTS_OF = f"from {ROWS_MODULE} import", f"from {SLOTS_MODULE} import"
+TAKE = "from yehu_server.core.controls.ramps import take"
+MOVE = "from yehu_server.core.player.ownership import move"
+
+
+def test_a_mix_up_is_found():
+    mixes = [
+        f"{ROWS_OF} SPEED\nc.target[SPEED] = 0.0",
+        f"{ROWS_OF} SPEED as FAST\ncontrols.value[FAST]",
+        f"{ROWS_OF} FINGER_POSITION\nc.remaining[FINGER_POSITION[n]]",
+        f"{SLOTS_OF} SPEED\np.value[SPEED]",
+        f"{SLOTS_OF} ASSIST\nm.is_held[ASSIST] = 1",
+        "from yehu_server.core.controls import slots\np.value[slots.TREMOLO]",
+        "from yehu_server.core.player import rows\nc.value[rows.TREMOLO]",
+        "VOLUME, PAN = ROW['/playing/volume'], ROW['/room/pan']\nc.target[PAN]",
+        "p.is_held[SLOT['/bow/speed']]",
+        "def f(c, row):\n    c.slope[row] = 0.0",
+        f"{ROWS_OF} SPEED\n{SLOTS_OF} SPEED",
+        f"{SLOTS_OF} POSITION, SIDE\n{ROWS_OF} POSITION",
+        f"{ROWS_OF} HIGHEST\n{SLOTS_OF} FORCE\nHIGHEST[FORCE]",
+        f"{SLOTS_OF} LOWEST\nLOWEST[ROW['/bow/force']]",
+        "def f(slot):\n    return SLOT_OF[slot]\nfrom yehu_server.core.player.rows import SLOT_OF",
+        f"{ROWS_OF} SPEED\npost(RAMP, None, SPEED, 0.0)",
+        "self.post(wishes.RAMP, index=ROW[address])",
+        f"{SLOTS_OF} GAIN\nemit(m, 0, frame, WRITE, GAIN, 0.0, 0.0)",
+        f"{SLOTS_OF} SILENCE\ninstrument.post(HOLD, index=SILENCE)",
+        f"{ROWS_OF} SPEED\n{TAKE}\ntake(c, SPEED, 0.1, 0)",
+        f"{SLOTS_OF} SPEED\n{MOVE}\nmove(p, c, SPEED, 0, 0)",
+    ]
+    assert [text for text in mixes if len(mixed(Module(text))) != 1] == []
+
+
+def test_right_code_is_right():
+    right = [
+        f"{ROWS_OF} SPEED\n{SLOTS_OF} SPEED as SPEED_SLOT\np.value[SPEED] = c.value[SPEED_SLOT]",
+        f"{ROWS_OF} SLOT_OF\ndef f(c, row):\n    c.target[SLOT_OF[row]] = 0.0",
+        "self.post(wishes.RAMP, None, SLOT[address], 0.0)",
+        "m.target[m.targets] = row",
+        f"{ROWS_OF} SPEED\nemit(m, 0, frame, WRITE, SPEED, c.value[n], 0.0)",
+    ]
+    assert [text for text in right if mixed(Module(text))] == []

@@ -1,0 +1,153 @@
+"""The bridge: eleven measured modes, struck, and tied to both strings."""
+
+import json
+import math
+from dataclasses import replace
+from importlib.resources import files
+
+import numpy as np
+import pytest
+from core.physics.runs import bump, play, shaped
+
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.bridge import advance_bridge
+from yehu_server.core.physics.quantities import Quantities, StringQuantities
+from yehu_server.lab.simulation import simulate
+from yehu_server.scores.gesture import Gesture
+
+YEHU = Quantities()
+MODES = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text())[
+    "bridge_modes"
+]
+M = np.array([mode["mass_kg"] for mode in MODES])
+R = np.array([mode["damping_kg_per_s"] for mode in MODES])
+OMEGA = 2.0 * np.pi * np.array([mode["frequency_hz"] for mode in MODES])
+
+STRIKE = 1.2e-3  # s
+PEAK = 10.0  # N
+
+
+def hammer(time):
+    """A half sine, as long as a hard hammer's tip touches."""
+    return np.where(time < STRIKE, PEAK * np.sin(np.pi * time / STRIKE), 0.0)
+
+
+def struck(model, frames):
+    """The modes alone, struck by the hammer: q [shape=(frames + 1, modes)]; rest first."""
+    q = np.zeros((frames + 2, layout.MAX_MODES))
+    for n in range(frames):
+        advance_bridge(model[0], q[n + 2], q[n + 1], q[n], hammer(n * model[0]["k"]))
+    return q[1:, : len(M)]
+
+
+def ode_responses(time):
+    """Closed form of M q'' + R q' + M omega^2 q = hammer(t) from rest [shape=(times, modes)].
+
+    Convolution of the force with exp(lambda t) by hand: both are exponentials.
+    """
+    pole = -R / (2.0 * M) + 1j * np.sqrt(OMEGA**2 - (R / (2.0 * M)) ** 2)
+    turn = 1j * np.pi / STRIKE
+    t = time[:, np.newaxis]
+    upper = np.minimum(t, STRIKE)
+
+    def convolved(sign):
+        """Integral over tau from 0 to upper of exp(sign turn tau) exp(pole (t - tau))."""
+        rate = sign * turn - pole
+        return np.exp(pole * t) * (np.exp(rate * upper) - 1.0) / rate
+
+    forced = PEAK * (convolved(1) - convolved(-1)) / 2j
+    return (forced / (M * pole.imag)).imag
+
+
+def test_each_mode_rings_at_its_measured_frequency():
+    """Without damping and force, exactly: the stiffness is pre-warped."""
+    for rate in (22050.0, 44100.0, 96000.0):
+        body = replace(YEHU.body, damping=(0.0,) * len(M))
+        model = kernel.prepare(replace(YEHU, body=body), rate)
+        q = np.zeros((2002, layout.MAX_MODES))
+        q[:2] = 1e-6
+        for n in range(2000):
+            advance_bridge(model[0], q[n + 2], q[n + 1], q[n], 0.0)
+        for m, y in enumerate(q[:, : len(M)].T):
+            twice_cos = (y[1:-1] @ (y[2:] + y[:-2])) / (y[1:-1] @ y[1:-1])
+            frequency_hz = math.acos(twice_cos / 2.0) * rate / (2.0 * math.pi)
+            assert frequency_hz == pytest.approx(MODES[m]["frequency_hz"], rel=1e-9)
+
+
+@pytest.mark.parametrize("rate", [22050.0, 44100.0, 96000.0])
+def test_a_hammer_moves_the_bridge_by_the_sum_of_its_modes(rate):
+    """Exactly as [Yehu] eq. (41) written out for one mode after another."""
+    k, frames = 1.0 / rate, round(0.05 * rate)
+    expected = np.zeros(frames + 1)
+    for mass, damping, omega in zip(M, R, OMEGA, strict=True):
+        stiffness = mass * (2.0 / k * math.tan(omega * k / 2.0)) ** 2
+        q_prev, q = 0.0, 0.0
+        for n in range(frames):
+            rest = mass * (q_prev - 2.0 * q) / k**2
+            rest += stiffness * (2.0 * q + q_prev) / 4.0 - damping * q_prev / (2.0 * k)
+            whole = mass / k**2 + stiffness / 4.0 + damping / (2.0 * k)
+            q_prev, q = q, (hammer(n * k) - rest) / whole
+            expected[n + 1] += q
+    simulated = struck(kernel.prepare(YEHU, rate), frames).sum(axis=1)
+    assert np.abs(simulated - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("rate", [44100.0, 176400.0])
+def test_a_hammer_moves_the_bridge_as_eleven_oscillators_do(rate):
+    """Against the closed form, to second order in the step.
+
+    Pre-warping holds a mode's frequency and stiffens it by (omega k)^2/6, 3 % of the
+    highest mode at 44.1 kHz; the slow modes, which carry the sum, leave 0.1 %.
+    """
+    frames = round(0.05 * rate)
+    expected = ode_responses(np.arange(frames + 1) / rate)
+    simulated = struck(kernel.prepare(YEHU, rate), frames)
+    error = np.abs(simulated - expected).max(axis=0) / np.abs(expected).max(axis=0)
+    assert np.all(error < (OMEGA / rate) ** 2 / 5.0)
+    expected, simulated = expected.sum(axis=1), simulated.sum(axis=1)
+    tolerance = 1e-3 * (44100.0 / rate) ** 2
+    assert np.abs(simulated - expected).max() < tolerance * np.abs(expected).max()
+
+
+def test_without_the_weight_of_strings_the_whole_model_moves_as_the_modes_do():
+    """Strings of a ten-thousandth of the bridge's impedance, through `simulate`."""
+    # sqrt(T rho_A) = 0.3 g/s against R = 1.45 kg/s of the lightest damped mode.
+    thread = StringQuantities(L=1.0, rho=100.0, r=1.8e-5, T=1.0, E=0.0)
+    rate = 176400.0
+    instrument = replace(YEHU, string_1=thread, string_2=thread, bridge_x=0.5)
+    points = np.linspace(0.0, STRIKE, 200)
+    strike = tuple(zip(points.tolist(), hammer(points).tolist(), strict=True))
+    run = simulate(Gesture(rate, 0.05, instrument, hammer=strike))
+    time = run.arrays["time"]
+    k = 1.0 / rate
+    ahead, behind = ode_responses(time + k), ode_responses(np.maximum(time - k, 0.0))
+    expected = ((ahead - behind) / (2.0 * k)).sum(axis=1)
+    error = np.abs(run.arrays["bridge_velocity"] - expected).max()
+    assert error < 2e-3 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("string", [0, 1], ids=["F4", "C5"])
+def test_a_plucked_string_moves_the_other_through_the_bridge(string):
+    model = kernel.prepare(YEHU, 44100.0)
+    run = play({}, 0.02, state=shaped(model, string, bump(0.02, 0.26, 3e-4)))
+    other = run.state["motion"]["u"][0, int(run.state["motion"]["level"][0]), 1 - string]
+    assert 1e-7 < np.abs(other).max() < 3e-4
+    assert run["constraint_residual"].max() <= 1e-15
+
+
+def test_what_pulls_the_strings_pushes_the_modes():
+    """Newton's third law: the probed bridge force, put into eq. (41), moves the bridge."""
+    rate, k = 44100.0, 1.0 / 44100.0
+    model = kernel.prepare(YEHU, rate)
+    run = play({}, 0.01, state=shaped(model, 0, bump(0.02, 0.26, 3e-4)))
+    stiffness = M * (2.0 / k * np.tan(OMEGA * k / 2.0)) ** 2
+    whole = M / k**2 + stiffness / 4.0 + R / (2.0 * k)
+    q_prev, q = np.zeros(len(M)), np.zeros(len(M))
+    expected = []
+    for force in run["bridge_force"]:
+        rest = M * (q_prev - 2.0 * q) / k**2 + stiffness * (2.0 * q + q_prev) / 4.0
+        q_next = (-force - rest + R * q_prev / (2.0 * k)) / whole
+        expected.append((q_next - q_prev).sum() / (2.0 * k))
+        q_prev, q = q, q_next
+    error = np.abs(run["bridge_velocity"] - expected).max()
+    assert error < 1e-9 * np.abs(expected).max()

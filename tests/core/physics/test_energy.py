@@ -1,0 +1,191 @@
+"""The energy balance: none appears, none vanishes.
+
+The ledger itself is checked against tests/reference.py in test_reference_step.py.
+"""
+
+import numpy as np
+import pytest
+from core.physics.runs import bump, play, shaped
+
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.quantities import Quantities
+
+YEHU = Quantities()
+X_C = YEHU.bridge_x
+
+
+def balanced(run):
+    """Check the laws that hold in every run."""
+    assert run.state["lost"][0] == 0
+    assert run.state["unconverged"][0] == 0
+    assert np.isfinite(run.probes).all()
+    assert np.isfinite(run.ledger).all()
+    # The balance closes to rounding ...
+    assert np.abs(run["energy_error"]).max() <= 1e-9 * run.power
+    # ... but does not see what follows, so each is checked by itself.
+    assert run["loss_friction"].min() >= -1e-12 * max(1.0, run["loss_friction"].max())
+    assert run["loss_finger"].min() >= -1e-8
+    assert run["v_r_residual"].max() <= 1e-9
+    assert run["constraint_residual"].max() <= 1e-15
+    for name in ("loss_strings", "loss_bridge", "loss_hair", "loss_bow_lift"):
+        assert run[name].min() >= 0.0
+    assert run["loss_contact_reset"].min() >= 0.0
+    assert run["energy"].min() >= -1e-15
+
+
+def held(t, each, values, ramp):
+    """One value after another, each for so many seconds, with ramps between them."""
+    count = int(t[-1] / each) + 1
+    starts = each * np.arange(count)
+    levels = np.resize(values, count)
+    times = np.stack([starts, starts + ramp], axis=1).ravel()
+    return np.interp(t, times, np.stack([np.roll(levels, 1), levels], axis=1).ravel())
+
+
+def performance(t):
+    """Both strings bowed in turn with many bow changes; pressing, gliding, vibrato, lifting."""
+    turn = 2.0 * np.pi * t
+    return {
+        "F_N": held(t, 0.5, [0.7, 0.7, 0.5, -0.6, -0.6, 0.4, -0.4], ramp=0.04),
+        "v_b": 0.3 * np.sin(0.9 * turn) * (1.0 + 0.3 * np.sin(4.3 * turn)),
+        "x_b": 0.255 + 0.008 * np.sin(0.4 * turn),
+        "x_f": [
+            held(t, 0.5, [0.05, 0.10, 0.08, 0.15, 0.12, 0.19], ramp=0.1)
+            + 0.002 * np.sin(6.0 * turn)
+        ],
+        "press": [held(t, 0.7, [0.0, 0.5, 1.0, 3.0, 0.0, 0.5], ramp=0.02)],
+    }
+
+
+@pytest.mark.parametrize("rate", [44100.0, 96000.0])
+def test_four_seconds_of_playing_create_and_lose_no_energy(rate):
+    run = play(performance, 4.0, rate)
+    balanced(run)
+    # It did play: power came in, and each kind of loss took some.
+    assert run["power_in"].max() > 0.1
+    for name in ("strings", "bridge", "finger", "hair", "friction"):
+        assert run[f"loss_{name}"].max() > 1e-3, name
+
+
+@pytest.mark.parametrize("rate", [22050.0, 96000.0])
+def test_steps_in_every_control_create_no_energy(rate):
+    """Bow and finger lifted and put down from one sample to the next, the finger jumping."""
+
+    def jumps(t):
+        return {
+            "F_N": np.resize([0.7, 0.0, -0.5, 0.7, -0.7, 0.0], 1000)[(5.0 * t).astype(int)],
+            "v_b": np.where((1.3 * t) % 1.0 < 0.5, 0.3, -0.3),
+            "x_f": [np.resize([0.05, 0.10, 0.08, 0.15, 0.19], 1000)[(7.0 * t).astype(int)]],
+            "press": [np.where((2.9 * t) % 1.0 < 0.5, 5.0, 0.0)],
+        }
+
+    run = play(jumps, 2.0, rate)
+    balanced(run)
+    # The ledger has the energy of bristles and potentials that were reset.
+    assert run["loss_bow_lift"].max() > 0.0
+    assert run["loss_contact_reset"].max() > 0.0
+
+
+def node(string):
+    return float(kernel.prepare(YEHU, 44100.0)["h"][0, string])
+
+
+@pytest.mark.parametrize("string", [0, 1], ids=["F4", "C5"])
+class TestOverlappingStencils:
+    """Contacts that share nodes, where the paper's formulas fail: one at a time, then all."""
+
+    def bowed(self, string, **more):
+        F_N = 0.5 if string == 0 else -0.5
+        return {"F_N": F_N, "v_b": 0.3, "press": [1.0], **more}
+
+    @pytest.mark.parametrize("nodes", [1.0, 1.3, 1.7, 2.0])
+    def test_a_bow_one_or_two_nodes_from_the_bridge_balances(self, string, nodes):
+        x_b = X_C - nodes * node(string)
+        balanced(play(self.bowed(string, x_b=x_b), 0.3))
+
+    def test_a_finger_that_crosses_the_bow_balances(self, string):
+        balanced(
+            play(lambda t: self.bowed(string, x_f=[0.255 + 0.02 * np.sin(19.0 * t)]), 0.7),
+        )
+
+    def test_two_fingers_that_cross_each_other_balance(self, string):
+        def crossing(t):
+            x_f = [np.full(len(t), 0.1), 0.1 + 0.02 * np.sin(19.0 * t)]
+            return self.bowed(string, x_f=x_f, press=[1.0, 2.0])
+
+        balanced(play(crossing, 0.7, fingers=2))
+
+    def test_bow_bridge_and_two_fingers_within_five_nodes_balance(self, string):
+        h = node(string)
+
+        def crowd(t):
+            x_b = X_C - h * (1.6 + 0.6 * np.sin(13.0 * t))
+            x_f = [X_C - h * (2.2 + np.sin(7.0 * t)), X_C - h * (1.7 + np.sin(11.0 * t))]
+            return self.bowed(string, x_b=x_b, x_f=x_f, press=[1.0, 3.0])
+
+        balanced(play(crowd, 1.0, fingers=2))
+
+    def test_four_fingers_tapping_and_gliding_balance(self, string):
+        def hand(t):
+            turn = 2.0 * np.pi * t
+            return self.bowed(
+                string,
+                x_f=[
+                    np.full(len(t), 0.1),
+                    0.1 + 0.02 * np.sin(3.0 * turn),
+                    np.full(len(t), 0.11),
+                    0.255 + 0.03 * np.sin(2.0 * turn),
+                ],
+                press=[
+                    1.0,
+                    2.0 * (np.sin(5.0 * turn) > 0.0),
+                    0.5,
+                    3.0 * (np.sin(3.0 * turn) > 0.0),
+                ],
+            )
+
+        balanced(play(hand, 1.0, fingers=4))
+
+
+FREE = ("pluck F4", "pluck C5", "hammer")
+
+
+@pytest.mark.parametrize("rate", [22050.0, 48000.0])
+@pytest.mark.parametrize("how", FREE, ids=lambda how: how.replace(" ", "-"))
+def test_left_alone_the_instrument_only_ever_loses_energy(how, rate):
+    """After a pluck or a strike, bow lifted, finger at rest: not a sample of growth."""
+    state, strike = None, 0.0
+    if how == "hammer":
+        strike = 1e-3
+    else:
+        model = kernel.prepare(YEHU, rate)
+        state = shaped(model, FREE.index(how), bump(0.02, 0.26, 3e-4))
+
+    def hammer(t):
+        return {"hammer": np.where(t < strike, 5.0 * np.sin(np.pi * t * 1e3), 0.0)}
+
+    run = play(hammer, 1.0, rate, state=state)
+    balanced(run)
+    assert not run.finger(0)[:, 1:].any()  # the finger was not touched
+    energy = run["energy"][round(1.1e-3 * rate) :]
+    assert np.diff(energy).max() < 0.0
+    assert energy[-1] < 0.1 * energy[0]
+
+
+def test_at_rest_nothing_ever_happens():
+    run = play({"v_b": 0.3}, 0.5, fingers=4)  # a moving bow that does not touch
+    assert not run["bridge_force"].any()
+    assert not run["pressure"].any()
+    assert not run.ledger[:, :10].any()
+    assert run["v_r"][-1] == -0.3
+
+
+def test_the_bow_pays_for_the_sound():
+    """Over a bowed second: power in = losses, but for what is stored."""
+    run = play({"F_N": 0.7, "v_b": 0.3}, 1.0)
+    k = 1.0 / 44100.0
+    paid = run["power_in"].sum() * k
+    lost = sum(run[name].sum() for name in layout.LEDGER if name.startswith("loss")) * k
+    assert paid == pytest.approx(lost + run["energy"][-1], rel=1e-9)
+    # Friction slips at about the bow's speed: most of 0.7 N * mu_C * 0.3 m/s, as heat.
+    assert 0.03 < paid < 1.2 * 0.7 * 1.0207 * 0.3

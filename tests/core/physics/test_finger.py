@@ -1,0 +1,235 @@
+"""Fingers: how they land, hold, stop the string and leave."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from core.physics.runs import bump, play, rows, shaped
+from pitch import cents, pitch_of
+
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.finger import gradient, limited_gradient
+from yehu_server.core.physics.quantities import Quantities
+
+YEHU = Quantities()
+FINGER = YEHU.finger
+RATE = 44100.0
+K = 1.0 / RATE
+
+
+def wave_speed(string):
+    return math.sqrt(string.T / (string.rho * math.pi * string.r**2))
+
+
+def bowed(t, x_b=0.27, sign=1.0):
+    """A bow that starts as a player's does: force and speed together, over 40 ms."""
+    start = np.minimum(1.0, t / 0.04)
+    return {"F_N": 0.6 * sign * start, "v_b": 0.25 * start, "x_b": x_b}
+
+
+def sounding(run):
+    """Pitch of the last 0.3 s (Hz)."""
+    return pitch_of(run["bridge_force"][-round(0.3 * RATE) :], RATE)
+
+
+def penetration(run, j=0):
+    """eta of a finger on both strings, read from the grid at the end of a run (m)."""
+    s, now = run.state[0], int(run.state["motion"]["level"][0])
+    eta = []
+    for i in range(layout.STRINGS):
+        p = layout.STRINGS * j + i
+        at = layout.GHOST + int(s["contacts"]["first"][p])
+        eta.append(
+            float(s["contacts"]["weights"][p] @ s["motion"]["u"][now, i, at : at + layout.STENCIL])
+        )
+    return np.array(eta) - float(s["motion"]["U"][now, j])
+
+
+# --- pressing -----------------------------------------------------------------------------
+
+
+def test_a_press_drives_the_finger_down_like_a_thrown_stone():
+    """Before it touches: U = U_rest - (F/M) t^2/2, summed up as delta_tt sums it."""
+    press = 0.5
+    frames = 250
+    U = play({"press": [press]}, frames * K).finger(0)[:, 0]
+    n = np.arange(frames)
+    expected = FINGER.rest_height - press / FINGER.M_f * K**2 * n * (n + 1) / 2.0
+    assert expected[-1] > 0.0  # still in the air
+    assert np.abs(U - expected).max() < 1e-15
+
+
+@pytest.mark.parametrize("press", [0.3, 1.0, 3.0])
+def test_two_strings_at_rest_carry_the_whole_press(press):
+    run = play(lambda t: {"press": [press * np.minimum(1.0, t / 0.05)]}, 2.0)
+    forces = run.finger(0)[-1, 1:]
+    assert forces.sum() == pytest.approx(press, rel=1e-6)
+    # ... each as the contact law has it, eqs. (4) and (5) without motion.
+    law = FINGER.K_f * penetration(run) ** FINGER.alpha
+    assert forces == pytest.approx(law, rel=1e-4)
+
+
+@pytest.mark.parametrize("x_f", [0.05, 0.10, 0.15])
+@pytest.mark.parametrize("string", [0, 1], ids=["F4", "C5"])
+def test_a_pressed_finger_stops_the_string(string, x_f):
+    """Near c/2(x_c - x_f), a little sharp: 5 to 100 cents, to be calibrated."""
+    sign = 1.0 if string == 0 else -1.0
+    x_c = YEHU.bridge_x
+
+    x_b = x_c - 0.13 * (x_c - x_f)
+    run = play(lambda t: {**bowed(t, x_b, sign), "x_f": [x_f], "press": [3.0]}, 0.8, ledger=False)
+    ideal = wave_speed(YEHU.strings[string]) / (2.0 * (x_c - x_f))
+    assert 5.0 < cents(sounding(run), ideal) < 100.0
+
+
+@pytest.mark.parametrize(("modulation", "rise"), [(0.0, (-5.0, 5.0)), (1.0, (15.0, 40.0))])
+def test_a_harder_press_raises_the_pitch_as_it_stretches_the_strings(modulation, rise):
+    yehu = replace(YEHU, tension_modulation=modulation)
+    soft, hard = (
+        play(
+            lambda t, press=press: {**bowed(t), "press": [press]},
+            0.8,
+            ledger=False,
+            quantities=yehu,
+        )
+        for press in (1.0, 5.0)
+    )
+    assert rise[0] < cents(sounding(hard), sounding(soft)) < rise[1]
+
+
+# --- leaving ------------------------------------------------------------------------------
+
+
+def test_a_lifted_finger_in_the_air_returns_as_a_critically_damped_spring():
+    model = kernel.prepare(YEHU, RATE)
+    state = kernel.at_rest(model)
+    state["motion"]["U"][:] = FINGER.rest_height + 3e-3
+    U = play({}, 0.05, state=state).finger(0)[:, 0] - FINGER.rest_height
+    turn = FINGER.omega_lift * K * np.arange(1, len(U) + 1)
+    assert np.abs(U - 3e-3 * (1.0 + turn) * np.exp(-turn)).max() < 0.005 * 3e-3
+    assert np.abs(U[round(0.02 * RATE) :]).max() < 0.02 * 3e-3
+
+
+def released(press, rate=RATE):
+    """Height above rest (m) after a press of 0.2 s, and the contact forces."""
+    run = play(lambda t: {"press": [np.where(t < 0.2, press, 0.0)]}, 0.4, rate, ledger=False)
+    after = run.finger(0)[round(0.2 * rate) :]
+    return after[:, 0] - FINGER.rest_height, after[:, 1:]
+
+
+@pytest.mark.parametrize("rate", [22050.0, 44100.0, 96000.0])
+@pytest.mark.parametrize("press", [0.3, 0.5, 1.0])
+def test_a_lifted_finger_is_back_at_rest_within_40_ms_and_stays(press, rate):
+    height, _ = released(press, rate)
+    later = round(0.04 * rate)
+    assert np.abs(height[later:]).max() < 0.02 * FINGER.rest_height
+    assert np.diff(height[:later]).min() > 0.0
+    assert height.max() < 1e-9
+
+
+def test_after_a_hard_press_the_string_holds_the_finger_a_little_longer():
+    """5 N, ten times what is played: the contact pulls it for 30 ms; 60 ms in all."""
+    height, forces = released(5.0)
+    later = round(0.06 * RATE)
+    assert np.abs(height[later:]).max() < 0.02 * FINGER.rest_height
+    assert not forces[later:].any()
+    assert height.max() < 1e-9
+
+
+def test_a_finger_at_rest_never_moves_and_touches_nothing():
+    run = play({"F_N": 0.3, "v_b": 0.1}, 1.0, fingers=4)
+    for j in range(4):
+        assert np.all(run.finger(j) == [FINGER.rest_height, 0.0, 0.0])
+
+
+def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
+    """Bit for bit: pressed, lifted, at rest, hit there by a plucked string, and pressed again."""
+    model = kernel.prepare(YEHU, RATE, 2)
+    t = np.arange(round(0.6 * RATE)) / RATE
+    table = rows(
+        len(t),
+        2,
+        {"press": [np.where((t < 0.05) | (t > 0.5), 1.0, 0.0), 0.0], "x_f": [0.1, 0.012]},
+    )
+    table[:, layout.F_PLUCK] = np.where((t > 0.35) & (t < 0.4), 25.0, 0.0)
+    table[:, layout.X_PLUCK] = 0.1
+    found = []
+    for is_reminded in (False, True):
+        state = kernel.at_rest(model)
+        probes = np.zeros((len(t), layout.probe_columns(2)))
+        was_still = np.zeros((len(t), 2), bool)
+        for n in range(len(t)):
+            if is_reminded:
+                state["motion"]["resting"] = 0
+            part = slice(n, n + 1)
+            kernel.advance(model, state, table[part], probes[part], None)
+            was_still[n] = state["motion"]["resting"][0, :2]
+        found.append((probes, was_still))
+    (probes, was_still), (again, _) = found
+    hit = np.abs(probes[:, layout.FINGER_PROBES + 1]) > 0.0
+    assert was_still[(t > 0.3) & (t < 0.35), 0].all()
+    assert (hit & (t > 0.35) & (t < 0.5)).any()
+    assert not was_still[hit, 0].any()
+    assert was_still[:, 1].any()
+    assert np.array_equal(probes, again)
+
+
+# --- the contact law ----------------------------------------------------------------------
+
+
+def test_the_gradient_never_lets_the_mean_potential_go_negative():
+    """theta of eq. (34) keeps mu_t+ Psi = Psi + g (eta* - eta^{n-1})/4 >= 0."""
+    model = kernel.prepare(YEHU, RATE)[0]
+    rng = np.random.default_rng(21)
+    below_1 = 0
+    for _ in range(5000):
+        Psi, eta = 10.0 ** rng.uniform(-8.0, 0.0), 10.0 ** rng.uniform(-7.0, -3.0)
+        travel = rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-9.0, -2.0)
+        g = limited_gradient(gradient(model, eta), Psi, travel)
+        full = math.sqrt(FINGER.K_f * (FINGER.alpha + 1.0) / 2.0 * eta ** (FINGER.alpha - 1.0))
+        if Psi + full * travel / 4.0 >= 0.0:
+            assert g == pytest.approx(full, rel=1e-12)
+        else:
+            below_1 += 1
+            assert 0.0 <= g < full
+            assert Psi + g * travel / 4.0 == pytest.approx(0.0, abs=1e-15 * Psi + 1e-30)
+    assert below_1 > 500
+
+
+def test_a_finger_that_glides_drags_the_pitch_with_it():
+    def glide(t):
+        x_f = np.interp(t, [0.35, 0.5], [0.05, 0.10])
+        return {**bowed(t), "x_f": [x_f], "press": [2.0]}
+
+    force = play(glide, 1.0, ledger=False)["bridge_force"]
+    low = pitch_of(force[round(0.2 * RATE) : round(0.35 * RATE)], RATE)
+    high = pitch_of(force[round(0.7 * RATE) :], RATE)
+    assert cents(high, low) == pytest.approx(1200.0 * math.log2(0.25 / 0.20), abs=25.0)
+
+
+def test_of_two_fingers_the_one_nearer_to_the_bridge_decides_the_pitch():
+    """Legato holds the old note under the new one."""
+    old, both, new = (
+        sounding(
+            play(
+                lambda t, press=press: {**bowed(t), "x_f": [0.05, 0.10], "press": press},
+                0.8,
+                fingers=2,
+                ledger=False,
+            )
+        )
+        for press in ([2.0, 0.0], [2.0, 2.0], [0.0, 2.0])
+    )
+    assert abs(cents(both, new)) < 25.0  # it stretches the strings a little more
+    assert cents(both, old) > 300.0
+
+
+def test_a_plucked_string_bounces_off_a_finger_at_rest():
+    """Without a press the finger still has its mass: the string meets it and is pushed."""
+    model = kernel.prepare(YEHU, RATE)
+    run = play({}, 0.05, state=shaped(model, 0, bump(0.02, 0.26, 2e-3)))
+    forces = run.finger(0)[:, 1]
+    assert forces.max() > 0.01
+    assert run.finger(0)[:, 0].max() > FINGER.rest_height
+    assert run["constraint_residual"].max() <= 1e-15

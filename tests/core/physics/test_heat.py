@@ -1,0 +1,100 @@
+"""The temperature of the contact, where an instrument has one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from core.physics.runs import play
+
+from yehu_server.core.physics import kernel
+from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.rosin_heat import static_coefficient
+from yehu_server.errors import ParameterError
+
+YEHU = Quantities()
+THERMAL = override(YEHU, {"bow": {"friction": "thermal"}})
+
+
+def bowed(quantities=THERMAL, v_b=0.2, seconds=0.5, rate=44100.0, force=0.5):
+    def curves(time):
+        rise = np.minimum(1.0, time / 0.04)
+        return {"F_N": force * rise, "v_b": v_b * rise, "x_f": [0.1], "press": [1.5]}
+
+    return play(curves, seconds, rate, quantities=quantities)
+
+
+@pytest.mark.parametrize("v_r", [0.01, 0.1, 0.228, 0.5])
+def test_steady_slipping_has_the_friction_of_the_stribeck_curve(v_r):
+    bow = THERMAL.bow
+    mu = bow.mu_C + (bow.mu_S - bow.mu_C) * np.exp(-((v_r / bow.v_s) ** 2))
+    model = kernel.prepare(THERMAL, 44100.0)[0]
+    state = kernel.at_rest(np.array([model]))[0]["motion"]
+    state["w"][1] = mu * v_r
+    found = static_coefficient.py_func(Named(model), Named(state), 1)
+    assert found == pytest.approx(mu, abs=2e-3)
+
+
+class Named:
+    """A record whose fields are attributes."""
+
+    def __init__(self, record):
+        self.record = record
+
+    def __getattr__(self, name):
+        return self.record[name]
+
+
+def test_a_contact_at_rest_is_cold_and_has_static_friction():
+    model = kernel.prepare(THERMAL, 44100.0)
+    cold = kernel.at_rest(model)[0]["motion"]
+    assert static_coefficient.py_func(Named(model[0]), Named(cold), 0) == pytest.approx(
+        YEHU.bow.mu_S
+    )
+
+
+def test_slipping_heats_the_contact_and_rest_cools_it():
+    run = bowed()
+    hot = run.state[0]["motion"]["w"][0]
+    assert 0.0 < hot < 3.0
+    after = play({"F_N": 0.0}, 0.01, quantities=THERMAL, state=run.state)
+    assert after.state[0]["motion"]["w"][0] < 1e-9
+
+
+@pytest.mark.parametrize("rate", [44100.0, 48000.0, 96000.0])
+def test_the_ledger_closes(rate):
+    run = bowed(rate=rate)
+    assert np.abs(run["energy_error"]).max() < 2e-9 * run.power
+    assert run["loss_friction"].min() > -1e-12 * run.power
+
+
+@pytest.mark.parametrize("v_b", [0.5, 1.0])
+def test_a_bow_that_always_slips_is_as_hot_as_the_power_per_newton_that_it_loses(v_b):
+    # Too light to catch the string: the friction is that of the Stribeck curve.
+    bow = THERMAL.bow
+    mu = bow.mu_C + (bow.mu_S - bow.mu_C) * np.exp(-((v_b / bow.v_s) ** 2))
+    run = play({"F_N": 0.01, "v_b": v_b}, 0.05, quantities=THERMAL)
+    assert run.state[0]["motion"]["w"][0] == pytest.approx(mu * v_b, rel=0.02)
+    assert np.abs(run["f_b"][-100:]).mean() == pytest.approx(0.01 * mu, rel=0.02)
+
+
+def test_it_converges_with_the_rate():
+    # The start of a note, before chaos: the bridge force over 12 ms.
+    def start(rate):
+        run = bowed(seconds=0.012, rate=rate)
+        time = np.arange(len(run["bridge_force"])) / rate
+        return np.interp(np.arange(0.0, 0.0115, 1e-4), time, run["bridge_force"])
+
+    fine = start(192000.0)
+    errors = [np.abs(start(rate) - fine).max() for rate in (24000.0, 48000.0, 96000.0)]
+    assert errors[0] > errors[1] > errors[2]
+    assert errors[2] < 0.5 * errors[0]
+
+
+def test_the_plain_law_knows_no_temperature():
+    np.testing.assert_array_equal(bowed(YEHU).state[0]["motion"]["w"], 0.0)
+
+
+def test_a_law_that_is_not_known_is_refused():
+    with pytest.raises(ParameterError, match=r"bow.friction: 'hot' is not one of elasto-plastic"):
+        override(YEHU, {"bow": {"friction": "hot"}})
+    assert replace(YEHU.bow, friction="thermal").friction == "thermal"

@@ -1,0 +1,246 @@
+"""The whole kernel: pitch, independence of block size, lost states."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from core.physics.runs import bump, play, rows, shaped
+from pitch import cents, pitch_of
+
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.errors import ParameterError
+from yehu_server.lab.simulation import simulate
+from yehu_server.scores.gesture import Gesture
+
+YEHU = Quantities()
+RATE = 44100.0
+OPEN = {"F4": (0.7, 349.228), "C5": (-0.7, 523.251)}
+
+
+# --- sounding -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rate", [44100.0, 48000.0, 96000.0])
+@pytest.mark.parametrize("string", OPEN)
+def test_an_open_string_speaks_at_its_pitch(string, rate):
+    """Within 35 cents before any calibration: 0.7 N, 0.3 m/s, x_b 0.255 m."""
+    F_N, frequency_hz = OPEN[string]
+    run = play({"F_N": F_N, "v_b": 0.3, "x_b": 0.255}, 1.2, rate, ledger=False)
+    # It speaks within 0.3 s and stays: the same over each later 0.3 s.
+    for start in (0.3, 0.6, 0.9):
+        part = run["bridge_force"][round(start * rate) : round((start + 0.3) * rate)]
+        assert abs(cents(pitch_of(part, rate), frequency_hz)) < 35.0
+        assert part.std() > 0.05
+
+
+def test_bowing_the_other_way_gives_the_mirrored_sound():
+    """Nothing in strings, bridge and friction knows up from down: bit for bit."""
+    instrument = override(YEHU, {"finger": {"rest_height": 0.05}})
+    one, other = (
+        play({"F_N": 0.7, "v_b": v_b}, 0.5, quantities=instrument, ledger=False)
+        for v_b in (0.3, -0.3)
+    )
+    assert np.array_equal(one["pressure"], -other["pressure"])
+
+
+def test_the_sign_of_the_bow_force_chooses_the_string():
+    for sign, string in ((1.0, 0), (-1.0, 1)):
+        state = play({"F_N": 0.7 * sign, "v_b": 0.3}, 0.01, ledger=False).state[0]
+        amplitude = np.abs(state["motion"]["u"]).max(axis=(0, 2))
+        assert amplitude[string] > 10.0 * amplitude[1 - string]
+        assert state["motion"]["z"][1 - string] == 0.0
+        assert state["motion"]["z"][string] != 0.0
+
+
+def test_a_bow_force_below_the_lift_force_is_a_lifted_bow():
+    lift = YEHU.bow.lift_force
+    lifted = play({"F_N": 0.999 * lift, "v_b": 0.3}, 0.1, ledger=False)
+    assert not lifted["bridge_force"].any()
+    touching = play({"F_N": 1.001 * lift, "v_b": 0.3}, 0.1, ledger=False)
+    assert touching["bridge_force"].any()
+
+
+# --- one machine --------------------------------------------------------------------------
+
+
+def varied(frames, fingers):
+    t = np.arange(frames) / RATE
+    return rows(
+        frames,
+        fingers,
+        {
+            "F_N": 0.7 * np.sin(40.0 * t),
+            "v_b": 0.3 * np.cos(17.0 * t),
+            "hammer": np.where(t < 1e-3, 1.0, 0.0),
+            "x_f": [0.1 + 0.05 * np.sin(9.0 * t + j) for j in range(fingers)],
+            "press": [np.maximum(0.0, 2.0 * np.sin(30.0 * t + j)) for j in range(fingers)],
+        },
+    )
+
+
+@pytest.mark.parametrize("fingers", [1, 4])
+def test_the_size_of_a_block_changes_nothing(fingers):
+    """Bit for bit, with and without a ledger."""
+    frames = 4096
+    model = kernel.prepare(YEHU, RATE, fingers)
+    controls = varied(frames, fingers)
+    results = []
+    for block in (frames, 1, 64, 100, 333):
+        state = kernel.at_rest(model)
+        probes = np.zeros((frames, layout.probe_columns(fingers)))
+        ledger = np.zeros((frames, len(layout.LEDGER)))
+        for start in range(0, frames, block):
+            part = slice(start, start + block)
+            book = ledger[part] if block == 64 else None
+            kernel.advance(model, state, controls[part], probes[part], book)
+        results.append(probes)
+    assert results[0].any()
+    for other in results[1:]:
+        assert np.array_equal(results[0], other)
+
+
+def test_fingers_that_stay_up_change_nothing():
+    """One finger of four playing is the paper's model: to rounding, over a start."""
+    one, four = (
+        play(
+            lambda t, spare=spare: {
+                "F_N": 0.7,
+                "v_b": 0.3,
+                "x_f": [0.1 + 0.02 * t, *[0.2] * spare],
+                "press": [2.0, *[0.0] * spare],
+            },
+            300 / RATE,
+            fingers=1 + spare,
+            ledger=False,
+        )
+        for spare in (0, 3)
+    )
+    scale = np.abs(one.probes).max(axis=0) + 1e-9
+    assert np.all(np.abs(one.probes - four.probes[:, : one.probes.shape[1]]) <= 1e-8 * scale)
+
+
+def test_simulate_and_the_kernel_are_the_same_machine():
+    gesture = Gesture(
+        RATE,
+        0.2,
+        controls={
+            "bow_force": ((0.0, 0.7),),
+            "bow_velocity": ((0.0, 0.3),),
+            "finger_position": ((0.0, 0.05), (0.2, 0.1)),
+            "press_force": ((0.0, 1.0),),
+        },
+    )
+    arrays = simulate(gesture).arrays
+    run = play(
+        lambda t: {
+            "F_N": 0.7,
+            "v_b": 0.3,
+            "x_f": [np.interp(t, [0.0, 0.2], [0.05, 0.1])],
+            "press": [1.0],
+        },
+        0.2,
+        ledger=False,
+    )
+    assert np.array_equal(arrays["bridge_force"], run["bridge_force"])
+    assert np.array_equal(arrays["pressure"], run["pressure"])
+
+
+def test_between_one_and_four_fingers_are_possible():
+    for fingers in (0, 5, -1):
+        with pytest.raises(ParameterError, match="fingers"):
+            kernel.prepare(YEHU, RATE, fingers)
+
+
+def test_a_bridge_mode_above_nyquist_is_refused():
+    body = replace(YEHU.body, frequency_hz=(*YEHU.body.frequency_hz[:-1], 10.5e3))
+    with pytest.raises(ParameterError, match="10500 Hz is too high"):
+        kernel.prepare(replace(YEHU, body=body), 22050.0)
+
+
+# --- a lost state -------------------------------------------------------------------------
+
+
+def put(name, index, level=None):
+    """Write a NaN into one place of a state; `level` counts from now, back in time."""
+
+    def write(state):
+        at = index if level is None else ((int(state["motion"]["level"][0]) - level) % 3, *index)
+        state["motion"][name][(0, *at)] = np.nan
+
+    return write
+
+
+PLACES = {
+    "string": put("u", (0, 12), 0),
+    "string before": put("u", (1, 12), 1),
+    "bridge mode": put("q", (3,), 0),
+    "hair": put("zeta", (0,), 0),
+    "hair of the other string": put("zeta", (1,), 0),
+    "bristles": put("z", (0,)),
+    "potential": put("Psi", (0,)),
+    "pressed finger": put("U", (0,), 0),
+    "lifted finger": put("U", (1,), 0),
+    "radiation filter": put("s_1", (3,)),
+}
+PLAYING = {"F_N": 0.7, "v_b": 0.3, "x_f": [0.1, 0.15], "press": [1.0, 0.0]}
+
+
+@pytest.fixture(scope="module", params=PLACES, ids=lambda name: name.replace(" ", "-"))
+def lost(request):
+    """State and probes of 0.05 s after a NaN appeared in the midst of playing."""
+    run = play(PLAYING, 0.1, fingers=2, ledger=False)
+    PLACES[request.param](run.state)
+    frames = round(0.05 * RATE)
+    probes = np.zeros((frames, layout.probe_columns(2)))
+    kernel.advance(run.model, run.state, rows(frames, 2, PLAYING), probes, None)
+    return run.state, probes
+
+
+def when_lost(probes):
+    """The one sample that says it lost the state."""
+    samples = np.flatnonzero(probes[:, layout.ITERATIONS] == -1.0).tolist()
+    assert len(samples) == 1
+    return samples[0]
+
+
+def test_a_nan_anywhere_is_noticed_counted_and_cleared(lost):
+    """Within 20 samples: a wave in the string needs that long to reach the bridge."""
+    state, probes = lost
+    assert state["lost"][0] == 1
+    where = when_lost(probes)
+    assert where < 20
+    assert not np.delete(probes[where], layout.ITERATIONS).any()
+    for name in ("u", "q", "zeta", "z", "U", "Psi", "s_1", "s_2", "history"):
+        assert np.isfinite(state["motion"][name]).all(), name
+
+
+def test_a_nan_never_reaches_the_sound(lost):
+    _, probes = lost
+    heard = [layout.BRIDGE_FORCE, layout.BRIDGE_VELOCITY, layout.PRESSURE]
+    assert np.isfinite(probes[:, heard]).all()
+
+
+def test_a_nan_never_reaches_a_probe(lost):
+    _, probes = lost
+    assert np.isfinite(probes).all()
+
+
+def test_after_a_loss_the_instrument_starts_again_from_rest(lost):
+    _, probes = lost
+    after = probes[when_lost(probes) + 1 :]
+    fresh = play(PLAYING, len(after) / RATE, fingers=2, ledger=False)
+    assert np.array_equal(after, fresh.probes)
+
+
+def test_a_state_that_blew_up_is_lost_too():
+    """A bridge force beyond a meganewton is no sound, though it is a number."""
+    model = kernel.prepare(YEHU, RATE)
+    state = shaped(model, 0, bump(0.02, 0.26, 1e9))
+    probes = np.zeros((200, layout.probe_columns(1)))
+    kernel.advance(model, state, rows(200, 1, {}), probes, None)
+    assert state["lost"][0] == 1
+    assert np.abs(probes[:, layout.BRIDGE_FORCE]).max() < 1e6
+    # At rest from then on: every probe but the finger's height is zero.
+    after = np.delete(probes[when_lost(probes) + 1 :], layout.FINGER_PROBES, axis=1)
+    assert not after.any()

@@ -1,0 +1,47 @@
+"""The default room pleases, and leaves a performance as loud as it was."""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+from stages import Stage, told
+
+from yehu_server.playing.pitch_and_level import a_weighting
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
+from yehu_server.scores.smf.reader import read_score
+
+ROOT = Path(__file__).resolve().parents[3]
+RATE = 44100
+
+
+def loudness_db(sound: np.ndarray) -> np.ndarray:
+    """A-weighted mean power of each channel."""
+    frames = len(sound) // 4096 * 4096
+    rows = sound[:frames].astype(np.float64).reshape(-1, 4096, sound.shape[1])
+    spectra = np.fft.rfft(rows * np.hanning(4096)[None, :, None], axis=1)
+    weights = a_weighting(np.fft.rfftfreq(4096, 1.0 / RATE))[None, :, None]
+    return 10.0 * np.log10(np.square(np.abs(spectra * weights)).sum(axis=(0, 1)))
+
+
+@pytest.fixture(scope="module")
+def air() -> np.ndarray:
+    """The first seconds of the slow air, dry."""
+    score = read_score(ROOT / "examples" / "slow_air.mid")
+    events = tuple(event for event in score.events if event.time_s < 12.0)
+    score = dataclasses.replace(score, events=events, duration_s=12.0)
+    blocks = Performance(score, Options(rate=RATE, is_dry=True)).blocks()
+    return np.concatenate(list(blocks))[:, 0]
+
+
+def test_the_default_room_changes_the_loudness_of_a_tune_by_less_than_a_decibel(air):
+    heard = Stage(RATE).play(air, told(len(air)))[0]
+    power = np.mean(10.0 ** (loudness_db(heard) / 10.0))
+    change = 10.0 * np.log10(power) - loudness_db(air[:, None])[0]
+    assert 0.0 < change < 1.0
+
+
+def test_a_tune_in_the_middle_is_as_loud_to_both_sides(air):
+    left, right = loudness_db(Stage(RATE).play(air, told(len(air)))[0])
+    assert left == pytest.approx(right, abs=1.5)

@@ -1,0 +1,28 @@
+"""Fits that several files look at: each takes seconds."""
+
+import pytest
+from lab.body.bodies import with_velocity_only
+
+from yehu_server.lab.body import average, fit, made_taps
+
+
+@pytest.fixture(scope="session")
+def taps():
+    """Five taps of the shipped body, with noise 60 dB below."""
+    return made_taps(noise_db=60.0)
+
+
+@pytest.fixture(scope="session")
+def whole_fit():
+    """Admittance and radiation of five taps with noise 40 dB below."""
+    return fit(average(made_taps(noise_db=40.0)))
+
+
+@pytest.fixture(scope="session", params=[40.0, 30.0], ids=lambda db: f"{db:g}dB")
+def fitted(request, whole_fit):
+    """The noise below the signals (dB), and what is fitted to five such taps."""
+    if request.param == 40.0:
+        return request.param, whole_fit
+    taps = made_taps(noise_db=request.param, seconds=0.4, seed=1)
+    measured = average([with_velocity_only(tap) for tap in taps])
+    return request.param, fit(measured, band_hz=(150.0, 5500.0))

@@ -1,0 +1,120 @@
+"""The paper's measured body comes out again from taps that were made of it."""
+
+import numpy as np
+import pytest
+from core.physics.runs import play
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lab.body.bodies import DAMPING, HZ, MASS, admittance, off_db, rms
+
+from yehu_server.core.physics.layout import MAX_MODES
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.errors import MeasurementError
+from yehu_server.lab.body import Curve, Measurement, fit
+
+GRID = np.geomspace(200.0, 5000.0, 5000)
+
+
+def test_the_admittance_comes_out_again(fitted):
+    _, found = fitted
+    off = off_db(found.admittance(GRID), admittance(GRID))
+    assert rms(off) < 0.1
+    assert np.abs(off).max() < 0.5
+
+
+def test_as_many_modes_are_found_as_there_are(fitted):
+    _, found = fitted
+    assert len(found.body.mass) in (len(HZ) - 1, len(HZ))  # two lie within 6 Hz
+
+
+def test_frequencies_dampings_and_masses_are_those_of_the_modes(fitted):
+    noise_db, found = fitted
+    hz, modes = np.array(found.body.frequency_hz), found.modes
+    alone = [i for i in range(len(HZ)) if np.sort(np.abs(HZ - HZ[i]))[1] > 20.0]
+    for i in alone:
+        at = int(np.abs(hz - HZ[i]).argmin())
+        share = {40.0: 0.05, 30.0: 0.15}[noise_db]
+        assert hz[at] == pytest.approx(HZ[i], rel=0.001)
+        assert modes.mass[at] == pytest.approx(MASS[i], rel=share)
+        assert modes.resistance[at] == pytest.approx(DAMPING[i], rel=share)
+
+
+def test_the_real_part_is_nowhere_below_zero(fitted):
+    _, found = fitted
+    assert found.admittance(np.linspace(1.0, 22_000.0, 50_000)).real.min() > 0.0
+
+
+def test_a_clean_measurement_has_nothing_to_warn_of(fitted):
+    noise_db, found = fitted
+    told = [line for line in found.warnings if not line.startswith("no radiation")]
+    assert told == [] or noise_db == 30.0
+
+
+def test_a_number_of_modes_is_kept():
+    hz = np.linspace(300.0, 800.0, 200)
+    found = fit(Measurement(Curve(hz, admittance(hz)), None), band_hz=(300.0, 800.0), modes=2)
+    assert len(found.body.mass) == 2
+    assert found.body.frequency_hz == pytest.approx(HZ[:2], rel=0.01)
+
+
+def test_a_stiff_support_below_the_band_and_modes_above_it_are_met():
+    """What a body does beyond the band is seen in it: as a mass, and as a spring."""
+    modes_hz, mass = np.array([40.0, 900.0, 6000.0]), np.array([0.05, 0.02, 0.003])
+    damping = mass * 2.0 * np.pi * modes_hz * 0.03
+    hz = np.arange(200.0, 3000.0, 4.0)
+    values = admittance(hz, modes_hz, mass, damping)
+    found = fit(Measurement(Curve(hz, values), None), band_hz=(200.0, 3000.0))
+    assert rms(off_db(found.admittance(hz), values)) < 0.1
+
+
+@settings(max_examples=6)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    count=st.integers(1, MAX_MODES),
+    noise=st.sampled_from([0.0, 0.1, 3.0]),
+)
+def test_whatever_was_measured_its_body_is_passive_and_its_energy_balances(seed, count, noise):
+    random = np.random.default_rng(seed)
+    hz = np.linspace(100.0, 4000.0, 150)
+    modes_hz = random.uniform(100.0, 4000.0, count)
+    mass = np.exp(random.uniform(np.log(1e-3), np.log(10.0), count))
+    damping = mass * 2.0 * np.pi * modes_hz * np.exp(random.uniform(-6.0, -1.5, count))
+    values = admittance(hz, modes_hz, mass, damping)
+    scatter = random.standard_normal(len(hz)) + 1j * random.standard_normal(len(hz))
+    values = values + noise * np.abs(values).mean() * scatter
+    try:
+        found = fit(Measurement(Curve(hz, values), None), band_hz=(100.0, 4000.0))
+    except MeasurementError as error:
+        if noise > 1.0 and "no mode stands out" in str(error):
+            return
+        raise
+    assert found.admittance(np.linspace(1.0, 20_000.0, 5000)).real.min() >= 0.0
+    run = play(
+        lambda t: {"F_N": np.minimum(t / 0.01, 1.0) * 0.6, "v_b": np.minimum(t / 0.02, 1.0) * 0.2},
+        0.05,
+        quantities=Quantities(body=found.body),
+    )
+    assert run.state["lost"][0] == 0
+    assert np.abs(run["energy_error"]).max() <= 1e-9 * run.power
+    assert run["loss_bridge"].min() >= 0.0
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"modes": 17}, "17 modes"),
+        ({"modes": 0}, "0 modes"),
+        ({"sections": 33}, "33 sections"),
+        ({"band_hz": (1000.0, 500.0)}, "1000 to 500 Hz"),
+        ({"band_hz": (9000.0, 9500.0)}, "too few"),
+    ],
+)
+def test_what_cannot_be_fitted_is_told(options, told):
+    hz = np.linspace(100.0, 5000.0, 500)
+    with pytest.raises(MeasurementError, match=told):
+        fit(Measurement(Curve(hz, admittance(hz)), None), **options)
+
+
+def test_nothing_measured_is_told():
+    with pytest.raises(MeasurementError, match="nothing was measured"):
+        fit(Measurement(None, None))

@@ -1,0 +1,93 @@
+"""An admittance is what it is said to be: kind, sign and units."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from lab.body.bodies import DAMPING, MASS, admittance, radiation
+from lab.body.bodies import HZ as MODES_HZ
+
+from yehu_server.errors import MeasurementError
+from yehu_server.lab.body import Curve
+from yehu_server.lab.body.curve import to_mobility
+from yehu_server.lab.body.plausible import check_admittance, check_radiation
+
+HZ = np.linspace(100.0, 6000.0, 1000)
+TURN = 2j * np.pi * HZ
+MEASURED = {"receptance": admittance(HZ) / TURN, "mobility": admittance(HZ),
+            "accelerance": admittance(HZ) * TURN}  # fmt: skip
+
+
+def checked(values, kind):
+    return check_admittance(Curve(HZ, to_mobility(HZ, values, kind)), kind)
+
+
+def test_the_right_kind_is_taken_and_the_wrong_way_round_is_named():
+    for kind, values in MEASURED.items():
+        assert checked(values, kind) == []
+        with pytest.raises(MeasurementError, match="wrong way round"):
+            checked(-values, kind)
+
+
+def test_the_wrong_kind_is_named_also_from_500_hz_up_and_with_noise():
+    """Above its first resonance a body is mostly a mass, whose accelerance is a number."""
+    hz = HZ[HZ > 500.0]
+    noise = 1e-3 * np.random.default_rng(3).standard_normal((2, len(hz))).T @ [1.0, 1j]
+    for kind, told in product(MEASURED, MEASURED):
+        measured = to_mobility(hz, admittance(hz) + noise, kind, back=True)
+        curve = Curve(hz, to_mobility(hz, measured, told))
+        if kind == told:
+            check_admittance(curve, told)
+        else:
+            with pytest.raises(MeasurementError, match=f"this is an? {kind}, and not an? {told}"):
+                check_admittance(curve, told)
+
+
+def test_two_points_are_no_driving_point():
+    """Modes of either sign, as between the bridge and another place."""
+    signs = np.array([1, -1, 1, -1, 1, 1, -1, -1, 1, -1, 1])
+    values = admittance(HZ, MODES_HZ, MASS * signs, DAMPING * signs)
+    with pytest.raises(MeasurementError, match="same point"):
+        checked(values, "mobility")
+
+
+@pytest.mark.parametrize("factor", [1e3, 1e-4])
+def test_wrong_units_are_named(factor):
+    with pytest.raises(MeasurementError, match="no fiddle's"):
+        checked(factor * MEASURED["mobility"], "mobility")
+    with pytest.raises(MeasurementError, match="no fiddle's"):
+        check_radiation(Curve(HZ, factor * factor * radiation(HZ)))
+
+
+@pytest.mark.parametrize("factor", [1e60, 1e-60])
+def test_what_no_unit_makes_of_a_measurement_is_refused(factor):
+    with pytest.raises(MeasurementError, match="too large or too small"):
+        checked(factor * MEASURED["mobility"], "mobility")
+    with pytest.raises(MeasurementError, match="too large or too small"):
+        check_radiation(Curve(HZ, factor * radiation(HZ)))
+
+
+def test_unusual_sizes_are_warned_of():
+    assert len(checked(50.0 * MEASURED["mobility"], "mobility")) == 1
+    assert len(check_radiation(Curve(HZ, 50.0 * radiation(HZ)))) == 1
+    assert check_radiation(Curve(HZ, radiation(HZ))) == []
+
+
+def test_a_late_sensor_is_warned_of():
+    late = MEASURED["mobility"] * np.exp(-TURN * 1e-5)
+    assert any("late" in line for line in checked(late, "mobility"))
+
+
+@pytest.mark.parametrize("lines", [300, 3000])
+def test_a_delay_is_not_taken_for_another_kind(lines):
+    """50 us are a quarter of a circle at 5 kHz."""
+    hz = np.linspace(100.0, 6000.0, lines)
+    late = admittance(hz) * np.exp(-2j * np.pi * hz * 5e-5)
+    with pytest.raises(MeasurementError, match="without a delay"):
+        check_admittance(Curve(hz, late), "mobility")
+
+
+def test_noise_alone_does_not_turn_a_mobility_around():
+    random = np.random.default_rng(2)
+    noise = random.standard_normal(len(HZ)) + 1j * random.standard_normal(len(HZ))
+    checked(MEASURED["mobility"] + 0.003 * noise, "mobility")

@@ -1,0 +1,319 @@
+"""Measurements from sound files, tables and universal files: the same body out of each."""
+
+import warnings
+from itertools import cycle
+
+import numpy as np
+import pytest
+import soundfile
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from lab.body.bodies import admittance, off_db, radiation, rms
+
+from yehu_server.errors import MeasurementError
+from yehu_server.lab.body import plausible, read
+from yehu_server.lab.body.tap_files import write_taps
+
+HZ = np.arange(100.0, 5000.0, 10.0)
+Y = admittance(HZ)
+TURN = 2j * np.pi * HZ
+
+
+@pytest.fixture(autouse=True)
+def _quickly(monkeypatch):
+    """Look at fewer lines of what is read: test_plausible.py looks at all."""
+    monkeypatch.setattr(plausible, "LINES", 60)
+
+
+def table(path, headings, *columns, mark=",", decimal="."):
+    lines = [mark.join(headings)]
+    lines += [
+        mark.join(repr(float(value)).replace(".", decimal) for value in row)
+        for row in zip(*columns, strict=True)
+    ]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def assert_is_the_yehu(curve, most_db=1e-6):
+    assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < most_db
+
+
+# ---------------------------------------------------------------- sound files
+
+
+def test_taps_are_read_from_sound_files(taps, tmp_path):
+    files, channels = write_taps(taps, tmp_path / "taps")
+    measured = read(files, channels=channels)
+    assert measured.admittance.taps == 5
+    assert measured.sources == tuple(f"tap{i}.wav" for i in range(1, 6))
+    curve = measured.admittance.within(200.0, 5000.0)
+    assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.1
+    curve = measured.radiation.within(300.0, 4000.0)
+    assert rms(off_db(curve.values, radiation(curve.frequency_hz))) < 0.3
+
+
+def test_channels_are_scaled_and_may_be_skipped(taps, tmp_path):
+    tap = taps[0]
+    columns = [tap.pressure / 8.0, tap.force / -32.0, tap.velocity / 1e-3 / 2e3]
+    soundfile.write(tmp_path / "tap.wav", np.stack(columns, 1), 44100, "FLOAT")
+    measured = read([tmp_path / "tap.wav"], channels="none,force=-32,velocity=2")
+    assert measured.radiation is None
+    curve = measured.admittance.within(200.0, 4000.0)
+    assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2
+
+
+def test_radiation_may_be_measured_apart(taps, tmp_path):
+    table(tmp_path / "y.csv", ["frequency_hz", "mobility_real", "imag"], HZ, Y.real, Y.imag)
+    files, channels = write_taps(taps, tmp_path / "taps")
+    measured = read([tmp_path / "y.csv"], radiation=files, radiation_channels=channels)
+    assert_is_the_yehu(measured.admittance)
+    assert measured.radiation.taps == 5
+
+
+@pytest.mark.parametrize(
+    ("channels", "told"),
+    [
+        (None, "--channels"),
+        ("force=32,velocity=1", "has 3 channels, not 2"),
+        ("force=32,speed=1,pressure=8", "unknown quantity 'speed'"),
+        ("force=32,force=1,pressure=8", "force is given twice"),
+        ("force=32,velocity=0,pressure=8", "other than 0"),
+        ("force=32,velocity=nan,pressure=8", "other than 0"),
+        ("force=32,velocity=x,pressure=8", "other than 0"),
+        ("none,velocity=1,pressure=8", "needs a force"),
+        ("force=32,velocity=1,acceleration=8", "one of velocity"),
+    ],
+)
+def test_wrong_channels_are_told(taps, tmp_path, channels, told):
+    files, _ = write_taps(taps[:1], tmp_path / "taps")
+    with pytest.raises(MeasurementError, match=told):
+        read(files, channels=channels)
+
+
+def test_taps_are_not_overwritten(taps, tmp_path):
+    from yehu_server.errors import OutputError
+
+    write_taps(taps[:1], tmp_path)
+    before = (tmp_path / "tap1.wav").read_bytes()
+    with pytest.raises(OutputError, match="exists"):
+        write_taps(taps[1:2], tmp_path)
+    assert (tmp_path / "tap1.wav").read_bytes() == before
+
+
+# ---------------------------------------------------------------- tables
+
+
+def test_responses_are_read_however_they_are_written(tmp_path):
+    written = [
+        (("frequency_hz", "mobility_real", "mobility_imag"), (Y.real, Y.imag)),
+        (("Frequency (Hz)", "Re. real part of admittance", "imag"), (Y.real, Y.imag)),
+        (("freq", "magnitude mobility", "phase_deg"), (np.abs(Y), np.degrees(np.angle(Y)))),
+        (("freq", "abs mobility", "phase_rad"), (np.abs(Y), np.angle(Y))),
+        (("freq", "level_db admittance", "phase deg"),
+         (20.0 * np.log10(np.abs(Y)), np.degrees(np.angle(Y)))),
+        (("freq", "receptance real", "imag"), ((Y / TURN).real, (Y / TURN).imag)),
+        (("freq", "accelerance real", "imag"), ((Y * TURN).real, (Y * TURN).imag)),
+        (("freq", "inertance magnitude_db", "phase_deg"),
+         (20.0 * np.log10(np.abs(Y * TURN)), np.degrees(np.angle(Y * TURN)))),
+    ]  # fmt: skip
+    marks = [(",", "."), (";", ","), ("\t", ".")]
+    for (headings, columns), (mark, decimal) in zip(written, cycle(marks), strict=False):
+        path = table(tmp_path / "y.csv", headings, HZ, *columns, mark=mark, decimal=decimal)
+        assert_is_the_yehu(read([path]).admittance)
+
+
+def test_the_kind_may_be_told_beside_the_file(tmp_path):
+    path = table(tmp_path / "y.csv", ["f", "real", "imag"], HZ, (Y * TURN).real, (Y * TURN).imag)
+    assert_is_the_yehu(read([path], kind="accelerance").admittance)
+    with pytest.raises(MeasurementError, match="this is an accelerance, and not a mobility"):
+        read([path], kind="mobility")
+    with pytest.raises(MeasurementError, match="--kind"):
+        read([path])
+
+
+def test_coherence_is_read(tmp_path):
+    path = table(
+        tmp_path / "y.csv",
+        ["frequency_hz", "mobility_real", "mobility_imag", "coherence"],
+        HZ, Y.real, Y.imag, np.where(HZ > 3000.0, 0.5, 1.0),
+    )  # fmt: skip
+    measured = read([path])
+    assert measured.admittance.coherence.min() == 0.5
+    assert any("coherence is below" in line for line in measured.warnings)
+
+
+def test_two_responses_are_averaged(tmp_path):
+    one = table(tmp_path / "1.csv", ["f", "real mobility", "imag"], HZ, 1.5 * Y.real, 1.5 * Y.imag)
+    two = table(tmp_path / "2.csv", ["f", "real mobility", "imag"], HZ, 0.5 * Y.real, 0.5 * Y.imag)
+    measured = read([one, two])
+    assert_is_the_yehu(measured.admittance)
+    assert measured.admittance.taps == 2
+
+
+@pytest.mark.parametrize("units", ["N m/s mPa", "mN mm/s Pa", "(N) (um/s) (Pa)"])
+def test_taps_are_read_from_tables_with_units(taps, tmp_path, units):
+    names = [f"{name}_{unit}" for name, unit in zip(("force", "velocity", "pressure"),
+                                                    units.split(), strict=True)]  # fmt: skip
+    sizes = {"mN": 1e-3, "mm/s": 1e-3, "mPa": 1e-3, "(um/s)": 1e-6}
+    tap = taps[0]
+    columns = [
+        values / sizes.get(unit, 1.0)
+        for values, unit in zip((tap.force, tap.velocity, tap.pressure), units.split(), strict=True)
+    ]
+    time = np.arange(len(tap.force)) / tap.rate
+    path = table(tmp_path / "tap.csv", ["time_s", *names], time, *columns)
+    curve = read([path]).admittance.within(200.0, 4000.0)
+    assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2
+
+
+NUMBERS = "\n".join(f"{100 + n},1.0,2.0" for n in range(40))
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "0 lines"),
+        ("f,real,imag\n1,2,3", "2 lines"),
+        (NUMBERS, "names no columns"),
+        (f"height,real,imag\n{NUMBERS}", "neither time nor frequency"),
+        (f"f,real mobility\n{NUMBERS}", "2 columns, but not in"),
+        (f"f,real mobility,other\n{NUMBERS}", "real and imag"),
+        (f"f,magnitude mobility,phase\n{NUMBERS}", "phase_deg or phase_rad"),
+        (f"f,real mobility,imag\n{NUMBERS}\n7,x,1", "no numbers in"),
+        (f"f,real mobility,imag\n{NUMBERS}\n7,nan,1", "not finite"),
+        (f"f,real mobility,imag\n{NUMBERS}\n100,1,1", "two at one frequency"),
+        (f"t,force,velocity_kn\n{NUMBERS}", "unknown unit"),
+        (f"t,force,force\n{NUMBERS}", "given twice"),
+        (f"t,force,velocity\n{NUMBERS}\n7,1,1", "not evenly spaced"),
+    ],
+)
+def test_wrong_tables_are_told(tmp_path, text, told):
+    (tmp_path / "x.csv").write_text(text)
+    with pytest.raises(MeasurementError, match=told) as error:
+        read([tmp_path / "x.csv"])
+    assert "x.csv" in str(error.value)
+
+
+@pytest.mark.parametrize("name", ["x.wav", "x.csv", "x.uff", "x.mp9"])
+def test_missing_and_foreign_files_are_told(tmp_path, name):
+    with pytest.raises(MeasurementError, match="x"):
+        read([tmp_path / name])
+    (tmp_path / name).mkdir()
+    with pytest.raises(MeasurementError, match="x"):
+        read([tmp_path / name])
+
+
+@pytest.mark.parametrize("name", ["x.wav", "x.csv", "x.uff"])
+@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    head=st.sampled_from([b"", b"RIFF\x40\0\0\0WAVEfmt ", b"f,real mobility,imag\n",
+                          b"    -1\n    58\n", b"t,force,velocity\n"]),
+    data=st.binary(max_size=400),
+)  # fmt: skip
+def test_any_bytes_are_refused_in_one_line(tmp_path, name, head, data):
+    (tmp_path / name).write_bytes(head + data)
+    with pytest.raises(MeasurementError) as error:
+        read([tmp_path / name], channels="force=1,velocity=1")
+    assert len(str(error.value)) < 400
+
+
+def test_a_line_without_a_response_is_told(tmp_path):
+    values = np.where(HZ == 500.0, 0.0, Y)
+    path = table(tmp_path / "y.csv", ["f", "mobility_real", "imag"], HZ, values.real, values.imag)
+    with pytest.raises(MeasurementError, match="zero at 500 Hz"):
+        read([path])
+
+
+# ---------------------------------------------------------------- universal files
+
+
+def universal(path, *sets):
+    import pyuff
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        pyuff.UFF(str(path)).write_sets(list(sets), "add")
+    return path
+
+
+def data_set(values, x=HZ, kind=11, func=4, **more):
+    entry = {
+        "type": 58, "func_type": func, "rsp_node": 1, "rsp_dir": 3, "ref_node": 1, "ref_dir": 3,
+        "data": values, "x": x, "id1": "id1", "rsp_ent_name": "NONE", "ref_ent_name": "NONE",
+        "abscissa_spacing": 1, "abscissa_min": float(x[0]), "abscissa_inc": float(x[1] - x[0]),
+        "num_pts": len(x), "ord_data_type": 6 if np.iscomplexobj(values) else 4,
+        "abscissa_spec_data_type": 18 if func == 4 else 17, "ordinate_spec_data_type": kind,
+        "orddenom_spec_data_type": 13, "binary": 0,
+    }  # fmt: skip
+    return entry | more
+
+
+UNITS_MM = {"type": 164, "units_code": 5, "units_description": "mm", "temp_mode": 1,
+            "length": 1e3, "force": 1.0, "temp": 1.0, "temp_offset": 0.0}  # fmt: skip
+
+
+@pytest.mark.parametrize("binary", [0, 1])
+@pytest.mark.parametrize(
+    ("kind", "values"), [(11, Y), (8, Y / TURN), (12, Y * TURN)], ids=["mob", "rec", "acc"]
+)
+def test_universal_files_tell_what_they_hold(tmp_path, kind, values, binary):
+    path = universal(tmp_path / "y.uff", data_set(values, kind=kind, binary=binary))
+    assert_is_the_yehu(read([path]).admittance, 1e-3)
+
+
+def test_units_of_universal_files_count(tmp_path):
+    path = universal(
+        tmp_path / "y.uff", UNITS_MM, data_set(1e3 * Y), data_set(1e-6 * radiation(HZ), kind=15)
+    )
+    measured = read([path])
+    assert_is_the_yehu(measured.admittance, 1e-3)
+    assert rms(off_db(measured.radiation.values, radiation(HZ))) < 1e-3
+
+
+def test_the_driving_point_is_chosen_and_its_direction_minded(tmp_path):
+    path = universal(
+        tmp_path / "y.uff",
+        data_set(3.0 * Y, rsp_node=2),
+        data_set(-Y, rsp_dir=-3),
+        data_set(np.where(HZ > 200.0, 1.0, 0.25), func=6),
+    )
+    measured = read([path])
+    assert_is_the_yehu(measured.admittance, 1e-3)
+    assert measured.admittance.coherence.min() == pytest.approx(0.25)
+    elsewhere = universal(tmp_path / "z.uff", data_set(Y, rsp_node=2), data_set(Y, rsp_dir=1))
+    with pytest.raises(MeasurementError, match="where the hammer struck"):
+        read([elsewhere])
+
+
+def test_taps_are_read_from_universal_files(taps, tmp_path):
+    sets = []
+    for tap in taps[:3]:
+        time = np.arange(len(tap.force)) / tap.rate
+        sets += [data_set(tap.force, time, 13, 1), data_set(tap.velocity, time, 11, 1)]
+    measured = read([universal(tmp_path / "taps.uff", *sets)])
+    assert measured.admittance.taps == 3
+    curve = measured.admittance.within(200.0, 4000.0)
+    assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2
+
+
+@pytest.mark.parametrize("name", ["length", "force"])
+def test_a_unit_of_nothing_is_told(tmp_path, name):
+    path = universal(tmp_path / "y.uff", UNITS_MM | {name: 0.0}, data_set(Y))
+    with pytest.raises(MeasurementError, match=f"unit of {name}"):
+        read([path])
+
+
+def test_a_data_set_that_ends_early_is_told(tmp_path):
+    path = universal(tmp_path / "y.uff", data_set(Y))
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join([*lines[:-20], lines[-1]]) + "\n")
+    with pytest.raises(MeasurementError, match="says 490"):
+        read([path])
+
+
+def test_an_unknown_kind_of_universal_file_is_asked_for(tmp_path):
+    path = universal(tmp_path / "y.uff", data_set(Y, kind=0))
+    with pytest.raises(MeasurementError, match="--kind"):
+        read([path])
+    assert_is_the_yehu(read([path], kind="mobility").admittance, 1e-3)

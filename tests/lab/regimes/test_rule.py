@@ -1,0 +1,186 @@
+"""The rule at its borders, and the parts it is made of."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from lab.regimes.test_judge import LENGTH, NOTE, PERIOD, RATE, SPEED, WIDTH, every, found, slips
+
+from yehu_server.errors import ParameterError
+from yehu_server.lab.regimes.judge import judge, name_regime
+from yehu_server.lab.regimes.names import (
+    ANOMALOUS_LOW,
+    APERIODIC,
+    HELMHOLTZ,
+    MULTIPLE_SLIP,
+    OCTAVE,
+    RAUCOUS,
+    SILENT,
+)
+from yehu_server.lab.regimes.periods import NOWHERE, refined
+from yehu_server.lab.regimes.slips import times_of_slips
+
+COUNT = 430  # lags
+
+
+def correlation(peaks):
+    """A correlation that is flat but for peaks of some heights at some lags."""
+    alike = np.zeros(COUNT)
+    for lag, height in peaks.items():
+        alike[lag - 1 : lag + 2] = height - 0.1, height, height - 0.1
+    return alike
+
+
+@pytest.mark.parametrize(
+    ("regime", "lag", "how_many", "peaks"),
+    [
+        (HELMHOLTZ, 100, 1.0, {100: 0.79}),
+        (HELMHOLTZ, 100, 1.3, {100: 0.95, 200: 0.96}),
+        (MULTIPLE_SLIP, 100, 1.5, {100: 0.79}),
+        (OCTAVE, 50, 2.3, {50: 0.91, 100: 0.99}),
+        (OCTAVE, 50, 1.7, {50: 0.91, 100: 0.99}),
+        (OCTAVE, 50, 2.0, {30: 0.92, 50: 0.91, 100: 0.99}),
+        (MULTIPLE_SLIP, 100, 3.0, {50: 0.91, 100: 0.99}),
+        (MULTIPLE_SLIP, 100, 2.0, {50: 0.88, 100: 0.99}),
+        (MULTIPLE_SLIP, 250, 1.5, {250: 0.92, 150: 0.5}),
+        (APERIODIC, NOWHERE, 1.5, {250: 0.88}),
+        (ANOMALOUS_LOW, 200, 0.5, {200: 0.81}),
+        (ANOMALOUS_LOW, 200, 0.5, {200: 0.90, 400: 0.92}),
+        (ANOMALOUS_LOW, 400, 0.5, {200: 0.82, 400: 0.92}),
+        (RAUCOUS, NOWHERE, 0.9, {200: 0.78}),
+        (RAUCOUS, NOWHERE, 0.9, {100: 0.7}),
+        (APERIODIC, NOWHERE, 1.2, {200: 0.78}),
+    ],
+)
+def test_slips_and_correlation_name_the_regime(regime, lag, how_many, peaks):
+    alike = correlation(peaks)
+    assert name_regime(how_many, 0.9, alike, COUNT, 100.0, 1.0, SPEED) == (regime, lag)
+
+
+@pytest.mark.parametrize(
+    ("regime", "motion", "speed", "sticking"),
+    [
+        (HELMHOLTZ, 0.032, 0.2, 0.9),
+        (SILENT, 0.028, 0.2, 0.9),
+        (SILENT, 0.00009, 0.0, 0.9),
+        (HELMHOLTZ, 0.00011, 0.0, 0.9),
+        (HELMHOLTZ, 1.0, 0.2, 0.04),
+        (SILENT, 1.0, 0.2, 0.02),
+    ],
+)
+def test_a_string_that_hardly_moves_or_never_sticks_is_silent(regime, motion, speed, sticking):
+    alike = correlation({100: 0.95})
+    assert name_regime(1.0, sticking, alike, COUNT, 100.0, motion, speed)[0] == regime
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_slips_of_a_twentieth_of_the_bows_speed_are_not_heard(way):
+    velocity = way * slips(every(PERIOD), depth=-0.05 * SPEED)
+    assert judge(velocity, way * SPEED, velocity, RATE, NOTE).regime == "silent"
+
+
+def test_the_brightness_of_a_low_tone_is_its_frequency():
+    low = np.sin(2 * np.pi * 130.0 * np.arange(LENGTH) / RATE)
+    assert found(slips(every(PERIOD)), pressure=low).brightness_hz == pytest.approx(130.0, abs=2.0)
+
+
+@pytest.mark.parametrize("period", [99.63, 100.21, 103.5])
+def test_the_pitch_is_exact_between_samples(period):
+    at = np.arange(LENGTH)
+    phase = (at / period) % 1.0
+    velocity = -1.6 * np.where(phase < 0.12, np.sin(np.pi * phase / 0.12) ** 2, 0.0)
+    assert abs(1200 * math.log2(found(velocity).pitch_hz * period / RATE)) < 0.05
+
+
+def test_a_period_that_is_not_seen_twice_is_refined_once():
+    alike = correlation({100: 0.9})
+    alike[101] = 0.85
+    once = 100 + 0.5 * (0.8 - 0.85) / (0.8 - 1.8 + 0.85)
+    assert refined(alike, 100, COUNT) == pytest.approx(once)
+
+
+def begun(velocity, speed=SPEED):
+    """When slips begin, and Helmholtz motion (samples), or None."""
+    bow = np.broadcast_to(float(speed), velocity.shape).copy()
+    times = times_of_slips(np.maximum(0.0, -velocity), bow, len(velocity), float(PERIOD))
+    return tuple(None if time < 0 else time for time in times)
+
+
+def test_ten_slips_of_a_period_each_make_helmholtz_motion():
+    assert begun(slips(every(PERIOD, 500, 1550)))[1] == pytest.approx(500, abs=WIDTH)
+    assert begun(slips(every(PERIOD, 500, 1450)))[1] is None
+
+
+def test_distances_may_be_a_little_uneven():
+    at = 500 + PERIOD * np.arange(20)
+    apart = np.where(np.arange(20) % 2, 3, -3)
+    assert begun(slips(at + apart))[1] is not None
+    assert begun(slips(at + 2 * apart))[1] is None
+
+
+def test_bristles_that_bend_are_no_slip():
+    small = slips([200], depth=-0.3 * SPEED * 0.9)
+    large = slips([200], depth=-0.3 * SPEED * 1.2)
+    assert begun(small)[0] is None
+    assert begun(large)[0] == pytest.approx(200, abs=WIDTH)
+    assert begun(slips([200], depth=-0.018), speed=0.01)[0] is None
+    assert begun(slips([200], depth=-0.022), speed=0.01)[0] is not None
+    assert begun(large, speed=0.0)[0] is None
+
+
+def test_a_ripple_beside_the_slips_is_none_of_them():
+    ripple = slips(every(PERIOD, 560), depth=-1.6 * 0.1)
+    assert begun(slips(every(PERIOD, 500)) + ripple)[1] == pytest.approx(500, abs=WIDTH)
+
+
+def test_a_scratch_hides_small_slips_for_a_while_only():
+    velocity = slips([300], depth=-8.0) + slips(every(PERIOD, 500), depth=-0.5)
+    first, helmholtz = begun(velocity)
+    assert first == pytest.approx(300, abs=WIDTH)
+    assert 600 < helmholtz < 5000
+
+
+def test_a_slip_that_trembles_is_one():
+    velocity = slips(every(PERIOD, 500))
+    trembling = slips(every(PERIOD, 504), depth=1.0)[: len(velocity)]
+    velocity += 0.6 * trembling
+    assert begun(velocity)[1] == pytest.approx(500, abs=WIDTH)
+
+
+def test_the_first_sample_may_slip():
+    velocity = np.full(LENGTH, -1.0)
+    assert found(velocity).first_slip_s == 0.0
+
+
+def test_the_end_is_judged_and_not_the_beginning():
+    pressure = np.where(np.arange(LENGTH) < LENGTH - 11 * PERIOD, 1.0, 0.0)
+    pressure += 0.01 * np.sin(2 * np.pi * np.arange(LENGTH) / PERIOD)
+    rest = slips(every(130, end=LENGTH // 2)) + slips(every(PERIOD, LENGTH // 2))
+    finding = found(rest, pressure=pressure)
+    assert finding.regime == "helmholtz"
+    assert finding.slips == pytest.approx(1.0, abs=0.01)
+    assert finding.level_db == pytest.approx(-40.0 - 3.01, abs=0.05)
+
+
+def test_the_bow_counts_as_fast_as_it_is_at_the_end():
+    bow = np.linspace(0.0, 3.0, LENGTH)
+    velocity = slips(every(PERIOD), depth=-1.6)
+    assert judge(velocity, bow, velocity, RATE, NOTE).regime == "silent"
+    assert judge(velocity, bow[::-1] + 0.05, velocity, RATE, NOTE).regime == "helmholtz"
+
+
+def test_a_certain_motion_is_as_sure_as_it_repeats():
+    noise = 0.05 * np.random.default_rng(5).standard_normal(LENGTH)
+    velocity = slips(every(PERIOD)) + noise
+    power = velocity[-1000:].var() - 0.05**2
+    expected = power / (power + 0.05**2)
+    assert found(velocity).certainty == pytest.approx(expected, abs=0.01)
+
+
+def test_the_least_length_is_told():
+    least = math.ceil(6.3 * PERIOD)
+    assert found(slips(every(PERIOD, end=least - WIDTH), length=least)).regime == "helmholtz"
+    with pytest.raises(ParameterError, match="too short"):
+        found(slips(every(PERIOD, end=600), length=least - 1))

@@ -1,0 +1,291 @@
+"""Calls by OSC: notes, bow, bend, panic, reset, release, ping."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sound import rms
+from wire import errors, f32, values
+
+from yehu_server.live.osc import handler
+from yehu_server.live.osc.call_table import CALLS
+from yehu_server.params.table import TABLE
+
+HEARD_S = 0.01  # within which what arrives is played: the player's delay and a block
+
+
+def test_every_call_is_in_the_documentation():
+    text = (Path(__file__).parents[3] / "docs" / "osc.md").read_text()
+    assert [call.address for call in CALLS if f"`/yehu{call.address}" not in text] == []
+
+
+def test_every_call_is_described_and_every_described_call_is_there(still):
+    of_parameters = {p.address for p in TABLE} | {f"{p.address}/unit" for p in TABLE}
+    calls = {address for address in still.handler._calls if not address.startswith("/part/")}
+    assert {call.address for call in CALLS} == calls - of_parameters
+    of_part = {address.removeprefix("/part/1") for address in set(still.handler._calls) - calls}
+    assert {call.address for call in CALLS if not call.is_for_all} == of_part - of_parameters
+
+
+def test_osc_is_the_prefix_of_all_that_is_said():
+    assert handler.PREFIX == "/yehu"
+
+
+def test_every_call_is_heard(live):
+    client = live.client()
+    assert live.level() < 1e-6
+    client.tell("/note", 67.0, 90.0)
+    live.wait_frames(9600)
+    assert live.level() > 1e-3
+    client.tell("/note", 67.0, 0.0)
+    client.sync()
+    live.settle()
+    assert live.is_at_rest()
+    client.tell("/panic")
+    client.sync()
+    live.settle()
+    assert live.level() < 1e-9
+    client.tell("/pitch", 70.0)
+    client.tell("/bow", 0.25, 0.6)
+    client.sync()
+    live.wait_frames(9600)
+    assert live.level() > 1e-3
+    client.tell("/reset")
+    client.sync()
+    live.settle()
+    assert live.is_at_rest()
+    assert live.level() < 1e-9
+    assert live.is_well()
+
+
+# ---------------------------------------------------------------- notes, bow and finger
+
+
+def test_a_note_sounds_until_it_is_ended(still):
+    still.tell("/note", 67.0, 90.0)
+    assert rms(still.pass_time(0.5)[-9600:]) > 1e-3
+    assert still.player.pitch == 67.0
+    still.tell("/note/off", 67.0)
+    still.pass_time(0.3)
+    assert still.player.pitch is None
+    assert still.events[-1][1:] == ("/bow/side", 0.0)
+    assert rms(still.pass_time(2.5)[-9600:]) < 1e-3
+
+
+@pytest.mark.parametrize("off", [("/note", 72.5, 0.0), ("/note", 72.5, False), ("/note/off", 72.5)])
+def test_a_note_between_the_keys_is_ended_as_any(still, off):
+    still.tell("/note", 72.5, 1)
+    still.pass_time(HEARD_S)
+    assert still.player.pitch == 72.5
+    still.tell(*off)
+    still.pass_time(HEARD_S)
+    assert still.player.pitch is None
+
+
+def test_a_note_is_louder_the_harder_it_is_struck(make_still):
+    pressures = []
+    for velocity in (1, 64, 127):
+        still = make_still()
+        still.tell("/note", 67, velocity)
+        pressures.append(still.value("/playing/pressure"))
+    assert pressures == sorted(set(pressures))
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (),
+        (67,),
+        (67, 90, 1),
+        ("67", 90),
+        (67, None),
+        (-1, 90),
+        (127.5, 90),
+        (67, -1),
+        (67, 127.5),
+        (math.nan, 90.0),
+        (67.0, math.nan),
+        (67.0, math.inf),
+    ],
+)
+def test_what_is_no_note_is_answered_and_plays_nothing(still, arguments):
+    assert errors(still.ask("/note", *arguments)) == ["/yehu/note"]
+    still.pass_time(0.05)
+    assert still.player.pitch is None
+    assert still.frames("/bow/speed") == []
+
+
+def test_pitch_slides_the_sounding_note_steplessly(still):
+    still.tell("/note", 67, 90)
+    still.pass_time(0.1)
+    still.events.clear()
+    for pitch in np.linspace(67.1, 70.0, 30):
+        still.tell("/pitch", float(pitch))
+        still.pass_time(HEARD_S)
+        assert still.player.pitch == pytest.approx(pitch, abs=1e-5)
+    assert {address for _, address, _ in still.events} == {
+        "/finger/1/position",
+        "/output/balance",
+        "/finger/1/press",  # some notes want it firmer
+        "/bow/speed",  # A4 wants it slow
+        "/bow/pressure",
+        "/bow/position",
+    }
+    places = [place for _, address, place in still.events if address == "/finger/1/position"]
+    assert len(places) == 30
+    assert all(np.diff(places) > 0.0)
+    still.tell("/note/off", 67)
+    still.pass_time(HEARD_S)
+    assert still.player.pitch is None
+
+
+def test_pitch_and_bow_alone_make_a_theremin(still):
+    still.tell("/pitch", 69.0)
+    landing = rms(still.pass_time(0.1))
+    heard = values(still.ask("/bow", 0.2, 0.6))
+    assert heard == {"/yehu/bow/speed": f32(0.2), "/yehu/bow/force": f32(0.6)}
+    assert rms(still.pass_time(0.5)[-9600:]) > 5.0 * landing
+    assert still.player.pitch == 69.0
+    still.tell("/bow", 0.0, 0.0)
+    still.pass_time(0.1)
+    assert still.player.value("/bow/side") == 0.0
+    assert still.player.pitch is None
+
+
+def test_the_bow_by_hand_is_kept_within_its_bounds(still):
+    heard = values(still.ask("/bow", -9, 99))
+    assert heard == {"/yehu/bow/speed": -2.0, "/yehu/bow/force": 5.0}
+
+
+@pytest.mark.parametrize(
+    "arguments", [(), (0.2,), (0.2, 0.5, 1.0), (0.2, "x"), (math.nan, 0.5), (0.2, math.inf)]
+)
+def test_what_is_no_stroke_is_answered_and_draws_nothing(still, arguments):
+    assert errors(still.ask("/bow", *arguments)) == ["/yehu/bow"]
+    assert still.player.value("/bow/speed") == 0.0
+
+
+@pytest.mark.parametrize(
+    ("call", "address"), [("/bend", "/playing/bend"), ("/press", "/playing/press")]
+)
+def test_bend_and_press_are_parameters_too(still, call, address):
+    assert values(still.ask(call, 1.5)) == {"/yehu" + address: 1.5}
+    assert values(still.ask(call, 1000)) == {
+        "/yehu" + address: {"/bend": 48.0, "/press": 6.0}[call]
+    }
+    assert errors(still.ask(call, "x")) == ["/yehu" + call]
+
+
+def test_a_bend_is_heard_on_the_sounding_note(still):
+    still.tell("/note", 67, 90)
+    still.tell("/bend", 2.0)
+    still.pass_time(HEARD_S)
+    assert still.player.pitch == 69.0
+    still.tell("/bend", 0)
+    still.pass_time(HEARD_S)
+    assert still.player.pitch == 67.0
+
+
+def test_press_presses_the_finger_of_the_sounding_note(still):
+    still.tell("/note", 67, 90)
+    still.tell("/press", 4.0)
+    still.pass_time(0.05)
+    pressed = [value for _, address, value in still.events if address == "/finger/1/press"]
+    assert pressed[-1] == 4.0
+
+
+def test_a_note_takes_back_what_was_written_directly(still):
+    still.tell("/note", 74, 80)
+    still.tell("/bow/speed", 0.05)
+    still.tell("/playing/speed", 0.3)
+    still.pass_time(HEARD_S)
+    assert still.player.value("/bow/speed") == f32(0.05)
+    still.tell("/release")
+    still.tell("/playing/speed", 0.4)
+    still.pass_time(HEARD_S)
+    assert abs(still.player.value("/bow/speed")) == pytest.approx(0.4, rel=1e-3)
+
+
+# ---------------------------------------------------------------- panic and reset
+
+
+MESS = [
+    ("/note", 67, 90),
+    ("/note", 72.25, 127),
+    ("/note", 80, 1),
+    ("/bow/speed", 0.4),
+    ("/bow/side", 1.0),
+    ("/finger/1/press", 4.0),
+    ("/bow", 0.3, 0.7),
+    ("/pitch", 77.3),
+    ("/note", 66, 64),
+    ("/bend", 3.0),
+    ("/playing/volume", 0.7),
+]
+
+
+@pytest.mark.parametrize("order", range(6))
+@pytest.mark.parametrize("end", ["/panic", "/reset"])
+def test_after_panic_or_reset_nothing_is_left(still, wire, order, end):
+    mess = MESS[order:] + MESS[:order]
+    for address, *arguments in mess[: 5 + order]:
+        still.tell(address, *arguments)
+        still.pass_time(0.02)
+    still.take(wire.bundle(still.clock.time() + 0.3, wire.message("/yehu/note", 74, 90)))
+    still.tell(end)
+    assert still.handler.waiting == 0
+    still.pass_time(0.05)
+    assert still.player.pitch is None
+    assert not still.pass_time(0.5).any()
+    still.tell("/note/off", 67)  # letting go later brings nothing back
+    assert not still.pass_time(0.1).any()
+    still.tell("/note", 69, 90)
+    assert rms(still.pass_time(0.5)) > 1e-4
+
+
+@pytest.mark.parametrize("end", ["/panic", "/reset"])
+def test_panic_and_reset_also_end_what_a_bundle_is_about_to_do(still, wire, end):
+    still.pass_time(0.05)
+    packets = [
+        wire.message("/yehu/bow/speed", 0.3),
+        wire.message("/yehu/bow/side", 1.0),
+        wire.message("/yehu/finger/1/press", 2.0),
+    ]
+    still.take(wire.bundle(still.clock.time() + 0.02, *packets))
+    still.pass_time(0.012)
+    still.tell(end)
+    still.pass_time(0.2)
+    last = {address: value for _, address, value in still.events}
+    assert (last["/bow/speed"], last["/bow/side"], last["/finger/1/press"]) == (0.0, 0.0, 0.0)
+
+
+# ---------------------------------------------------------------- ping
+
+
+@pytest.mark.parametrize(
+    ("tags", "arguments"),
+    [
+        ("", []),
+        ("ifs", [1, 0.5, "a"]),
+        ("TFN", [True, False, None]),
+        ("h", [2**62]),
+        ("b", [b"\0\1\2"]),
+        ("i", [-(2**31)]),
+    ],
+)
+def test_a_ping_comes_back_with_what_it_brought(shared_server, tags, arguments):
+    client = shared_server.client()
+    client.tell("/ping", *arguments, tags=tags)
+    assert client.wait_for("/pong") == arguments
+
+
+@pytest.mark.parametrize(
+    ("tags", "arguments"),
+    [("d", [1e300]), ("b", [b""]), ("t", [1]), ("[" * 3000 + "]" * 3000, [])],
+    ids=["double", "empty blob", "time tag", "deep"],
+)
+def test_a_ping_with_anything_is_answered_and_breaks_nothing(still, tags, arguments):
+    assert still.ask("/ping", *arguments, tags=tags)

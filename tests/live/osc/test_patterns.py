@@ -1,0 +1,145 @@
+"""Address patterns: what they match, what they refuse, and that none takes long."""
+
+from __future__ import annotations
+
+import itertools
+import re
+import time
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from yehu_server.live.osc.osc_addresses import LONGEST_PATTERN
+from yehu_server.live.osc.patterns import PatternError, _pieces, is_pattern, matches
+from yehu_server.params.table import TABLE
+
+LETTERS = "ab-/"
+ITEMS = ["a", "b", "a-b", "b-a", "c-z", "/", "z"]  # of sets
+ADDRESSES = ["".join(p) for n in range(5) for p in itertools.product(LETTERS, repeat=n)]
+
+
+def one_of(letters: set[str]) -> str:
+    return f"(?:{'|'.join(map(re.escape, sorted(letters)))})" if letters else "(?!)"
+
+
+@st.composite
+def sets(draw: st.DrawFn) -> tuple[str, str]:
+    """A set of letters and ranges, as a pattern and as a regular expression."""
+    text, letters = "", set()
+    for item in draw(
+        st.lists(st.sampled_from(["a", "b", "a-b", "b-a", "c-z", "/", "z"]), max_size=3)
+    ):
+        lo, hi = item[0], item[-1]
+        letters |= {c for c in LETTERS if lo <= c <= hi}
+        text += item
+    if draw(st.booleans()):  # a dash at an end is a dash
+        text += "-"
+        letters.add("-")
+    if draw(st.booleans()):
+        return f"[!{text}]", one_of(set(LETTERS) - letters - {"/"})
+    return f"[{text}]", one_of(letters - {"/"})
+
+
+words = st.lists(st.text("ab-", max_size=2), min_size=1, max_size=3)
+pieces = st.one_of(
+    st.just(("*", "[^/]*")),
+    st.just(("?", "[^/]")),
+    st.sampled_from(LETTERS).map(lambda c: (c, re.escape(c))),
+    sets(),
+    words.map(lambda w: (f"{{{','.join(w)}}}", f"(?:{'|'.join(map(re.escape, w))})")),
+)
+
+
+@given(st.lists(pieces, max_size=6))
+@example([("*", "[^/]*"), ("a", "a"), ("*", "[^/]*"), ("a", "a")])
+@example([("{,ab}", "(?:|ab)"), ("{a,}", "(?:a|)")])
+def test_a_pattern_fits_just_what_the_same_regular_expression_fits(made):
+    pattern = "".join(text for text, _ in made)
+    expression = re.compile("".join(regex for _, regex in made))
+    fitting = [address for address in ADDRESSES if matches(pattern, address)]
+    assert fitting == [address for address in ADDRESSES if expression.fullmatch(address)]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "address", "fits"),
+    [
+        ("/yehu/bow/*", "/yehu/bow/force", True),
+        ("/yehu/*", "/yehu/bow/force", False),
+        ("/yehu*force", "/yehu/bow/force", False),
+        ("/yehu/*/*", "/yehu/bow/force", True),
+        ("/yehu/b?w/force", "/yehu/bow/force", True),
+        ("/yehu?bow/force", "/yehu/bow/force", False),
+        ("/yehu/bow/[fs]*", "/yehu/bow/side", True),
+        ("/yehu/bow/[!f]*", "/yehu/bow/force", False),
+        ("/yehu/bow/[e-g]orce", "/yehu/bow/force", True),
+        ("/yehu/bow/{force,side}", "/yehu/bow/side", True),
+        ("/yehu/bow/{force,side}", "/yehu/bow/sid", False),
+        ("/yehu/bow/for", "/yehu/bow/force", False),
+        ("/yehu/bow/force", "/yehu/bow/for", False),
+        ("/YEHU/bow/force", "/yehu/bow/force", False),
+        ("/yehu/bow/{f,fo,for}*ce", "/yehu/bow/force", True),
+        ("*", "", True),
+        ("", "", True),
+        ("?", "", False),
+    ],
+)
+def test_patterns_fit_as_the_specification_says(pattern, address, fits):
+    assert matches(pattern, address) is fits
+
+
+@pytest.mark.parametrize("pattern", ["[", "/a[", "/a[bc", "{", "{a,b", "/{a,b", "[a}", "{a]"])
+def test_a_bracket_that_never_closes_is_refused(pattern):
+    assert is_pattern(pattern)
+    with pytest.raises(PatternError):
+        matches(pattern, "/a" + pattern)
+
+
+@given(st.text("/*?[]{}!-,ab", max_size=30), st.text("/ab-", max_size=10))
+def test_whatever_a_pattern_is_it_fits_does_not_fit_or_is_refused(pattern, address):
+    try:
+        assert matches(pattern, address) in (True, False)
+    except PatternError:
+        assert {"[", "{"} & set(pattern)
+
+
+@given(st.text())
+def test_an_address_without_special_characters_fits_itself_only(address):
+    if not is_pattern(address):
+        assert matches(address, address)
+        assert not matches(address, address + "x")
+
+
+@pytest.mark.parametrize("param", TABLE, ids=lambda param: param.address)
+def test_no_address_of_the_table_is_a_pattern(param):
+    assert not is_pattern(param.address)
+    assert [p.address for p in TABLE if matches(param.address, p.address)] == [param.address]
+
+
+@pytest.mark.parametrize(
+    "pattern",
+    [
+        "*" * LONGEST_PATTERN,
+        "/yehu" + "/*" * 100,
+        "/yehu/" + "*?" * 120,
+        "/yehu/bow/" + "*o*r" * 60,
+        "/yehu/" + "{,b,bo,bow}" * 22,
+        "/yehu/{" + "," * 248 + "}",
+        "/yehu/" + "[!z]*" * 50,
+        "/yehu/bow/" + "{f,}{o,}{r,}{c,}{e,}" * 12,
+        "/*" + "[a-zA-Z0-9!-~]" * 17,
+    ],
+)
+def test_a_twisted_pattern_takes_no_longer_than_a_plain_one_should(pattern):
+    started = time.thread_time()
+    for param in TABLE:
+        matches(pattern[:LONGEST_PATTERN], "/yehu" + param.address)
+    assert time.thread_time() - started < 0.5
+
+
+def test_a_pattern_is_read_once_for_all_addresses_and_stars_in_a_row_are_as_one():
+    pattern = "/yehu/bow/" + "*" * 200 + "e"
+    assert len(_pieces(pattern)) == 3
+    assert _pieces(pattern) is _pieces(pattern)
+    assert matches(pattern, "/yehu/bow/side")
+    assert not matches(pattern, "/yehu/bow/side/unit")

@@ -1,0 +1,632 @@
+"""Sockets: no packet is lost without need, every loss is counted, and only some may send."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import itertools
+import logging
+import socket
+import struct
+import sys
+import threading
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from yehu_server.errors import DeviceError
+from yehu_server.live.addresses import Allowed
+from yehu_server.live.osc import open_sockets, receiving
+from yehu_server.live.osc.answering import ANSWERED_BYTES, TO_ALL_HOSTS
+from yehu_server.live.osc.fair_queue import MOST_BYTES
+from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.receiving import OscPorts
+from yehu_server.live.osc.schedule import AHEAD_S
+
+HOST = "127.0.0.1"
+BURST = 20_000
+PACKET_BYTES = 768  # of a small packet, as Linux accounts for it in the buffer
+SETTLE_S = 0.05
+
+on_linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells")
+
+
+class Collector:
+    """Keeps the packets that come, unless it is held up."""
+
+    def __init__(self) -> None:
+        self.packets: list[tuple[bytes, object, int]] = []
+        self.answer: bytes | None = None
+        self.gone_peers: list[object] = []
+        self.go_on = threading.Event()
+        self.go_on.set()
+        self.is_slow = False  # then it yields to others while it is held up
+        self.hearing: list[object] = []
+        self.ticks = 0
+        self.takes_s = 0.0
+        self.since_tick = [0]  # packets handled since each tick
+        self.ticked_s: list[float] = []  # of the thread's own time
+
+    def handle(self, packet: bytes, peer, arrived_ns: int) -> Iterator[None]:
+        while self.is_slow and not self.go_on.is_set():
+            yield
+        self.go_on.wait()
+        yield
+        self.packets.append((packet, peer, arrived_ns))
+        self.since_tick[-1] += 1
+        if self.takes_s:
+            time.sleep(self.takes_s)
+        if packet == b"raise":
+            raise RuntimeError("as asked")
+        if self.answer is not None:
+            peer.send(self.answer)
+
+    def tick(self) -> None:
+        self.ticks += 1
+        self.since_tick.append(0)
+        self.ticked_s.append(time.thread_time())
+
+    def wait_s(self) -> float | None:
+        return None
+
+    def is_subscribed(self, peer) -> bool:
+        return peer in self.hearing
+
+    @property
+    def clients(self):
+        return self
+
+    def forget(self, peer) -> None:
+        self.gone_peers.append(peer)
+
+    @property
+    def bodies(self) -> list[bytes]:
+        return [packet for packet, _, _ in self.packets]
+
+
+@pytest.fixture
+def keeper():
+    return Collector()
+
+
+@pytest.fixture
+def listen(keeper):
+    """Listen with the keeper behind, anywhere on this machine."""
+    with contextlib.ExitStack() as ending:
+
+        def listen(*, host: str = HOST, allowed: Allowed | None = None, start: bool = True):
+            ports = OscPorts(host, 0, allowed or Allowed(), keeper)
+            ending.callback(ports.stop)
+            ending.callback(keeper.go_on.set)
+            if start:
+                ports.start()
+            return ports
+
+        yield listen
+
+
+@pytest.fixture
+def client(kit):
+    with contextlib.ExitStack() as ending:
+
+        def client(ports, kind: str = "udp"):
+            if kind == "udp":
+                made = kit.Client(ports.port, ports.host)
+            else:
+                made = kit.Stream(ports.port, slip=kind == "slip", host=ports.host)
+            ending.callback(made.close)
+            return made
+
+        yield client
+
+
+def numbered(count: int) -> list[bytes]:
+    return [pack("/yehu/bow/force", number) for number in range(count)]
+
+
+# ---------------------------------------------------------------- UDP
+
+
+def send_all(client, packets) -> None:
+    for packet in packets:
+        client.take(packet)
+
+
+@pytest.mark.parametrize("hindrance", ["none", "busy", "held up", "not started"])
+def test_a_burst_that_the_buffer_holds_arrives_whole(
+    listen, client, keeper, until, busy, hindrance
+):
+    ports = listen(start=hindrance != "not started")
+    packets = numbered(min(BURST, ports.traffic.buffer_bytes // (2 * PACKET_BYTES)))
+    if hindrance == "held up":
+        keeper.go_on.clear()
+    with busy() if hindrance == "busy" else contextlib.nullcontext():
+        send_all(client(ports), packets)
+        if hindrance == "not started":
+            ports.start()
+        keeper.go_on.set()
+        until(lambda: len(keeper.packets) >= len(packets), "all packets")
+    assert keeper.bodies == packets
+    assert ports.traffic.packets == len(packets)
+    assert ports.traffic.kernel_drops == 0
+
+
+@on_linux
+def test_what_the_kernel_drops_is_counted(listen, client, keeper, until):
+    ports = listen(start=False)
+    ports._udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 8192)
+    sender = client(ports)
+    send_all(sender, numbered(1000))
+    ports.start()
+    until(lambda: keeper.packets, "a packet")
+    time.sleep(SETTLE_S)
+    sender.take(b"the last")  # the kernel reports drops with the next packet
+    until(lambda: b"the last" in keeper.bodies, "the last packet")
+    assert ports.traffic.kernel_drops > 0
+    assert ports.traffic.packets + ports.traffic.kernel_drops == 1001
+
+
+def test_the_buffer_that_is_granted_is_told(listen):
+    ports = listen()
+    granted = ports._udp.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+    assert ports.traffic.buffer_bytes == granted > 0
+
+
+@pytest.mark.parametrize("kernel_filters", [True, False])
+def test_longer_datagrams_are_dropped_and_counted(
+    listen, client, keeper, until, monkeypatch, kernel_filters
+):
+    if not kernel_filters:
+        monkeypatch.setattr(open_sockets, "FILTER", ((6, 0, 0, 0xFFFFFFFF),))
+    elif sys.platform != "linux":
+        pytest.skip("only Linux filters")
+    ports = listen()
+    sender = client(ports)
+    for size in (open_sockets.DATAGRAM_BYTES + 1, 65507):
+        sender.take(b"x" * size)
+    sender.take(b"/a\0\0")
+    until(lambda: keeper.packets, "the short one")
+    assert keeper.bodies == [b"/a\0\0"]
+    assert ports.traffic.kernel_drops == (2 if kernel_filters else 0)
+    assert ports.traffic.excess == (0 if kernel_filters else 2)
+
+
+def test_answers_come_from_the_listening_port_to_who_asked(listen, client, keeper):
+    ports = listen()
+    keeper.answer = pack("/yehu/pong", 1)
+    one, other = client(ports), client(ports)
+    one.take(b"/ping")
+    assert one.next() == ("/yehu/pong", [1])
+    assert other.next(0.1) is None
+
+
+def test_answers_nobody_takes_are_no_trouble(listen, client, keeper, until):
+    ports = listen()
+    keeper.answer = b"x" * 70_000  # more than a datagram holds
+    one, other = client(ports), client(ports)
+    one.take(b"/ping")
+    one.close()
+    other.take(b"/ping")
+    until(lambda: len(keeper.packets) == 2, "both")
+    until(lambda: ports.traffic.unsent == 2, "both to be counted")
+
+
+def test_what_waits_in_memory_is_bounded_and_what_is_over_is_counted(listen, client, keeper, until):
+    ports = listen()
+    one, other = client(ports), client(ports)
+    keeper.is_slow = True
+    keeper.go_on.clear()
+    sent = MOST_BYTES // 16_000
+    for number in range(sent):
+        one.take(b"x" * 16_000)
+        if number % 10 == 0:  # as the system's buffer may be small
+            until(lambda sent=number + 1: ports.traffic.packets == sent, "it to be read")
+    until(lambda: ports.traffic.packets == sent, "all to be read")
+    for _ in range(5):
+        other.take(b"y" * 16_000)
+    until(lambda: ports.traffic.packets == sent + 5, "all to be read")
+    assert 0.4 * sent < ports.traffic.excess < 0.6 * sent  # half of the room is for others
+    assert ports._queue.bytes < 0.6 * MOST_BYTES
+    keeper.go_on.set()
+    until(lambda: ports._queue.bytes == 0, "nothing to be left")
+    assert len(keeper.packets) == sent + 5 - ports.traffic.excess
+    assert keeper.bodies.count(b"y" * 16_000) == 5
+
+
+def test_there_is_osc_over_ipv6(listen, client, keeper):
+    try:
+        ports = listen(host="::1", allowed=Allowed(["::1/128"]))
+    except DeviceError:
+        pytest.skip("no IPv6 here")
+    keeper.answer = pack("/yehu/pong")
+    for kind in ("udp", "prefixed", "slip"):
+        sender = client(ports, kind)
+        sender.take(b"/ping\0\0\0")
+        assert sender.next() == ("/yehu/pong", [])
+
+
+# ---------------------------------------------------------------- TCP
+
+KINDS = ["prefixed", "slip"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_stream_loses_nothing_while_python_is_busy(listen, client, keeper, until, busy, kind):
+    ports = listen()
+    packets = numbered(BURST)
+    stream = client(ports, kind)
+    with busy():
+        stream.socket.sendall(b"".join(map(stream.wrap, packets)))
+        until(lambda: len(keeper.packets) >= BURST, "all packets")
+    assert keeper.bodies == packets
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_stream_that_is_too_fast_is_made_to_wait(listen, client, keeper, until, kind):
+    ports = listen()
+    keeper.go_on.clear()
+    packet = b"/" + b"x" * 999
+    count = 40_000
+    stream = client(ports, kind)
+    data = stream.wrap(packet) * count
+
+    def send() -> None:
+        stream.socket.sendall(data)
+
+    sender = threading.Thread(target=send)
+    sender.start()
+    time.sleep(0.2)
+    keeper.go_on.set()
+    sender.join(60.0)
+    until(lambda: len(keeper.packets) >= count, "all packets")
+    assert len(keeper.packets) == count
+    assert set(keeper.bodies) == {packet}
+
+
+def test_a_stream_is_not_read_further_before_it_is_handled(listen, client, keeper, until):
+    ports = listen()
+    keeper.go_on.clear()
+    streams = [client(ports, "prefixed") for _ in range(20)]
+    data = streams[0].wrap(b"/" + b"x" * 59_999) * 4
+    senders = [threading.Thread(target=each.socket.sendall, args=(data,)) for each in streams]
+    for sender in senders:
+        sender.start()
+    time.sleep(SETTLE_S)
+    assert ports._queue.bytes <= len(streams) * 2 * receiving.STREAM_BYTES
+    keeper.go_on.set()
+    until(lambda: len(keeper.packets) == 80, "all packets")
+    for sender in senders:
+        sender.join()
+    assert ports.traffic.excess == 0
+
+
+def test_streams_are_not_lost_beside_a_flood_of_datagrams(listen, client, keeper, until):
+    ports = listen()
+    udp, tcp = client(ports), client(ports, "prefixed")
+    packets = numbered(2000)
+    for packet in packets:
+        tcp.take(packet)
+        udp.take(b"flood")
+        udp.take(b"flood")
+    until(lambda: len([p for p in keeper.bodies if p != b"flood"]) >= 2000, "the stream")
+    assert [packet for packet in keeper.bodies if packet != b"flood"] == packets
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_was_sent_before_hanging_up_is_heard(listen, client, keeper, until, kind):
+    ports = listen()
+    packets = numbered(3000)
+    stream = client(ports, kind)
+    stream.socket.sendall(b"".join(map(stream.wrap, packets)))
+    stream.close()
+    until(lambda: len(keeper.packets) >= 3000, "all packets")
+    assert keeper.bodies == packets
+    until(lambda: ports.traffic.connections == 0, "the connection to be gone")
+    assert len(keeper.gone_peers) == 1
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_answers_come_in_the_framing_of_the_question(listen, client, keeper, kind):
+    ports = listen()
+    keeper.answer = pack("/yehu/pong", "a\x40b")
+    stream = client(ports, kind)
+    for _ in range(100):
+        stream.take(b"/ping\0\0\0")
+    for _ in range(100):
+        assert stream.next() == ("/yehu/pong", ["a\x40b"])
+
+
+def test_who_sends_no_packets_is_hung_up_on_and_others_play_on(listen, client, keeper, until):
+    ports = listen()
+    bad, good = client(ports, "prefixed"), client(ports, "prefixed")
+    good.take(b"/a\0\0")
+    bad.socket.sendall(bad.wrap(b"/b\0\0") + struct.pack(">I", 1 << 23))
+    assert bad.has_ended()
+    good.take(b"/c\0\0")
+    until(lambda: len(keeper.packets) == 3, "all whole packets")
+    assert sorted(keeper.bodies) == [b"/a\0\0", b"/b\0\0", b"/c\0\0"]
+    assert ports.traffic.connections == 1
+
+
+class Net:
+    """A socket that counts what it is given to send."""
+
+    def __init__(self) -> None:
+        self.sent_bytes = 0
+
+    def sendto(self, packet: bytes, _address: object) -> None:
+        self.sent_bytes += len(packet)
+
+
+@pytest.mark.parametrize(
+    ("is_here", "hosts", "most"), [(False, 1, 2), (False, 100, TO_ALL_HOSTS), (True, 1, 100)]
+)
+def test_answers_to_other_hosts_are_bounded_for_each_and_for_all(
+    listen, monkeypatch, is_here, hosts, most
+):
+    """An address may be forged: a hundred ports of one host must not get a hundred answers."""
+    ports, net = listen(), Net()
+    monkeypatch.setattr(receiving, "is_here", lambda _host: is_here)
+    monkeypatch.setattr(ports, "_udp", net)
+    for number in range(100):
+        peer = ports._peer((f"203.0.113.{number % hosts}", 1 + number))
+        while peer.takes_more:
+            peer.send(b"x" * 10_000)
+    assert most <= net.sent_bytes / ANSWERED_BYTES < 1.2 * most + 0.2
+
+
+def test_who_never_reads_misses_answers_and_others_play_on(listen, client, keeper, until):
+    ports = listen()
+    keeper.answer = b"x" * 60_000
+    deaf = client(ports, "prefixed")
+    for _ in range(400):
+        deaf.take(b"/ping\0\0\0")
+    until(lambda: len(keeper.packets) == 400, "all that it says")
+    assert ports.traffic.unsent > 0
+    assert ports.traffic.connections == 1
+    keeper.answer = pack("/yehu/pong")
+    other = client(ports, "slip")
+    other.take(b"/ping\0\0\0")
+    assert other.next() == ("/yehu/pong", [])
+
+
+def test_who_reads_slowly_gets_every_answer(listen, client, keeper):
+    ports = listen()
+    keeper.answer = pack("/yehu/pong", "x" * 1000)
+    slow = client(ports, "prefixed")
+    for _ in range(500):
+        slow.take(b"/ping\0\0\0")
+    time.sleep(0.1)
+    assert [slow.next() for _ in range(500)] == [("/yehu/pong", ["x" * 1000])] * 500
+
+
+def test_half_a_packet_makes_nobody_wait(listen, client, keeper, until):
+    ports = listen()
+    half, whole = client(ports, "prefixed"), client(ports, "prefixed")
+    half.socket.sendall(struct.pack(">I", 100) + b"/half")
+    whole.take(b"/whole\0\0")
+    until(lambda: keeper.packets, "the whole one")
+    assert keeper.bodies == [b"/whole\0\0"]
+    half.socket.sendall(b"x" * 95)
+    until(lambda: len(keeper.packets) == 2, "the other one")
+
+
+def test_connections_that_come_and_go_leave_nothing(listen, client, until):
+    ports = listen()
+    kept = len(ports._selector.get_map())
+    for number in range(200):
+        stream = client(ports, KINDS[number % 2])
+        if number % 3:
+            stream.take(b"/a\0\0")
+        if number % 5 == 0:  # a reset, not a goodbye
+            stream.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        stream.close()
+    until(lambda: ports.traffic.connections == 0, "all to be gone")
+    until(lambda: len(ports._selector.get_map()) == kept, "no socket to be left")
+
+
+@pytest.mark.parametrize("many", [receiving.MOST_OF_A_HOST, receiving.MOST_CONNECTIONS])
+def test_there_is_room_for_so_many_connections(listen, client, keeper, until, monkeypatch, many):
+    monkeypatch.setattr(receiving, "MOST_OF_A_HOST", many)
+    ports = listen()
+    streams = [client(ports, "slip") for _ in range(many)]
+    for stream in streams:
+        stream.take(b"/a\0\0")
+    until(lambda: len(keeper.packets) == len(streams), "all to be heard")
+    assert client(ports, "slip").has_ended()
+    assert ports.traffic.refused == 1
+    streams[0].close()
+    until(lambda: ports.traffic.connections < len(streams), "room")
+    late = client(ports, "slip")
+    late.take(b"/late\0\0\0")
+    until(lambda: b"/late\0\0\0" in keeper.bodies, "the late one")
+
+
+def test_connections_that_never_say_a_thing_shut_nobody_out(
+    listen, client, keeper, until, monkeypatch
+):
+    monkeypatch.setattr(receiving, "MOST_CONNECTIONS", 3)
+    ports = listen()
+    half, silent, speaks = (client(ports, "prefixed") for _ in range(3))
+    half.socket.sendall(struct.pack(">I", 100) + b"/half")
+    speaks.take(b"/a\0\0")
+    until(lambda: len(keeper.packets) == 1, "it to be heard")
+    assert client(ports, "slip").has_ended()  # they still have time
+    monkeypatch.setattr(receiving, "SPEAKS_WITHIN_S", 0.0)
+    for body in (b"/b\0\0", b"/c\0\0"):
+        client(ports, "slip").take(body)
+        until(lambda body=body: body in keeper.bodies, "who comes")
+    assert half.has_ended()
+    assert silent.has_ended()
+    speaks.take(b"/d\0\0")
+    until(lambda: b"/d\0\0" in keeper.bodies, "who stays")
+
+
+def test_who_is_silent_for_long_gives_its_place_to_who_comes_unless_it_listens(
+    listen, client, keeper, until, monkeypatch
+):
+    monkeypatch.setattr(receiving, "MOST_CONNECTIONS", 3)
+    monkeypatch.setattr(receiving, "QUIET_S", 0.5)
+    ports = listen()
+    listens, silent, speaks = (client(ports, "prefixed") for _ in range(3))
+    for number, stream in enumerate((listens, silent, speaks)):
+        stream.take(b"/a\0\0")
+        until(lambda count=number + 1: len(keeper.packets) == count, "it to be heard")
+    keeper.hearing.append(keeper.packets[0][1])
+    for _ in range(7):
+        time.sleep(0.1)
+        speaks.take(b"/b\0\0")
+    until(lambda: len(keeper.packets) == 10, "all to be heard")
+    comes = client(ports, "slip")
+    comes.take(b"/c\0\0")
+    until(lambda: b"/c\0\0" in keeper.bodies, "who comes")
+    assert silent.has_ended()
+    for stream in (listens, speaks):
+        stream.take(b"/d\0\0")
+    until(lambda: keeper.bodies.count(b"/d\0\0") == 2, "who stays")
+    assert client(ports, "slip").has_ended()  # nobody is silent any more
+
+
+# A browser's POST for a page of http://evil.example, with OSC as its body.
+NOTE = pack("/yehu/note", 67.0, 90.0)
+POST = (
+    b"POST / HTTP/1.1\r\nHost: 127.0.0.1:9000\r\nUser-Agent: curl/7.88.1\r\nAccept: */*\r\n"
+    b"Origin: http://evil.example\r\nContent-Length: %d\r\n"
+    b"Content-Type: application/x-www-form-urlencoded\r\n\r\n\xc0%b\xc0"
+) % (len(NOTE) + 2, NOTE)
+
+
+def test_a_web_page_is_hung_up_on_with_its_first_byte_and_plays_nothing(
+    listen, client, keeper, until, caplog
+):
+    caplog.set_level(logging.WARNING)
+    ports = listen()
+    for _ in range(20):
+        page = client(ports, "slip")
+        with contextlib.suppress(OSError):
+            page.socket.sendall(POST)
+        assert page.has_ended()
+    page = client(ports, "slip")
+    page.socket.sendall(POST[:1])
+    assert page.has_ended()
+    assert ports.traffic.refused == 21
+    assert [record.message for record in caplog.records if "not OSC" in record.message][1:] == []
+    assert keeper.packets == []
+    until(lambda: ports.traffic.connections == 0, "all to be gone")
+
+
+# ---------------------------------------------------------------- who may speak
+
+
+@pytest.mark.parametrize("kind", ["udp", *KINDS])
+def test_who_is_not_allowed_is_counted_and_never_answered(listen, client, keeper, until, kind):
+    ports = listen(allowed=Allowed(["192.0.2.0/24"]))
+    keeper.answer = b"/yehu/pong\0\0,\0\0\0"
+    sender = client(ports, kind)
+    with contextlib.suppress(OSError):
+        sender.take(b"/ping\0\0\0")
+    until(lambda: ports.traffic.refused == 1, "the refusal to be counted")
+    assert sender.next(0.1) is None
+    assert keeper.packets == []
+    assert ports.traffic.packets == ports.traffic.connections == 0
+
+
+# ---------------------------------------------------------------- where to listen
+
+
+@pytest.mark.parametrize("kind", [socket.SOCK_DGRAM, socket.SOCK_STREAM])
+def test_a_port_that_is_taken_is_told(keeper, kind):
+    with socket.socket(socket.AF_INET, kind) as taken:
+        taken.bind((HOST, 0))
+        if kind == socket.SOCK_STREAM:
+            taken.listen()
+        port = taken.getsockname()[1]
+        with pytest.raises(DeviceError, match=f"{HOST}:{port}"):
+            OscPorts(HOST, port, Allowed(), keeper)
+
+
+@pytest.mark.parametrize("host", ["192.0.2.1", "nowhere.invalid"])
+def test_an_address_that_is_not_ours_is_told(keeper, host):
+    with pytest.raises(DeviceError, match="cannot listen"):
+        OscPorts(host, 0, Allowed(), keeper)
+
+
+# ---------------------------------------------------------------- the thread
+
+
+def test_a_handler_that_fails_is_counted_and_the_next_packet_is_heard(
+    listen, client, keeper, until
+):
+    ports = listen()
+    sender = client(ports)
+    logging.disable(logging.CRITICAL)
+    try:
+        sender.take(b"raise")
+        sender.take(b"/next\0\0\0")
+        until(lambda: b"/next\0\0\0" in keeper.bodies, "the next")
+    finally:
+        logging.disable(logging.NOTSET)
+    assert ports.traffic.failures == 1
+
+
+def test_what_is_due_is_looked_after_however_much_is_to_be_handled(listen, client, keeper, until):
+    ports = listen()
+    keeper.takes_s = 0.001
+    send_all(client(ports), numbered(300))
+    until(lambda: len(keeper.packets) == 300, "all packets")
+    assert max(keeper.since_tick) * keeper.takes_s <= AHEAD_S
+
+
+def test_what_is_due_is_looked_after_however_much_is_to_be_read(listen, client, keeper, until):
+    ports = listen(start=False)
+    count = min(BURST, ports.traffic.buffer_bytes // (2 * PACKET_BYTES))
+    send_all(client(ports), numbered(count))
+    gc.collect()
+    gc.disable()  # a collection of all the session's objects takes long
+    try:
+        ports.start()
+        until(lambda: len(keeper.packets) >= count, "all packets")
+    finally:
+        gc.enable()
+    gaps = [after - before for before, after in itertools.pairwise(keeper.ticked_s)]
+    # In the thread's own CPU time, to which a neighbour on the same core adds up to 5 ms.
+    assert max(gaps) < AHEAD_S
+
+
+def test_an_idle_server_sleeps(listen, keeper):
+    listen()
+    time.sleep(0.3)
+    assert keeper.ticks <= 5
+
+
+def test_when_it_stops_a_stream_that_is_still_heard_out_is_closed_too(keeper, kit, until):
+    ports = OscPorts(HOST, 0, Allowed(), keeper)
+    ports.start()
+    keeper.takes_s = 0.01
+    stream = kit.Stream(ports.port)
+    stream.socket.sendall(stream.wrap(b"/a\0\0") * 1000)
+    stream.socket.shutdown(socket.SHUT_WR)
+    until(lambda: keeper.packets, "it to be heard")
+    ports.stop()
+    connections = {peer.socket for _, peer, _ in keeper.packets}
+    assert [connection.fileno() for connection in connections] == [-1]
+    stream.close()
+
+
+@pytest.mark.parametrize("started", [False, True])
+def test_when_it_stops_everything_is_closed(keeper, kit, started):
+    ports = OscPorts(HOST, 0, Allowed(), keeper)
+    stream = None
+    if started:
+        ports.start()
+        stream = kit.Stream(ports.port)
+        stream.take(b"/a\0\0")
+    threads = threading.active_count()
+    ports.stop()
+    assert threading.active_count() == threads - started
+    if stream is not None:
+        assert stream.has_ended()
+        stream.close()
+    again = OscPorts(HOST, ports.port, Allowed(), keeper)
+    again.stop()

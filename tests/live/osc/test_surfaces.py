@@ -1,0 +1,177 @@
+"""Surfaces on a real server: their pads, and the shipped patch in a real Pure Data."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import socket
+import subprocess
+import threading
+import time
+
+import pytest
+
+from yehu_server.params.table import TABLE
+from yehu_server.surfaces import layout, puredata
+from yehu_server.surfaces.layout import BOW_FORCE, BOW_SPEED, STRING_PITCH, STRING_PRESS, Axis
+
+PD = shutil.which("pd") or shutil.which("puredata")
+
+WATCHED = "/yehu/playing/vibrato"  # only these tests move it
+
+
+class RunningPatch:
+    """A Pd with the patch open, moved and watched from another patch."""
+
+    def __init__(self, folder, port: int) -> None:
+        patch = folder / "yehu.pd"
+        patch.write_bytes(puredata.make(("127.0.0.1", port)))
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.bind(("127.0.0.1", 0))
+            self._port = probe.getsockname()[1]
+        watcher = folder / "watcher.pd"
+        watcher.write_text(
+            "#N canvas 0 0 450 300 10;\n"
+            f"#X obj 10 10 netreceive -u {self._port} 127.0.0.1;\n"
+            "#X msg 10 40 \\; \\$1 \\$2;\n"
+            f"#X obj 200 10 r {WATCHED};\n"
+            "#X obj 200 40 print watched;\n"
+            "#X connect 0 0 1 0;\n"
+            "#X connect 2 0 3 0;\n"
+        )
+        words = [PD, "-nogui", "-noaudio", "-nomidi", "-stderr", "-noprefs"]
+        self._pd = subprocess.Popen(
+            [*words, "-open", str(watcher), "-open", str(patch)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.printed: list[str] = []
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+
+    def _read(self) -> None:
+        self.printed.extend(line.strip() for line in self._pd.stderr)
+
+    def move(self, name: str, value: float | str) -> None:
+        """Send a value to a slider or button of the patch."""
+        self._socket.sendto(f"list {name} {value};\n".encode(), ("127.0.0.1", self._port))
+
+    def close(self) -> None:
+        self._pd.terminate()
+        self._pd.wait(10)
+        self._reader.join()
+        self._pd.stderr.close()
+        self._socket.close()
+
+
+@pytest.fixture
+def patch(live, until, tmp_path):
+    if not PD:
+        pytest.skip("Pure Data is not here")
+    live.player.write("/playing/variation", 0.0, frame=0)
+    live.player.write("/playing/vibrato", 12.5, frame=0)
+    with contextlib.closing(RunningPatch(tmp_path, live.ports.port)) as patch:
+        until(lambda: "watched: set 12.5" in patch.printed, "what the server had")
+        yield patch
+
+
+def test_every_slider_of_the_patch_moves_its_parameter(live, until, patch):
+    for param in TABLE:
+        if param.address == "/playing/section":  # at most as many as there are
+            continue
+        value = param.from_unit(0.3)
+        patch.move(f"/yehu{param.address}", f"{value:.9g}")
+        until(
+            lambda param=param, value=value: (
+                live.player.value(param.address) == pytest.approx(value, rel=1e-5)
+            ),
+            param.address,
+        )
+    assert live.handler.counts.errors == 0
+    assert not [line for line in patch.printed if "create" in line or "error" in line]
+
+
+def test_a_slider_follows_the_server_and_says_nothing_back(live, until, patch):
+    client = live.client()
+    client.tell("/playing/vibrato", 40.0)
+    until(lambda: "watched: set 40" in patch.printed, "the change")
+    client.sync()
+    count = live.handler.counts.messages
+    time.sleep(0.4)
+    assert live.handler.counts.messages == count
+    assert live.player.value("/playing/vibrato") == 40.0
+
+
+def test_what_a_slider_has_moved_comes_back_to_all_that_show_it(until, patch):
+    patch.move(WATCHED, 25)
+    until(lambda: "watched: set 25" in patch.printed, "the echo")
+    # The patch itself shows it at once, the server when the slider rests.
+    until(lambda: patch.printed.count("watched: set 25") >= 2, "what the server tells")
+
+
+def test_the_patch_lets_go_of_a_moving_slider_only_when_it_rests(live, until, patch):
+    client = live.client()
+    patch.move("/yehu/playing/speed", 0.3)
+    until(lambda: live.player.value("/playing/speed") == pytest.approx(0.3), "the move")
+    client.tell("/playing/vibrato", 77.0)
+    until(lambda: "watched: set 77" in patch.printed, "the change, told late")
+
+
+def test_a_key_begins_before_the_last_one_ends(live, until, patch, monkeypatch):
+    heard = []
+    for name in ("note_on", "note_off"):
+        call = getattr(live.player, name)
+
+        def hear(note, *words, name=name, call=call, **named):
+            heard.append((name, note))
+            return call(note, *words, **named)
+
+        monkeypatch.setattr(live.player, name, hear)
+    patch.move(layout.local(puredata.KEY), 2)
+    patch.move(layout.local(puredata.KEY), 4)
+    until(lambda: ("note_off", 67.0) in heard, "the end of G4")
+    assert heard[-2:] == [("note_on", 69.0), ("note_off", 67.0)]
+
+
+def test_keys_end_and_panic(live, until, patch):
+    patch.move(layout.local(puredata.KEY), 2)
+    until(lambda: live.player.pitch == 67.0, "G4")
+    patch.move(layout.local(puredata.KEY), 4)
+    until(lambda: live.player.pitch == 69.0, "A4")
+    patch.move(layout.local(puredata.END), "bang")
+    until(lambda: live.player.pitch is None, "its end")
+    patch.move(layout.local(puredata.KEY), 4)
+    until(lambda: live.player.pitch == 69.0, "the same key again")
+    patch.move(layout.local(puredata.PANIC), "bang")
+    until(lambda: live.player.pitch is None, "panic")
+    patch.move("/yehu/bow/speed", 0.2)
+    until(lambda: live.player.value("/bow/speed") == pytest.approx(0.2), "the bow")
+    patch.move(layout.local(puredata.LIFT), "bang")
+    until(lambda: live.player.value("/bow/speed") == 0.0, "the bow lifted")
+    patch.move(layout.local(puredata.RELEASE), "bang")
+    assert live.is_well()
+
+
+def along(axis: Axis, unit: float) -> float:
+    return axis.lo + (axis.hi - axis.lo) * unit
+
+
+def test_one_hand_on_the_string_and_one_on_the_bow_sound_until_the_bow_is_lifted(live, until):
+    client = live.client()
+    client.tell("/pitch", along(STRING_PITCH, 0.15))
+    client.tell("/press", STRING_PRESS.start)
+    client.tell("/bow", along(BOW_SPEED, 0.7), along(BOW_FORCE, 0.25))
+    until(lambda: live.level() > 0.01, "sound")
+    client.tell("/bow", along(BOW_SPEED, 0.5), along(BOW_FORCE, 0.0))
+    until(lambda: live.target("/bow/speed") == 0.0, "the bow lifted")
+    until(lambda: live.level() < 1e-3, "silence")
+
+
+def test_the_pads_begin_with_a_bow_at_rest(live):
+    client = live.client()
+    client.tell("/bow", BOW_SPEED.start, BOW_FORCE.start)
+    live.settle()
+    assert live.level() < 1e-6

@@ -1,0 +1,169 @@
+"""The facts that the page gets are those of the server."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import mido
+import numpy as np
+import pytest
+
+from yehu_server.core.midi import events
+from yehu_server.core.midi.record import MIDI
+from yehu_server.core.midi.tables import MOST_BINDS, TABLES
+from yehu_server.core.player.rows import IS_ENGINES, IS_OWNED, ROW
+from yehu_server.core.player.wishes import KINDS
+from yehu_server.errors import ParameterError
+from yehu_server.live.page import examples, facts
+from yehu_server.live.page.facts import tunings
+from yehu_server.params.spec import Curve
+from yehu_server.params.table import SLOT, TABLE, find
+from yehu_server.playing.mapping import load, shipped_mappings
+from yehu_server.playing.preset_folders import Presets
+from yehu_server.playing.tuning import read_tuning
+from yehu_server.scores.smf.reader import read_score
+
+ROOT = Path(__file__).parents[3]
+FOR_SEVERAL = {"mo_li_hua"}
+
+
+@pytest.fixture(scope="module")
+def known() -> dict:
+    """The facts as the page reads them."""
+    text = facts.module(facts.facts())
+    body = text.removeprefix(facts.HEAD).removeprefix("export default ").rstrip().rstrip(";")
+    return json.loads(re.sub(r",\n}$", "\n}", body))
+
+
+def test_the_facts_are_the_same_in_each_process():
+    program = "from yehu_server.live.page import facts; print(facts.module(facts.facts()))"
+    texts = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+            cwd=ROOT,
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert len(texts) == 1
+    assert str(ROOT) not in texts.pop()
+
+
+def test_each_parameter_is_there_with_its_numbers(known):
+    rows = known["parameters"]
+    assert [row["address"] for row in rows] == [param.address for param in TABLE]
+    for row in rows:
+        param = find(row["address"])
+        assert row["row"] == ROW[param.address]
+        assert row["slot"] == SLOT.get(param.address)
+        assert row["owned"] == IS_OWNED[row["row"]]
+        assert (row["slot"] is not None) == IS_ENGINES[row["row"]]
+        assert Curve(row["curve"]) is param.curve
+        assert (row["lo"], row["hi"], row["default"]) == (param.lo, param.hi, param.default)
+        assert (row["unit"], row["doc"]) == (param.unit, param.doc)
+        assert (row["smoothMs"], row["isChoice"]) == (param.smooth_ms, param.is_choice)
+
+
+def test_each_kind_of_wish_has_its_number(known):
+    assert [KINDS[number].upper() for number in known["kinds"].values()] == list(known["kinds"])
+    assert sorted(known["kinds"].values()) == list(range(len(KINDS)))
+
+
+def test_each_other_kind_of_event_has_its_number(known):
+    assert {name: getattr(events, name) for name in known["events"]} == known["events"]
+    assert len(known["events"]) == len(events.EVENTS)
+
+
+def test_each_mapping_is_there_and_leaves_room_for_what_may_be_learned(known):
+    assert list(known["mappings"]) == shipped_mappings()
+    for name, settings in known["mappings"].items():
+        mapping = load(name)
+        bound = [(bind["source"], bind["target"]) for bind in settings["binds"]]
+        assert bound == [(bind.source, bind.target) for bind in mapping.binds]
+        assert tuple(settings["start"].items()) == mapping.start
+        assert (settings["mpe"], settings["about"]) == (mapping.mpe, mapping.about)
+        assert len(bound) + len(TABLE) <= MOST_BINDS
+    assert known["defaultMapping"] in known["mappings"]
+
+
+def test_the_layout_of_the_interpreter_is_that_of_its_records(known):
+    layout = known["interpreter"]
+    for dtype, fields in ((MIDI, layout["record"]), (TABLES, layout["tables"])):
+        for name, (at, size) in fields.items():
+            made = np.zeros(1, dtype)
+            made[name] = 1
+            words = made.view(np.int64) if dtype is MIDI else made.view(np.float64)
+            assert np.flatnonzero(words).tolist() == list(range(at, at + size))
+    assert layout["length"] * 8 == TABLES.itemsize
+    assert layout["tablesAt"] * 8 >= MIDI.itemsize
+
+
+def test_each_preset_is_there(known, tmp_path):
+    presets = Presets(tmp_path)
+    assert list(known["presets"]["shipped"]) == presets.names()
+    for name, settings in known["presets"]["shipped"].items():
+        preset = presets.load(name)
+        assert settings["values"] == dict(preset.values)
+        assert (settings["about"], settings["program"]) == (preset.about, preset.program)
+
+
+def test_each_tuning_is_there(known):
+    assert known["tunings"]["equal"]["keys"] is None
+    for name, settings in known["tunings"].items():
+        if name == "equal":
+            continue
+        tuning = read_tuning(*map(Path, name.split(", ")))
+        assert settings["keys"] == [tuning.pitch(key, 440.0) for key in range(128)]
+
+
+def test_every_shipped_map_of_keys_is_offered(known):
+    maps = {file.stem for file in (ROOT / "tunings").glob("*.kbm")}
+    assert {name.partition(", ")[2] for name in known["tunings"]} == maps | {""}
+
+
+def test_a_scale_is_offered_on_the_maps_that_take_it_only(tmp_path, monkeypatch):
+    (tmp_path / "one.scl").write_text("no note but the first\n0\n")
+    (tmp_path / "five.scl").write_text("five\n5\n240.\n480.\n720.\n960.\n2/1\n")
+    head = "2\n0\n127\n60\n"
+    (tmp_path / "second.kbm").write_text(f"{head}61\n300.\n5\n0\n1\n")
+    (tmp_path / "first.kbm").write_text(f"{head}60\n300.\n5\n0\n1\n")
+    monkeypatch.setattr("yehu_server.live.page.facts.shipped_folder", lambda _: tmp_path)
+    with pytest.raises(ParameterError, match="not mapped"):  # it has no degree 1
+        read_tuning(tmp_path / "one.scl", tmp_path / "second.kbm")
+    assert list(tunings()) == [
+        "equal", "five", "five, first", "five, second", "one",
+    ]  # fmt: skip
+
+
+def test_each_example_has_its_events():
+    found = examples.examples()
+    assert set(found) == {file.stem for file in (ROOT / "examples").glob("*.mid")}
+    for name, example in found.items():
+        if name in FOR_SEVERAL:
+            continue
+        events = read_score(ROOT / "examples" / f"{name}.mid").events
+        assert example["mapping"] in shipped_mappings()
+        for (seconds, data), event in zip(example["events"], events, strict=True):
+            assert seconds == pytest.approx(event.time_s, abs=1e-6)
+            assert mido.Message.from_bytes(data) == event.message
+
+
+def test_of_a_score_for_several_the_page_plays_the_first_player():
+    score = examples.example(ROOT / "examples" / "mo_li_hua.mid")
+    channels = {data[0] & 15 for _, data in score["events"] if data[0] < 0xF0}
+    assert channels == {0}
+    notes = [data for _, data in score["events"] if data[0] >> 4 == 9 and data[2]]
+    assert len(notes) > 20
+
+
+def test_an_mpe_score_keeps_the_channels_of_its_zone():
+    score = examples.example(ROOT / "examples" / "mpe_phrase.mid")
+    assert len({data[0] & 15 for _, data in score["events"] if data[0] < 0xF0}) > 1

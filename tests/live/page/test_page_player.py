@@ -1,0 +1,215 @@
+"""The page's player wishes what the server's does: the same interpreter, in WebAssembly."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import random
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from interpreted import Leader
+from live.page import streams
+
+from yehu_server.core.midi.events import FINGER_ON
+from yehu_server.core.midi.tables import TABLES
+from yehu_server.live.page import facts
+from yehu_server.params.table import find
+from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.mapping import Mapping, load, shipped_mappings
+from yehu_server.playing.mapping_writer import as_toml
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.preset_folders import Presets
+from yehu_server.playing.tables import Controls, make_tables
+from yehu_server.playing.tuning import EQUAL, STANDARD_A4, Tuning, read_tuning
+from yehu_server.playing.wishes import UNMAPPED, Key, WishPoster
+
+STREAMS, MANY_STREAMS = 200, 4_000
+SOME_MAPPINGS = 20
+HAND = -1  # channel of the only hand
+# Those of named controls, which nothing moves on a page, and of programs, which it ignores; points
+# may lie elsewhere, where somebody has taught the mapping something in place of their bind.
+UNUSED = {"same", "input_lo", "input_hi", "program_row", "first_point", "x", "y"}
+
+Wished = tuple[float, ...]  # frame, kind, index, value, other
+
+
+class Recorder(Leader):
+    """Stands for an instrument, and records what is wished of it, as soon as it is posted."""
+
+    frame = 0
+    is_live = False
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.wishes: list[Wished] = []
+        self.posted = 0
+
+    def post(self, kind, *, frame=None, index=0, value=0.0, other=0.0) -> bool:
+        self.posted += 1
+        at = -self.posted if frame is None else frame  # what is for now has a frame of its own
+        for wish in self.interpret(at, kind, index, value, other):
+            self.wishes.append((-1 if frame is None else frame, *wish))
+        return True
+
+    def meters(self) -> dict[str, float]:
+        return {"drained": self.posted, "next_frame": math.inf}
+
+    def target(self, address: str) -> float:
+        return find(address).default
+
+
+class Server(LivePlayer):
+    """A live player with the methods of the page's; a frame of None is now."""
+
+    def __init__(self, mappings: dict[str, Mapping], tunings: dict[str, Tuning], presets) -> None:
+        recorder = Recorder()
+        options = PlayingOptions(mapping=UNMAPPED, presets=presets)
+        super().__init__(recorder, options, delay_ms=0.0, wishes=WishPoster([recorder]))
+        self._mappings, self._tunings = mappings, tunings
+        self._key: Key | None = None
+        self.remap(mappings[facts.DEFAULT], frame=None)
+
+    def _at(self, frame):
+        return None if frame is None else super()._at(frame)
+
+    def _after_all(self, frame):
+        return None if frame is None else super()._after_all(frame)
+
+    def call(self, method: str, *values: Any) -> None:
+        """Do what the page's player does by this method."""
+        *given, frame = values
+        if method == "midi":
+            data, frame, port = values
+            self._midi.receive(data, frame=self._at(frame), port=port)
+        elif method == "fingerOn":
+            _hand, at, velocity = given
+            self._key = Key(HAND, at)
+            self._wishes.post(FINGER_ON, self._at(frame), HAND, at, velocity)
+        elif method == "noteOff" and self._key is not None:
+            self._midi.note_off(self._key, self._at(frame))
+        elif method == "lift":
+            self._wishes.lift(frame=self._at(frame))
+        elif method == "applyPreset":
+            self.load(self.presets.load(given[0]).values, frame=frame)
+        elif method == "remap":
+            self.remap(self._mappings[given[0]], frame=frame)
+        elif method == "applyTuning":  # options of the server's do not change
+            self._wishes._tuning = self._tunings[values[0]]
+            in_use = self._wishes.record["tables"]
+            self.instrument.tables[in_use] = self._midi._tables()[0]
+        else:
+            name = {"endPortNotes": "end_port_notes", "endNotes": "end_notes"}.get(method, method)
+            getattr(self, name)(*given, frame=frame)
+
+
+@pytest.fixture(scope="module")
+def taught(tmp_path_factory) -> dict[str, dict[str, Any]]:
+    """Of each shipped mapping one that somebody has taught: as files have it and as pages do."""
+    chance, folder = random.Random(4), tmp_path_factory.mktemp("taught")
+    found = {}
+    for base in shipped_mappings():
+        contents = streams.some_learned(chance, base)
+        file = folder / f"taught-{base}.toml"
+        file.write_text(as_toml(contents))
+        binds = [
+            {"source": b.source, "target": b.target, "span": b.span, "isSoft": b.is_soft}
+            for b in contents.binds
+        ]
+        found[file.stem] = {"mapping": load(str(file)), "page": {"base": base, "learned": binds}}
+    return found
+
+
+@pytest.fixture(scope="module")
+def mappings(taught) -> dict[str, Mapping]:
+    """Shipped ones, those that were taught, and any others."""
+    chance = random.Random(1)
+    made = [streams.some_mapping(chance, f"made {number}") for number in range(SOME_MAPPINGS)]
+    shipped = {name: load(name) for name in shipped_mappings()}
+    own = {name: each["mapping"] for name, each in taught.items()}
+    return shipped | own | {mapping.name: mapping for mapping in made}
+
+
+@pytest.fixture(scope="module")
+def page_told(node, playing, mappings, taught, everything):
+    """Streams of calls, the tables that the page makes, and the wishes that each comes to."""
+    made = streams.Streams(2, list(mappings))
+    played = [made.next() for _ in range(MANY_STREAMS if everything else STREAMS)]
+    own = {name: facts.mapping(mapping) for name, mapping in mappings.items()}
+    own |= {name: each["page"] for name, each in taught.items()}
+    result = subprocess.run(
+        [node, Path(__file__).with_name("playing.mjs"), playing],
+        input="\n".join(json.dumps(each) for each in (own, *played)),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 0, result.stderr
+    tables, *wishes = map(json.loads, result.stdout.splitlines())
+    return played, tables, wishes
+
+
+def test_the_page_wishes_what_the_server_wishes(page_told, mappings, tmp_path):
+    presets, kinds = Presets(tmp_path), set()
+    tunings = {
+        name: EQUAL if name == "equal" else read_tuning(*map(Path, name.split(", ")))
+        for name in streams.TUNINGS
+    }
+    played, _, told = page_told
+    for number, (calls, page) in enumerate(zip(played, told, strict=True)):
+        server = Server(mappings, tunings, presets)
+        for call in calls:
+            server.call(*call)
+        wanted = np.array(server.instrument.wishes)
+        found = np.array(page).reshape(-1, 5)
+        assert found.shape == wanted.shape, (number, calls)
+        assert np.allclose(found, wanted, rtol=1e-12, atol=1e-12), (number, calls)
+        kinds |= set(wanted[:, 1])
+    assert len(kinds) == len(facts.facts()["kinds"]) - 2  # the page posts no ramps, and holds none
+
+
+def test_the_page_writes_the_tables_that_the_server_writes(page_told, mappings):
+    tuning = read_tuning(Path("chaozhou-seven-equal"))
+    _, tables, _ = page_told
+    for name, mapping in mappings.items():
+        policy = WishPoster([Recorder()]).policy
+        wanted = make_tables(mapping, Controls(), tuning=tuning, a4=STANDARD_A4, policy=policy)
+        found = np.array([math.nan if x is None else x for x in tables[name]]).view(TABLES)
+        for field in set(TABLES.names or ()) - UNUSED:
+            np.testing.assert_array_equal(found[field], wanted[field], f"{name}: {field}")
+        assert points_of(found[0]) == points_of(wanted[0]), name
+
+
+def points_of(table: Any) -> list[list[tuple[float, float]]]:
+    """The points of each bind's curve."""
+    points = list(zip(table["x"].tolist(), table["y"].tolist(), strict=True))
+    firsts, counts = table["first_point"].astype(int), table["points"].astype(int)
+    return [points[first : first + count] for first, count in zip(firsts, counts, strict=True)]
+
+
+def test_the_page_s_own_player_has_hands(node, playing):
+    result = subprocess.run(
+        [node, "--test", Path(__file__).with_name("player.test.mjs")],
+        env=os.environ | {"WEB": str(playing)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 0, result.stdout
+
+
+def test_the_types_of_the_page_are_right(page):
+    compiler = Path(__file__).parents[3] / "node_modules" / ".bin" / "tsc"
+    if not compiler.exists():
+        pytest.skip("npm install has not been run")
+    result = subprocess.run(
+        [compiler, "--project", page / "jsconfig.json"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 0, result.stdout[:2000]

@@ -1,0 +1,89 @@
+"""The page's words: the same in each language, for all that the tables have."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from yehu_server.params.table import TABLE
+from yehu_server.playing.mapping import shipped_mappings
+from yehu_server.playing.preset_folders import Presets
+
+WEB = Path(__file__).parents[3] / "web"
+NODE = shutil.which("node")
+# English has these from the tables themselves.
+TRANSLATED = re.compile(r"about/|preset\.[^.]+\.about$")
+
+pytestmark = pytest.mark.skipif(NODE is None, reason="there is no Node here")
+
+
+@pytest.fixture(scope="module")
+def texts() -> dict[str, dict[str, str]]:
+    script = """
+    const found = {};
+    for (const each of ["en", "zh"]) {
+      found[each] = (await import(`${process.argv[1]}/${each}.js`)).default;
+    }
+    console.log(JSON.stringify(found));
+    """
+    command = [str(NODE), "--input-type=module", "-e", script, f"{WEB.as_uri()}/texts"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    found: dict[str, dict[str, str]] = json.loads(done.stdout)
+    return found
+
+
+def test_both_languages_have_the_same_keys(texts) -> None:
+    english, chinese = (set(texts[language]) for language in ("en", "zh"))
+    assert {key for key in chinese if not TRANSLATED.match(key)} == english
+
+
+def test_no_text_is_empty(texts) -> None:
+    assert [
+        key for text in texts.values() for key, words in text.items() if not words.strip()
+    ] == []
+
+
+def test_both_languages_fill_in_the_same_values(texts) -> None:
+    def places(words: str) -> list[str]:
+        return sorted(re.findall(r"\{\w+\}", words))
+
+    for key, words in texts["en"].items():
+        assert places(words) == places(texts["zh"][key]), key
+
+
+def test_every_parameter_has_a_name_and_is_translated(texts) -> None:
+    addresses = {param.address for param in TABLE}
+    assert {
+        key.removeprefix("parameter") for key in texts["en"] if key.startswith("parameter/")
+    } == addresses
+    assert {
+        key.removeprefix("about") for key in texts["zh"] if key.startswith("about/")
+    } == addresses
+
+
+def test_every_preset_and_mapping_has_a_name(texts) -> None:
+    for preset in Presets().all()[0]:
+        assert f"preset.{preset.name}" in texts["en"]
+        assert f"preset.{preset.name}.about" in texts["zh"]
+    for mapping in shipped_mappings():
+        assert f"mapping.{mapping}" in texts["en"]
+
+
+def test_every_key_that_the_page_names_is_there(texts) -> None:
+    sources = [
+        *WEB.glob("*.js"),
+        *WEB.glob("views/*.js"),
+        *WEB.glob("pictures/*.js"),
+        WEB / "index.html",
+    ]
+    named = re.compile(
+        r"\btranslate\(\s*[\"']([^\"'$]+)[\"']|data-(?:text|label|hint)=\"([^\"]+)\""
+    )
+    keys = {one or other for file in sources for one, other in named.findall(file.read_text())}
+    assert len(keys) > 50
+    assert keys - set(texts["en"]) == set()

@@ -1,0 +1,493 @@
+"""The audio server dies while the instrument plays, and comes back."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import forks
+import numpy as np
+import pytest
+import soundfile
+from sound import alone
+
+from yehu_server.cli import main
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.live.audio import output
+from yehu_server.live.audio.output import Output, OutputOptions, SharedMemory
+from yehu_server.live.options import PartOptions, ServeOptions
+from yehu_server.live.server import Server
+from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.rendering.replay import blocks
+from yehu_server.scores.capture import read_capture
+from yehu_server.scores.capture_header import session_start_of
+from yehu_server.scores.capture_writer import CaptureWriter
+from yehu_server.util.processes import Child
+
+DEVICE = "system, JACK Audio Connection Kit"
+SOUNDS = 1e-3
+
+
+def peak(samples: np.ndarray) -> float:
+    return float(np.abs(samples).max())
+
+
+def begun(serve, folder: Path, *words: object):
+    """A server that plays G4 on JACK, and a client of it."""
+    files = ("--record", folder / "take.wav", "--capture", folder / "take.jsonl")
+    server = serve("--midi-api", "none", *files, *words)
+    osc = server.osc()
+    server.said(f"playing on {DEVICE}")
+    osc.send("/note", 67, 90)
+    return server, osc
+
+
+def same_again(folder: Path) -> tuple[np.ndarray, np.ndarray]:
+    """The recording, and a replay of the capture."""
+    words = ["replay", str(folder / "take.jsonl"), "-o", str(folder / "again.wav"), "--quiet"]
+    assert main(words) == 0
+    files = (folder / "take.wav", folder / "again.wav")
+    return tuple(soundfile.read(file, dtype="float32")[0] for file in files)
+
+
+def wait_for_frames(osc, frames: int) -> dict:
+    """Wait while frames are played; return the status."""
+    start = osc.status()["frame"]
+    deadline = time.monotonic() + 2.0 + 2.0 * frames / 48000
+    while time.monotonic() < deadline:
+        status = osc.status()
+        if status["frame"] >= start + frames:
+            return status
+        time.sleep(0.02)
+    raise AssertionError(f"only {status['frame'] - start} of {frames} frames were played")
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.slow
+def test_without_its_audio_server_it_says_so_and_plays_on(
+    number, jackd, serve, recorder, tmp_path, until
+):
+    jackd.start()
+    server, osc = begun(serve, tmp_path)
+    before = wait_for_frames(osc, 12_000)
+    assert before["device"] == DEVICE
+    assert before["note"] > 0
+
+    said = len(server.lines)
+    jackd.kill(number)
+    server.said(f"{DEVICE} is gone; on the silent clock", 5.0, said)
+    lost = osc.status()
+    assert lost["device"] == "silent clock"
+    assert "gone" in lost["problem"]
+    assert lost["device_losses"] == 1
+    assert lost["note"] == before["note"]
+    silent = wait_for_frames(osc, 24_000)
+    assert silent["note"] == before["note"]
+    assert silent["rms_db"] > -60.0  # nobody hears it, but it sounds
+    assert silent["lost_states"] == 0
+
+    jackd.restart()
+    server.said(f"playing on {DEVICE}", 10.0, said)
+    back = wait_for_frames(osc, 24_000)
+    assert back["device"] == DEVICE
+    assert back["problem"] == ""
+    assert back["note"] == before["note"]
+
+    def sounds() -> bool:
+        """Whether it is heard, by a new listener each time: JACK drops one that was too slow."""
+        listener = recorder().connected()
+        wait_for_frames(osc, 12_000)
+        samples = listener.recording().samples[0, -4800:]
+        return samples.size > 0 and peak(samples) > SOUNDS
+
+    until(sounds, 15.0, "the instrument to be heard again")
+
+    assert server.end() == 0
+    recorded, again = same_again(tmp_path)
+    np.testing.assert_array_equal(again, recorded)
+
+
+@pytest.mark.slow
+def test_it_outlives_an_audio_server_that_dies_again_and_again(jackd, serve, tmp_path):
+    jackd.start()
+    server, osc = begun(serve, tmp_path)
+    for losses in (1, 2):
+        wait_for_frames(osc, 2_000)
+        said = len(server.lines)
+        jackd.kill()
+        server.said("is gone", 5.0, said)
+        jackd.restart()
+        server.said(f"playing on {DEVICE}", 15.0, said)
+        assert osc.status()["device_losses"] == losses
+    assert server.end() == 0
+    recorded, again = same_again(tmp_path)
+    np.testing.assert_array_equal(again, recorded)
+
+
+@pytest.mark.slow
+def test_it_ends_cleanly_while_its_audio_server_is_gone(jackd, serve, tmp_path):
+    jackd.start()
+    server, osc = begun(serve, tmp_path)
+    wait_for_frames(osc, 4_000)
+    jackd.kill()
+    server.said("is gone", 5.0)
+    assert server.end() == 0
+    assert peak(soundfile.read(tmp_path / "take.wav")[0]) > SOUNDS
+
+
+@pytest.mark.slow
+def test_an_audio_server_that_hangs_is_left_and_taken_up_again(jackd, serve, tmp_path):
+    jackd.start()
+    server, osc = begun(serve, tmp_path)
+    before = wait_for_frames(osc, 4_000)
+    said = len(server.lines)
+    os.kill(jackd.pid, signal.SIGSTOP)
+    server.said("is gone", 5.0, said)
+    hung = wait_for_frames(osc, 12_000)
+    assert hung["note"] == before["note"]
+    os.kill(jackd.pid, signal.SIGCONT)
+    server.said(f"playing on {DEVICE}", 20.0, said)
+    wait_for_frames(osc, 4_000)
+    assert server.end() == 0
+    recorded, again = same_again(tmp_path)
+    np.testing.assert_array_equal(again, recorded)
+
+
+def test_an_audio_process_that_crashes_is_replaced(jackd, serve, tmp_path):
+    jackd.start()
+    server, osc = begun(serve, tmp_path)
+    before = wait_for_frames(osc, 4_000)
+    said = len(server.lines)
+    (audio,) = server.family()  # there is no other process
+    os.kill(audio, signal.SIGKILL)
+    server.said(f"playing on {DEVICE}", 10.0, said)
+    after = wait_for_frames(osc, 4_000)
+    # It is killed between two blocks or, more rarely, in one, which ends all notes.
+    assert after["note"] in (before["note"], -1.0)
+    assert server.end() == 0
+
+
+@pytest.mark.slow
+def test_a_server_that_starts_before_its_audio_server_takes_it_up_when_it_comes(
+    jackd, serve, tmp_path
+):
+    jackd.start()
+    jackd.stop()
+    server = serve("--midi-api", "none", "--capture", tmp_path / "take.jsonl")
+    osc = server.osc()
+    server.said("playing on a silent clock")
+    osc.send("/note", 67, 90)
+    wait_for_frames(osc, 4_000)
+    jackd.restart()
+    server.said(f"playing on {DEVICE}", 10.0)
+    status = wait_for_frames(osc, 4_000)
+    assert status["note"] > 0
+    assert status["device_losses"] == 0
+    assert server.end() == 0
+
+
+# ---------------------------------------------------------------- killed while it played
+
+
+class Stopped:
+    """A server that plays G4 on JACK, and its audio process, stopped in a block or between two."""
+
+    def __init__(self, server: Server, until: Callable, *, in_block: bool) -> None:
+        self.server, self.player = server, server.player
+        self.instrument = server.instrument
+        self._until = until
+        assert server.output.state.device == DEVICE
+        self.player.note_on(67.0, 90.0, frame=self.player.frame_of())
+        until(lambda: self.player.pitch == 67.0, 5.0, "the note")
+        self._audio = server.output._child._process.pid
+        until(lambda: self._stop(in_block=in_block), 60.0, "the audio process to be there")
+
+    def _stop(self, *, in_block: bool) -> bool:
+        """Stop the process; let it go on if it is elsewhere."""
+        os.kill(self._audio, signal.SIGSTOP)
+        threads = Path(f"/proc/{self._audio}/task")
+        self._until(
+            lambda: all(") T " in (one / "stat").read_text() for one in threads.iterdir()),
+            2.0,
+            "all threads to be stopped",
+        )
+        if bool(self.instrument._rig["meters"]["running"][0]) == in_block:
+            return True
+        os.kill(self._audio, signal.SIGCONT)
+        time.sleep(0.0037)
+        return False
+
+    def kill(self) -> None:
+        """Kill the process, and wait until another one plays."""
+        os.kill(self._audio, signal.SIGKILL)
+        output = self.server.output
+        self._until(lambda: output.state.losses == 1, 5.0, "the loss")
+        self._until(lambda: output.state.device == DEVICE, 15.0, "the device")
+        self.wait(2000)
+
+    def wait(self, frames: int) -> None:
+        end = self.instrument.frame + frames
+        self._until(lambda: self.instrument.frame >= end, 5.0, "frames to be played")
+
+    @property
+    def keys(self) -> tuple[int, int]:
+        """Number of keys that are held, by the audio side and by the server."""
+        held = int(self.instrument._rig["player"]["held"][0])
+        return held, len(self.player._wishes.held())
+
+
+@pytest.fixture
+def stopped(jackd, until) -> Iterator[Callable[..., Stopped]]:
+    jackd.start()
+    interval = sys.getswitchinterval()
+    with contextlib.ExitStack() as ending:
+        ending.callback(sys.setswitchinterval, interval)
+
+        def make(*, in_block: bool) -> Stopped:
+            options = ServeOptions(
+                output=OutputOptions(device="system, JACK"),
+                midi=None,
+                osc=("127.0.0.1", 0),
+                parts=[PartOptions(PlayingOptions(settings=(("/playing/variation", 0.0),)))],
+            )
+            server = Server(options, lambda _line: None)
+            ending.callback(server.stop)
+            server.start()
+            return Stopped(server, until, in_block=in_block)
+
+        yield make
+
+
+def test_a_note_in_the_middle_of_which_the_audio_process_dies_does_not_hang(stopped, until):
+    it = stopped(in_block=True)
+    assert it.keys == (1, 1)
+    it.kill()
+    (gap,) = it.server.ensemble.gaps
+    assert it.keys == (0, 0)
+    assert it.player.pitch is None
+    assert it.player.value("/bow/speed") == it.player.value("/bow/side") == 0.0
+    assert not it.server.ensemble.taped(gap[0])[1].any()
+    it.player.note_off(67.0, frame=it.player.frame_of())  # let go later
+    it.wait(4800)
+    assert not it.server.ensemble.taped(gap[0])[1].any()
+    it.player.note_on(69.0, 90.0, frame=it.player.frame_of())
+    until(lambda: it.player.pitch == 69.0, 5.0, "a new note")
+    it.wait(9600)
+    assert peak(it.server.ensemble.taped(it.instrument.frame - 4800)[1]) > SOUNDS
+    assert it.keys == (1, 1)
+    it.player.note_off(69.0, frame=it.player.frame_of())
+    until(lambda: it.player.pitch is None, 5.0, "its end")
+    assert it.keys == (0, 0)
+
+
+def test_a_note_goes_on_where_the_audio_process_dies_between_two_blocks(stopped, until):
+    it = stopped(in_block=False)
+    it.kill()
+    assert it.server.ensemble.gaps == []
+    assert it.player.pitch == 67.0
+    assert it.keys == (1, 1)
+    assert peak(it.server.ensemble.taped(it.instrument.frame - 1000)[1]) > SOUNDS
+    it.player.note_off(67.0, frame=it.player.frame_of())
+    until(lambda: it.player.pitch is None, 5.0, "its end")
+    assert it.keys == (0, 0)
+
+
+@pytest.mark.parametrize("end", ["note_off", pytest.param("panic", marks=pytest.mark.slow)])
+def test_a_key_that_was_pressed_while_the_audio_process_died_can_be_let_go(stopped, until, end):
+    it = stopped(in_block=True)
+    it.player.note_on(72.0, 90.0, frame=it.player.frame_of())
+    it.kill()
+    words = (72.0,) if end == "note_off" else ()
+    getattr(it.player, end)(*words, frame=it.player.frame_of())
+    until(lambda: it.keys == (0, 0), 5.0, "the key to be let go")
+    until(lambda: it.player.pitch is None, 5.0, "its end")
+
+
+PLAYS_ON = """
+import mmap, sys
+import numpy as np
+from yehu_server.core.engine import native
+from yehu_server.core.engine.warming import warm_up
+from yehu_server.core.engine.rig import memory_bytes
+memory = mmap.mmap(int(sys.argv[1]), memory_bytes(1))
+rig = np.frombuffer(memory, np.uint8).ctypes.data
+out = np.zeros((8192, 2), np.float32)
+warm_up()
+print("plays", flush=True)
+while True:
+    native.callback.call(None, out.ctypes.data, len(out), None, 0, rig)
+"""
+
+
+def bow(instrument: Instrument, _wishes: WishPoster) -> None:
+    """Move the parameters of the engine."""
+    frame = instrument.frame + 100
+    instrument.write("/finger/1/position", 0.1, frame=frame, ramp_ms=0.0)
+    instrument.write("/finger/1/press", 1.5, frame=frame)
+    instrument.write("/bow/side", 1.0, frame=frame)
+    instrument.write("/bow/speed", 0.2, frame=frame)
+
+
+def finger(instrument: Instrument, wishes: WishPoster) -> None:
+    """Play two notes, each varied in its own way; the second is held until the sound dies."""
+    frame = instrument.frame + 100
+    wishes.note_on(Key(0, 67), {"/playing/pressure": 0.5}, frame=frame)
+    wishes.write("/playing/bend", 0.3, frame=frame + 500)
+    wishes.note_on(Key(0, 74), frame=frame + 2000)
+    wishes.note_off(Key(0, 67), frame=frame + 3000)
+
+
+@pytest.mark.parametrize("play", [bow, pytest.param(finger, marks=pytest.mark.slow)])
+def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_path, play):
+    memory = SharedMemory()
+    playing = PlayingOptions(seed=3)
+    calibration = calibration_for(48000.0)
+    stage = Ensemble([playing.spec(48000.0, calibration)], memory=memory.buffer)
+    live = stage.first
+    wishes = playing.wishes(live)
+    live.report_wishes()
+    capture = CaptureWriter(
+        tmp_path / "take.jsonl", beginning=session_start_of([live], has_room=True)
+    )
+    recorded = np.zeros((0, 2), np.float32)
+    for _ in range(3):
+        play(live, wishes)
+        audio = forks.start(memory.descriptor, code=PLAYS_ON, pass_fds=[memory.descriptor])
+        assert audio.stdout.readline() == "plays\n"
+        time.sleep(0.1)
+        audio.kill()
+        audio.communicate()
+        stage.recover()
+        capture.wishes(live.applied_wishes())
+        begin, samples = stage.taped(len(recorded))
+        assert begin == len(recorded)
+        recorded = np.concatenate([recorded, samples])
+    play(live, wishes)
+    stage.process(np.zeros((9600, 2), np.float32))
+    capture.wishes(live.applied_wishes())
+    for since, frame in stage.gaps:
+        capture.note("rest", frame, since=since)
+    capture.close(live.frame)
+    recorded = np.concatenate([recorded, stage.taped(len(recorded))[1]])
+    assert peak(recorded) > SOUNDS
+    captured = read_capture(tmp_path / "take.jsonl")
+    again = list(blocks(captured, captured.beginning.ensemble()))
+    np.testing.assert_array_equal(np.concatenate(again), recorded)
+
+
+class Refusing:
+    """An audio process whose stream opens but does not start."""
+
+    def __init__(self, _module, heard, share=()) -> None:
+        del share
+        self._heard = heard
+
+    def send(self, order: str, **_details: object) -> None:
+        answers = {
+            "look": {"event": "found", "name": "card", "rate": 48000.0, "channels": 2},
+            "open": {"event": "ready", "latency_ms": 5.0},
+            "start": {"event": "failed", "reason": "it does not start"},
+        }
+        self._heard(answers[order])
+
+    def kill(self) -> None:
+        pass
+
+    stop = kill
+
+
+def test_while_a_device_does_not_start_time_goes_on(monkeypatch):
+    monkeypatch.setattr(output, "Child", Refusing)
+    way_out = Output(OutputOptions(), lambda _line: None)
+    stage = alone(way_out.find(), memory=way_out.memory.buffer, channels=2)
+    instrument = stage.first
+    try:
+        way_out.begin(stage)  # waits once
+        longest, own, last, since = 0.0, 0.0, instrument.frame, time.monotonic()
+        start = looked = since
+        while (now := time.monotonic()) < start + 2.5:
+            if instrument.frame != last:
+                last, since = instrument.frame, now
+            longest, own, looked = max(longest, now - since), max(own, now - looked), now
+            time.sleep(0.005)
+    finally:
+        way_out.end()
+    assert longest < 0.5 + 2.0 * own  # a busy machine holds this thread up, too
+
+
+def open_files() -> set[str]:
+    return {entry.name for entry in Path("/proc/self/fd").iterdir()}
+
+
+def test_a_helper_process_that_is_ended_leaves_no_pipe_open(until):
+    before = open_files()
+    helper = Child("yehu_server.live.midi.input_process", lambda _event: None)
+    helper.stop()
+    until(lambda: open_files() <= before, 2.0, "its pipes to be closed")
+
+
+def test_a_helper_process_that_crashes_leaves_no_pipe_open(until):
+    before = open_files()
+    events = []
+    helper = Child("yehu_server.live.midi.input_process", events.append)
+    helper._process.kill()
+    until(lambda: {"event": "gone"} in events, 2.0, "its end")
+    time.sleep(0.1)
+    assert open_files() <= before
+
+
+@pytest.mark.parametrize("started", [0, 1])
+def test_a_helper_process_that_nobody_could_listen_to_is_ended(monkeypatch, started):
+    before, threads = open_files(), iter([True] * started + [False])
+    start = threading.Thread.start
+
+    def fail(thread: threading.Thread) -> None:
+        if not next(threads):
+            raise RuntimeError("can't start new thread")
+        start(thread)
+
+    monkeypatch.setattr(threading.Thread, "start", fail)
+    with pytest.raises(RuntimeError, match="thread"):
+        Child("yehu_server.live.midi.input_process", lambda _event: None)
+    monkeypatch.undo()
+    assert open_files() <= before
+
+
+TALKS = """
+import time
+from yehu_server.util.processes import Parent
+parent = Parent()
+for _ in range(5000):
+    parent.tell("midi", port="keystep", at=time.monotonic_ns(), bytes=[144, 60, 100])
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere pipes hold what they hold")
+def test_a_helper_process_need_not_wait_for_a_parent_that_is_stopped(monkeypatch, until):
+    held = threading.Event()
+
+    def hear(_event: dict) -> None:
+        held.wait()  # as if we were stopped
+
+    popen = subprocess.Popen
+    monkeypatch.setattr(
+        subprocess,
+        "Popen",
+        lambda _words, **options: popen([sys.executable, "-c", TALKS], **options),
+    )
+    helper = Child("talks", hear)
+    try:
+        until(lambda: not helper.is_alive, 20.0, "5,000 messages of it to be said")
+    finally:
+        held.set()
+        helper.stop()

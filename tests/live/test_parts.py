@@ -1,0 +1,391 @@
+"""Several parts by OSC: whose notes, values and services are whose."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+from web_client import walk
+from wire import f32
+
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.live.osc import handler
+from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.status import PART_STATUS, STATUS
+from yehu_server.live.part_addresses import OF_PARTS, group
+from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, is_listenable, node_at
+from yehu_server.params.preset_file import Preset
+from yehu_server.params.table import TABLE
+from yehu_server.params.table import find as param
+from yehu_server.playing import learn as learned
+from yehu_server.playing.bind import Bind
+from yehu_server.playing.learn import LearnedSource
+from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import places
+
+VOLUME = "/playing/volume"
+SHARED = [param.address for param in TABLE if param.is_shared]
+PARTS = 3
+
+
+@pytest.fixture
+def players(still) -> list[LivePlayer]:
+    """Those of three parts; the first is the server's own."""
+    more = []
+    for part in range(1, PARTS):
+        instrument = Instrument(
+            PlayingOptions().spec(still.RATE, still.instrument.spec.calibration)
+        )
+        instrument.frame_at = still.instrument.frame_at
+        still.others.append(instrument)
+        more.append(LivePlayer(instrument, PlayingOptions(), delay_ms=3.0, part=part))
+    still.handler = handler.OscHandler([still.player, *more], still.services)
+    return [still.player, *more]
+
+
+def values(players, address: str = VOLUME) -> list[float]:
+    return [round(player.value(address), 3) for player in players]
+
+
+def keys(still, players) -> list[int]:
+    """The number of keys that each part holds, after everything said up to now was played."""
+    still.pass_time(0.01)
+    return [player.keys for player in players]
+
+
+def errors(heard) -> list[str]:
+    return [one.arguments[1] for one in heard if one.address == "/yehu/error"]
+
+
+def test_each_part_has_addresses_and_the_first_also_without(still, players):
+    for number, address in enumerate(["", "/part/1", "/part/2", "/part/3"]):
+        heard = still.ask(address + VOLUME, 0.1 + 0.1 * number)
+        assert [one.address for one in heard] == [f"/yehu{address}{VOLUME}"]
+    assert values(players) == [0.2, 0.3, 0.4]
+    still.ask("/part/2/playing/bow_position/unit", 1.0)
+    assert values(players, "/playing/bow_position") == [0.13, 0.3, 0.13]
+
+
+def test_notes_are_of_their_part(still, players):
+    still.tell("/part/2/note", 67.0, 90.0)
+    assert keys(still, players) == [0, 1, 0]
+    still.tell("/note", 69.0, 90.0)
+    still.tell("/part/3/note", 71.0, 90.0)
+    still.tell("/part/1/note/off", 69.0)
+    assert keys(still, players) == [0, 1, 1]
+    still.tell("/part/3/panic")
+    assert keys(still, players) == [0, 1, 0]
+    still.tell("/part/3/note", 71.0, 90.0)
+    still.tell("/panic")
+    assert keys(still, players) == [0, 0, 0]
+
+
+def test_a_pattern_reaches_all_parts(still, players):
+    still.ask("/part/*/playing/volume", 0.5)
+    assert values(players) == [0.5, 0.5, 0.5]
+    still.ask("/part/[23]/playing/volume", 0.25)
+    assert values(players) == [0.5, 0.25, 0.25]
+    heard = still.ask("/get", "/yehu/part/*/playing/volume")
+    assert [one.arguments for one in heard] == [[0.5], [0.25], [0.25]]
+
+
+def test_a_part_is_reset_without_the_others_and_all_at_once(still, players):
+    still.ask("/part/*/playing/volume", 0.5)
+    still.ask("/room/size", 20.0)
+    heard = still.ask("/part/2/reset")
+    assert values(players) == [0.5, 1.0, 0.5]
+    assert {one.address for one in heard} <= {f"/yehu/part/2{one}" for one in OF_PARTS}
+    assert players[0].value("/room/size") == 20.0
+    still.ask("/reset")
+    assert values(players) == [1.0, 1.0, 1.0]
+    assert players[0].value("/room/size") != 20.0
+
+
+@pytest.mark.parametrize("address", SHARED)
+@pytest.mark.parametrize("part", [1, 2])
+def test_what_all_share_is_of_no_part(still, players, address, part):
+    before = [player.values() for player in players]
+    for asked in (f"/part/{part}{address}", f"/part/{part}{address}/unit"):
+        (error,) = errors(still.ask(asked, 1.0))
+        assert error == f"{address} is one for all parts: /yehu{address}"
+    (error,) = errors(still.ask("/get", f"/yehu/part/{part}{address}"))
+    assert "one for all parts" in error
+    assert [player.values() for player in players] == before
+
+
+@pytest.mark.parametrize("number", ["0", "4", "99", "123456789"])
+def test_a_part_that_is_not_there_is_told_with_those_that_are(still, players, number):
+    for asked, words in [
+        (f"/part/{number}/note", (67.0, 90.0)),
+        (f"/part/{number}/playing/volume", (0.5,)),
+        ("/get", (f"/part/{number}/playing/volume",)),
+    ]:
+        (error,) = errors(still.ask(asked, *words))
+        assert error == f"no part {number}: there are parts 1 to 3"
+    assert values(players) == [1.0, 1.0, 1.0]
+
+
+@pytest.mark.parametrize("number", ["", "01", "x", "-1", "1.0", "9" * 5000, "1/part/2"])
+def test_what_is_no_number_of_a_part_is_an_unknown_address(still, players, number):
+    (error,) = errors(still.ask(f"/part/{number}/note", 67.0, 90.0))
+    assert "unknown" in error
+    assert keys(still, players) == [0, 0, 0]
+
+
+def test_with_one_part_there_is_only_that(still):
+    still.ask("/part/1/playing/volume", 0.5)
+    assert still.player.value(VOLUME) == 0.5
+    (error,) = errors(still.ask("/part/2/playing/volume", 0.5))
+    assert error == "no part 2: there is only part 1"
+
+
+# ---------------------------------------------------------------- subscriptions
+
+
+def test_a_subscription_is_of_the_addresses_where_it_was_asked_for(still, players):
+    heard = still.ask("/part/2/subscribe", 60.0)
+    assert heard[0].address == "/yehu/part/2/subscribed"
+    told = {one.address for one in heard[1:]}
+    assert told == {f"/yehu/part/2{one}" for one in OF_PARTS if not one.endswith("/unit")}
+    for part, player in enumerate(players):
+        player.write(VOLUME, 0.1 * part + 0.3, frame=0)
+    still.pass_time(0.05)
+    heard = {one.address: one.arguments for one in still.peer.received()}
+    assert heard.keys() == {f"/yehu/part/2{VOLUME}", "/yehu/part/2/output/level"}  # it moves both
+    assert heard[f"/yehu/part/2{VOLUME}"] == [f32(0.4)]
+
+
+def test_one_may_subscribe_to_several_parts_each_in_its_form(still, players):
+    still.ask("/subscribe", 60.0)
+    still.ask("/part/3/subscribe/unit", 60.0)
+    still.pass_time(0.5)
+    still.peer.received()
+    for player in players:
+        player.write("/playing/bow_length", 2.0, frame=0)
+    still.pass_time(0.05)
+    heard = {one.address: one.arguments for one in still.peer.received()}
+    assert heard == {
+        "/yehu/playing/bow_length": [2.0],
+        "/yehu/part/3/playing/bow_length/unit": [1.0],
+    }
+    still.ask("/unsubscribe")
+    for player in players:
+        player.write("/playing/bow_length", 1.0, frame=0)
+    still.pass_time(0.05)
+    assert still.peer.received() == []
+
+
+@pytest.mark.usefixtures("players")
+def test_a_part_has_a_status(still):
+    names = [row.name for row in PART_STATUS]
+    heard = still.ask("/part/3/status")
+    assert [one.address for one in heard] == [f"/yehu/part/3/status/{name}" for name in names]
+    heard = still.ask("/get", "/yehu/part/2/status/keys")
+    assert [one.arguments for one in heard] == [[1.0]]  # which the services of the tests give
+    still.ask("/part/2/subscribe/status", 60.0)
+    (error,) = errors(still.ask("/part/2/status/keys", 1.0))
+    assert "cannot be set" in error
+
+
+def test_who_listens_to_a_part_hears_of_no_other(still, players):
+    still.handler.clients.listen(still.peer, f"/part/2{VOLUME}")
+    still.pass_time(0.05)
+    still.peer.received()
+    for part, player in enumerate(players):
+        player.write(VOLUME, 0.1 * part + 0.3, frame=0)
+    still.pass_time(0.05)
+    assert [one.address for one in still.peer.received()] == [f"/yehu/part/2{VOLUME}"]
+
+
+# ---------------------------------------------------------------- mappings, learning, presets
+
+
+@pytest.fixture
+def own(players):
+    """Mappings of which the first two bind one address, and the last another."""
+    for player, source in zip(players, ["/fader1", "/fader1", "/fader3"], strict=True):
+        mapping = Mapping("own", (Bind(source, VOLUME), Bind(source, "/playing/bend")))
+        player.remap(mapping, frame=0)
+    return players
+
+
+def test_ones_own_address_moves_the_first_part_that_binds_it(still, own, wire):
+    still.take(wire.message("/fader1", 0.5))
+    still.pass_time(0.01)
+    assert values(own) == [0.5, 1.0, 1.0]
+    still.take(wire.message("/fader3", 0.25))
+    still.pass_time(0.01)
+    assert values(own) == [0.5, 1.0, 0.25]
+
+
+def test_below_a_part_it_moves_that_part(still, own):
+    still.tell("/part/2/fader1", 0.5)
+    still.pass_time(0.01)
+    assert values(own) == [1.0, 0.5, 1.0]
+    (error,) = errors(still.ask("/part/3/fader1", 0.5))
+    assert "unknown" in error
+
+
+def test_what_a_part_learns_all_parts_of_its_mapping_have(still, players, monkeypatch):
+    other = Mapping("other", ())
+    players[2].remap(other, frame=0)
+    new = Mapping("keyboard", (Bind("cc 20", VOLUME),))
+    monkeypatch.setattr(learned, "learn", lambda *_, **__: (new, "a file"))
+    (answer,) = still.ask("/part/2/learn", "/yehu/part/2/playing/volume")
+    assert (answer.address, answer.arguments[0]) == (
+        "/yehu/part/2/learning",
+        f"/yehu/part/2{VOLUME}",
+    )
+    assert [player.listens for player in players] == [False, True, False]
+    players[1]._found(LearnedSource("cc 20"))
+    assert [player.mapping for player in players] == [new, new, other]
+    heard = still.ask("/part/2/bindings")
+    assert heard[-2].arguments[1] == f"/yehu/part/2{VOLUME}"
+    (error,) = errors(still.ask("/part/2/learn", "/room/size"))
+    assert "one for all parts" in error
+    (error,) = errors(still.ask("/part/2/learn", "/yehu/part/3/playing/volume"))
+    assert "another part" in error
+
+
+@pytest.mark.usefixtures("players")
+def test_a_part_that_learns_hears_ones_own_address(still, wire, monkeypatch):
+    found = []
+
+    def learn(mapping, _target, source, **_how):
+        found.append(source)
+        return mapping, "a file"
+
+    monkeypatch.setattr(learned, "learn", learn)
+    still.ask("/part/3/learn", VOLUME)
+    for place in (0.0, 0.3, 0.6, 0.9, 0.5, 0.1, 0.6, 0.9):
+        still.take(wire.message("/my/fader", place))
+        still.clock.now += 0.1
+    assert [source.source for source in found] == ["/my/fader"]
+
+
+def test_a_preset_is_loaded_by_a_part_and_leaves_what_all_share(still, players, monkeypatch):
+    preset = Preset("loud", {VOLUME: 0.5, "/room/size": 30.0})
+    monkeypatch.setattr(players[0].presets, "load", lambda _name: preset)
+    monkeypatch.setattr(players[1].presets, "load", lambda _name: preset)
+    heard = still.ask("/part/2/preset/load", "loud")
+    assert {one.address for one in heard} == {
+        "/yehu/part/2/preset/loaded",
+        f"/yehu/part/2{VOLUME}",
+        "/yehu/error",
+    }
+    expected = "/room/size: one for all parts, left out; /yehu/preset/load sets what all share"
+    assert errors(heard) == [expected]
+    assert values(players) == [1.0, 0.5, 1.0]
+    assert [player.value("/room/size") for player in players] == [5.0] * 3
+    assert not {*players[1].sound()} & {*SHARED}
+    assert {*SHARED} < {*players[0].sound()}
+    for first in ("", "/part/1"):
+        players[0].write("/room/size", 5.0, frame=0)
+        assert not errors(still.ask(f"{first}/preset/load", "loud"))
+        assert players[0].value("/room/size") == 30.0
+
+
+def test_a_morph_of_rooms_in_another_part_than_the_first_says_what_it_leaves_out(still, players):
+    (error,) = errors(still.ask("/part/3/preset/morph", "study", "hall", 1.0))
+    assert error.startswith("/room/size, /room/decay, /room/damping, /room/level: one for all")
+    assert players[2].value("/room/size") == players[0].value("/room/size") == 5.0
+    assert players[2].value("/body/width") == 0.4  # of the hall, and a body is each part's own
+    assert not errors(still.ask("/preset/morph", "study", "hall", 1.0))
+    assert players[0].value("/room/size") == 25.0
+
+
+# ---------------------------------------------------------------- messages that wait
+
+
+@pytest.mark.parametrize(
+    ("panic", "kept"),
+    [("/panic", []), ("/part/2/panic", [0, 2]), ("/part/1/panic", [1, 2])],
+)
+def test_a_panic_drops_what_waits_for_its_part(still, players, wire, panic, kept):
+    due = still.clock.time() + 0.1
+    for address in ("/yehu/note", "/yehu/part/1/note", "/yehu/part/2/note", "/yehu/part/3/note"):
+        still.take(wire.bundle(due, pack(address, 67.0, 90.0)))
+    assert still.handler.waiting == 4
+    still.tell(panic)
+    still.pass_time(0.2)
+    assert [part for part, player in enumerate(players) if player.keys] == kept
+    assert still.handler.waiting == 0
+
+
+# ---------------------------------------------------------------- OSCQuery
+
+
+def test_the_tree_has_each_part_with_all_that_is_its_own(still, players):
+    states = {row.name: 0.0 for row in STATUS}
+    own = {row.name: 0.0 for row in PART_STATUS}
+    told = {group(n): Snapshot(player.values(), own) for n, player in enumerate(players)}
+    told[""] = Snapshot(players[0].values(), states)
+    root = node_at("/", told.__getitem__, len(players))
+    part = find(root, "/yehu/part/2")
+    assert part["DESCRIPTION"].startswith("Part 2")
+    with_value = {path for path, node in walk(part) if "VALUE" in node}
+    assert with_value == {"/yehu/part/2" + address for address in LISTENABLE_OF_PARTS}
+    writable = {path for path, node in walk(part) if node["ACCESS"] & 2}
+    known = {"/yehu" + call for call in still.handler._calls if call.startswith("/part/2/")}
+    assert writable == known
+
+
+@pytest.mark.parametrize(
+    ("address", "is_one"),
+    [
+        ("/part/1/playing/volume", True),
+        ("/part/3/playing/volume/unit", True),
+        ("/part/2/status/note", True),
+        ("/status/load", True),
+        ("/part/2/status/load", False),
+        ("/part/4/playing/volume", False),
+        ("/part/0/playing/volume", False),
+        ("/part/2/room/size", False),
+        ("/part/2", False),
+        ("/part/2/part/2/playing/volume", False),
+    ],
+)
+def test_one_may_listen_to_what_the_parts_have(address, is_one):
+    assert is_listenable(address, 3) == is_one
+
+
+def test_parts_sit_side_by_side_within_the_room():
+    pan = param("/room/pan")
+    for count in range(2, MOST_PARTS + 1):
+        pans = [dict(place)["/room/pan"] for place in places(count)]
+        assert pan.lo < pans[0] == pytest.approx(-pans[-1])
+        assert pans[-1] < pan.hi
+        assert np.diff(pans) == pytest.approx((pans[-1] - pans[0]) / (count - 1))
+
+
+# ---------------------------------------------------------------- a whole server
+
+
+def test_a_server_of_three_plays_three(make_live):
+    live = make_live(parts=3)
+    client = live.client()
+    client.tell("/part/2/note", 67.0, 90.0)
+    client.tell("/part/3/note", 72.0, 90.0)
+    client.sync()
+    players = live.server.players
+    deadline = time.monotonic() + 20.0
+    while [player.pitch is None for player in players] != [True, False, False]:
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    status = live.server.status()
+    assert (status["parts"], status["note"]) == (3, -1.0)
+    parts = [live.server.part_status(part) for part in range(3)]
+    assert [part["keys"] for part in parts] == [0, 1, 1]
+    assert status["applied_events"] == sum(part["applied_events"] for part in parts) > 0
+    pans = [player.value("/room/pan") for player in players]
+    assert pans[0] == -pans[2] < pans[1] == 0.0
+    seeds = [player.value("/engine/seed") for player in players]
+    assert len(set(seeds)) == 3
+    client.tell("/panic")
+    client.sync()
+    live.settle()
+    assert [player.keys for player in players] == [0, 0, 0]

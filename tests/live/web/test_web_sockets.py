@@ -1,0 +1,447 @@
+"""OSC and OSCQuery's commands by WebSocket, from clients independent of the package."""
+
+from __future__ import annotations
+
+import random
+import socket
+import threading
+import time
+from types import SimpleNamespace
+
+import pytest
+from web_client import BINARY, CLOSE, TEXT, Refused, WebSocket, ask
+from wire import Message, Wire
+
+from yehu_server.live.osc.answering import MOST_UNSENT_BYTES, WebTraffic
+from yehu_server.live.web.server import MOST_CONNECTIONS, MOST_WEB_SOCKETS, SWEEP_S, WebOptions
+from yehu_server.live.web.web_sockets import FRAME_BYTES, WebPeer
+from yehu_server.params.table import TABLE
+
+HOST = "127.0.0.1"
+QUIET_S = 0.15
+FORCE = "/yehu/bow/force"
+
+
+@pytest.fixture(scope="module")
+def port(shared_web) -> int:
+    return shared_web.server.web.port
+
+
+@pytest.fixture
+def connect(port):
+    """Open WebSockets that are closed at the end."""
+    opened = []
+
+    def connect(**headers: str) -> WebSocket:
+        opened.append(WebSocket(port, **headers))
+        return opened[-1]
+
+    yield connect
+    for web in opened:
+        web.vanish()
+
+
+@pytest.fixture
+def web(connect) -> WebSocket:
+    return connect()
+
+
+@pytest.fixture(autouse=True)
+def _as_it_was(shared_web, until):
+    """Check that each test leaves the server well and without clients."""
+    yield
+    status = shared_web.server.status
+    until(lambda: status()["web_sockets"] == 0, "all WebSockets are gone")
+    shared_web.player.reset(frame=shared_web.player.frame_of())  # after all that was asked
+    assert shared_web.is_well()
+    assert status()["http_failures"] == 0
+
+
+# ---------------------------------------------------------------- OSC
+
+
+def test_the_many_who_connect_and_say_nothing_shut_nobody_out(connect, port):
+    silent = [socket.create_connection((HOST, port)) for _ in range(MOST_CONNECTIONS)]
+    web = connect()
+    try:
+        web.tell(FORCE, 1.0)
+        assert web.next() == Message(FORCE, [1.0])
+        silent += [socket.create_connection((HOST, port)) for _ in range(50)]
+        time.sleep(2.0 * SWEEP_S)
+        web.tell(FORCE, 1.5)
+        assert web.next() == Message(FORCE, [1.5])
+    finally:
+        for connection in silent:
+            connection.close()
+
+
+def test_a_binary_frame_is_osc_and_who_sets_something_is_told(web, port):
+    web.tell(FORCE, 1.25)
+    assert web.next() == Message(FORCE, [1.25])
+    assert ask(port, FORCE + "?VALUE").json == {"VALUE": [1.25]}
+
+
+def test_a_call_without_arguments_takes_the_nil_of_its_type(web):
+    web.tell("/yehu/unsubscribe", None)
+    assert web.next() == Message("/yehu/unsubscribed", [])
+
+
+def test_what_cannot_be_done_is_answered(web):
+    web.tell("/yehu/nothing", 1.0)
+    assert web.next().address == "/yehu/error"
+    web.send(BINARY, b"no OSC")
+    assert web.next().address == "/yehu/error"
+
+
+def test_a_subscription_works_here_too(web, shared_web):
+    web.tell("/yehu/subscribe", 60.0)
+    told = [web.next() for _ in range(len(TABLE) + 1)]
+    assert {one.address for one in told} >= {"/yehu" + param.address for param in TABLE}
+    shared_web.client().tell("/bow/force", 1.5)
+    assert web.wait_for(FORCE) == [1.5]
+
+
+# ---------------------------------------------------------------- LISTEN and IGNORE
+
+
+def test_a_listener_is_told_the_value_at_once_and_then_each_change(web, shared_web):
+    web.listen(FORCE)
+    assert web.next() == Message(FORCE, [0.5])
+    client = shared_web.client()
+    for value in (1.0, 1.5, 99.0):
+        client.tell("/bow/force", value)
+        assert web.next() == Message(FORCE, [min(value, 5.0)])
+    assert web.next(QUIET_S) is None
+
+
+def test_a_listener_hears_of_what_it_asked_for_only(web, shared_web):
+    web.listen(FORCE)
+    web.next()
+    shared_web.client().tell("/bow/position", 0.2)
+    shared_web.client().tell("/playing/press", 2.0)
+    assert web.next(QUIET_S) is None
+
+
+def test_a_listener_may_ask_for_0_to_1(web, shared_web):
+    web.listen(FORCE + "/unit")
+    assert web.next() == Message(FORCE + "/unit", [pytest.approx(0.1)])
+    shared_web.client().tell("/bow/force", 2.5)
+    assert web.next() == Message(FORCE + "/unit", [0.5])
+
+
+def test_who_ignores_is_told_no_more(web, shared_web):
+    web.listen(FORCE)
+    web.listen("/yehu/bow/position")
+    web.ignore(FORCE)
+    web.sync()
+    shared_web.client().tell("/bow/force", 2.0)
+    shared_web.client().tell("/bow/position", 0.2)
+    assert web.wait_for("/yehu/bow/position") == [pytest.approx(0.2)]
+    assert web.next(QUIET_S) is None
+
+
+def test_the_status_is_told_a_few_times_a_second(web):
+    web.listen("/yehu/status/frame")
+    began = time.monotonic()
+    frames = [web.wait_for("/yehu/status/frame")[0] for _ in range(4)]
+    assert frames == sorted(set(frames))
+    assert time.monotonic() - began > 0.5
+
+
+def test_a_status_value_that_stays_is_told_once(web):
+    web.listen("/yehu/status/device")
+    assert web.next() == Message("/yehu/status/device", ["silent clock"])
+    assert web.next(0.6) is None
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/yehu/bow",
+        "/",
+        "/yehu/note",
+        "/bow/force",
+        "/yehu/nothing",
+        "",
+        FORCE + "/",
+        "/yehu/status",
+    ],
+)
+def test_there_is_nothing_to_listen_to_where_no_value_is(web, path):
+    web.listen(path)
+    answer = web.next()
+    assert answer["COMMAND"] == "ERROR"
+    assert repr(path) in answer["DATA"]
+
+
+@pytest.mark.parametrize(
+    ("path", "kind"),
+    [(FORCE, float), ("/yehu/status/device", str), ("/yehu/status/device_losses", int)],
+)
+def test_a_value_of_any_type_can_be_listened_to(web, path, kind):
+    web.listen(path)
+    (value,) = web.wait_for(path)
+    assert type(value) is kind
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "LISTEN",
+        "[]",
+        "null",
+        "{}",
+        '{"COMMAND": "LISTEN"}',
+        '{"COMMAND": "LISTEN", "DATA": {}}',
+        '{"COMMAND": "LISTEN", "DATA": ["/yehu/bow/force"]}',
+        '{"COMMAND": ["LISTEN"], "DATA": "/yehu/bow/force"}',
+        '{"COMMAND": "SHUTDOWN", "DATA": "/"}',
+        "[" * 60_000,
+        '{"COMMAND": "' + "x" * 60_000 + '"}',
+    ],
+    ids=range(12),
+)
+def test_what_is_no_command_is_answered_with_an_error(web, text):
+    web.send(TEXT, text.encode())
+    answer = web.next()
+    assert answer["COMMAND"] == "ERROR"
+    assert 0 < len(answer["DATA"]) < 1500
+    web.listen(FORCE)
+    assert web.next().address == FORCE
+
+
+def test_text_that_is_none_ends_the_one_who_sent_it(web, connect):
+    web.send(TEXT, b"\xff\xfe")
+    with pytest.raises(ConnectionError):
+        web.next()
+    connect().sync()
+
+
+def test_all_are_told_that_the_tree_changed(connect, shared_web):
+    here = [connect() for _ in range(3)]
+    for web in here:
+        web.sync()
+    shared_web.server.web.tree_changed("/yehu/preset")
+    for web in here:
+        assert web.next() == {"COMMAND": "PATH_CHANGED", "DATA": "/yehu/preset"}
+
+
+# ---------------------------------------------------------------- who is not let in
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Origin": "http://evil.example"},
+        {"Origin": f"http://{HOST}:1"},  # any program may serve pages there
+        {"Origin": f"http://{HOST}"},
+        {"Origin": "null"},
+        {"Origin": "http://localhost"},
+        {"Host": "evil.example"},
+        {"Host": "evil.example", "Origin": "http://evil.example"},
+    ],
+)
+def test_a_page_from_elsewhere_gets_no_web_socket(connect, headers):
+    with pytest.raises(Refused) as refused:
+        connect(**headers)
+    assert refused.value.status == 403
+
+
+def test_a_page_of_this_machine_gets_one(connect, port):
+    connect(Origin=f"http://{HOST}:{port}").sync()
+
+
+def test_a_handshake_that_is_none_is_refused(connect):
+    with pytest.raises(Refused) as refused:
+        connect(**{"Sec-WebSocket-Key": "short"})
+    assert refused.value.status == 400
+
+
+def test_a_frame_that_is_too_long_ends_its_sender(web, connect):
+    web.send(BINARY, bytes(FRAME_BYTES + 1))
+    with pytest.raises(ConnectionError, match="1009"):
+        web.next()
+    connect().sync()
+
+
+def test_a_frame_may_be_as_long_as_a_datagram(web):
+    web.send(BINARY, Wire.message("/yehu/ping", "x" * 60_000))
+    assert len(web.wait_for("/yehu/pong")[0]) == 60_000
+
+
+def test_there_is_room_for_so_many_and_no_more(connect):
+    for _ in range(MOST_WEB_SOCKETS):
+        connect()
+    with pytest.raises(Refused) as refused:
+        connect()
+    assert refused.value.status == 503
+
+
+# ---------------------------------------------------------------- those who hold up, or leave
+
+
+def test_one_who_reads_nothing_holds_up_nobody(connect, shared_web, until):
+    deaf, well = connect(), connect()
+    unsent = shared_web.server.status()["http_unsent"]
+    for _ in range(400):
+        deaf.tell("/yehu/ping", "x" * 30_000)
+    until(lambda: shared_web.server.status()["http_unsent"] > unsent, "some is dropped")
+    well.listen(FORCE)
+    well.next()
+    shared_web.client().tell("/bow/force", 3.0)
+    assert well.next() == Message(FORCE, [3.0])  # though the deaf one still reads nothing
+
+
+def test_what_a_peer_does_not_take_is_dropped_and_counted():
+    traffic = WebTraffic()
+    asked = []
+    loop = SimpleNamespace(call_soon_threadsafe=asked.append)
+    peer = WebPeer("deaf", loop, traffic)
+    for _ in range(3 * MOST_UNSENT_BYTES // 1000):
+        peer.send(bytes(1000))
+    assert len(asked) == 1  # its thread is woken once
+    kept = 0
+    while peer._next() is not None:
+        kept += 1
+    assert kept == MOST_UNSENT_BYTES // 1000
+    assert traffic.unsent == 3 * MOST_UNSENT_BYTES // 1000 - kept
+    peer.send(b"again")
+    assert len(asked) == 2
+
+
+def test_one_who_vanishes_is_forgotten_with_all_it_asked_for(shared_web, port, until):
+    web = WebSocket(port)
+    web.listen(FORCE)
+    web.tell("/yehu/subscribe", 3600.0)
+    web.sync()
+    assert shared_web.server.status()["osc_subscribers"] == 1
+    web.vanish()
+    until(lambda: not shared_web.handler.clients._clients, "nobody is left")
+
+
+def test_what_one_said_last_is_done_before_it_is_forgotten(shared_web, connect, until):
+    clients = shared_web.handler.clients
+    web = connect()
+    web.sync()
+    shared_web.ports.call_soon(lambda: time.sleep(0.3))  # all of it comes at once
+    web.tell("/yehu/subscribe", 3600.0)
+    web.tell(FORCE, 4.0)
+    web.send(CLOSE, b"\x03\xe8")
+    until(lambda: shared_web.player.value("/bow/force") == 4.0, "it is done")
+    until(lambda: not clients._clients, "nobody is left")
+
+
+@pytest.mark.slow
+def test_twenty_who_come_and_go_at_random_leave_nothing_behind(shared_web, port, until):
+    chance = random.Random(7)
+    ending = time.monotonic() + 2.5
+    bystander, osc = shared_web.client(), (HOST, shared_web.ports.port)
+    slowest = 0.0
+
+    def come_and_go(seed: int) -> None:
+        chance = random.Random(seed)
+        while time.monotonic() < ending:
+            if chance.random() < 0.5:
+                web = WebSocket(port)
+                for param in chance.sample(TABLE, 5):
+                    web.listen("/yehu" + param.address)
+                if chance.random() < 0.5:
+                    web.tell("/yehu/subscribe", 3600.0)
+                web.tell(FORCE, chance.uniform(0.0, 5.0))
+                web.next(0.05)
+                web.close() if chance.random() < 0.5 else web.vanish()
+            else:
+                client = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+                client.sendto(Wire.message("/yehu/subscribe", 1.0), osc)
+                client.sendto(Wire.message(FORCE, chance.uniform(0.0, 5.0)), osc)
+                time.sleep(chance.uniform(0.0, 0.05))
+                if chance.random() < 0.3:
+                    client.sendto(Wire.message("/yehu/unsubscribe"), osc)
+                client.close()
+
+    crowd = [threading.Thread(target=come_and_go, args=(seed,)) for seed in range(20)]
+    for one in crowd:
+        one.start()
+    while time.monotonic() < ending:
+        began = time.monotonic()
+        bystander.sync()
+        slowest = max(slowest, time.monotonic() - began)
+        time.sleep(chance.uniform(0.0, 0.02))
+    for one in crowd:
+        one.join()
+    bystander.close()
+    until(lambda: shared_web.server.status()["web_sockets"] == 0, "all WebSockets are gone")
+    until(lambda: not shared_web.handler.clients._clients, "nobody is kept")
+    assert shared_web.server.status()["osc_subscribers"] == 0
+    assert slowest < 10.0  # nobody is forgotten; a busy machine may take seconds
+
+
+def test_nobody_is_told_anything_after_its_time(shared_web, until):
+    client = shared_web.client()
+    client.tell("/subscribe", 0.3)
+    client.wait_for("/subscribed")
+    until(lambda: shared_web.handler.clients.subscribers == 0, "its time is up")
+    client.all()
+    other = shared_web.client()
+    for step in range(20):
+        other.tell("/bow/force", 0.1 * step)
+    other.sync()
+    assert client.next(QUIET_S) is None
+
+
+# ---------------------------------------------------------------- how soon
+
+
+def lags(shared_web, web: WebSocket, changes: int, per_second: float) -> list[float]:
+    """Time (s) from each change to its listener while other messages arrive."""
+    ending = threading.Event()
+    client, other = shared_web.client(), shared_web.client()
+
+    def flood() -> None:
+        due = time.monotonic()
+        step = 0
+        while not ending.is_set():
+            step += 1
+            other.tell("/playing/press", 1.0 + step % 100 / 50)
+            due += 1.0 / per_second
+            time.sleep(max(0.0, due - time.monotonic()))
+
+    flooding = threading.Thread(target=flood)
+    flooding.start()
+    web.listen(FORCE)
+    web.next()
+    took = []
+    try:
+        for step in range(changes):
+            value = 0.5 + (step % 256 + 1) / 64
+            began = time.monotonic()
+            client.tell("/bow/force", value)
+            assert web.wait_for(FORCE) == [value]
+            took.append(time.monotonic() - began)
+            time.sleep(0.003 * (step % 5))
+    finally:
+        ending.set()
+        flooding.join()
+    return took
+
+
+def test_a_listener_hears_soon_while_a_thousand_messages_a_second_arrive(shared_web, web):
+    took = lags(shared_web, web, changes=40, per_second=1000.0)
+    assert sorted(took)[-4] < 0.25  # nine of ten; machines are shared
+
+
+# ---------------------------------------------------------------- the end
+
+
+def test_the_end_of_the_server_is_told_and_soon(make_live):
+    live = make_live(http=WebOptions((HOST, 0)))
+    webs = [WebSocket(live.server.web.port) for _ in range(5)]
+    webs[0].sync()
+    began = time.monotonic()
+    live.server.web.stop()
+    assert time.monotonic() - began < 10.0  # aiohttp itself would wait for a minute
+    for web in webs:
+        with pytest.raises(ConnectionError, match="1001"):
+            web.next()
+        web.vanish()

@@ -1,0 +1,111 @@
+"""The package's estimators of pitch (and the tests' own) and level, on known tones."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from pitch import cents, pitch_of
+
+from yehu_server.playing import pitch_and_level
+from yehu_server.playing.pitch_and_level import (
+    SILENCE_DB,
+    a_weighted_db,
+    a_weighting,
+    pitch_hz,
+    track,
+)
+
+RATES = (22050.0, 44100.0, 48000.0, 96000.0)
+# The A curve in dB, from the table of IEC 61672-1.
+A_CURVE = {31.62: -39.4, 63.1: -26.2, 125.9: -16.1, 251.2: -8.6, 501.2: -3.2, 1000: 0.0, 1995: 1.2,
+         3981: 1.0, 7943: -1.1, 15849: -6.6}  # fmt: skip
+
+
+def tone(frequency: float, rate: float, seconds: float, slope: float = 1.0) -> np.ndarray:
+    """Harmonics that fall off as a bowed string's do, in random phases."""
+    phases = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, 60)
+    time = np.arange(round(seconds * rate)) / rate
+    return sum(
+        k**-slope * np.sin(2.0 * np.pi * k * frequency * time + phases[k])
+        for k in range(1, 60)
+        if k * frequency < 0.45 * rate
+    )
+
+
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize("note", [60, 65, 69.3, 72, 77.77, 89, 94])
+def test_steady_tones_are_right_to_half_a_cent(rate, note):
+    frequency = 440.0 * 2.0 ** ((note - 69) / 12)
+    for seconds in (0.05, 0.3):
+        assert abs(cents(pitch_hz(tone(frequency, rate, seconds), rate), frequency)) < 0.5
+
+
+@pytest.mark.parametrize("estimate", [pitch_hz, pitch_of])
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize("note", [65, 69.3, 72, 77, 83, 89])
+@pytest.mark.parametrize("first", [1, 2], ids=["with a fundamental", "without"])
+def test_tones_in_noise_are_right_to_half_a_cent(estimate, rate, note, first):
+    frequency = 440.0 * 2.0 ** ((note - 69) / 12)
+    time = np.arange(round(rate / 4)) / rate
+    partials = range(first, max(first + 2, min(12, int(0.45 * rate / frequency))))
+    chance = np.random.default_rng(1)
+    x = sum(
+        np.sin(2.0 * np.pi * n * frequency * time + chance.uniform(0.0, 6.0)) / n for n in partials
+    )
+    noisy = x + 1e-3 * chance.standard_normal(len(time))
+    assert abs(cents(estimate(noisy, rate), frequency)) < 0.5
+
+
+def test_a_weak_fundamental_is_still_the_pitch():
+    x = tone(349.2, 44100.0, 0.3) - 0.97 * np.sin(
+        2.0 * np.pi * 349.2 * np.arange(13230) / 44100.0
+        + np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, 60)[1]
+    )
+    assert abs(cents(pitch_hz(x, 44100.0), 349.2)) < 0.5
+
+
+def test_noise_level_and_offset_do_not_matter():
+    noise = np.random.default_rng(2).normal(size=13230)
+    x = 1e-4 * (tone(523.3, 44100.0, 0.3) + 0.05 * noise) + 0.01
+    assert abs(cents(pitch_hz(x, 44100.0), 523.3)) < 0.5
+
+
+@pytest.mark.parametrize("estimate", [pitch_hz, pitch_of])
+def test_what_has_no_pitch_gets_none(estimate):
+    assert math.isnan(estimate(np.random.default_rng(3).normal(size=13230), 44100.0))
+    assert math.isnan(estimate(np.zeros(13230), 44100.0))
+    assert math.isnan(estimate(np.ones(3), 44100.0))
+
+
+def test_a_track_follows_a_glide():
+    rate = 44100.0
+    time = np.arange(44100) / rate
+    semitones = 2.0 * time
+    phase = 2.0 * np.pi * np.cumsum(440.0 * 2.0 ** (semitones / 12.0)) / rate
+    times, pitches = track(np.sin(phase) + 0.5 * np.sin(2.0 * phase), rate)
+    expected = 440.0 * 2.0 ** (2.0 * times / 12.0)
+    assert max(abs(cents(p, e)) for p, e in zip(pitches, expected, strict=True)) < 2.0
+
+
+def test_where_no_later_period_is_like_the_first_the_first_one_stays():
+    """A correlation that only falls has no later peak; its slope must not be taken for one."""
+    falling = 0.8 + 0.2 * np.exp(-np.arange(200) / 50.0)
+    assert pitch_and_level._refine(falling, 13.77) == 13.77
+
+
+@pytest.mark.parametrize(("frequency", "decibels"), A_CURVE.items())
+def test_the_curve_is_the_standards(frequency, decibels):
+    assert 20.0 * np.log10(a_weighting(frequency)) == pytest.approx(decibels, abs=0.1)
+
+
+@pytest.mark.parametrize("rate", [44100.0, 48000.0])
+def test_a_sine_of_full_scale_at_a_kilohertz_is_3_db_below(rate):
+    x = np.sin(2.0 * np.pi * 1000.0 * np.arange(round(rate)) / rate)
+    assert a_weighted_db(x, rate) == pytest.approx(-3.01, abs=0.02)
+    assert a_weighted_db(0.1 * x, rate) == pytest.approx(-23.01, abs=0.02)
+
+
+def test_silence_has_a_level_too():
+    assert a_weighted_db(np.zeros(100), 44100.0) == SILENCE_DB

@@ -1,0 +1,53 @@
+"""Write tests/scores/music21.json: what music21 reads of the tests' MusicXML.
+
+Needs music21 (developed with 10.5), which is too large for every install. Run it with a Python
+that has it: PYTHONPATH=tests:tests/scores PYTHON tests/scores/judge_musicxml.py
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import warnings
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import music21
+from musicxml_corpus import CORPUS
+
+TARGET = Path(__file__).parent / "music21.json"
+
+
+def notes_of(source: str) -> list[list[Any]]:
+    """Each note of a text or file as [beat, length, pitch], in order, repeats unfolded."""
+    found = []
+    parsed: Any = music21.converter.parse(source)
+    sounding = parsed.toSoundingPitch()
+    for part in sounding.parts:
+        unfolded = part.expandRepeats().stripTies()
+        for each in unfolded.flatten().notes:
+            if each.duration.isGrace or isinstance(each, music21.harmony.ChordSymbol):
+                continue
+            pitch = max(one.ps for one in each.pitches)
+            found.append([_exact(each.offset), _exact(each.quarterLength), float(pitch)])
+    return sorted(found, key=lambda one: (Fraction(one[0]), one[2], Fraction(one[1])))
+
+
+def _exact(value: Any) -> str:
+    return str(Fraction(value).limit_denominator(10_000))
+
+
+def main() -> None:
+    """Write the references."""
+    warnings.simplefilter("ignore")
+    references = {
+        name: {"text": hashlib.sha256(text.encode()).hexdigest(), "notes": notes_of(text)}
+        for name, text in CORPUS.items()
+    }
+    lines = (f"  {json.dumps(name)}: {json.dumps(each)}" for name, each in references.items())
+    TARGET.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,878 @@
+"""Captures: written as wishes are fulfilled, readable whatever ends them."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import resource
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sound import alone, bow, rms, run
+
+from yehu_server.core.controls.slots import SILENCE
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.player.bowing import default_recipes
+from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration
+from yehu_server.core.player.fingering import OpenStrings
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import (
+    BEGIN,
+    DRAW,
+    END,
+    EXPRESS,
+    HOLD,
+    KINDS,
+    LIFT,
+    RAMP,
+    RELEASE,
+    SLIDE,
+    STOP,
+    WISH,
+    WRITE,
+)
+from yehu_server.errors import OutputError, ScoreError, YehuError
+from yehu_server.params.table import ENGINE, SLOT, TABLE, find
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.wishes import Key
+from yehu_server.rendering.replay import blocks, replay
+from yehu_server.scores.capture import read_capture
+from yehu_server.scores.capture_format import build
+from yehu_server.scores.capture_header import SessionStart, session_start_of
+from yehu_server.scores.capture_writer import CaptureWriter, LiveCapture
+
+RATE = 48000.0
+TENSIONS = (49.5, 64.1)
+TUNED = override(Quantities(), {"string_1": {"T": TENSIONS[0]}, "string_2": {"T": TENSIONS[1]}})
+SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
+
+
+@pytest.fixture(scope="module")
+def plain() -> SessionStart:
+    """An instrument without calibration, without a room."""
+    return SessionStart((InstrumentSpec(RATE, TUNED, seed=3),), has_room=False)
+
+
+@pytest.fixture
+def write(plain):
+    def write(path, wishes=(), end=None, gaps=(), lost=0):
+        writer = CaptureWriter(path, beginning=plain)
+        writer.wishes(np.array(list(wishes), WISH))
+        for frame in gaps:
+            writer.note("rest", frame, since=frame)
+        if lost:
+            writer.note("lost", 5, events=lost)
+        if end is not None:
+            writer.close(end)
+        writer._file.close()  # as a crash does
+        return path
+
+    return write
+
+
+def first_version(path, ramps=(), values=None, end=None, gaps=()):
+    """A file as the first version wrote it: of moves of bow and fingers."""
+    defaults = {param.address: param.default for param in ENGINE}
+    header = {"format": "yehu-server capture", "version": 1, "rate": RATE, "seed": 0}
+    header |= {"tensions": list(TENSIONS), "build": build()}
+    header["values"] = defaults if values is None else values
+    lines = [header, *ramps, *({"rest": frame, "since": frame} for frame in gaps)]
+    lines += [] if end is None else [{"end": end}]
+    path.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    return path
+
+
+def replayed(path) -> np.ndarray:
+    capture = read_capture(path)
+    samples = np.concatenate(list(blocks(capture, capture.beginning.ensemble())))
+    if not capture.beginning.has_room:
+        assert (samples[:, 0] == samples[:, 1]).all()
+    return samples[:, 0]
+
+
+RAMPS = [
+    (0, RAMP, SIDE, 1.0, 480.0),
+    (7, RAMP, SPEED, 0.1 + 0.2, 960.0),
+    (9000, RAMP, SILENCE, 0.0, 0.0),
+]
+
+
+def test_what_is_written_is_read_to_the_bit(tmp_path, write):
+    capture = read_capture(write(tmp_path / "c", RAMPS, end=12345))
+    assert capture.rate == RATE
+    assert capture.version == 3
+    assert capture.wishes.tolist() == RAMPS
+    assert capture.frames == 12345
+    assert capture.warnings == []
+
+
+def odd(param) -> float:
+    """A value of a parameter that takes all digits to write."""
+    return param.lo + (param.hi - param.lo) / 7.0
+
+
+EACH_KIND = {
+    "ramp": [
+        *((0, RAMP, SLOT[param.address], odd(param), 2.0**53) for param in ENGINE),
+        *((1, RAMP, SLOT[param.address], param.lo, 0.0) for param in ENGINE),
+        (2, RAMP, SILENCE, 0.0, 0.0),
+    ],
+    "write": [(0, WRITE, row, odd(param), 100.0 / 7.0) for row, param in enumerate(TABLE)],
+    "hold": [(0, HOLD, row, odd(param), 0.0) for row, param in enumerate(TABLE)],
+    "express": [(0, EXPRESS, row, odd(param), 0.0) for row, param in enumerate(TABLE)],
+    "begin": [(0, BEGIN, -1, 200.0 / 3.0, 617.0 / 9.0), (0, BEGIN, 1 << 20, 127.0, 0.0)],
+    "end": [(5, END, -1, 200.0 / 3.0, 1.0), (5, END, 3, 0.0, 0.0)],
+    "slide": [(5, SLIDE, 0, 617.0 / 9.0, 0.0)],
+    "draw": [(5, DRAW, 0, -0.1 / 3.0, 1.0 / 3.0), (6, DRAW, 0, 0.0, 0.0)],
+    "lift": [(5, LIFT, 0, 0.0, 0.0)],
+    "stop": [(5, STOP, 0, 0.0, 0.0), (5, STOP, 0, 1.0, 0.0)],
+    "release": [(5, RELEASE, 0, 0.0, 0.0)],
+}
+
+
+def test_each_kind_of_wish_is_read_to_the_bit(tmp_path, write):
+    assert EACH_KIND.keys() == set(KINDS)
+    for kind, wishes in EACH_KIND.items():
+        path = write(tmp_path / kind, wishes, end=9)
+        assert {json.loads(line)[2] for line in path.read_text().splitlines()[1:-1]} == {kind}
+        found = read_capture(path).wishes
+        assert found.dtype == WISH
+        assert found.tolist() == wishes, kind
+
+
+def test_the_first_line_tells_the_whole_beginning(tmp_path, write):
+    header = json.loads(write(tmp_path / "c").read_text().splitlines()[0])
+    (player,) = header["players"]
+    assert (header["rate"], header["room"], player["seed"]) == (RATE, False, 3)
+    tuned = {f"string_{i}": {"T": tension} for i, tension in enumerate(TENSIONS, start=1)}
+    assert player["quantities"] == tuned
+    assert header["build"] == build()
+    defaults = {param.address: param.default for param in TABLE}
+    assert player["values"] == {**defaults, "/engine/seed": 3.0}
+
+
+def measured(seed: int = 1) -> Calibration:
+    """A calibration that might have been measured; its values take all digits to write."""
+    chance = random.Random(seed)
+    sharpening, levels = (
+        tuple(
+            tuple(tuple(chance.uniform(*within) for _ in SPEEDS) for _ in (*pitches, *more))
+            for pitches in PITCHES
+        )
+        for within, more in [((-30.0, 60.0), ()), ((-40.0, -20.0), (None,))]
+    )
+    return Calibration(440.0, (50.4 + chance.random(), 64.0 + chance.random()), sharpening, levels)
+
+
+def test_an_instrument_is_read_as_it_began(tmp_path):
+    bowing = default_recipes() * 1.01
+    calibration = measured()
+    spec = InstrumentSpec(
+        44100.0,
+        calibration.tuned(Quantities()),
+        calibration=calibration,
+        open_strings=OpenStrings.NEVER,
+        seed=17,
+        bowing=bowing,
+        start_values={"/output/gain": -7.0 / 3.0, "/playing/speed": 0.3, "/engine/seed": 5.0},
+    )
+    began = Instrument(spec)
+    expected = began._rig.copy()
+    run(began, 100)
+    began.post(BEGIN, value=69.0, other=69.0)  # what happens afterwards is no beginning
+    run(began, 100)
+    beginning = session_start_of([began], has_room=False)
+    CaptureWriter(tmp_path / "c", beginning=beginning).close(0)
+    again = read_capture(tmp_path / "c").beginning.ensemble().first
+    for part in ("model", "state", "controls", "player"):
+        for name in expected[part].dtype.names:
+            np.testing.assert_array_equal(again._rig[part][name], expected[part][name], name)
+    assert again.spec.calibration == calibration
+
+
+def test_a_session_that_crashed_can_be_read(tmp_path, write):
+    path = write(tmp_path / "c", RAMPS)
+    path.write_text(path.read_text()[:-9])  # in the middle of the last line
+    capture = read_capture(path)
+    assert len(capture.wishes) == 2
+    assert capture.frames == 8 + 48000
+    assert "did not end properly" in capture.warnings[0]
+
+
+def test_lost_wishes_and_another_build_are_told(tmp_path, write):
+    path = write(tmp_path / "c", RAMPS, end=9001, lost=4)
+    path.write_text(path.read_text().replace(build()["sources"], "0" * 16))
+    warnings = " ".join(read_capture(path).warnings)
+    assert "4 events" in warnings
+    assert "another build (sources)" in warnings
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "not a capture"),
+        ("{}", "not a capture"),
+        ("[1]", "expected a table"),
+        ("\xff\xfe", "not a capture"),
+        ('{"format": "yehu-server capture", "version": 99}', "version 99"),
+    ],
+)
+def test_what_is_no_capture_is_refused(tmp_path, text, reason):
+    path = tmp_path / "c"
+    path.write_bytes(text.encode("latin-1"))
+    with pytest.raises(ScoreError, match=reason):
+        read_capture(path)
+
+
+def test_wishes_out_of_order_are_refused(tmp_path, write):
+    with pytest.raises(ScoreError, match="order"):
+        read_capture(write(tmp_path / "c", [(5, LIFT, 0, 0, 0), (4, LIFT, 0, 0, 0)], end=10))
+
+
+def test_a_missing_file_and_a_missing_folder_are_told(tmp_path, plain):
+    with pytest.raises(ScoreError, match="No such file"):
+        read_capture(tmp_path / "none")
+    with pytest.raises(OutputError, match="does not exist"):
+        CaptureWriter(tmp_path / "none" / "c", beginning=plain)
+
+
+# ---------------------------------------------------------------- replays
+
+
+def test_a_replay_is_what_was_played_in_any_blocks(tmp_path):
+    stage = alone(RATE)
+    live = stage.first
+    live.report_wishes()
+    writer = CaptureWriter(tmp_path / "c", beginning=session_start_of([live], has_room=False))
+    bow(live)
+    played = np.zeros(30000, np.float32)
+    for start in range(0, 30000, 100):
+        if start == 10000:
+            live.write("/finger/1/press", 1.5)
+        stage.process(played[start : start + 100])
+    writer.wishes(live.applied_wishes())
+    writer.close(live.frame)
+    assert (replayed(tmp_path / "c") == played).all()
+    assert np.abs(played).max() > 0.01
+
+
+def test_a_rest_in_mid_session_is_replayed(tmp_path):
+    stage = alone(RATE)
+    live = stage.first
+    live.report_wishes()
+    writer = CaptureWriter(tmp_path / "c", beginning=session_start_of([live], has_room=False))
+    live.post(BEGIN, value=69.0, other=69.0)
+    played = np.zeros(20000, np.float32)
+    stage.process(played[:9000])
+    live._rig["meters"]["running"] = 1  # as if the process was killed inside a block
+    stage.recover()
+    stage.process(played[9000:12000])
+    live.post(BEGIN, value=72.0, other=72.0)
+    stage.process(played[12000:])
+    assert stage.gaps == [(9000, 9000)]
+    writer.wishes(live.applied_wishes())
+    writer.note("rest", 9000, since=9000)
+    writer.close(live.frame)
+    assert (replayed(tmp_path / "c") == played).all()
+    assert rms(played[4000:9000]) > 0.001  # the first note, which the death ends
+    assert rms(played[9100:12000]) < 1e-5
+    assert rms(played[16000:]) > 0.001  # the second
+
+
+ADDRESSES = [
+    *("/playing/dynamics", "/playing/speed", "/playing/bend", "/playing/vibrato"),
+    *("/playing/pressure", "/playing/tremolo", "/playing/string", "/playing/portamento"),
+    *("/playing/pizzicato", "/playing/variation", "/playing/press", "/body/evenness"),
+    *("/bow/speed", "/bow/force", "/finger/2/press", "/string/outer/tuning", "/engine/seed"),
+]
+
+
+def wish_something(instrument, wishes, chance) -> None:
+    """Ask a player for anything, mostly for notes: now, soon, or for a frame that has passed."""
+    frame = instrument.frame + chance.choice([-500, 0, 0, 1, 30, 700])
+    what = chance.randrange(12)
+    key = Key(chance.choice([-1, 0, 5]), chance.choice([65, 66.25, 69, 72, 74, 77.5, 88, 40]))
+    if what < 4:
+        values = {"/playing/dynamics": chance.random(), "/playing/attack": 20.0 * chance.random()}
+        wishes.note_on(key, values, frame=frame)
+    elif what < 6:
+        ending = wishes.held()[: chance.randrange(1, 3)]
+        if ending:
+            wishes.post(EXPRESS, frame, ROW["/playing/speed"], 0.2)
+        wishes.notes_off(ending, frame=frame)
+    elif what < 9:
+        param = find(chance.choice(ADDRESSES))
+        value = chance.uniform(param.lo, param.hi)
+        glide_ms, hold = chance.choice([0.0, 33.3]), chance.random() < 0.1
+        wishes.write(param.address, value, frame=frame, hold=hold, glide_ms=glide_ms)
+    elif what == 9:
+        wishes.slide(60.0 + 30.0 * chance.random(), frame=frame)
+        wishes.draw(chance.uniform(-0.3, 0.3), chance.random(), frame=frame)
+    elif what == 10:
+        wishes.lift(frame=frame)
+        wishes.notes_off(wishes.held(), frame=frame)
+        wishes.stop_sound(frame=frame)
+    elif chance.random() < 0.3:
+        wishes.release(frame=frame)
+
+
+@pytest.mark.parametrize(("seed", "players"), [(1, 1), (2, 3), (3, 2)])
+def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
+    """Of calibrated instruments, in a room; also where the process died in it."""
+    chance, said = random.Random(seed), []
+    per_part = [
+        PlayingOptions(seed=seed + i, open_strings=list(OpenStrings)[seed % 3])
+        for i in range(players)
+    ]
+    stage = Ensemble(
+        [playing.spec(RATE, measured(seed), body=playing.seed) for playing in per_part]
+    )
+    asked = [playing.wishes(one) for playing, one in zip(per_part, stage.instruments, strict=True)]
+    for one in stage.instruments:
+        one.report_wishes()
+    capture = LiveCapture(stage, tmp_path / "c", said.append, has_room=True)
+    played, frames = [], 0
+    while frames < 2 * RATE:
+        if chance.random() < 0.3:
+            number = chance.randrange(players)
+            wish_something(stage.instruments[number], asked[number], chance)
+        if chance.random() < 0.05:
+            address = chance.choice(["/room/size", "/room/level", "/room/pan", "/room/decay"])
+            stage.instruments[chance.randrange(players)].write(address, chance.uniform(0.2, 1.0))
+        block = chance.choice([1, 64, 100, 512])
+        played.append(np.zeros((block, 2), np.float32))
+        stage.process(played[-1])
+        frames += block
+        if seed % 2 and frames > RATE and not stage.gaps:
+            first = stage.first._rig
+            first["meters"]["running"] = 1  # the process died before it had told of the block
+            first["taped"] -= block
+            stage.recover()
+            assert stage.gaps == [(frames - block, frames)]
+            played[-1][:] = 0.0
+        if chance.random() < 0.2:
+            capture.keep_up()
+    capture.close()
+    assert said == []
+    meters = [one.meters() for one in stage.instruments]
+    assert sum(each["late_events"] for each in meters) > 5
+    assert sum(wishes.notes_played for wishes in asked) > 20
+    read = read_capture(tmp_path / "c")
+    assert np.bincount(read.players).tolist() == [each["applied"] for each in meters]
+    assert len(set(read.wishes["kind"])) > 6
+    assert bool(read.gaps) == bool(seed % 2)
+    assert read.frames == frames
+    expected = np.concatenate(played)
+    assert rms(expected) > 0.001
+    assert (expected[:, 0] != expected[:, 1]).any()
+    again = np.concatenate(list(blocks(read, read.beginning.ensemble())))
+    np.testing.assert_array_equal(again, expected)
+
+
+def test_wishes_of_several_players_are_read_in_the_order_of_frames(tmp_path):
+    beginning = session_start_of(
+        [Instrument(InstrumentSpec(RATE)), Instrument(InstrumentSpec(RATE))], has_room=True
+    )
+    writer = CaptureWriter(tmp_path / "c", beginning=beginning)
+    for player, frames in [(1, [5, 9]), (0, [3, 7]), (1, [9]), (0, [8])]:
+        writer.wishes(np.array([(frame, LIFT, 0, 0.0, 0.0) for frame in frames], WISH), player)
+    writer.close(10)
+    read = read_capture(tmp_path / "c")
+    found = zip(read.wishes["frame"].tolist(), read.players.tolist(), strict=True)
+    assert list(found) == [(3, 0), (5, 1), (7, 0), (8, 0), (9, 1), (9, 1)]
+    assert read.beginning.has_room
+
+
+def test_what_players_have_in_common_is_written_once(tmp_path):
+    of = measured()
+    players = [InstrumentSpec(RATE, calibration=of, seed=seed, body=seed) for seed in range(3)]
+    players.append(InstrumentSpec(RATE, calibration=measured(2), bowing=default_recipes() * 1.01))
+    CaptureWriter(tmp_path / "c", beginning=SessionStart(tuple(players), has_room=True)).close(9)
+    header = json.loads((tmp_path / "c").read_text().splitlines()[0])
+    assert [player["calibration"] for player in header["players"][1:3]] == [1, 1]
+    assert [player["bowing"] for player in header["players"][1:3]] == [1, 1]
+    again = read_capture(tmp_path / "c").beginning.players
+    assert [player.calibration for player in again] == [of, of, of, measured(2)]
+    assert [player.body for player in again] == [0, 1, 2, 0]
+    for player, own in zip(again, players, strict=True):
+        np.testing.assert_array_equal(player.bowing, own.bowing)
+
+
+def test_an_instrument_of_another_build_is_read_as_it_was(tmp_path):
+    """Such as those of a section: strings, hair and body differ."""
+    usual = Quantities()
+    body = replace(usual.body, mass=tuple(1.01 * mass for mass in usual.body.mass))
+    own = replace(usual, body=body, bow=replace(usual.bow, hair=7.0, xi=(0.6, 0.5)))
+    beginning = SessionStart((InstrumentSpec(RATE, own),), has_room=True)
+    CaptureWriter(tmp_path / "c", beginning=beginning).close(9)
+    (again,) = read_capture(tmp_path / "c").beginning.players
+    assert again.quantities == own
+
+
+def test_a_replay_counts_what_it_did(tmp_path, write):
+    capture = read_capture(write(tmp_path / "c", RAMPS, end=9600))
+    result = replay(capture, tmp_path / "x.wav", format_name="wav", subtype="float")
+    assert result.events == 3
+    assert result.duration_s == 0.2
+    assert (tmp_path / "x.wav").exists()
+
+
+# ---------------------------------------------------------------- files of version 1
+
+MOVES = [
+    [0, "/bow/side", 1.0, 480],
+    [7, "/bow/speed", 0.1 + 0.2, 960],
+    [7, "/finger/1/position", 0.1, 0],
+    [7, "/finger/1/press", 1.5, 240],
+    [6000, "/bow/speed", -0.15, 100],
+    [9000, "silence", 0.0, 0],
+    [9500, "/output/level", 0.5, 1000],
+]
+
+
+def written(moves, gaps=(), **options) -> np.ndarray:
+    """What an instrument plays whose parameters move so."""
+    instrument = Instrument(InstrumentSpec(RATE, TUNED, **options))
+    for frame, address, target, ramp in moves:
+        if address == "silence":
+            instrument.silence(frame=frame)
+        else:
+            instrument.write(address, target, frame=frame, ramp_ms=ramp * 1e3 / RATE)
+    out = np.zeros(15000, np.float32)
+    start = 0
+    for stop in (*gaps, len(out)):
+        instrument.process(out[start:stop])
+        if stop < len(out):
+            instrument.come_to_rest()
+        start = stop
+    return out
+
+
+def test_a_file_of_version_1_sounds_as_its_ramps_do(tmp_path):
+    path = first_version(tmp_path / "c", MOVES, end=15000)
+    capture = read_capture(path)
+    assert capture.version == 1
+    assert capture.warnings == []
+    assert len(capture.wishes) == len(MOVES)
+    samples = replayed(path)
+    assert rms(samples) > 0.001
+    np.testing.assert_array_equal(samples, written(MOVES))
+
+
+def test_it_begins_with_its_own_values(tmp_path):
+    """Which were the defaults of its day."""
+    own = {
+        "/bow/position": 0.2,
+        "/output/gain": -3.0,
+        "/string/outer/tuning": 40.0,
+        "/bow/speed": 0.1,
+    }
+    values = {param.address: param.default for param in ENGINE} | own
+    path = first_version(tmp_path / "c", MOVES, values, end=15000)
+    samples = replayed(path)
+    np.testing.assert_array_equal(samples, written(MOVES, start_values=own))
+    assert not np.array_equal(samples, written(MOVES))
+
+
+def test_a_parameter_that_it_does_not_know_has_its_default(tmp_path):
+    unknown = {"/bow/noise", "/bow/assist", "/output/limiter", "/string/inner/loss"}
+    assert unknown < set(SLOT)
+    values = {param.address: param.default for param in ENGINE if param.address not in unknown}
+    path = first_version(tmp_path / "c", MOVES, values, end=15000)
+    np.testing.assert_array_equal(replayed(path), written(MOVES))
+    path = first_version(tmp_path / "d", MOVES, {}, end=15000)
+    np.testing.assert_array_equal(replayed(path), written(MOVES))
+
+
+def test_its_notes_go_on_after_a_rest(tmp_path):
+    path = first_version(tmp_path / "c", MOVES, end=15000, gaps=[5000])
+    samples = replayed(path)
+    np.testing.assert_array_equal(samples, written(MOVES, gaps=[5000]))
+    assert rms(samples[5500:9000]) > 0.001
+
+
+def test_a_wish_in_a_file_of_version_1_is_refused(tmp_path):
+    path = first_version(tmp_path / "c", [*MOVES, [9600, "begin", 0, 69.0, 69.0]], end=15000)
+    with pytest.raises(ScoreError, match="line 9"):
+        read_capture(path)
+
+
+# ---------------------------------------------------------------- files
+
+
+def test_a_full_disk_leaves_whole_lines(tmp_path, plain):
+    path = tmp_path / "c"
+    writer = CaptureWriter(path, beginning=plain)
+    begun = path.read_bytes()
+    first = json.dumps([1, 1, "ramp", "/bow/speed", 0.5, 0]) + "\n"
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(begun) + len(first) + 9, hard))
+    try:
+        with pytest.raises(OutputError, match="cannot write"):
+            writer.wishes(np.array([(frame, RAMP, SPEED, 0.5, 0.0) for frame in (1, 2)], WISH))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert path.read_bytes() == begun + first.encode()
+    assert len(read_capture(path).wishes) == 1
+
+
+def test_an_older_capture_is_replaced_only_where_that_only_where_that_is_asked_for(
+    tmp_path, write, plain
+):
+    path = write(tmp_path / "c", RAMPS, end=12345)
+    older = path.read_bytes()
+    with pytest.raises(OutputError, match="exists"):
+        CaptureWriter(path, beginning=plain)
+    assert path.read_bytes() == older
+    CaptureWriter(path, beginning=plain, overwrite=True).close(7)
+    assert read_capture(path).frames == 7
+
+
+def test_a_capture_of_nothing_can_be_taken_back(tmp_path, plain):
+    CaptureWriter(tmp_path / "c", beginning=plain).discard()
+    assert list(tmp_path.iterdir()) == []
+
+
+# ---------------------------------------------------------------- hostile files
+
+HUGE = "9" * 400
+DEEP = "[" * 20_000
+
+
+NO_FRAMES = [
+    f'{{"end": {HUGE}}}',
+    f'{{"end": {"9" * 5000}}}',
+    '{"end": true}',
+    '{"rest": 5, "since": 9}',
+    '{"rest": 5}',
+    '{"lost": 5, "events": -1}',
+    '"end"',
+    "17",
+    DEEP,
+    '{"a":' * 10_000,
+    "\x00",
+]
+NO_RAMPS = [
+    f'[{2**63 - 1}, "/bow/speed", 0.1, 0]',
+    f'[{2**80}, "/bow/speed", 0.1, 0]',
+    '[1e3, "/bow/speed", 0.1, 0]',
+    '[-1, "/bow/speed", 0.1, 0]',
+    '[0, "/bow/speed", 9e18, 441]',
+    '[0, "/bow/speed", NaN, 0]',
+    '[0, "/bow/speed", -Infinity, 0]',
+    f'[0, "/bow/speed", {HUGE}, 0]',
+    '[0, "/bow/speed", {}, 0]',
+    f'[0, "/bow/speed", 0.1, {2**63}]',
+    '[0, "/bow/speed", 0.1, -5]',
+    '[0, "silence", 1.0, 0]',
+    '[0, ["/bow/speed"], 0.1, 0]',
+]
+NO_WISHES = [
+    f'[{2**63 - 1}, 1, "ramp", "/bow/speed", 0.1, 0]',
+    f'[{2**80}, 1, "ramp", "/bow/speed", 0.1, 0]',
+    '[1e3, 1, "ramp", "/bow/speed", 0.1, 0]',
+    '[-1, 1, "ramp", "/bow/speed", 0.1, 0]',
+    "nonsense",
+    '[1, 1, "ramp", "/bow/speed", 0.1]',
+    '[1, 1, "ramp", "/no/such", 0.1, 0]',
+    '[1e300, 1, "ramp", "/bow/speed", 0.0, 0]',
+    '[1, "ramp", "/bow/speed", 0.1, 0]',  # as in version 2
+    '[1, 0, "ramp", "/bow/speed", 0.1, 0]',
+    '[1, 2, "ramp", "/bow/speed", 0.1, 0]',  # a player who is not there
+    '[1, "/bow/speed", 0.1, 0]',  # as in version 1
+    '[0, 1, "ramp", "/bow/speed", 9e18, 441]',
+    '[0, 1, "ramp", "/bow/speed", NaN, 0]',
+    '[0, 1, "ramp", "/bow/speed", -Infinity, 0]',
+    f'[0, 1, "ramp", "/bow/speed", {HUGE}, 0]',
+    '[0, 1, "ramp", "/bow/speed", {}, 0]',
+    f'[0, 1, "ramp", "/bow/speed", 0.1, {2**63}]',
+    '[0, 1, "ramp", "/bow/speed", 0.1, -5]',
+    '[0, 1, "ramp", "silence", 1.0, 0]',
+    '[0, 1, "ramp", ["/bow/speed"], 0.1, 0]',
+    "[]",
+    "[0]",
+    "[0, 1]",
+    "[0, 1, 4]",
+    '[0, 0, "lift"]',
+    '[0, 2, "lift"]',
+    '[0, 1.0, "lift"]',
+    '[0, true, "lift"]',
+    '[0, null, "lift"]',
+    '[0, 1, ["lift"]]',
+    '[0, 1, "jump"]',
+    '[0, 1, "ramp", "/playing/speed", 0.1, 0]',  # which the player has
+    '[0, 1, "write", "/playing/speed", 0.1]',
+    '[0, 1, "write", "/playing/speed", 9e9, 0]',
+    '[0, 1, "write", "/playing/speed", 0.1, -1]',
+    '[0, 1, "write", "/playing/speed", 0.1, NaN]',
+    '[0, 1, "write", "/playing/speed", 0.1, 1e9]',
+    '[0, 1, "hold", "/no/such", 0.1, 0]',
+    '[0, 1, "hold", 7, 0.1, 0]',
+    '[0, 1, "express", "/playing/speed", NaN]',
+    '[0, 1, "express", "/playing/speed", 0.1, 0]',
+    '[0, 1, "begin", 0, 69]',
+    '[0, 1, "begin", 0.5, 69, 69]',
+    '[0, 1, "begin", -2000000, 69, 69]',
+    f'[0, 1, "begin", {2**63}, 69, 69]',
+    '[0, 1, "begin", 0, NaN, 69]',
+    '[0, 1, "begin", 0, 69, 127.5]',
+    '[0, 1, "begin", 0, 69, -1]',
+    '[0, 1, "begin", 0, 69, "A4"]',
+    '[0, 1, "end", 0, 69, 2]',
+    '[0, 1, "end", 0, 69, true]',
+    '[0, 1, "end", 0, 69]',
+    '[0, 1, "slide"]',
+    '[0, 1, "slide", Infinity]',
+    '[0, 1, "slide", null]',
+    '[0, 1, "draw", 0.1]',
+    '[0, 1, "draw", 99, 0.1]',
+    '[0, 1, "draw", 0.1, -1]',
+    '[0, 1, "lift", 0]',
+    '[0, 1, "stop"]',
+    '[0, 1, "stop", 2]',
+    '[0, 1, "stop", -1]',
+    '[0, 1, "stop", NaN]',
+    '[0, 1, "stop", 0, 0]',
+    '[0, 1, "release", 0]',
+]
+
+
+def refuse_lines(path, lines) -> None:
+    """Each of some lines, after two others, is refused by its number."""
+    begun, taken = path.read_text(), []
+    for line in lines:
+        path.write_text(f'{begun}{line}\n{{"end": 100}}\n')
+        if "line 3: not a line of a capture" not in refusal_of(path):
+            taken.append(line[:60])
+    assert taken == []
+
+
+def refusal_of(path) -> str:
+    """What is said of a capture that is refused in one line; nothing where it is read."""
+    try:
+        read_capture(path)
+    except ScoreError as error:
+        text = str(error)
+        return text if text.startswith(f"{path}: ") and "\n" not in text and len(text) < 500 else ""
+    return ""
+
+
+def test_a_line_that_no_instrument_wrote_is_named_and_refused(tmp_path, write):
+    refuse_lines(write(tmp_path / "c", RAMPS[:1]), [*NO_WISHES, *NO_FRAMES])
+
+
+def test_and_so_is_one_that_the_first_version_did_not_write(tmp_path):
+    refuse_lines(first_version(tmp_path / "c", MOVES[:1]), [*NO_RAMPS, *NO_FRAMES])
+
+
+def test_a_rate_that_is_none_is_refused(tmp_path, write):
+    path = write(tmp_path / "c", RAMPS, end=9001)
+    text = path.read_text()
+    for rate in (HUGE, "9" * 5000, "0", "-48000", "NaN", "1e999", "null", DEEP):
+        path.write_text(text.replace(f'"rate": {RATE}', f'"rate": {rate}'))
+        with pytest.raises(ScoreError):
+            read_capture(path)
+
+
+@pytest.mark.parametrize("end", [10**12, 2**53])
+def test_a_capture_of_years_is_refused_unless_it_is_asked_for(tmp_path, write, end):
+    capture = read_capture(write(tmp_path / "c", RAMPS, end=end))
+    with pytest.raises(ScoreError, match="--max-duration"):
+        replay(capture, tmp_path / "x.wav", format_name="wav", subtype="16", max_duration_h=12.0)
+    assert not (tmp_path / "x.wav").exists()
+
+
+def test_a_late_rest_is_as_long_as_an_end(tmp_path, write):
+    capture = read_capture(write(tmp_path / "c", RAMPS, end=100, gaps=[10**12]))
+    assert capture.frames == 10**12
+
+
+def test_many_rests_are_no_capture(tmp_path, write):
+    with pytest.raises(ScoreError, match="too many"):
+        read_capture(write(tmp_path / "c", RAMPS, gaps=range(9000, 11000)))
+
+
+def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
+    os.mkfifo(tmp_path / "fifo")
+    (tmp_path / "long").write_bytes(b"[" * 10**6)
+    for path in (Path("/dev/zero"), tmp_path / "fifo", tmp_path, tmp_path / "long"):
+        with pytest.raises(ScoreError) as error:
+            read_capture(path)
+        assert str(error.value).startswith(f"{path}: ")
+
+
+def test_a_long_session_is_read_whole(tmp_path, monkeypatch, write):
+    monkeypatch.setattr("yehu_server.scores.capture.CHUNK", 3)
+    wishes = [(frame, RAMP, SPEED, 0.1, 0.0) for frame in range(10)]
+    assert read_capture(write(tmp_path / "c", wishes)).wishes.tolist() == wishes
+    monkeypatch.setattr("yehu_server.scores.capture.MOST_WISHES", 8)
+    with pytest.raises(ScoreError, match="more than 8 events"):
+        read_capture(tmp_path / "c")
+
+
+def with_header(path, **changes):
+    """A capture whose first line has other values; None removes one."""
+    first, *rest = path.read_text().splitlines(keepends=True)
+    header = json.loads(first)
+    own = header["players"][0].keys() & changes
+    for part, names in ((header["players"][0], own), (header, changes.keys() - own)):
+        part |= {name: changes[name] for name in names}
+        for name in [name for name, value in part.items() if value is REMOVED]:
+            del part[name]
+    path.write_text(json.dumps(header) + "\n" + "".join(rest))
+    return path
+
+
+REMOVED = "removed"  # told by its identity
+NAN, INFINITY = float("nan"), float("inf")
+CALIBRATION = {
+    "a4": 440.0,
+    "tensions": list(measured().tensions),
+    "sharpening": measured().sharpening,
+    "levels": measured().levels,
+}
+BOWING = default_recipes().tolist()
+USUAL = Quantities().body
+
+
+def bowing_with(value: object) -> list:
+    """A table with something else in one place."""
+    table = default_recipes().astype(object)
+    table[-1, -1, -1, -1] = value
+    return table.tolist()
+
+
+BODY = {item.name: getattr(USUAL, item.name) for item in fields(USUAL)}
+NO_BODIES = [
+    *({name: value} for name in BODY if name != "radiation_rate" for value in (None, [], "x", NAN)),
+    {"mass": [*USUAL.mass, 0.1]},
+    {"mass": [-1.0, *USUAL.mass[1:]]},
+    {"frequency_hz": [0.0, *USUAL.frequency_hz[1:]]},
+    {"damping": [-1e-9, *USUAL.damping[1:]]},
+    {"sections": [[1.0, 1.0, 0.0, 1.1], *USUAL.sections[1:]]},
+    {"sections": [[1.0, 1.0, 1.9, 0.1], *USUAL.sections[1:]]},
+    {"sections": USUAL.sections[1:]},
+]
+
+
+def test_the_header_that_is_changed_below_is_one(tmp_path, write):
+    path = with_header(write(tmp_path / "c", end=5), calibration=CALIBRATION, bowing=BOWING)
+    assert read_capture(path).beginning.players[0].calibration == measured()
+
+
+def test_a_table_of_a_time_when_both_strings_had_one_counts_for_both(tmp_path, write):
+    path = with_header(write(tmp_path / "c", end=5), calibration=CALIBRATION, bowing=BOWING[0])
+    assert read_capture(path).beginning.players[0].bowing.tolist() == [BOWING[0]] * 2
+
+
+def no_beginnings():
+    """Changes of a header that make it none."""
+    return [
+        *({name: REMOVED} for name in ("version", "rate", "room", "seed", "open_strings")),
+        *({name: REMOVED} for name in ("players", "quantities")),
+        *({name: REMOVED} for name in ("calibration", "bowing", "build", "values")),
+        *({"version": version} for version in (0, 4, 3.0, True, "3", None, [3], "3\n")),
+        *({"seed": seed} for seed in (-1, 1.5, "3", None, True, 2**60, NAN)),
+        *({"open_strings": when} for when in ("sometimes", 1, None, [], "a\nb")),
+        *({"players": of} for of in (None, {}, [], [None], [{}], 3, [1] * 17)),
+        *({"room": room} for room in (0, 1, None, "yes")),
+        *({"body": body} for body in (-1, 0.5, "x", None, 2**60)),
+        *({"quantities": of} for of in (None, [], 3, {"": 1}, {"string_1": 3}, {"body": 3})),
+        *({"quantities": {"string_1": {"T": of}}} for of in (0, -50, 1e9, NAN, "x", None, [50])),
+        *({"quantities": {"body": {**BODY, **part}}} for part in NO_BODIES),
+        *({"calibration": number} for number in (0, 1, 2, -1, 10**400)),
+        *({"bowing": number} for number in (0, 1, 2, -1)),
+        *({"build": build} for build in (None, 3, "x", [1])),
+        *({"values": values} for values in (None, [], "x", ["/bow/speed"])),
+        {"values": {"/no/such": 0.1}},
+        {"values": {"/no/\nsuch": 0.1}},
+        {"values": {"": 0.1}},
+        *(
+            {"values": {"/bow/speed": value}}
+            for value in (9.0, -9.0, NAN, INFINITY, "0.1", "0\n1", None, [], {}, True, 10**400)
+        ),
+        *({"bowing": bowing} for bowing in (None, 1.0, [], BOWING[1:], [*BOWING, BOWING[0]], "x")),
+        {"bowing": [[row[1:] for row in rows] for rows in BOWING]},
+        {"bowing": [*BOWING[1:], BOWING[0][1:]]},
+        {"bowing": [*BOWING[1:], [*BOWING[0][1:], BOWING[0][0][1:]]]},
+        *({"bowing": bowing_with(value)} for value in (NAN, INFINITY, "a", None, 10**400)),
+        {"bowing": BOWING[0][0]},  # of one place
+        *({"calibration": calibration} for calibration in (0, [], {}, "x", True)),
+        *({"calibration": {**CALIBRATION, "a4": a4}} for a4 in (0.0, -440.0, NAN, INFINITY, "x")),
+        *({"calibration": {**CALIBRATION, "a4": a4}} for a4 in (None, 1e9, 1e-300, 10**400)),
+        *(
+            {"calibration": {**CALIBRATION, name: value}}
+            for name in ("tensions", "sharpening", "levels")
+            for value in (None, [], 1.0, [1.0], [[], []], "x", CALIBRATION["tensions"][:1])
+        ),
+        {"calibration": {**CALIBRATION, "tensions": [NAN, NAN]}},
+        {"calibration": {**CALIBRATION, "tensions": [-50.0, 64.0]}},
+        {"calibration": {**CALIBRATION, "tensions": [1e6, 64.0]}},
+        {"calibration": {**CALIBRATION, "levels": CALIBRATION["sharpening"]}},
+        {"calibration": {**CALIBRATION, "sharpening": [[[NAN] * 4] * 18, [[0.0] * 4] * 18]}},
+    ]
+
+
+def test_a_beginning_that_is_none_is_refused_in_one_line(tmp_path, write):
+    path = write(tmp_path / "c", RAMPS, end=9001)
+    text, taken = path.read_text(), []
+    for changes in no_beginnings():
+        path.write_text(text)
+        if not refusal_of(with_header(path, **changes)):
+            taken.append(str(changes)[:80])
+    assert taken == []
+
+
+# ---------------------------------------------------------------- files of version 2
+
+
+def second_version(path, lines=(), **changes):
+    """A file as the second version wrote it: of one player, without a room."""
+    header = {"format": "yehu-server capture", "version": 2, "rate": RATE, "seed": 3}
+    header |= {"open_strings": "always", "tensions": list(TENSIONS), "build": build()}
+    header |= {"calibration": None, "bowing": default_recipes().tolist(), "values": {}}
+    header |= changes
+    path.write_text("".join(json.dumps(line) + "\n" for line in [header, *lines]))
+    return path
+
+
+NOTE = [[0, "begin", 0, 69.0, 69.0], [5000, "end", 0, 69.0, 0], {"end": 9600}]
+
+
+def test_a_file_of_version_2_sounds_as_it_did_without_a_room(tmp_path):
+    path = second_version(tmp_path / "c", NOTE)
+    capture = read_capture(path)
+    assert (capture.version, capture.beginning.has_room) == (2, False)
+    instrument = Instrument(InstrumentSpec(RATE, TUNED, seed=3))
+    instrument.post(BEGIN, frame=0, value=69.0, other=69.0)
+    instrument.post(END, frame=5000, value=69.0)
+    samples = replayed(path)
+    assert rms(samples) > 0.001
+    np.testing.assert_array_equal(samples, run(instrument, 9600))
+
+
+def test_a_file_of_version_2_has_no_players_in_its_lines(tmp_path):
+    path = second_version(tmp_path / "c", [[0, 1, "lift"], {"end": 9}])
+    with pytest.raises(ScoreError, match="line 2"):
+        read_capture(path)
+
+
+@pytest.mark.parametrize(
+    "tensions",
+    [
+        *(50.0, [], [50.0], [50.0] * 3, ["a", "b"], [None, 1], {}),
+        *([0, 64], [-50, 64], [50, 1e9], [50, 1e308], [NAN, 64]),
+    ],
+)
+def test_strings_that_no_model_can_hold_are_refused_before_anything_sounds(tmp_path, tensions):
+    path = second_version(tmp_path / "c", NOTE, tensions=tensions)
+    with pytest.raises(YehuError) as error:
+        replay(read_capture(path), tmp_path / "x.wav", format_name="wav", subtype="16")
+    assert len(str(error.value).splitlines()) == 1
+    assert not (tmp_path / "x.wav").exists()

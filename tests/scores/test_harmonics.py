@@ -1,0 +1,96 @@
+"""Marks as they sound: harmonics at their pitch, slides on their way, and all as before after."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from pitch import cents, pitch_of
+
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
+from yehu_server.scores.written.mark_settings import HARMONICS
+from yehu_server.scores.written.notated import Mark, Note, Part, Sign, Tempo, Written
+from yehu_server.scores.written.performed import performed
+
+RATE = 44100
+NAMES = {77.0: "F5", 84.0: "C6", 91.0: "G6"}
+
+
+def sound(*notes, signs=()) -> tuple[np.ndarray, Performance]:
+    """The samples of notes (marks, pitch) of a second each, and what played them."""
+    written = tuple(
+        Note(Fraction(n), Fraction(1), float(pitch), tuple(map(Mark, marks)))
+        for n, (pitch, *marks) in enumerate(notes)
+    )
+    score = performed(Written((Part("", written, (), signs),), (Tempo(Fraction(0), 60.0),)))
+    performance = Performance(score, Options(tail_s=0.0, is_dry=True, is_mono=True))
+    return np.concatenate(list(performance.blocks())), performance
+
+
+@pytest.mark.parametrize("pitch", HARMONICS, ids=NAMES.get)
+def test_a_harmonic_speaks_within_10_cents_of_its_pitch(pitch):
+    samples, _ = sound((pitch, "harmonic"))
+    heard = pitch_of(samples[int(0.5 * RATE) : int(0.9 * RATE)], RATE)
+    assert abs(cents(heard, 440.0 * 2.0 ** ((pitch - 69.0) / 12.0))) < 10.0
+
+
+def test_a_harmonic_has_none_of_the_stopped_notes_other_partials():
+    samples, _ = sound((84.0, "harmonic"))
+    spectrum = np.abs(np.fft.rfft(samples[int(0.5 * RATE) : int(0.9 * RATE)] * np.hanning(17640)))
+    own, open_string = (
+        spectrum[round(hertz * 0.4) - 4 : round(hertz * 0.4) + 5].max()
+        for hertz in (1046.5, 523.25)
+    )
+    assert own > 100.0 * open_string
+
+
+def test_the_note_after_a_harmonic_is_as_usual():
+    samples, _ = sound((84.0, "harmonic"), (67.0,))
+    heard = pitch_of(samples[int(1.5 * RATE) : int(1.9 * RATE)], RATE)
+    assert abs(cents(heard, 392.0)) < 10.0
+
+
+def test_all_that_marks_set_is_put_back():
+    plain, usual = sound((67.0,), (69.0,))
+    marks = ("up-bow", "harmonic", "tremolo", "vibrato", "slide-in-up", "outer-string", "spiccato")
+    _, played = sound(*((72.0 + n, mark) for n, mark in enumerate(marks)), (67.0, "slide-out-down"),
+                      signs=(Sign(Fraction(1), "sul-ponticello"), Sign(Fraction(2), "pizz"),
+                             Sign(Fraction(4), "arco"), Sign(Fraction(6), "ordinary")))  # fmt: skip
+    before, after = usual.players[0].midi.sound(), played.players[0].midi.sound()
+    moved = {"/playing/note_length", "/playing/velocity", "/playing/pressure"}  # by each note
+    assert {a: v for a, v in after.items() if a not in moved} == {
+        a: v for a, v in before.items() if a not in moved
+    }
+    assert len(plain)
+
+
+def test_a_preset_is_what_marks_are_put_back_to():
+    options = Options(tail_s=0.0, is_dry=True, is_mono=True)
+    playing = options.playing.__class__(start=(("/playing/bow_position", 0.18),))
+    note = Note(Fraction(0), Fraction(1), 67.0, (Mark("harmonic"),))
+    near = Note(Fraction(1), Fraction(1), 77.0, (Mark("harmonic"),))
+    score = performed(Written((Part("", (note, near)),), (Tempo(Fraction(0), 60.0),)))
+    performance = Performance(score, Options(tail_s=0.0, playing=playing))
+    for _ in performance.blocks():
+        pass
+    assert performance.wishes.value("/playing/bow_position") == 0.18
+
+
+def test_what_is_held_by_the_command_line_stays():
+    playing = Options().playing.__class__(settings=(("/playing/bow_position", 0.18),))
+    note = Note(Fraction(0), Fraction(1), 77.0, (Mark("harmonic"),))
+    score = performed(Written((Part("", (note,)),)))
+    performance = Performance(score, Options(tail_s=0.0, playing=playing))
+    next(performance.blocks())
+    assert performance.wishes.value("/playing/bow_position") == 0.18
+
+
+def test_settings_of_a_part_that_is_not_played_set_nothing():
+    note = Note(Fraction(0), Fraction(1), 67.0, (Mark("pizzicato"),))
+    plain = Note(Fraction(0), Fraction(1), 67.0)
+    score = performed(Written((Part("", (plain,)), Part("", (note,)))))
+    performance = Performance(score, Options(tail_s=0.0, channels=frozenset({0})))
+    next(performance.blocks())
+    assert performance.wishes.value("/playing/pizzicato") == 0.0

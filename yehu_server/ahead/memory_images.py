@@ -1,0 +1,56 @@
+"""Images of instruments: the record of one that is ready to play, for each of the usual rates.
+
+Only words that are not zero are kept, as runs: where one begins, how long it is, and its words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.rig import memory_bytes
+from yehu_server.core.midi.events import START
+from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.tables import Controls
+
+Array = Any
+
+# A run is worth its two words of heading only beyond a gap as long as that.
+SHORTEST_GAP = 3
+
+
+def image(rate: float) -> Array:
+    """Make the image of a calibrated instrument that is ready to play, as `serve` begins.
+
+    It has the default mapping, in equal temperament; program changes are ignored.
+
+    Parameters
+    ----------
+    rate : float, Hz
+
+    Returns
+    -------
+    ndarray [dtype=int64]
+        First word, number of words, the words; again; to the end.
+    """
+    memory, playing = bytearray(memory_bytes(1)), PlayingOptions()
+    spec = playing.spec(rate, calibration_for(rate))
+    first = Ensemble([spec], memory=memory, is_live=True).first
+    first.lead(playing.tables(Controls()))
+    first.tables["program_row"] = 0.0  # not read, as there are no programs
+    first.post(START)
+    words = np.frombuffer(memory, np.int64)
+    return np.concatenate([np.zeros(0, np.int64), *runs(words)])
+
+
+def runs(words: Array) -> Iterable[Array]:
+    """The runs of words of a record [dtype=int64] that are not zero, each with its heading."""
+    places = np.flatnonzero(words)
+    for run in np.split(places, np.flatnonzero(np.diff(places) > SHORTEST_GAP) + 1):
+        if len(run):
+            first, count = int(run[0]), int(run[-1] - run[0] + 1)
+            yield np.array([first, count, *words[first : first + count]], np.int64)

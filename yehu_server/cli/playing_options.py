@@ -1,0 +1,179 @@
+"""Options of playing that serve and render share: mapping, preset, tuning."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from yehu_server.cli.arguments import add_options
+from yehu_server.cli.converters import HIGHEST_A4, LOWEST_A4, number_within, whole_within
+from yehu_server.cli.terminal import warn
+from yehu_server.errors import ParameterError
+
+if TYPE_CHECKING:
+    from yehu_server.playing.mapping import Mapping
+    from yehu_server.playing.options import PlayingOptions
+    from yehu_server.playing.tuning import Tuning
+
+
+def add_playing(group: Any) -> None:
+    """Add the options of playing that serve and render share; see `playing_options_of`."""
+    add_tables(group)
+    add_options(
+        group,
+        """
+        --practice FILE: how notes are bowed: what yehu-server practise wrote (default: as shipped)
+        --set ADDRESS=VALUE ...: hold a parameter at a value, such as /playing/bow_position=0.1; may
+            be repeated
+        --open-strings: when C5 is played on the open outer string, not on the inner one (default:
+            always)
+        --seed N: seed of the random variation between notes, 0 to 65535 (default: 0)
+        """,
+        practice=Path,
+        open_strings={"choices": ("always", "on-pitch", "never"), "default": "always"},
+        seed={"type": whole_within(0, 65535, "is not a seed, 0 to 65535"), "default": 0},
+    )
+
+
+def add_tables(group: Any) -> None:
+    """Add the options of how messages are interpreted; see `table_options_of`."""
+    add_options(
+        group,
+        """
+        --mapping FILE: what controllers move: the name of a mapping, mine/NAME for one of yours, or
+            a file (default: keyboard)
+        --mpe: start with one MPE zone of 15 member channels; without --mapping, use the mapping
+            named mpe
+        --preset NAME: the sound to start with: the name of a preset, or a file (see yehu-server
+            presets); a plus takes several together, such as sul-tasto+hall
+        --programs: let MIDI program changes select presets (default: they are ignored)
+        """,
+    )
+    add_presets_folder(group)
+    add_options(
+        group,
+        f"--a4 HZ: reference pitch, {LOWEST_A4:g} to {HIGHEST_A4:g} (default: 440)",
+        a4={"type": number_within(LOWEST_A4, HIGHEST_A4, "Hz"), "default": 440.0},
+    )
+    add_tuning(group)
+    add_options(
+        group,
+        "--range: what happens to notes outside F4 to F6 (default: transpose, by octaves)",
+        range={"choices": ("transpose", "clamp", "skip"), "default": "transpose"},
+    )
+
+
+def add_tuning(group: Any) -> None:
+    """Add the options that tell which pitch each key has, to a parser or a group of its options."""
+    add_options(
+        group,
+        """
+        --tuning FILE.scl: a Scala scale, or the name of a shipped one, from C up (default: equal
+            temperament)
+        --keyboard-map FILE.kbm: a Scala keyboard map, or the name of a shipped one; it fixes the
+            pitch in Hz
+        """,
+        tuning=Path,
+        keyboard_map=Path,
+    )
+
+
+def tuning_of(arguments: argparse.Namespace) -> Tuning:
+    """The tuning that the options of `add_tuning` ask for.
+
+    Raises
+    ------
+    YehuError
+        Where a file is wrong.
+    """
+    from yehu_server.playing.tuning import EQUAL, read_tuning
+
+    if arguments.keyboard_map is not None and arguments.tuning is None:
+        raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
+    return read_tuning(arguments.tuning, arguments.keyboard_map) if arguments.tuning else EQUAL
+
+
+def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mapping:
+    """The mapping given by --mapping and --mpe.
+
+    Raises
+    ------
+    MappingError
+        Where there is no such mapping, or it is wrong.
+    """
+    from yehu_server.playing.mapping import DEFAULT, MPE, load
+
+    name = arguments.mapping or (MPE if arguments.mpe else DEFAULT)
+    mapping = load(name, user_first=is_live)
+    return replace(mapping, mpe=mapping.mpe or arguments.mpe)
+
+
+def add_presets_folder(group: Any) -> None:
+    """Add --presets, the folder of the user's presets."""
+    add_options(
+        group,
+        "--presets FOLDER: folder of your own presets (default: in your configuration folder)",
+        presets=Path,
+    )
+
+
+def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
+    """What the options of `add_playing` ask for; see `table_options_of`.
+
+    Raises
+    ------
+    YehuError
+        Where a file or value is wrong.
+    """
+    from yehu_server.core.player.fingering import OpenStrings
+    from yehu_server.params.table import assignment
+    from yehu_server.playing.practice_files import read_practice
+
+    return replace(
+        table_options_of(arguments, is_live=is_live),
+        settings=tuple(assignment(text) for text in arguments.set),
+        open_strings=OpenStrings(arguments.open_strings),
+        seed=arguments.seed,
+        bowing=None if arguments.practice is None else read_practice(arguments.practice),
+        practice=arguments.practice,
+    )
+
+
+def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
+    """What the options of `add_tables` ask for.
+
+    In live playing, mappings and presets of the user's own precede shipped ones of the same
+    name. Else they must be named explicitly, so that the result of a rendering depends on its
+    command alone.
+
+    Raises
+    ------
+    YehuError
+        Where a file or value is wrong.
+    """
+    from yehu_server.playing.options import PlayingOptions
+    from yehu_server.playing.preset_folders import Presets
+    from yehu_server.playing.tuning import RangePolicy
+
+    user_first = is_live or arguments.presets is not None
+    presets = Presets(arguments.presets, user_first=user_first)
+    start: tuple[tuple[str, float], ...] = ()
+    file = None
+    if arguments.preset is not None:
+        file = presets.find_file(arguments.preset)
+        preset = presets.find(arguments.preset)
+        start = tuple(preset.values.items())
+        for remark in preset.remarks():
+            warn(remark)
+    return PlayingOptions(
+        mapping=mapping_of(arguments, is_live=is_live),
+        presets=presets,
+        preset=file,
+        start=start,
+        programs=arguments.programs,
+        a4=arguments.a4,
+        tuning=tuning_of(arguments),
+        policy=RangePolicy(arguments.range),
+    )

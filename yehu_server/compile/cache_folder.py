@@ -1,0 +1,63 @@
+"""The folder of compiled code: where it is, what its name depends on, and when others go.
+
+numba does not notice when a compiled function's callee changes in another file, so the name has a
+hash of all sources that may be compiled.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import time
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+from platformdirs import user_cache_dir
+
+from yehu_server.util import PACKAGE
+from yehu_server.util.source_key import key_of
+
+PREFIX = "compiled-"
+UNUSED_AFTER_S = 14 * 24 * 3600.0
+# Of all source that is compiled, or that compiled code reads constants of.
+SOURCE_FOLDERS = ("core", "params", "compile", "lab/regimes")
+
+
+@cache
+def source_hash() -> str:
+    """Key of all source that compiled code comes from or reads constants of (16 hex digits)."""
+    sources = [
+        source for folder in SOURCE_FOLDERS for source in sorted((PACKAGE / folder).rglob("*.py"))
+    ]
+    return key_of(sources, version("numba"))
+
+
+def cache_folder() -> Path:
+    """Where compiled code is kept; ``NUMBA_CACHE_DIR`` moves it."""
+    root = os.environ.get("NUMBA_CACHE_DIR") or user_cache_dir("yehu-server", appauthor=False)
+    return Path(root) / f"{PREFIX}{source_hash()}"
+
+
+def data_folder() -> Path:
+    """Where else is kept what takes long to find, such as calibrations."""
+    return cache_folder().parent
+
+
+def _open_cache() -> str:
+    """Make the cache folder and drop what older sources left; return why nothing can be kept."""
+    folder = cache_folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        os.utime(folder)
+        for other in folder.parent.glob(f"{PREFIX}*"):
+            if time.time() - other.stat().st_mtime > UNUSED_AFTER_S:
+                shutil.rmtree(other, ignore_errors=True)
+    except OSError as error:
+        return error.strerror or repr(error)
+    return "" if os.access(folder, os.W_OK) else os.strerror(errno.EACCES)
+
+
+WHY_NOT_CACHED = _open_cache()
+IS_CACHED = not WHY_NOT_CACHED  # else everything is compiled anew at each start

@@ -52,8 +52,8 @@ FAST_SHARE, FAST = 0.6, 0.35  # m/s
 ONSET_FROM = 0.4  # of /vibrato/onset, below which there is no vibrato
 # In tremolo the bow's speed is a sine times this, clipped to -1..1: mostly full speed.
 TURN = 3.0
-ARRIVED = 1e-6  # m; as near as this to where the sounding length ends, the bow's place is there
 LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction when tremolo ends
+ARRIVED = 1e-6  # m; as near as this to where the sounding length ends, the bow's place is there
 
 
 @compiled

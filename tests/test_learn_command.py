@@ -159,3 +159,12 @@ def test_a_server_that_does_not_answer_is_told_of(capsys, words):
 def test_a_server_of_no_name_is_told_of(capsys):
     assert main(["learn", "/playing/vibrato", "--server", "127.0.0.1:x"]) == 2
     assert "expected HOST:PORT" in capsys.readouterr().err
+
+
+def test_what_learning_takes_away_is_told_and_given_back(server, at, capsys):
+    with a_fader_that_moves(server):
+        main(["learn", "/playing/speed", *at])
+    out = capsys.readouterr().out
+    assert "\n  cc 1 moves /yehu/playing/speed no longer, until --forget\n" in out
+    assert main(["learn", "--forget", "/playing/speed", *at]) == 0
+    assert capsys.readouterr().out.endswith("\n  cc 1 moves /yehu/playing/speed again\n")

@@ -218,6 +218,11 @@ export default {
   "server.device": "It plays on {device}.",
   "server.silent": "It plays on no device: listen here.",
   "server.pages": "Pages connected: {count}",
+  "server.role.play":
+    "You are a guest who plays; presets, the room and silence for all are the owner’s.",
+  "server.role.listen": "You are a guest who listens.",
+  "server.pin": "The PIN of this server, which it shows at its start",
+  "server.pin.send": "Connect",
   "server.gone": "The server does not answer. This page tries again by itself.",
 
   "all.search": "Search parameters",

@@ -210,6 +210,10 @@ export default {
   "server.device": "声音输出到 {device}。",
   "server.silent": "服务器没有声音设备：请在此收听。",
   "server.pages": "已连接的页面：{count}",
+  "server.role.play": "您是演奏的来宾；预设、房间和全体静音由主人掌管。",
+  "server.role.listen": "您是旁听的来宾。",
+  "server.pin": "请输入服务器启动时显示的 PIN",
+  "server.pin.send": "连接",
   "server.gone": "服务器没有回应，本页会自动重试。",
 
   "all.search": "搜索参数",

@@ -20,6 +20,7 @@ from yehu_server.live.addresses import (
     lan_interface,
     parse_address,
 )
+from yehu_server.live.page.guests import PLAY, ROLES, Guests
 from yehu_server.params.table import PREFIX
 
 HERE = ("127.0.0.0/8", "::1")
@@ -84,9 +85,11 @@ def add_arguments(parser: Parser) -> None:
             --http and 1, or a free one where that is taken; none with --no-http)
         --no-panel: no page
         --open: open the page in the browser
-        --lan: offer the page to the local network, whose phones and computers may then play
+        --lan listen|play|own: offer the page to the local network, whose phones and computers may
+            then listen, play, or do all that this machine may, by a PIN (default: play)
         """,
         panel_port=port,
+        lan={"nargs": "?", "const": PLAY, "choices": ROLES},
     )
     group = parser.add_argument_group("playing")
     add_playing(group)
@@ -197,9 +200,11 @@ def _page_of(arguments: argparse.Namespace) -> Any:
     host, beside = given
     number = wished if wished is not None else (beside + 1) % (1 << 16) if beside else 0
     networks = list(arguments.http_allow)
+    guests = None
     if arguments.lan:
         host, networks = ANYWHERE, [*networks, str(lan_interface().network), *HERE]
-    return PageOptions((host, number), networks, wished is not None)
+        guests = Guests(arguments.lan)
+    return PageOptions((host, number), networks, wished is not None, guests)
 
 
 # ---------------------------------------------------------------- converters

@@ -4,7 +4,7 @@
 /** @typedef {'here' | 'there' | 'listen'} Way */
 
 import facts from "../facts.js";
-import { make } from "../elements.js";
+import { find, make } from "../elements.js";
 import { TABLE } from "../playing/table.js";
 import { remember, settings } from "../settings.js";
 import { ServerConnection } from "../sound/server_connection.js";

@@ -152,14 +152,16 @@ def status_line(status: Mapping[str, float | str]) -> str:
     """The status of a running server in one line."""
     note, speed = float(status["note"]), float(status["bow_speed"])
     arrow = "" if speed == 0.0 else (" down" if speed > 0.0 else " up")
-    parts = [
+    gaps = [f"missed {status['missed_deadlines']}", f"under-runs {status['underruns']}"]
+    has_gaps = int(status["missed_deadlines"]) or int(status["underruns"])
+    parts = [  # a narrow terminal shows the first of them
+        *(gaps[::-1] if has_gaps else ()),
         str(status["device"]),
         f"{float(status['peak_db']):6.1f} dBFS",
         f"note {note_name(note):>7}" if note >= 0.0 else "note    none",
         f"bow {abs(speed):.2f} m/s{arrow}",
         f"load {100.0 * float(status['load']):.0f} %",
-        f"missed {status['missed_deadlines']}",
-        f"under-runs {status['underruns']}",
+        *(() if has_gaps else gaps),
         f"MIDI {status['midi_ports'] or 'none'}",
     ]
     if status["recording"]:

@@ -124,6 +124,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     """Serve until a signal or the end of --duration; return the exit code."""
     from yehu_server.cli.report import connect_lines, query_line
     from yehu_server.live.addresses import lan_interface
+    from yehu_server.live.audio.devices import ADVICE, NO_OUTPUT
     from yehu_server.live.server import Server
     from yehu_server.playing.mapping import is_own
 
@@ -135,6 +136,8 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         server = Server(options, report, progress)
     if server.output.state.problem and arguments.audio_device != "null":
         report(f"{server.output.state.problem}: playing on a silent clock")
+        if server.output.state.problem == NO_OUTPUT:
+            report(ADVICE)
     for mapping in {part.style.mapping.name: part.style.mapping for part in options.parts}.values():
         if is_own(mapping):
             report(f"mapping {mapping.name}, your own: {mapping.files[0]}")

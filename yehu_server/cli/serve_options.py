@@ -24,6 +24,7 @@ from yehu_server.live.page.guests import PLAY, ROLES, Guests
 from yehu_server.params.table import PREFIX
 
 HERE = ("127.0.0.0/8", "::1")
+FIRST_NOTE = "first-note"
 
 
 def add_arguments(parser: Parser) -> None:
@@ -108,6 +109,8 @@ def add_arguments(parser: Parser) -> None:
         group,
         f"""
         --record OUT: record everything to a new WAV or FLAC file
+        --record-from start|first-note: whether --record begins at once (default), or with the first
+            sound
         --capture FILE: write every event to a new file, for yehu-server replay
         --overwrite: let --record and --capture replace existing files
         --recordings FOLDER: folder that {PREFIX}/record/start writes to (default: yehu-server in
@@ -118,6 +121,7 @@ def add_arguments(parser: Parser) -> None:
         --json-log: log one JSON object a line
         """,
         record=target,
+        record_from={"choices": ("start", FIRST_NOTE), "default": "start"},
         capture=target,
         recordings=Path,
         duration=number_within(0.0, 1e9, "s"),
@@ -175,6 +179,7 @@ def options_of(arguments: argparse.Namespace) -> Any:
         has_room=not arguments.dry,
         jitter_ms=arguments.jitter_buffer,
         record=arguments.record,
+        waits_for_sound=arguments.record_from == FIRST_NOTE,
         capture=arguments.capture,
         overwrite=arguments.overwrite,
     )

@@ -124,10 +124,13 @@ export default {
     "Dots on the fingerboard show where the steps are.",
   "mapping.keyboard": "Keyboard",
   "mapping.keyboard.about":
+    "Pitch bend slides the finger, the mod wheel is vibrato, CC 11 the dynamics, aftertouch presses.",
+  "mapping.keyboard-bow-speed": "Keyboard, bow speed",
+  "mapping.keyboard-bow-speed.about":
     "Pitch bend slides the finger, the mod wheel draws the bow faster, aftertouch presses the finger.",
   "mapping.keyboard-expressive": "Keyboard, expressive",
   "mapping.keyboard-expressive.about":
-    "The mod wheel is the dynamics; aftertouch leans on the bow.",
+    "CC 11 is the dynamics, the mod wheel vibrato; aftertouch presses the finger.",
   "mapping.wind": "Wind controller",
   "mapping.wind.about": "Breath draws the bow.",
   "mapping.mpe": "MPE",

@@ -138,7 +138,7 @@ def test_the_bindings_of_a_server_are_shown_with_where_they_are(server, at, caps
     assert main(["mappings", "show", "--live", "--json", *at]) == 0
     rows = {row["source"]: row for row in json.loads(capsys.readouterr().out)}
     assert rows["velocity"]["place"] == 1.0
-    assert rows["cc 1"]["target"] == "/yehu/playing/speed"
+    assert rows["cc 16"]["target"] == "/yehu/playing/speed"
     assert main(["mappings", "show", "--live", *at]) == 0
     out = capsys.readouterr().out
     assert "100 %" in out
@@ -159,3 +159,12 @@ def test_a_server_that_does_not_answer_is_told_of(capsys, words):
 def test_a_server_of_no_name_is_told_of(capsys):
     assert main(["learn", "/playing/vibrato", "--server", "127.0.0.1:x"]) == 2
     assert "expected HOST:PORT" in capsys.readouterr().err
+
+
+def test_what_learning_takes_away_is_told_and_given_back(server, at, capsys):
+    with a_fader_that_moves(server):
+        main(["learn", "/playing/speed", *at])
+    out = capsys.readouterr().out
+    assert "\n  cc 16 moves /yehu/playing/speed no longer, until --forget\n" in out
+    assert main(["learn", "--forget", "/playing/speed", *at]) == 0
+    assert capsys.readouterr().out.endswith("\n  cc 16 moves /yehu/playing/speed again\n")

@@ -87,6 +87,7 @@ def test_all_terms_of_a_bind_are_shown(mappings, tmp_path):
         "alone": False,
         "global": True,
         "input": None,
+        "replaces": None,
     }
     assert second["input"] == [0.0, 127.0]
 

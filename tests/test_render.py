@@ -347,8 +347,8 @@ def test_a_setting_is_heard(phrase):
 def test_a_setting_is_held_whatever_notes_and_controllers_say(play, midi):
     held = ("pressure=0.45", "speed=0.2", "velocity=0.63")
     settings = [word for setting in held for word in ("--set", f"/playing/{setting}")]
-    firm = midi(cc(0, 1, 127), *notes((0, 0.4, 70, 127)), name="firm.mid")
-    faint = midi(cc(0, 1, 0), *notes((0, 0.4, 70, 1)), name="faint.mid")
+    firm = midi(cc(0, 16, 127), *notes((0, 0.4, 70, 127)), name="firm.mid")
+    faint = midi(cc(0, 16, 0), *notes((0, 0.4, 70, 1)), name="faint.mid")
     assert not np.array_equal(samples(firm), samples(faint))
     np.testing.assert_array_equal(play(firm, *settings)[1], play(faint, *settings)[1])
 

@@ -3,6 +3,7 @@
 /** @typedef {import('./interfaces.js').Sound} Sound */
 /** @typedef {import('./interfaces.js').Post} Post */
 /** @typedef {import('./playing/learned.js').Mapping} Mapping */
+/** @typedef {import('./playing/part.js').Sink} Sink */
 
 import facts from "./facts.js";
 import { Interpreter } from "./playing/interpreter.js";
@@ -37,6 +38,8 @@ export class Instrument extends EventTarget {
     this.opening = null;
     /** @type {unknown} */
     this.error = null;
+    /** What others have set who play the same. @type {{wasSet: Sink["wasSet"]} | null} */
+    this.others = null;
     /** How the sound is opened; `change` takes another way. @type {() => Promise<Sound>} */
     this.way = () => this.openHere();
     /** @type {Parameters<Post>[]} */
@@ -61,7 +64,7 @@ export class Instrument extends EventTarget {
 
   /**
    * Where the player's wishes go.
-   * @returns {import('./playing/part.js').Sink}
+   * @returns {Sink}
    */
   #sink() {
     const instrument = this;
@@ -69,6 +72,11 @@ export class Instrument extends EventTarget {
       post: (...wish) => instrument.post(...wish),
       target: (address) => instrument.sound?.target?.(address),
       reported: (address) => instrument.sound?.reported?.(address),
+      wasSet: (address) => instrument.others?.wasSet?.(address),
+      follow(row, value) {
+        const { sound } = instrument;
+        if (!sound?.reported) sound?.post(null, facts.kinds.WRITE, row, value, 0);
+      },
       get frame() {
         return instrument.frame;
       },
@@ -125,7 +133,8 @@ export class Instrument extends EventTarget {
    */
   change(way) {
     this.dispatchEvent(new Event("silence"));
-    if (this.sound) this.player.endNotes(); // only what this page holds
+    if (this.sound) this.player.endNotes(null, false); // only what this page holds
+    this.player.restartFrames();
     this.waiting.length = 0;
     this.sound?.close();
     this.sound = this.opening = null;

@@ -136,9 +136,9 @@ class Take:
         self.midi.note_off(Key(self._channel, note), self._frame(seconds))
 
     def wheel(self, place: int | None) -> None:
-        """Set the mod wheel before the first note; None leaves it untouched."""
+        """Set the bow speed, by its controller, before the first note; None leaves it untouched."""
         if place is not None:
-            self.at(0.0, "control_change", control=1, value=place)
+            self.at(0.0, "control_change", control=16, value=place)
 
     def play(self, seconds: float) -> Sound:
         """Return the sound of the performance."""
@@ -162,7 +162,7 @@ class Take:
 def held(
     setup: Setup, note: float, velocity: int, seconds: float, wheel: int | None = None, **how: Any
 ) -> tuple[Sound, Take]:
-    """Play a note alone, with the mod wheel at a place; `how` is as of `Take`."""
+    """Play a note alone, with the controller of bow speed at a place; `how` is as of `Take`."""
     take = Take(setup, **how)
     take.wheel(wheel)
     take.on(0.0, note, velocity)

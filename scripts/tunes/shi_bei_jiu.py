@@ -177,14 +177,14 @@ def swell(note: Note) -> Iterator[Event]:
     yield note.shaped_end, Message("aftertouch", value=0)
 
 
-def bow_speed(notes: list[Note]) -> Iterator[Event]:
-    """Return CC 1, which rises and falls with each phrase and falls on the last note."""
+def dynamics(notes: list[Note]) -> Iterator[Event]:
+    """Return CC 11, which rises and falls with each phrase and falls on the last note."""
     for note in notes:
-        yield note.start, control(1, round(56 + 40 * note.arch))
+        yield note.start, control(11, round(107 + 20 * note.arch))
     last = notes[-1]
     for slot in range(1, last.slots):
-        value = round((56 + 40 * last.arch) * (1.0 - 0.6 * (slot / last.slots) ** 2))
-        yield last.start + slot * SLOT, control(1, value)
+        value = round((107 + 20 * last.arch) * (1.0 - 0.2 * (slot / last.slots) ** 2))
+        yield last.start + slot * SLOT, control(11, value)
 
 
 def shi_bei_jiu() -> MidiFile:
@@ -193,7 +193,7 @@ def shi_bei_jiu() -> MidiFile:
     tempos = [(0, 120.0), *((SLOT * (slots - left), float(bpm)) for left, bpm in RITARDANDO)]
     # At the same tick, controls precede notes.
     events = [*parameter(0, BEND_RANGE_CENTS // 100), (0, bend(0.0, BEND_RANGE_CENTS))]
-    events += bow_speed(notes)
+    events += dynamics(notes)
     for note in notes:
         if note.held or (note.opens_phrase and note.pitch > LOWEST):
             events += bends(note, tempos)

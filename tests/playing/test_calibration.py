@@ -89,7 +89,7 @@ def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 
     instrument = Instrument(PlayingOptions().spec(rate, tuned))
     midi = MidiPlayer(WishPoster(instrument), load("keyboard"))
     if wheel is not None:
-        midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
+        midi.receive(mido.Message("control_change", control=16, value=wheel), frame=0)
     midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)
     out = run_for(instrument, 0.7)
     return pitch_of(out[round(0.1 * rate) :], rate)
@@ -128,7 +128,7 @@ def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None
         player.write("/body/evenness", evenness)
     midi = MidiPlayer(player, load("keyboard"))
     if wheel is not None:
-        midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
+        midi.receive(mido.Message("control_change", control=16, value=wheel), frame=0)
     midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)
     out = run(instrument, 30870)
     power = np.abs(np.fft.rfft(out[13230:] * np.hanning(17640))) ** 2

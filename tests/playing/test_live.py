@@ -184,7 +184,7 @@ def test_panic_is_silent_within_ten_milliseconds(live, instrument):
 
 def test_a_held_setting_stays_through_notes_and_controllers(live):
     live.hold("/playing/speed", 0.5)
-    receive(live, mido.Message("control_change", control=1, value=0), frame=0, port=0)
+    receive(live, mido.Message("control_change", control=16, value=0), frame=0, port=0)
     live.note_on(67.0, 90.0, frame=0)
     assert live.value("/playing/speed") == 0.5
 

@@ -45,11 +45,12 @@ def test_every_shipped_mapping_loads_by_its_name(path):
         ("bend", ["/playing/bend"]),
         ("pressure", ["/playing/press"]),
         ("poly-pressure", ["/playing/press"]),
-        ("cc 1", ["/playing/speed"]),
+        ("cc 1", ["/playing/vibrato", "/playing/vibrato_press"]),
         ("velocity", ["/playing/velocity", "/playing/pressure"]),
         ("cc 7", ["/playing/volume"]),
         ("cc 10", ["/room/pan"]),
-        ("cc 11", ["/playing/expression"]),
+        ("cc 11", ["/playing/dynamics"]),
+        ("cc 16", ["/playing/speed"]),
     ],
 )
 def test_the_keyboard_mapping_gives_each_controller_its_role(source, targets):

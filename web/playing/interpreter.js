@@ -46,6 +46,14 @@ export class Interpreter {
     return this.numbers.subarray(at, at + size);
   }
 
+  /**
+   * Whether notes and controllers give a parameter its value, or it was set.
+   * @param {number} row
+   */
+  isTarget(row) {
+    return this.#whole(record.is_target, row) !== 0;
+  }
+
   /** @param {number[]} field */
   #whole([at], place = 0) {
     return this.halves[HALVES * (at + place)];

@@ -26,6 +26,9 @@ const TOLD_WITHIN_S = 0.1;
  * @property {number} [people] how many may play it; by default one
  * @property {(address: string) => number | undefined} [reported] the value of any other parameter, where
  *   others set them too
+ * @property {(address: string) => number | undefined} [wasSet] the one that was set, which notes and
+ *   controllers move from
+ * @property {(row: number, value: number) => unknown} [follow] take what others have set
  */
 
 /** Has events interpreted, and posts what they come to; a frame of null is now. */
@@ -34,6 +37,8 @@ export class Part {
   #now = 0; // frame of the last event for now
   /** The last writes, by row. @type {Map<number, {value: number, frame: number}>} */
   #written = new Map();
+  /** What others, or this page, set last, by row. @type {Map<number, number>} */
+  #told = new Map();
   /** Before there is one, events come to nothing. @type {Interpreter | null} */
   interpreter = null;
 
@@ -70,11 +75,36 @@ export class Part {
    * Let the interpreter know what others have set.
    * @param {Interpreter} interpreter
    */
-  #learnValues({ values }) {
+  #learnValues(interpreter) {
+    const { values } = interpreter;
     for (const { address, row, owned } of TABLE) {
-      const reported = owned || this.#isRecent(row) ? undefined : this.#sink.reported?.(address);
+      if (owned || this.#isRecent(row)) continue;
+      const wasSet = this.#news(address, row);
+      if (wasSet !== undefined && row !== SECTION) {
+        this.#told.set(row, wasSet);
+        // Notes to come begin with it; what it comes to now, others have wished already.
+        if (interpreter.isTarget(row)) interpreter.take(--this.#now, SET, row, wasSet, 0);
+        else values[row] = wasSet;
+        this.#sink.follow?.(row, wasSet);
+      }
+      const reported = this.#sink.reported?.(address);
       if (reported !== undefined) values[row] = reported;
     }
+  }
+
+  /**
+   * What others have set a parameter to since this page knew; undefined: nothing.
+   * @param {string} address
+   * @param {number} row
+   */
+  #news(address, row) {
+    const wasSet = this.#sink.wasSet?.(address);
+    return wasSet === this.#told.get(row) ? undefined : wasSet;
+  }
+
+  /** Frames are of another sound from now on: what was written before is no longer on its way. */
+  restartFrames() {
+    for (const written of this.#written.values()) written.frame = -Infinity;
   }
 
   /**
@@ -95,7 +125,10 @@ export class Part {
    * @param {number} other
    */
   #post(frame, kind, index, value, other) {
-    if (kind === WRITE) this.#note(index, value, frame);
+    if (kind === WRITE) {
+      this.#note(index, value, frame);
+      this.#told.set(index, value);
+    }
     if (kind === DRAW) {
       this.#note(BOW_SPEED.row, value, frame);
       this.#note(BOW_FORCE.row, other, frame);
@@ -137,7 +170,9 @@ export class Part {
     const param = find(address);
     const { row, owned } = param;
     const known = owned ? this.#written.get(row)?.value : this.interpreter?.values[row];
-    const reported = owned ? this.#sink.target?.(address) : this.#sink.reported?.(address);
+    const reported = owned
+      ? this.#sink.target?.(address)
+      : (this.#sink.reported?.(address) ?? this.#news(address, row));
     return (this.#isRecent(row) ? known : (reported ?? known)) ?? param.default;
   }
 

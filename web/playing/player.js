@@ -253,12 +253,19 @@ export class Player {
   /**
    * End all notes, as if all keys and pedals were released; lift a bow drawn by hand.
    * @param {number | null} frame
+   * @param {boolean} forgets whether controllers count as not moved from now on
    */
-  endNotes(frame = null) {
+  endNotes(frame = null, forgets = true) {
     const after = this.#afterAll(frame);
     this.#inHand.clear();
-    this.#part.take(after, RELEASE_ALL, 0, 1);
+    this.#part.take(after, RELEASE_ALL, 0, Number(forgets));
     this.#part.take(after, LIFT);
+  }
+
+  /** The sound is another one from now on, which counts frames of its own. */
+  restartFrames() {
+    this.#latest = 0;
+    this.#part.restartFrames();
   }
 
   /**

@@ -36,7 +36,7 @@ export class Remote extends EventTarget {
     super();
     this.line = line;
     this.listener = listener;
-    this.seen = new Float64Array(facts.lookLength + facts.parameters.length);
+    this.seen = new Float64Array(facts.lookLength + 2 * facts.parameters.length);
     this.isSeen = false;
     this.people = Infinity; // the server knows how many there are
     this.state = snapshotOf(this.seen);

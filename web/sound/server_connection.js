@@ -1,5 +1,7 @@
 /** The line to the server: a WebSocket that is opened again whenever it breaks. */
 
+import facts from "../facts.js";
+import { find } from "../playing/table.js";
 import { WISH } from "./kernel.js";
 
 const AGAIN_MS = 500;
@@ -8,13 +10,15 @@ const LOOK = 0; // what the first number of a message says
 const WISHES = 1;
 const MOST_UNSENT = 1 << 16; // bytes
 const FIRST_PART = "1";
-const NO_PART = 4404; // close code: the server has no such part
+const NO_PIN = 4401; // close codes: the server wants a PIN, or another one
+const NO_PART = 4404; // the server has no such part
 
 /**
  * What the server tells once a second.
  * @typedef {object} ServerStatus
  * @property {number} page this page's number
  * @property {number} pages that are connected
+ * @property {'listen' | 'play' | 'own'} role what this page may do
  * @property {number} part that this page plays, from 1
  * @property {number} parts of the server
  * @property {number} rate Hz
@@ -30,6 +34,7 @@ const NO_PART = 4404; // close code: the server has no such part
 const UNKNOWN = {
   page: -1,
   pages: 0,
+  role: "own",
   part: 1,
   parts: 1,
   rate: 48000,
@@ -52,12 +57,14 @@ export function hasServer() {
 export function socketUrl(name) {
   const url = new URL(`../${name}`, import.meta.url);
   url.protocol = url.protocol.replace("http", "ws");
+  const pin = new URLSearchParams(location.search).get("pin");
+  if (pin !== null) url.searchParams.set("pin", pin);
   return url.href;
 }
 
 /**
  * Tells by events: 'open', 'break', 'status', 'look' (detail: the numbers), 'wishes' of another
- * page (detail: {page, wishes}), and 'left' (detail: the number of a page that went).
+ * page (detail: {page, wishes}), 'refuse' where a PIN is missing or wrong, and 'left' (detail: the number of a page that went).
  */
 export class ServerConnection extends EventTarget {
   constructor() {
@@ -66,6 +73,8 @@ export class ServerConnection extends EventTarget {
     this.heardAt = 0; // ms, of the last status
     this.isOpen = false;
     this.wanted = { looks: false, sounds: false };
+    /** The latest look, while looks come. @type {Float64Array | null} */
+    this.seen = null;
     this.wait = AGAIN_MS;
     this.part = new URLSearchParams(location.search).get("part") ?? FIRST_PART;
     /** @type {WebSocket | null} */
@@ -82,6 +91,20 @@ export class ServerConnection extends EventTarget {
   get frame() {
     const { frame, rate } = this.status;
     return frame + ((performance.now() - this.heardAt) / 1e3) * rate;
+  }
+
+  /**
+   * The value that was set last, by anybody, of a parameter that is not of bow and fingers.
+   * @param {string} address
+   */
+  wasSet(address) {
+    return this.seen?.[facts.lookLength + facts.parameters.length + find(address).row];
+  }
+
+  /** Fulfilled by the first look. @returns {Promise<void>} */
+  get looked() {
+    if (this.seen) return Promise.resolve();
+    return new Promise((resolve) => this.addEventListener("look", () => resolve(), { once: true }));
   }
 
   /**
@@ -110,7 +133,9 @@ export class ServerConnection extends EventTarget {
   }
 
   #open() {
-    const socket = new WebSocket(`${socketUrl("socket")}?part=${encodeURIComponent(this.part)}`);
+    const url = new URL(socketUrl("socket"));
+    url.searchParams.set("part", this.part);
+    const socket = new WebSocket(url);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       this.isOpen = true;
@@ -126,7 +151,12 @@ export class ServerConnection extends EventTarget {
       if (code === NO_PART) this.part = FIRST_PART;
       const wasOpen = this.isOpen;
       this.isOpen = false;
+      this.seen = null;
       if (wasOpen) this.dispatchEvent(new Event("break"));
+      if (code === NO_PIN) {
+        this.dispatchEvent(new Event("refuse"));
+        return; // to ask again with the same PIN is of no use
+      }
       setTimeout(() => this.#open(), this.wait);
       this.wait = Math.min(2 * this.wait, AGAIN_AT_MOST_MS);
     };
@@ -147,7 +177,8 @@ export class ServerConnection extends EventTarget {
   #read(numbers) {
     const [what, page] = numbers;
     if (what === LOOK) {
-      this.dispatchEvent(new CustomEvent("look", { detail: numbers.subarray(1) }));
+      this.seen = numbers.subarray(1);
+      this.dispatchEvent(new CustomEvent("look", { detail: this.seen }));
     } else if (what === WISHES) {
       const wishes = [];
       for (let i = 2; i < numbers.length; i += WISH) wishes.push(numbers.subarray(i, i + WISH));

@@ -39,7 +39,7 @@ export class Sharing {
     line.addEventListener("wishes", this.others);
     line.addEventListener("left", this.left);
     line.addEventListener("break", this.broken);
-    line.want({ looks: false, sounds: true });
+    line.want({ looks: true, sounds: true }); // looks tell what others set
   }
 
   /** @param {Wish} wish */

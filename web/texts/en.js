@@ -124,10 +124,13 @@ export default {
     "Dots on the fingerboard show where the steps are.",
   "mapping.keyboard": "Keyboard",
   "mapping.keyboard.about":
+    "Pitch bend slides the finger, the mod wheel is vibrato, CC 11 the dynamics, aftertouch presses.",
+  "mapping.keyboard-bow-speed": "Keyboard, bow speed",
+  "mapping.keyboard-bow-speed.about":
     "Pitch bend slides the finger, the mod wheel draws the bow faster, aftertouch presses the finger.",
   "mapping.keyboard-expressive": "Keyboard, expressive",
   "mapping.keyboard-expressive.about":
-    "The mod wheel is the dynamics; aftertouch leans on the bow.",
+    "CC 11 is the dynamics, the mod wheel vibrato; aftertouch presses the finger.",
   "mapping.wind": "Wind controller",
   "mapping.wind.about": "Breath draws the bow.",
   "mapping.mpe": "MPE",
@@ -218,6 +221,11 @@ export default {
   "server.device": "It plays on {device}.",
   "server.silent": "It plays on no device: listen here.",
   "server.pages": "Pages connected: {count}",
+  "server.role.play":
+    "You are a guest who plays; presets, the room and silence for all are the owner’s.",
+  "server.role.listen": "You are a guest who listens.",
+  "server.pin": "The PIN of this server, which it shows at its start",
+  "server.pin.send": "Connect",
   "server.gone": "The server does not answer. This page tries again by itself.",
 
   "all.search": "Search parameters",

@@ -64,7 +64,9 @@ export function showParameters({ instrument, taught, midi }) {
   };
   search.addEventListener("input", seek);
   onLanguage(seek);
-  const reset = make("button", { type: "button" }, [() => translate("all.reset")]);
+  const reset = make("button", { type: "button", class: "reset-all" }, [
+    () => translate("all.reset"),
+  ]);
   reset.addEventListener("click", () => {
     for (const { rows } of groups) for (const one of rows) one.reset();
   });

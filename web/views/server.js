@@ -4,7 +4,7 @@
 /** @typedef {'here' | 'there' | 'listen'} Way */
 
 import facts from "../facts.js";
-import { make } from "../elements.js";
+import { find, make } from "../elements.js";
 import { TABLE } from "../playing/table.js";
 import { remember, settings } from "../settings.js";
 import { ServerConnection } from "../sound/server_connection.js";
@@ -15,6 +15,7 @@ import { showPart } from "./part.js";
 
 /** @type {Way[]} */
 const WAYS = ["here", "there", "listen"];
+const LOOKED_MS = 1000; // a server that is away is not waited for any longer
 
 /**
  * The choice, and the state of the server.
@@ -22,6 +23,7 @@ const WAYS = ["here", "there", "listen"];
  */
 export function showServer(instrument) {
   const line = new ServerConnection();
+  instrument.others = line;
   showPart(line);
   const about = make("p", { class: "soft" });
   const state = make("p", { class: "soft", role: "status" });
@@ -50,21 +52,24 @@ export function showServer(instrument) {
 
   /** @param {Way} way */
   function choose(way) {
-    sharing?.close();
-    sharing = null;
     chosen = way;
     rate = line.status.rate;
+    const before = sharing;
+    sharing = null;
     instrument.change(way === "here" ? openAlike : () => Remote.open(line, way === "listen"));
+    before?.close();
     if (way === "here") sharing = new Sharing(instrument, line);
     if (way === "there") instrument.start(); // a picture needs no touch
     tell();
   }
 
-  /** The sound of this page, with the parameters that its player knows. */
+  /** The sound of this page, with the parameters that the server has. */
   async function openAlike() {
     const sound = await instrument.openHere();
+    await Promise.race([line.looked, new Promise((resolve) => setTimeout(resolve, LOOKED_MS))]);
     for (const { address, row, owned } of TABLE) {
-      if (!owned) sound.post(null, facts.kinds.WRITE, row, instrument.player.value(address), 0);
+      const value = line.wasSet(address) ?? instrument.player.value(address);
+      if (!owned) sound.post(null, facts.kinds.WRITE, row, value, 0);
     }
     return sound;
   }
@@ -75,7 +80,11 @@ export function showServer(instrument) {
       button.setAttribute("aria-pressed", String(way === chosen));
       button.disabled = way === "here" && sounds !== "ready";
     }
+    document.documentElement.dataset.role = line.status.role; // hides what the owner alone may do
     about.textContent = chosen ? translate(`server.${chosen}.about`) : "";
+    if (line.status.role !== "own") {
+      about.textContent += ` ${translate(`server.role.${line.status.role}`)}`;
+    }
     if (chosen && parts > 1) about.textContent += ` ${translate("server.parts")}`;
     const own = {
       preparing: translate("server.preparing"),
@@ -111,5 +120,31 @@ export function showServer(instrument) {
     choice,
     about,
     state,
+    askForPin(line),
   ]);
+}
+
+/**
+ * A question for the PIN, which shows where the server refuses the one it got.
+ * @param {ServerConnection} line
+ */
+function askForPin(line) {
+  const pin = make("input", { inputmode: "numeric", "aria-label": () => translate("server.pin") });
+  const form = make("form", { hidden: true }, [
+    make("p", {}, [() => translate("server.pin")]),
+    pin,
+    make("button", {}, [() => translate("server.pin.send")]),
+  ]);
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    const url = new URL(location.href);
+    url.searchParams.set("pin", pin.value.trim());
+    location.assign(url);
+  });
+  line.addEventListener("refuse", () => {
+    form.hidden = false;
+    find("tab-connect", HTMLElement).click(); // else nobody would see it
+    pin.focus();
+  });
+  return form;
 }

@@ -79,7 +79,8 @@ INTERPRETER: tuple[Native, ...] = (interpreter_size, interpreter_prepare, interp
 
 # What a page reads and writes of the record of a part.
 OF_RECORD = (
-    "tables", "value", "found_value", "out_kind", "out_index", "out_value", "out_other",
+    "tables", "value", "found_value", "is_target",
+    "out_kind", "out_index", "out_value", "out_other",
 )  # fmt: skip
 
 

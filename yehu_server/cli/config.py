@@ -70,6 +70,10 @@ def _set(command: Parser, namespace: argparse.Namespace, name: str, value: Any) 
     if action is None:
         known = [other.removeprefix("--") for other in command.options]
         raise ParameterError(f"unknown option{did_you_mean(name, known)}")
+    if action.nargs == "?" and isinstance(value, bool):  # an option that may have a value
+        if value:
+            action(command, namespace, action.const, option)
+        return
     if action.nargs == 0:
         _set_flag(command, namespace, action, option, value)
         return

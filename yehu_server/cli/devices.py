@@ -69,6 +69,8 @@ def devices_report(
     from rich.console import Console
     from rich.table import Table
 
+    from yehu_server.live.audio.devices import ADVICE
+
     console = Console(markup=False, emoji=False)
     table = Table(title="audio outputs", title_justify="left")
     for column in ("name", "host API", "channels", "rate", "latency", ""):
@@ -77,7 +79,8 @@ def devices_report(
         numbers = (str(device.channels), f"{device.rate:g} Hz", f"{device.latency_ms:.1f} ms")
         mark = "default" if device.is_default else ""
         table.add_row(one_line(device.name), one_line(device.host_api), *numbers, mark)
-    console.print(table if audio else one_line(f"no audio outputs{_because(audio_problem)}"))
+    nothing = f"no audio outputs{_because(audio_problem)}; {ADVICE}"
+    console.print(table if audio else one_line(nothing))
     table = Table(title=f"MIDI inputs ({midi_api})", title_justify="left")
     table.add_column("name", overflow="fold")
     for name in midi:

@@ -70,8 +70,9 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
     own = "" if arguments.part is None else group(arguments.part - 1)
     if arguments.forget:
         client.send(f"{own}/unlearn", address)
-        _, count = client.answer(f"{own}/unlearned").arguments
+        _, count, *returned = client.answer(f"{own}/unlearned").arguments
         print_result(f"{address}: {count} forgotten")
+        _tell(returned, "again")
         return
     client.send(f"{own}/learn", address, int(arguments.soft))
     (target,) = client.answer(f"{own}/learning").arguments
@@ -79,14 +80,21 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
     try:
         for message in client.answers(LONGEST_S):
             if message.address == f"{own}/learned":
-                _, source, file = message.arguments
+                _, source, file, *lost = message.arguments
                 print_result(f"{source} moves {target}, kept in {file}")
+                _tell(lost, "no longer, until --forget")
                 return
     except KeyboardInterrupt:
         client.send(f"{own}/learn")
         raise
     client.send(f"{own}/learn")
     raise ParameterError(f"nothing was moved for {LONGEST_S:g} s")
+
+
+def _tell(words: list[str], what: str) -> None:
+    """Print binds that are gone or back: their sources and targets, one after another."""
+    for source, target in zip(words[::2], words[1::2], strict=True):
+        print_result(f"  {source} moves {target} {what}")
 
 
 def _ask(client: OscClient, arguments: argparse.Namespace) -> None:

@@ -224,4 +224,5 @@ def _bind_fields(bind: Bind) -> dict[str, Any]:
         "alone": bind.is_exclusive,
         "global": bind.is_global,
         "input": bind.input_range if is_address(bind.source) else None,
+        "replaces": [_bind_fields(each) for each in bind.replaces] or None,
     }

@@ -13,6 +13,7 @@ import numpy as np
 from yehu_server.errors import one_line
 from yehu_server.lab.simulation import Simulation
 from yehu_server.live.addresses import format_address
+from yehu_server.live.page.guests import LISTEN, OWN, PLAY, Guests
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.pitch_and_level import note_name
@@ -151,14 +152,16 @@ def status_line(status: Mapping[str, float | str]) -> str:
     """The status of a running server in one line."""
     note, speed = float(status["note"]), float(status["bow_speed"])
     arrow = "" if speed == 0.0 else (" down" if speed > 0.0 else " up")
-    parts = [
+    gaps = [f"missed {status['missed_deadlines']}", f"under-runs {status['underruns']}"]
+    has_gaps = int(status["missed_deadlines"]) or int(status["underruns"])
+    parts = [  # a narrow terminal shows the first of them
+        *(gaps[::-1] if has_gaps else ()),
         str(status["device"]),
         f"{float(status['peak_db']):6.1f} dBFS",
         f"note {note_name(note):>7}" if note >= 0.0 else "note    none",
         f"bow {abs(speed):.2f} m/s{arrow}",
         f"load {100.0 * float(status['load']):.0f} %",
-        f"missed {status['missed_deadlines']}",
-        f"under-runs {status['underruns']}",
+        *(() if has_gaps else gaps),
         f"MIDI {status['midi_ports'] or 'none'}",
     ]
     if status["recording"]:
@@ -183,11 +186,16 @@ def connect_lines(
     return lines
 
 
-def page_lines(host: str, port: int, lan: str, *, networks: Sequence[str]) -> list[str]:
+GUESTS = {LISTEN: "listen", PLAY: "play and listen", OWN: "play, listen and change everything"}
+
+
+def page_lines(
+    host: str, port: int, lan: str, *, networks: Sequence[str], guests: Guests | None = None
+) -> list[str]:
     """Lines that tell where the page is, and who may play with it."""
     is_anywhere = ipaddress.ip_address(host).is_unspecified
     lines = [f"the page at http://{format_address('127.0.0.1' if is_anywhere else host, port)}/"]
-    phones = page_for_phones(host, port, lan)
+    phones = page_for_phones(host, port, lan, guests)
     if not phones:
         lines.append("for a phone on this network: yehu-server serve --lan")
         return lines
@@ -199,16 +207,20 @@ def page_lines(host: str, port: int, lan: str, *, networks: Sequence[str]) -> li
         if not ipaddress.ip_network(network, strict=False).is_loopback
     ]
     who = f"at {' or '.join(others)}" if others else "on this network"
-    lines.append(f"anyone {who} may play and listen, without a password")
+    if guests is None:
+        lines.append(f"anyone {who} may play and listen, without a password")
+    else:
+        lines.append(f"whoever {who} has the PIN {guests.pin} may {GUESTS[guests.role]}")
     return lines
 
 
-def page_for_phones(host: str, port: int, lan: str) -> str:
-    """The address of the page for other machines; empty where it is for this one only."""
+def page_for_phones(host: str, port: int, lan: str, guests: Guests | None = None) -> str:
+    """The address of the page for other machines, with guests' PIN; empty where there are none."""
     address = ipaddress.ip_address(host)
     if address.is_loopback:
         return ""
-    return f"http://{format_address(lan if address.is_unspecified else host, port)}/"
+    pin = "" if guests is None else f"?pin={guests.pin}"
+    return f"http://{format_address(lan if address.is_unspecified else host, port)}/{pin}"
 
 
 def query_line(host: str, port: int, lan: str) -> str:

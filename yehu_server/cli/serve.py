@@ -10,13 +10,16 @@ import sys
 import threading
 import time
 import webbrowser
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_command
 from yehu_server.cli.serve_options import add_arguments, options_of
 from yehu_server.cli.terminal import progress_bar, set_up_log, warn_of_compiling
 from yehu_server.errors import YehuError
+
+if TYPE_CHECKING:
+    from yehu_server.live.page.pages import PageOptions
 
 try:
     import resource
@@ -121,6 +124,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     """Serve until a signal or the end of --duration; return the exit code."""
     from yehu_server.cli.report import connect_lines, query_line
     from yehu_server.live.addresses import lan_interface
+    from yehu_server.live.audio.devices import ADVICE, NO_OUTPUT
     from yehu_server.live.server import Server
     from yehu_server.playing.mapping import is_own
 
@@ -132,6 +136,8 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         server = Server(options, report, progress)
     if server.output.state.problem and arguments.audio_device != "null":
         report(f"{server.output.state.problem}: playing on a silent clock")
+        if server.output.state.problem == NO_OUTPUT:
+            report(ADVICE)
     mappings = [part.playing.mapping for part in options.parts]
     for mapping in {each.name: each for each in mappings}.values():
         if is_own(mapping):
@@ -146,7 +152,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         if server.web is not None:
             report(query_line(server.web.host, server.web.port, str(lan.ip)))
         if server.pages is not None and options.page is not None:
-            _tell_of_page(server.pages, options.page.networks, report, arguments)
+            _tell_of_page(server.pages, options.page, report, arguments)
         buffer_kb = server.osc.traffic.buffer_bytes // 1000
         log.debug("the receive buffer for OSC has %d kB", buffer_kb)
         log.info("Ctrl-C ends")
@@ -159,7 +165,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
 
 def _tell_of_page(
     pages: Any,
-    networks: Sequence[str],
+    options: PageOptions,
     report: Callable[[str], None],
     arguments: argparse.Namespace,
 ) -> None:
@@ -168,10 +174,10 @@ def _tell_of_page(
     from yehu_server.live.addresses import lan_address
 
     where = (pages.host, pages.port, lan_address())
-    lines = page_lines(*where, networks=networks)
+    lines = page_lines(*where, networks=options.networks, guests=options.guests)
     for line in lines:
         report(line)
-    phones = page_for_phones(*where)
+    phones = page_for_phones(*where, options.guests)
     if phones and not arguments.quiet:
         show(phones, sys.stderr)  # where the lines of the log are
     if arguments.open:

@@ -20,9 +20,11 @@ from yehu_server.live.addresses import (
     lan_interface,
     parse_address,
 )
+from yehu_server.live.page.guests import PLAY, ROLES, Guests
 from yehu_server.params.table import PREFIX
 
 HERE = ("127.0.0.0/8", "::1")
+FIRST_NOTE = "first-note"
 
 
 def add_arguments(parser: Parser) -> None:
@@ -84,9 +86,11 @@ def add_arguments(parser: Parser) -> None:
             --http and 1, or a free one where that is taken; none with --no-http)
         --no-panel: no page
         --open: open the page in the browser
-        --lan: offer the page to the local network, whose phones and computers may then play
+        --lan listen|play|own: offer the page to the local network, whose phones and computers may
+            then listen, play, or do all that this machine may, by a PIN (default: play)
         """,
         panel_port=port,
+        lan={"nargs": "?", "const": PLAY, "choices": ROLES},
     )
     group = parser.add_argument_group("playing")
     add_playing(group)
@@ -105,6 +109,8 @@ def add_arguments(parser: Parser) -> None:
         group,
         f"""
         --record OUT: record everything to a new WAV or FLAC file
+        --record-from start|first-note: whether --record begins at once (default), or with the first
+            sound
         --capture FILE: write every event to a new file, for yehu-server replay
         --overwrite: let --record and --capture replace existing files
         --recordings FOLDER: folder that {PREFIX}/record/start writes to (default: yehu-server in
@@ -115,6 +121,7 @@ def add_arguments(parser: Parser) -> None:
         --json-log: log one JSON object a line
         """,
         record=target,
+        record_from={"choices": ("start", FIRST_NOTE), "default": "start"},
         capture=target,
         recordings=Path,
         duration=number_within(0.0, 1e9, "s"),
@@ -172,6 +179,7 @@ def options_of(arguments: argparse.Namespace) -> Any:
         has_room=not arguments.dry,
         jitter_ms=arguments.jitter_buffer,
         record=arguments.record,
+        waits_for_sound=arguments.record_from == FIRST_NOTE,
         capture=arguments.capture,
         overwrite=arguments.overwrite,
     )
@@ -197,9 +205,11 @@ def _page_of(arguments: argparse.Namespace) -> Any:
     host, beside = given
     number = wished if wished is not None else (beside + 1) % (1 << 16) if beside else 0
     networks = list(arguments.http_allow)
+    guests = None
     if arguments.lan:
         host, networks = ANYWHERE, [*networks, str(lan_interface().network), *HERE]
-    return PageOptions((host, number), networks, wished is not None)
+        guests = Guests(arguments.lan)
+    return PageOptions((host, number), networks, wished is not None, guests)
 
 
 # ---------------------------------------------------------------- converters

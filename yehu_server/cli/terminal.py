@@ -61,15 +61,18 @@ def progress_bar(arguments: argparse.Namespace, what: str, unit: str = "s") -> I
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+    form = ".1f" if unit.split(maxsplit=1)[0] == "s" else ".0f"
     columns = (
         TextColumn(what),
         BarColumn(),
-        TextColumn(f"{{task.completed:.1f}} of {{task.total:.1f}} {unit}"),
+        TextColumn(f"{{task.completed:{form}}} of {{task.total:{form}}} {unit}"),
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what, total=0.0)
-        yield lambda done, total: bar.update(task, completed=min(done, total), total=total)
+        task = bar.add_task(what, total=0.0, visible=False)  # until something is to be done
+        yield lambda done, total: bar.update(
+            task, completed=min(done, total), total=total, visible=True
+        )
 
 
 LEVELS = ("debug", "info", "warning", "error")

@@ -14,6 +14,7 @@ from functools import partial
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import MappingError
+from yehu_server.live.under_runs import UnderRunReport
 from yehu_server.playing.delay import Delay
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
@@ -137,6 +138,7 @@ class Housekeeper:
         self._followers = followers
         self._osc_drops = osc_drops
         self._counters = CounterReport(on_message)
+        self._under_runs = UnderRunReport(on_message)
         self._ending = threading.Event()
         self._next_programs = 0.0  # monotonic s
         turns = (self._turn, self._ending, TURN_EVERY_S, "beside playing", on_message)
@@ -157,6 +159,7 @@ class Housekeeper:
         """End the thread, and close the capture."""
         self._ending.set()
         self._thread.join()
+        self._under_runs.sum_up(*self._gaps())
         if self.capture is not None:
             self.capture.close()
 
@@ -164,6 +167,11 @@ class Housekeeper:
     def is_whole(self) -> bool:
         """Whether nothing is missing in the capture."""
         return self.capture is None or self.capture.is_whole
+
+    def _gaps(self) -> tuple[int, int]:
+        """Number of under-runs and of missed deadlines so far."""
+        meters = self._ensemble.first.meters()
+        return int(meters["underruns"]), int(meters["missed"])
 
     def _turn(self) -> None:
         self._delay.look()
@@ -180,6 +188,7 @@ class Housekeeper:
                 "OSC packets were dropped by the system": self._osc_drops(),
             }
         )
+        self._under_runs.look(self._gaps()[0])
         for follower in self._followers:
             follower.look()
         if time.monotonic() > self._next_programs:

@@ -42,6 +42,7 @@ class ServeOptions:
     has_room: bool = True
     jitter_ms: float | None = None  # None: see playing.delay
     record: Path | None = None
+    waits_for_sound: bool = False  # whether the recording begins with the first sound
     capture: Path | None = None
     overwrite: bool = False  # whether these two may replace older files
     recordings: Path = field(default_factory=lambda: user_music_path() / "yehu-server")

@@ -225,7 +225,11 @@ class Server:
                 )
                 undo.callback(self._housekeeper.capture.discard)
             if self.options.record is not None:
-                self.takes.record_everything(self.options.record, overwrite=self.options.overwrite)
+                self.takes.record_everything(
+                    self.options.record,
+                    overwrite=self.options.overwrite,
+                    waits=self.options.waits_for_sound,
+                )
             undo.pop_all()
         for service in self._inputs:
             service.start()

@@ -81,6 +81,8 @@ class Bind:
     is_global : bool
         Whether it moves every note, on whichever port and channel the source is moved; see
         ``scope``.
+    replaces : tuple of Bind
+        Binds of the same file that MIDI learn took away for it; they come back with `unlearn`.
     """
 
     source: str
@@ -94,6 +96,7 @@ class Bind:
     input_range: tuple[float, float] = (0.0, 1.0)
     is_exclusive: bool = False
     is_global: bool = False
+    replaces: tuple[Bind, ...] = ()
 
     @property
     def is_by_range(self) -> bool:

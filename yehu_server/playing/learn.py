@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -119,8 +120,9 @@ def learn(
 ) -> tuple[Mapping, Path]:
     """Bind a source to a target, over its whole range, and save the bind.
 
-    It replaces all other binds of the target, and moves it for all notes, on whichever device
-    they are played.
+    It replaces all other binds of the target and of the source, and moves the target for all
+    notes, on whichever device they are played. Those of the user's file are kept with it, for
+    `unlearn`.
 
     Returns
     -------
@@ -148,15 +150,14 @@ def learn(
         bind = replace(bind, is_soft=False)
     path = own_file(mapping)
     contents, text = _own_contents(mapping, path)
-    key = override_key(bind)
-    dropped = [
-        own for own in contents.binds if override_key(own) == key or own.target == bind.target
-    ]
-    return _save(mapping, path, edited(contents, text, dropped, [bind])), path
+    dropped = [own for own in contents.binds if _excludes(bind, own)]
+    return _save(mapping, path, edited(contents, text, dropped, [_replacing(bind, dropped)])), path
 
 
 def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
-    """Remove the binds of a target from the user's file.
+    """Remove the learned bind of a target from the user's file, and give back what it replaced.
+
+    Where none is learned, those that the user has written are removed.
 
     Returns
     -------
@@ -175,10 +176,58 @@ def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
     if not path.exists():
         return mapping, 0
     contents, text = _own_contents(mapping, path)
-    dropped = [own for own in contents.binds if own.target == address]
+    of_target = [own for own in contents.binds if own.target == address]
+    dropped = [own for own in of_target if own.is_exclusive] or of_target
     if not dropped:
         return mapping, 0
-    return _save(mapping, path, edited(contents, text, dropped, [])), len(dropped)
+    remaining = [own for own in contents.binds if own not in dropped]
+    binds = list(remaining)
+    for returned in [each for own in dropped for each in own.replaces]:
+        # What was learned since then goes first.
+        newer = next((own for own in binds if own.is_exclusive and _excludes(own, returned)), None)
+        if newer is None:
+            binds.append(returned)
+        else:
+            binds[binds.index(newer)] = _replacing(newer, [returned])
+    removed = [own for own in contents.binds if own not in binds]
+    added = [own for own in binds if own not in remaining]
+    return _save(mapping, path, edited(contents, text, removed, added)), len(dropped)
+
+
+def changes(before: Mapping, after: Mapping) -> list[tuple[str, str]]:
+    """Source and target of each bind of a mapping that is not in another one."""
+    kept = {(bind.source, bind.target) for bind in after.binds}
+    lost = [(bind.source, bind.target) for bind in before.binds]
+    return [pair for pair in dict.fromkeys(lost) if pair not in kept]
+
+
+def _excludes(learned: Bind, other: Bind) -> bool:
+    return override_key(learned) == override_key(other) or learned.target == other.target
+
+
+def _replacing(bind: Bind, dropped: Iterable[Bind]) -> Bind:
+    """A learned bind that keeps others: but not what the same target has learned before."""
+    kept = list(bind.replaces)
+    for other in dropped:
+        if not (other.target == bind.target and _is_learned(other)):
+            kept.append(replace(other, replaces=()))
+        kept += other.replaces
+    return replace(bind, replaces=tuple(dict.fromkeys(kept)))
+
+
+def _is_learned(bind: Bind) -> bool:
+    """Whether it is as `learn` makes it: its control can be moved again, nothing else is lost."""
+    plain = Bind(
+        bind.source,
+        bind.target,
+        curve=find(bind.target).curve,
+        is_soft=bind.is_soft,
+        input_range=bind.input_range,
+        is_exclusive=True,
+        is_global=bind.is_global,
+        replaces=bind.replaces,
+    )
+    return bind == plain
 
 
 def _own_contents(mapping: Mapping, path: Path) -> tuple[MappingFile, str]:

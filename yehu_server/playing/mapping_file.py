@@ -70,8 +70,15 @@ def mapping_file_of_json(path: Path, text: str) -> MappingFile:
     data = _without_null(table.data)
     binds = data.get("bind", [])
     if isinstance(binds, list):
-        data["bind"] = [_of_json(bind) if isinstance(bind, dict) else bind for bind in binds]
+        data["bind"] = _binds_of_json(binds)
+        for bind in data["bind"]:
+            if isinstance(bind, dict) and isinstance(bind.get("replaces"), list):
+                bind["replaces"] = _binds_of_json(bind["replaces"])
     return mapping_file_from(Fields(data, table.document))
+
+
+def _binds_of_json(binds: list[Any]) -> list[Any]:
+    return [_of_json(bind) if isinstance(bind, dict) else bind for bind in binds]
 
 
 def _of_json(entry: dict[str, Any]) -> dict[str, Any]:
@@ -110,7 +117,7 @@ def mapping_file_from(table: Fields) -> MappingFile:
     return mapping_file
 
 
-def _bind(table: Fields) -> Bind | None:
+def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
     source = table.read("source", lambda value: sources.canonical(line(value)), None)
     param: Param | None = table.read(
         "target", lambda value: entries.settable_param(line(value), "map to one"), None
@@ -129,6 +136,7 @@ def _bind(table: Fields) -> Bind | None:
         input_range=table.read("input", entries.input_range, (0.0, 1.0)),
         is_exclusive=table.read("alone", flag, False),
         is_global=table.read("global", flag, False),
+        replaces=_replaced(table) if may_replace else (),
     )
     table.only()
     if not {"source", "target"} <= table.data.keys():
@@ -138,6 +146,11 @@ def _bind(table: Fields) -> Bind | None:
     for name, reason in _conflicts(bind, table.data):
         table.wrong(name, reason)
     return bind
+
+
+def _replaced(table: Fields) -> tuple[Bind, ...]:
+    found = (_bind(each, may_replace=False) for each in table.tables("replaces"))
+    return tuple(bind for bind in found if bind)
 
 
 def _conflicts(bind: Bind, entry: Mapping[str, Any]) -> list[tuple[str, str]]:

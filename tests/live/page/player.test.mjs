@@ -23,7 +23,7 @@ const { BEGIN, END, STOP, LIFT, WRITE, EXPRESS } = facts.kinds;
 const ROW = Object.fromEntries(facts.parameters.map(({ address, row }) => [address, row]));
 const NAMES = Object.fromEntries(Object.entries(facts.kinds).map(([name, kind]) => [kind, name]));
 const RATE = 48000;
-const LOUDNESS = "/playing/expression";
+const LOUDNESS = "/playing/dynamics";
 const PEOPLE = "/playing/section";
 
 /** A player, and what is wished through it. */

@@ -223,7 +223,7 @@ def test_looks_come_sixty_times_a_second_to_pages_that_want_them(server) -> None
         return looks
 
     looks = with_pages(server, 2, watch)
-    assert {(look[0], len(look)) for look in looks} == {(LOOK, 1 + look_length() + len(TABLE))}
+    assert {(look[0], len(look)) for look in looks} == {(LOOK, 1 + look_length() + 2 * len(TABLE))}
     frames = np.array([look[1 + look_layout()["frame"][0]] for look in looks])
     assert (np.diff(frames) >= 0).all()
     assert 40 < 59 / ((frames[-1] - frames[0]) / server.instrument.rate) < 70

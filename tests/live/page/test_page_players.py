@@ -135,7 +135,7 @@ def test_what_it_sets_all_know(player, pages) -> None:
 
 
 def test_what_it_moves_slowly_the_next_note_keeps(player, pages) -> None:
-    moved = mido.Message("control_change", control=1, value=10)
+    moved = mido.Message("control_change", control=16, value=10)
     receive(player, moved, frame=player.instrument.frame, port=0)
     wished(player)
     wish(pages, 0, WRITE, ROW[SPEED], 0.25, 40.0)

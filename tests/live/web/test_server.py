@@ -333,7 +333,8 @@ def test_a_header_that_is_no_text_is_refused_and_counts_as_no_defect(shared_web,
 
 
 def test_an_address_that_is_taken_is_one_clear_line(shared_web, port, make_live):
-    with pytest.raises(DeviceError, match=f"at {HOST}:{port}: Address already in use$"):
+    taken = f"at {HOST}:{port}: Address already in use by a running yehu-server"
+    with pytest.raises(DeviceError, match=taken):
         make_live(http=WebOptions((HOST, port)))
     del shared_web
 

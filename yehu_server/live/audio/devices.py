@@ -95,6 +95,10 @@ def default_index(sounddevice: Any) -> int:
     return next((candidate for candidate in candidates if candidate >= 0), -1)
 
 
+NO_OUTPUT = "there is no audio output"
+ADVICE = "connect one and start its sound server, or listen in the page: serve --open"
+
+
 def choose(devices: Sequence[AudioDevice], wanted: str | None) -> AudioDevice:
     """Choose an output by its full name, its name, or words in these.
 
@@ -111,7 +115,7 @@ def choose(devices: Sequence[AudioDevice], wanted: str | None) -> AudioDevice:
     if wanted is None:
         fitting = [device for device in devices if device.is_default]
         if not fitting:
-            raise DeviceError("there is no audio output")
+            raise DeviceError(NO_OUTPUT)
         return fitting[0]
     by_full_name = [device for device in devices if device.full_name == wanted]
     by_name = [device for device in devices if device.name == wanted]
@@ -122,7 +126,7 @@ def choose(devices: Sequence[AudioDevice], wanted: str | None) -> AudioDevice:
     fitting = [d for d in devices if all(word in d.full_name.lower() for word in words)]
     if len(fitting) == 1:
         return fitting[0]
-    names = "; ".join(device.full_name for device in fitting or devices) or "none"
+    names = "; ".join(device.full_name for device in fitting or devices) or f"none; {ADVICE}"
     if fitting:
         raise DeviceError(f"several audio outputs match {wanted!r}: {names}")
     raise DeviceError(f"no audio output matches {wanted!r} (there are: {names})")

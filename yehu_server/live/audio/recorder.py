@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from yehu_server.util.wav_stream import BYTES
 
 EVERY_S = 0.05
 CHANNELS = 2  # left and right
+HEARD = 1e-5  # -100 dB of full scale
+BEFORE_S = 0.02  # of silence before the first sound
 ROOM_S = 1.0  # a recording begins only if so much fits on the disk
 
 
@@ -31,6 +34,8 @@ class Recorder:
         frames are missing.
     overwrite : bool
         Whether to replace an older file.
+    waits : bool
+        Whether the recording begins with the first sound, a moment before it.
 
     Raises
     ------
@@ -46,6 +51,7 @@ class Recorder:
         on_message: Callable[[str], None],
         *,
         overwrite: bool = False,
+        waits: bool = False,
     ) -> None:
         format_name, rate = format_of(target), round(tape.rate)
         subtype = DEFAULT_SUBTYPES[format_name]
@@ -55,6 +61,8 @@ class Recorder:
         self.failure = ""  # why it ended by itself
         self._tape = tape
         self._position = start
+        self._waits = waits
+        self._before = np.zeros((0, CHANNELS), np.float32)  # silence that may come before a sound
         self._on_message = on_message
         self._file = create(target, overwrite=overwrite, room_bytes=room_bytes)
         form = (rate, format_name, subtype)
@@ -89,6 +97,10 @@ class Recorder:
             while not ending:
                 ending = self._ending.wait(EVERY_S)
                 begin, samples = self._tape.taped(self._position)
+                if self._waits:
+                    self._position = begin + len(samples)
+                    self._writer.write(self._from_first_sound(samples))
+                    continue
                 if begin > self._position:  # the thread was late by more than the tape
                     self._miss(begin)
                 self._writer.write(samples)
@@ -99,6 +111,17 @@ class Recorder:
         if self.failure:
             kept = f"; {self.seconds:.1f} s are kept" if self.seconds else ""
             self._on_message(f"recording ended: {self.failure}{kept}")
+
+    def _from_first_sound(self, samples: Any) -> Any:
+        """The samples from a moment before the first sound on; none before."""
+        samples = np.concatenate((self._before, samples))
+        sounds = np.flatnonzero(np.abs(samples).max(axis=1, initial=0.0) > HEARD)
+        moment = round(BEFORE_S * self._tape.rate)
+        self._waits = len(sounds) == 0
+        if self._waits:
+            self._before = samples[-moment:]
+            return samples[:0]
+        return samples[max(sounds[0] - moment, 0) :]
 
     def _miss(self, begin: int) -> None:
         """Write silence for missing frames, so that later ones keep their time."""
@@ -120,6 +143,9 @@ class Recorder:
         except OutputError as error:
             self.failure = self.failure or str(error)
         if self._writer.written_frames == 0:
-            self.failure = self.failure or f"{self.target}: there is nothing to write"
+            if self._waits and not self.failure:
+                self._on_message(f"{self.target}: nothing was played, so nothing is recorded")
+            else:
+                self.failure = self.failure or f"{self.target}: there is nothing to write"
             discard(self._file, self.target)
         self._file.close()

@@ -31,15 +31,19 @@ class Recordings:
         self._everything: Recorder | None = None
         self._requested: Recorder | None = None
 
-    def record_everything(self, target: Path, *, overwrite: bool = False) -> None:
-        """Record from the first frame until `close`.
+    def record_everything(
+        self, target: Path, *, overwrite: bool = False, waits: bool = False
+    ) -> None:
+        """Record from the first frame until `close`, or where it `waits` from the first sound.
 
         Raises
         ------
         OutputError
             Where the file cannot be written.
         """
-        self._everything = Recorder(self._tape, target, 0, self._on_message, overwrite=overwrite)
+        self._everything = Recorder(
+            self._tape, target, 0, self._on_message, overwrite=overwrite, waits=waits
+        )
 
     def start(self, name: str) -> str:
         """Record to a file of a plain name in the folder; return its name.
@@ -101,5 +105,5 @@ class Recordings:
         return "; ".join(each.target.name for each in running)
 
     def _tell_of(self, recorder: Recorder) -> None:
-        if not recorder.failure:  # or that was reported
+        if not recorder.failure and recorder.seconds:  # or that was reported
             self._on_message(f"{recorder.target}: {recorder.seconds:.1f} s")

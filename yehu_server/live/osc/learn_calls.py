@@ -71,12 +71,14 @@ class LearnCalls(PlayerCalls):
     def _learned(
         self, peer: Peer, target: str, source: LearnedSource, *, soft: bool
     ) -> Callable[[], None]:
-        mapping, path = learn.learn(self._player.mapping, target, source, soft=soft)
+        before = self._player.mapping
+        mapping, path = learn.learn(before, target, source, soft=soft)
+        lost = self._pairs(before, mapping)
 
         def take() -> None:
             self._take(mapping)
             self._services.log(f"{source.source} moves {target} from now on ({path})")
-            self._send(peer, "/learned", self._prefix + target, source.source, str(path))
+            self._send(peer, "/learned", self._prefix + target, source.source, str(path), *lost)
 
         return take
 
@@ -85,14 +87,21 @@ class LearnCalls(PlayerCalls):
         self._write(call.peer, "/unlearn", partial(self._unlearned, call.peer, target))
 
     def _unlearned(self, peer: Peer, target: str) -> Callable[[], None]:
-        mapping, count = learn.unlearn(self._player.mapping, target)
+        before = self._player.mapping
+        mapping, count = learn.unlearn(before, target)
+        returned = self._pairs(mapping, before)
 
         def take() -> None:
             if count:
                 self._take(mapping)
-            self._send(peer, "/unlearned", self._prefix + target, count)
+            self._send(peer, "/unlearned", self._prefix + target, count, *returned)
 
         return take
+
+    def _pairs(self, before: Mapping, after: Mapping) -> list[str]:
+        """Source and target, one after another, of what is in one mapping and not in another."""
+        pairs = learn.changes(before, after)
+        return [word for source, target in pairs for word in (source, self._prefix + target)]
 
     def _take(self, mapping: Mapping) -> None:
         self._context.remap(self._player, mapping)

@@ -10,6 +10,7 @@ import sys
 
 from yehu_server.errors import DeviceError
 from yehu_server.live.addresses import format_address
+from yehu_server.live.osc.occupants import by_whom, plays_at
 from yehu_server.util.retry import why
 
 BUFFER_BYTES = 32 << 20  # asked for; the system may grant less
@@ -44,6 +45,7 @@ def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
     except OSError as error:
         raise DeviceError(
             f"OSC: cannot listen at {format_address(host, port)}: {why(error)}"
+            f"{by_whom(error, host, port, plays_at)}"
         ) from error
 
 

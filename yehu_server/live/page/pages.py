@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from yehu_server.core.midi.section_players import OWN
 from yehu_server.core.player.rows import ROW
 from yehu_server.errors import DeviceError
 from yehu_server.live.addresses import Address
+from yehu_server.live.page.guests import Guests
 from yehu_server.live.page.players import CHANNELS, FIRST
 from yehu_server.live.page.sockets import MOST_PAGES
 from yehu_server.live.web.server import listen
@@ -29,6 +30,7 @@ class PageOptions:
     address: Address
     networks: Sequence[str] = ()  # that are answered; without any, all are
     is_wished: bool = False  # whether the port has to be this one; else a free one may do
+    guests: Guests | None = None  # on other machines; None: they may do all, without a PIN
 
 
 class Pages:
@@ -99,7 +101,15 @@ class Pages:
         """Send the process what to serve, and the status whenever it is another."""
         allowed = list(self._options.networks)
         listening = self._listening.fileno()
-        child.send("serve", memory=self._memory, rigs=self._rigs, socket=listening, allowed=allowed)
+        guests = self._options.guests
+        child.send(
+            "serve",
+            memory=self._memory,
+            rigs=self._rigs,
+            socket=listening,
+            allowed=allowed,
+            guests=None if guests is None else asdict(guests),
+        )
         sent: Any = None
         while not gone.wait(STATUS_S):
             if (news := (self._status(), self._own())) != sent:

@@ -9,9 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from yehu_server.core.midi.events import LEAVE, RELEASE_ALL, SET
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import BEGIN, DRAW, END, HOLD, LIFT, STOP, WRITE
+from yehu_server.core.player.wishes import BEGIN, DRAW, END, EXPRESS, HOLD, LIFT, STOP, WRITE
+from yehu_server.live.page.guests import LISTEN, OWN
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.params.table import TABLE
 from yehu_server.playing.live_player import Arrivals
@@ -20,6 +23,12 @@ FIRST, CHANNELS = 1 << 16, 1 << 12  # channels of the first page, and of each
 LOWEST = -(CHANNELS // 2)  # of them, as a page numbers its own
 AHEAD_S = 3.0  # by which a wish may lie ahead
 FIRST_PART = 0
+# What is the instrument's, the room's or the output's, and no player's.
+OWNED = sorted(
+    ROW[param.address]
+    for param in TABLE
+    if param.is_shared or param.address.startswith(("/body/", "/string/", "/engine/", "/output/"))
+)
 SHARED = frozenset(ROW[param.address] for param in TABLE if param.is_shared)
 
 Array = Any
@@ -85,3 +94,19 @@ class PagePlayers:
             self._view.post(rig, frame, LEAVE, FIRST + page * CHANNELS, CHANNELS)
             if draws:
                 self._view.post(rig, frame, LIFT)
+
+
+def permitted(role: str, wishes: Any) -> tuple[Any, bool]:
+    """The wishes that a role may have fulfilled, and whether its own notes are to end.
+
+    A player's silence is that of the player; a player changes how notes are played, but neither
+    what the owner holds nor the instrument, the room and the output.
+    """
+    if role == OWN:
+        return wishes, False
+    if role == LISTEN:
+        return wishes[:0], False
+    kinds, indices = wishes[:, 1], wishes[:, 2]
+    is_stop = kinds == STOP
+    is_owned = np.isin(kinds, (WRITE, EXPRESS)) & np.isin(indices, OWNED)
+    return wishes[~(is_stop | is_owned | (kinds == HOLD))], bool(is_stop.any())

@@ -19,6 +19,7 @@ from typing import Any
 from aiohttp import web
 
 from yehu_server.live.addresses import Allowed
+from yehu_server.live.page.guests import Admission, Guests
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.page.site import HEADERS, Site
 from yehu_server.live.page.sockets import MOST_PAGES, PageSockets
@@ -38,6 +39,8 @@ class Pages:
     def __init__(self, order: Message) -> None:
         self._listening = socket.socket(fileno=order["socket"])
         self._allowed = Allowed(order["allowed"])
+        guests = order["guests"]
+        self._admission = Admission(None if guests is None else Guests(**guests))
         self._names = own_names()
         self._site = Site()
         self._sounds = PREPARING  # whether pages can sound themselves
@@ -105,7 +108,8 @@ class Pages:
             raise web.HTTPUpgradeRequired(text="for WebSockets\n")
         if self._sockets.count >= MOST_PAGES:
             raise web.HTTPServiceUnavailable(text="there are too many pages\n")
-        return await serve[request.path](request)
+        role = self._admission.role_of(request.remote or "", request.query.get("pin", ""))
+        return await serve[request.path](request, role)
 
 
 def main() -> None:

@@ -69,8 +69,9 @@ class SharedView:
         return bool(native.post_from.call(address, PAGES, frame, kind, index, value, other))
 
     def look(self, rig: int = 0, own: Mapping[int, float] = _NOTHING) -> bytes:
-        """A look at an instrument (``engine.look``), and then the value of each row of the table.
+        """A look at an instrument (``engine.look``) and, twice, the values of the table's rows.
 
+        First come those that they have, then those that were set, from which controllers move them.
         Its level is that of the mix, and what all share is as the first instrument has it.
 
         Parameters
@@ -78,6 +79,8 @@ class SharedView:
         own : mapping
             Values of rows in place of those that it has.
         """
+        midi = self._rigs["midi"][rig]
+        is_moved = (midi["is_target"] != 0) & (midi["is_held"] == 0)
         record, values = self._look[0], self._rigs["player"]["value"][rig].copy()
         look.call(self._address + rig * RIG_BYTES, self._look.ctypes.data)
         if rig:
@@ -85,7 +88,8 @@ class SharedView:
             values[SHARED_ROWS] = self._rigs["player"]["value"][0, SHARED_ROWS]
         for row, value in own.items():
             values[row] = value
-        return self._look.tobytes() + bytes(values.tobytes())
+        was_set = np.where(is_moved, midi["set_to"], values)
+        return self._look.tobytes() + bytes(values.tobytes()) + bytes(was_set.tobytes())
 
     def load(self) -> tuple[float, int]:
         """The share of the time that computing takes, and the number of drop-outs so far."""

@@ -21,7 +21,7 @@ import numpy as np
 from aiohttp import WSMsgType, web
 
 from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
-from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers
+from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitted
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.params.table import TABLE
 from yehu_server.util.token_bucket import TokenBucket
@@ -63,7 +63,8 @@ MOST_WISHES = 1024  # of a message
 MESSAGE_BYTES = 8 * WISH * MOST_WISHES
 WISHES_PER_S, WISHES_AT_ONCE = 2000.0, 4000.0
 HEARTBEAT_S, CLOSING_S = 10.0, 0.3
-WRONG, NO_PART = 1008, 4404  # close codes: against the rules; there is no such part
+# Close codes: against the rules; the PIN is missing or wrong; there is no such part.
+WRONG, NO_PIN, NO_PART = 1008, 4401, 4404
 # A page that is heard for the first time hears this much of what was just played.
 FIRST_FRAMES = 512
 
@@ -71,9 +72,10 @@ FIRST_FRAMES = 512
 class Page:
     """A page that is connected, by its number, and the part it plays, counted from 0."""
 
-    def __init__(self, number: int, part: int, transport: Any) -> None:
+    def __init__(self, number: int, part: int, role: str, transport: Any) -> None:
         self.number = number
         self.part = part
+        self.role = role  # of ``page.guests``
         self.transport = transport
         self.looks = self.sounds = False  # whether it wants looks; whether it sounds itself
         self.bucket = TokenBucket(WISHES_PER_S, WISHES_AT_ONCE)
@@ -113,14 +115,17 @@ class PageSockets:
 
     # -- serving one -------------------------------------------------------------------------
 
-    async def serve_page(self, request: web.Request) -> web.WebSocketResponse:
-        """Serve a page until it goes."""
+    async def serve_page(self, request: web.Request, role: str | None) -> web.WebSocketResponse:
+        """Serve a page until it goes; one without a role is sent away."""
         part = self._part_of(request)
         socket = await _open(request)
+        if role is None:
+            await socket.close(code=NO_PIN, message=b"the PIN is missing or wrong")
+            return socket
         if part is None:
             await socket.close(code=NO_PART, message=f"there are {len(self._rigs)} parts".encode())
             return socket
-        page = Page(self._free_number(), part, request.transport)
+        page = Page(self._free_number(), part, role, request.transport)
         self._pages[socket] = page
         try:
             self._send_status(page)
@@ -143,9 +148,12 @@ class PageSockets:
                 write(other.transport, text, MOST_UNSENT)
         return socket
 
-    async def serve_listener(self, request: web.Request) -> web.WebSocketResponse:
-        """Send the sound to a page until it goes."""
+    async def serve_listener(self, request: web.Request, role: str | None) -> web.WebSocketResponse:
+        """Send the sound to a page until it goes; one without a role is sent away."""
         socket = await _open(request)
+        if role is None:
+            await socket.close(code=NO_PIN, message=b"the PIN is missing or wrong")
+            return socket
         self._listeners[socket] = request.transport
         try:
             async for _ in socket:  # only its end matters
@@ -175,16 +183,20 @@ class PageSockets:
 
     async def _pass_on(self, page: Page, wishes: Any) -> None:
         """Post wishes, and tell other pages that sound as this part; a hasty page waits."""
+        count = len(wishes)
+        wishes, ends = permitted(page.role, wishes)
         self._players.post(page.number, page.part, wishes, time.monotonic_ns())
+        if ends:
+            self._players.leave(page.number, time.monotonic_ns())
         own = self._own.get(page.part, {})
         for _, kind, row, value, _ in wishes:
             if kind in (WRITE, HOLD) and row in own:
                 own[int(row)] = value  # at once: the control process tells it later
         frame = frame_of(struct.pack("<2d", WISHES, page.number) + wishes.tobytes())
         for other in self._pages.values():
-            if other is not page and other.sounds and other.part == page.part:
+            if len(wishes) and other is not page and other.sounds and other.part == page.part:
                 write(other.transport, frame, MOST_UNSENT)
-        page.bucket.spend(len(wishes))
+        page.bucket.spend(count)
         if (left := page.bucket.left(time.monotonic())) < 0.0:
             await asyncio.sleep(-left / WISHES_PER_S)
 
@@ -248,6 +260,7 @@ class PageSockets:
         status = {
             "page": page.number,
             "pages": len(self._pages),
+            "role": page.role,
             "part": page.part + 1,
             "parts": len(self._rigs),
             "rate": self._view.rate,

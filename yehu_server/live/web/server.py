@@ -23,6 +23,7 @@ from yehu_server.live.addresses import Address, Allowed, format_address, plain
 from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.call_table import Call
 from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.occupants import NAME, by_whom, serves_at
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web import query
 from yehu_server.live.web.loop_thread import LoopThread
@@ -34,7 +35,6 @@ from yehu_server.util.retry import why
 
 log = logging.getLogger(__name__)
 
-NAME = "yehu-server"
 MOST_WEB_SOCKETS = 64
 MOST_CONNECTIONS = 256  # with those that have sent no request
 SWEEP_S = 0.25
@@ -241,7 +241,8 @@ def listen(what: str, host: str, port: int) -> socket.socket:
         return socket.create_server((host, port), family=family, dualstack_ipv6=dualstack)
     except OSError as error:
         where = format_address(host, port)
-        raise DeviceError(f"{what}: cannot listen at {where}: {why(error)}") from error
+        whom = by_whom(error, host, port, serves_at)
+        raise DeviceError(f"{what}: cannot listen at {where}: {why(error)}{whom}") from error
 
 
 def _with_port(host: str, port: int) -> str:

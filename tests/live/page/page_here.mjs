@@ -1,0 +1,63 @@
+/** Chooses to sound here, of the page of a server that others have set. */
+
+import { createInterface } from "node:readline";
+
+import { fingersOf, open, run } from "./browser.mjs";
+
+const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
+
+/** Tell the test where the scenario is, and wait until it answers. @param {string} step */
+async function reach(step) {
+  console.error(step);
+  return (await lines.next()).value;
+}
+
+/** The value that the page shows. @param {import("playwright-core").Page} page @param {string} address */
+async function shown(page, address) {
+  await page.click("#tab-all");
+  await page.waitForTimeout(1000); // it is refreshed a few times a second
+  const value = await page.evaluate((address) => {
+    const rows = [...document.querySelectorAll("#panel-all .parameter")];
+    const row = rows.find((one) => one.querySelector("code").textContent === address);
+    return row.querySelector("input[type=number]").value;
+  }, address);
+  await page.click("#tab-connect");
+  return value;
+}
+
+await run(async (browser, url) => {
+  const { page, errors } = await open(browser, url);
+  const touch = await fingersOf(page);
+  await page.click("#tab-connect");
+  await page.waitForSelector("#way-here:not([disabled])", { timeout: 120000 });
+  const found = {};
+  const board = await page.locator("#fingerboard").boundingBox();
+  const finger = { x: board.x + board.width / 2, y: board.y + board.height / 2, id: 1 };
+  /** @param {string} when @param {string} way */
+  const here = async (when, way = "here") => {
+    await reach(`before ${when}`);
+    await page.waitForTimeout(100); // a page sees what others set some milliseconds later
+    await page.click(`#way-${way}`);
+    await page.waitForFunction(
+      (where) => document.querySelector("#panel-connect").textContent.includes(where),
+      way === "here" ? "AudioWorklet" : "the server’s sound",
+    );
+    await page.waitForTimeout(500);
+    await reach(`chosen ${when}`);
+    found[when] = await shown(page, "/playing/bow_position");
+    await touch("touchStart", [finger]);
+    await reach(`plays ${when}`);
+    await touch("touchEnd", []);
+    await reach(`played ${when}`);
+  };
+  await here("at first");
+  await here("there", "there");
+  await here("again");
+  await page.reload(); // it remembers where
+  await page.click("#tab-connect");
+  await page.waitForSelector("#way-here[aria-pressed=true]", { timeout: 120000 });
+  await here("after a reload");
+  found.errors = errors;
+  process.stdin.destroy(); // else Node waits for more
+  return found;
+});

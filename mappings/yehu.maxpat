@@ -1477,14 +1477,14 @@
       104,
       48
      ],
-     "varname": "/playing/bow_position",
+     "varname": "/playing/brilliance",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bow_position",
-       "parameter_shortname": "bow position",
-       "parameter_mmin": 0.05,
-       "parameter_mmax": 0.3,
+       "parameter_longname": "/playing/brilliance",
+       "parameter_shortname": "brilliance",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -1504,7 +1504,7 @@
       104,
       22
      ],
-     "text": "0.05 to 0.3",
+     "text": "0 to 2",
      "presentation": 1,
      "presentation_rect": [
       464,
@@ -1543,14 +1543,14 @@
      "patching_rect": [
       117.0,
       1880,
-      238,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bow_position"
+     "text": "route /yehu/playing/brilliance"
     }
    },
    {
@@ -1560,7 +1560,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      379.0,
+      365.0,
       1880,
       91,
       22
@@ -1580,13 +1580,13 @@
      "patching_rect": [
       16.0,
       1910,
-      133,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.13"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -1596,15 +1596,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      173.0,
+      152.0,
       1910,
-      252,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bow_position"
+     "text": "prepend /yehu/playing/brilliance"
     }
    },
    {
@@ -1614,7 +1614,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      449.0,
+      414.0,
       1910,
       98,
       22
@@ -1646,17 +1646,17 @@
       104,
       48
      ],
-     "varname": "/playing/tremolo",
+     "varname": "/playing/bow_position",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/tremolo",
-       "parameter_shortname": "tremolo",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 20.0,
+       "parameter_longname": "/playing/bow_position",
+       "parameter_shortname": "bow position",
+       "parameter_mmin": 0.05,
+       "parameter_mmax": 0.3,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f 1/s"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -1673,7 +1673,7 @@
       104,
       22
      ],
-     "text": "0 to 20 1/s",
+     "text": "0.05 to 0.3",
      "presentation": 1,
      "presentation_rect": [
       576,
@@ -1712,14 +1712,14 @@
      "patching_rect": [
       117.0,
       1940,
-      203,
+      238,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/tremolo"
+     "text": "route /yehu/playing/bow_position"
     }
    },
    {
@@ -1729,7 +1729,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      379.0,
       1940,
       91,
       22
@@ -1749,13 +1749,13 @@
      "patching_rect": [
       16.0,
       1970,
-      112,
+      133,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 0.13"
     }
    },
    {
@@ -1765,15 +1765,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      173.0,
       1970,
-      217,
+      252,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/tremolo"
+     "text": "prepend /yehu/playing/bow_position"
     }
    },
    {
@@ -1783,7 +1783,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      449.0,
       1970,
       98,
       22
@@ -1815,17 +1815,17 @@
       104,
       48
      ],
-     "varname": "/playing/pizzicato",
+     "varname": "/playing/tremolo",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/pizzicato",
-       "parameter_shortname": "pizzicato",
+       "parameter_longname": "/playing/tremolo",
+       "parameter_shortname": "tremolo",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 20.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f 1/s"
       }
      }
     }
@@ -1842,7 +1842,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0 to 20 1/s",
      "presentation": 1,
      "presentation_rect": [
       688,
@@ -1881,14 +1881,14 @@
      "patching_rect": [
       117.0,
       2000,
-      217,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/pizzicato"
+     "text": "route /yehu/playing/tremolo"
     }
    },
    {
@@ -1898,7 +1898,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      344.0,
       2000,
       91,
       22
@@ -1936,13 +1936,13 @@
      "patching_rect": [
       152.0,
       2030,
-      231,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/pizzicato"
+     "text": "prepend /yehu/playing/tremolo"
     }
    },
    {
@@ -1952,7 +1952,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      393.0,
       2030,
       98,
       22
@@ -1984,14 +1984,14 @@
       104,
       48
      ],
-     "varname": "/playing/string",
+     "varname": "/playing/pizzicato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/string",
-       "parameter_shortname": "string",
+       "parameter_longname": "/playing/pizzicato",
+       "parameter_shortname": "pizzicato",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 2.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2011,7 +2011,7 @@
       104,
       22
      ],
-     "text": "0 to 2",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       800,
@@ -2050,14 +2050,14 @@
      "patching_rect": [
       117.0,
       2060,
-      196,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/string"
+     "text": "route /yehu/playing/pizzicato"
     }
    },
    {
@@ -2067,7 +2067,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      358.0,
       2060,
       91,
       22
@@ -2105,13 +2105,13 @@
      "patching_rect": [
       152.0,
       2090,
-      210,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/string"
+     "text": "prepend /yehu/playing/pizzicato"
     }
    },
    {
@@ -2121,7 +2121,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      407.0,
       2090,
       98,
       22
@@ -2153,14 +2153,14 @@
       104,
       48
      ],
-     "varname": "/playing/direction",
+     "varname": "/playing/string",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/direction",
-       "parameter_shortname": "direction",
-       "parameter_mmin": -1.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/string",
+       "parameter_shortname": "string",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2180,7 +2180,7 @@
       104,
       22
      ],
-     "text": "-1 to 1",
+     "text": "0 to 2",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -2219,14 +2219,14 @@
      "patching_rect": [
       117.0,
       2120,
-      217,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/direction"
+     "text": "route /yehu/playing/string"
     }
    },
    {
@@ -2236,7 +2236,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      337.0,
       2120,
       91,
       22
@@ -2274,13 +2274,13 @@
      "patching_rect": [
       152.0,
       2150,
-      231,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/direction"
+     "text": "prepend /yehu/playing/string"
     }
    },
    {
@@ -2290,7 +2290,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      386.0,
       2150,
       98,
       22
@@ -2322,17 +2322,17 @@
       104,
       48
      ],
-     "varname": "/playing/bow_length",
+     "varname": "/playing/direction",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bow_length",
-       "parameter_shortname": "bow length",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 2.0,
+       "parameter_longname": "/playing/direction",
+       "parameter_shortname": "direction",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f m"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -2349,7 +2349,7 @@
       104,
       22
      ],
-     "text": "0 to 2 m",
+     "text": "-1 to 1",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -2388,14 +2388,14 @@
      "patching_rect": [
       117.0,
       2180,
-      224,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bow_length"
+     "text": "route /yehu/playing/direction"
     }
    },
    {
@@ -2405,7 +2405,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      358.0,
       2180,
       91,
       22
@@ -2425,13 +2425,13 @@
      "patching_rect": [
       16.0,
       2210,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.7"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2441,15 +2441,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       2210,
-      238,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bow_length"
+     "text": "prepend /yehu/playing/direction"
     }
    },
    {
@@ -2459,7 +2459,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
+      407.0,
       2210,
       98,
       22
@@ -2491,17 +2491,17 @@
       104,
       48
      ],
-     "varname": "/playing/note_length",
+     "varname": "/playing/bow_length",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/note_length",
-       "parameter_shortname": "note length",
+       "parameter_longname": "/playing/bow_length",
+       "parameter_shortname": "bow length",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 60.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f s"
+       "parameter_units": "%.3f m"
       }
      }
     }
@@ -2518,7 +2518,7 @@
       104,
       22
      ],
-     "text": "0 to 60 s",
+     "text": "0 to 2 m",
      "presentation": 1,
      "presentation_rect": [
       16,
@@ -2557,14 +2557,14 @@
      "patching_rect": [
       117.0,
       2240,
-      231,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/note_length"
+     "text": "route /yehu/playing/bow_length"
     }
    },
    {
@@ -2574,7 +2574,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      372.0,
+      365.0,
       2240,
       91,
       22
@@ -2594,13 +2594,13 @@
      "patching_rect": [
       16.0,
       2270,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 0.7"
     }
    },
    {
@@ -2610,15 +2610,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       2270,
-      245,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/note_length"
+     "text": "prepend /yehu/playing/bow_length"
     }
    },
    {
@@ -2628,7 +2628,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      421.0,
+      428.0,
       2270,
       98,
       22
@@ -2660,17 +2660,17 @@
       104,
       48
      ],
-     "varname": "/playing/press",
+     "varname": "/playing/note_length",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.3,
-       "parameter_mmax": 6.0,
+       "parameter_longname": "/playing/note_length",
+       "parameter_shortname": "note length",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 60.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f N"
+       "parameter_units": "%.3f s"
       }
      }
     }
@@ -2687,7 +2687,7 @@
       104,
       22
      ],
-     "text": "0.3 to 6 N",
+     "text": "0 to 60 s",
      "presentation": 1,
      "presentation_rect": [
       128,
@@ -2726,14 +2726,14 @@
      "patching_rect": [
       117.0,
       2300,
-      189,
+      231,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/press"
+     "text": "route /yehu/playing/note_length"
     }
    },
    {
@@ -2743,7 +2743,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      330.0,
+      372.0,
       2300,
       91,
       22
@@ -2763,13 +2763,13 @@
      "patching_rect": [
       16.0,
       2330,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2779,15 +2779,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       2330,
-      203,
+      245,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/press"
+     "text": "prepend /yehu/playing/note_length"
     }
    },
    {
@@ -2797,7 +2797,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      421.0,
       2330,
       98,
       22
@@ -2829,17 +2829,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato",
+     "varname": "/playing/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato",
-       "parameter_shortname": "vibrato",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 100.0,
+       "parameter_longname": "/playing/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.3,
+       "parameter_mmax": 6.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f cents"
+       "parameter_units": "%.3f N"
       }
      }
     }
@@ -2856,7 +2856,7 @@
       104,
       22
      ],
-     "text": "0 to 100 cents",
+     "text": "0.3 to 6 N",
      "presentation": 1,
      "presentation_rect": [
       240,
@@ -2895,14 +2895,14 @@
      "patching_rect": [
       117.0,
       2360,
-      203,
+      189,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato"
+     "text": "route /yehu/playing/press"
     }
    },
    {
@@ -2912,7 +2912,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      330.0,
       2360,
       91,
       22
@@ -2932,13 +2932,13 @@
      "patching_rect": [
       16.0,
       2390,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1.5"
     }
    },
    {
@@ -2948,15 +2948,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       2390,
-      217,
+      203,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato"
+     "text": "prepend /yehu/playing/press"
     }
    },
    {
@@ -2998,17 +2998,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_press",
+     "varname": "/playing/vibrato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_press",
-       "parameter_shortname": "vibrato press",
+       "parameter_longname": "/playing/vibrato",
+       "parameter_shortname": "vibrato",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 100.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f cents"
       }
      }
     }
@@ -3025,7 +3025,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0 to 100 cents",
      "presentation": 1,
      "presentation_rect": [
       352,
@@ -3064,14 +3064,14 @@
      "patching_rect": [
       117.0,
       2420,
-      245,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_press"
+     "text": "route /yehu/playing/vibrato"
     }
    },
    {
@@ -3081,7 +3081,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      386.0,
+      344.0,
       2420,
       91,
       22
@@ -3119,13 +3119,13 @@
      "patching_rect": [
       152.0,
       2450,
-      259,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_press"
+     "text": "prepend /yehu/playing/vibrato"
     }
    },
    {
@@ -3135,7 +3135,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      435.0,
+      393.0,
       2450,
       98,
       22
@@ -3167,17 +3167,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_rate",
+     "varname": "/playing/vibrato_press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_rate",
-       "parameter_shortname": "vibrato rate",
-       "parameter_mmin": 2.0,
-       "parameter_mmax": 10.0,
+       "parameter_longname": "/playing/vibrato_press",
+       "parameter_shortname": "vibrato press",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f Hz"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -3194,7 +3194,7 @@
       104,
       22
      ],
-     "text": "2 to 10 Hz",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       464,
@@ -3233,14 +3233,14 @@
      "patching_rect": [
       117.0,
       2480,
-      238,
+      245,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_rate"
+     "text": "route /yehu/playing/vibrato_press"
     }
    },
    {
@@ -3250,7 +3250,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      379.0,
+      386.0,
       2480,
       91,
       22
@@ -3270,13 +3270,13 @@
      "patching_rect": [
       16.0,
       2510,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 5.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3286,15 +3286,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       2510,
-      252,
+      259,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_rate"
+     "text": "prepend /yehu/playing/vibrato_press"
     }
    },
    {
@@ -3304,7 +3304,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      442.0,
+      435.0,
       2510,
       98,
       22
@@ -3336,17 +3336,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_delay",
+     "varname": "/playing/vibrato_rate",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_delay",
-       "parameter_shortname": "vibrato delay",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 3000.0,
+       "parameter_longname": "/playing/vibrato_rate",
+       "parameter_shortname": "vibrato rate",
+       "parameter_mmin": 2.0,
+       "parameter_mmax": 10.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f Hz"
       }
      }
     }
@@ -3363,7 +3363,7 @@
       104,
       22
      ],
-     "text": "0 to 3000 ms",
+     "text": "2 to 10 Hz",
      "presentation": 1,
      "presentation_rect": [
       576,
@@ -3402,14 +3402,14 @@
      "patching_rect": [
       117.0,
       2540,
-      245,
+      238,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_delay"
+     "text": "route /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -3419,7 +3419,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      386.0,
+      379.0,
       2540,
       91,
       22
@@ -3445,7 +3445,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 500"
+     "text": "loadmess set 5.5"
     }
    },
    {
@@ -3457,13 +3457,13 @@
      "patching_rect": [
       166.0,
       2570,
-      259,
+      252,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_delay"
+     "text": "prepend /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -3473,7 +3473,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      449.0,
+      442.0,
       2570,
       98,
       22
@@ -3505,17 +3505,17 @@
       104,
       48
      ],
-     "varname": "/playing/bend",
+     "varname": "/playing/vibrato_delay",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend",
-       "parameter_shortname": "bend",
-       "parameter_mmin": -48.0,
-       "parameter_mmax": 48.0,
+       "parameter_longname": "/playing/vibrato_delay",
+       "parameter_shortname": "vibrato delay",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 3000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f semitones"
+       "parameter_units": "%.3f ms"
       }
      }
     }
@@ -3532,7 +3532,7 @@
       104,
       22
      ],
-     "text": "-48 to 48 semitones",
+     "text": "0 to 3000 ms",
      "presentation": 1,
      "presentation_rect": [
       688,
@@ -3571,14 +3571,14 @@
      "patching_rect": [
       117.0,
       2600,
-      182,
+      245,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend"
+     "text": "route /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -3588,7 +3588,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      323.0,
+      386.0,
       2600,
       91,
       22
@@ -3608,13 +3608,13 @@
      "patching_rect": [
       16.0,
       2630,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 500"
     }
    },
    {
@@ -3624,15 +3624,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       2630,
-      196,
+      259,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend"
+     "text": "prepend /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -3642,7 +3642,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      372.0,
+      449.0,
       2630,
       98,
       22
@@ -3674,13 +3674,13 @@
       104,
       48
      ],
-     "varname": "/playing/bend_range",
+     "varname": "/playing/bend",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend_range",
-       "parameter_shortname": "bend range",
-       "parameter_mmin": 0.0,
+       "parameter_longname": "/playing/bend",
+       "parameter_shortname": "bend",
+       "parameter_mmin": -48.0,
        "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
@@ -3701,7 +3701,7 @@
       104,
       22
      ],
-     "text": "0 to 48 semitones",
+     "text": "-48 to 48 semitones",
      "presentation": 1,
      "presentation_rect": [
       800,
@@ -3740,14 +3740,14 @@
      "patching_rect": [
       117.0,
       2660,
-      224,
+      182,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend_range"
+     "text": "route /yehu/playing/bend"
     }
    },
    {
@@ -3757,7 +3757,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      323.0,
       2660,
       91,
       22
@@ -3783,7 +3783,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 2"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3795,13 +3795,13 @@
      "patching_rect": [
       152.0,
       2690,
-      238,
+      196,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend_range"
+     "text": "prepend /yehu/playing/bend"
     }
    },
    {
@@ -3811,7 +3811,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      372.0,
       2690,
       98,
       22
@@ -3843,17 +3843,17 @@
       104,
       48
      ],
-     "varname": "/playing/volume",
+     "varname": "/playing/bend_range",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/volume",
-       "parameter_shortname": "volume",
+       "parameter_longname": "/playing/bend_range",
+       "parameter_shortname": "bend range",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f semitones"
       }
      }
     }
@@ -3870,7 +3870,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0 to 48 semitones",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -3909,14 +3909,14 @@
      "patching_rect": [
       117.0,
       2720,
-      196,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/volume"
+     "text": "route /yehu/playing/bend_range"
     }
    },
    {
@@ -3926,7 +3926,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      365.0,
       2720,
       91,
       22
@@ -3952,7 +3952,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 2"
     }
    },
    {
@@ -3964,13 +3964,13 @@
      "patching_rect": [
       152.0,
       2750,
-      210,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/volume"
+     "text": "prepend /yehu/playing/bend_range"
     }
    },
    {
@@ -3980,7 +3980,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      414.0,
       2750,
       98,
       22
@@ -4012,12 +4012,12 @@
       104,
       48
      ],
-     "varname": "/playing/expression",
+     "varname": "/playing/volume",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/expression",
-       "parameter_shortname": "expression",
+       "parameter_longname": "/playing/volume",
+       "parameter_shortname": "volume",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4078,14 +4078,14 @@
      "patching_rect": [
       117.0,
       2780,
-      224,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/expression"
+     "text": "route /yehu/playing/volume"
     }
    },
    {
@@ -4095,7 +4095,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      337.0,
       2780,
       91,
       22
@@ -4133,13 +4133,13 @@
      "patching_rect": [
       152.0,
       2810,
-      238,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/expression"
+     "text": "prepend /yehu/playing/volume"
     }
    },
    {
@@ -4149,7 +4149,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      386.0,
       2810,
       98,
       22
@@ -4181,12 +4181,12 @@
       104,
       48
      ],
-     "varname": "/playing/assist",
+     "varname": "/playing/expression",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/assist",
-       "parameter_shortname": "assist",
+       "parameter_longname": "/playing/expression",
+       "parameter_shortname": "expression",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4247,14 +4247,14 @@
      "patching_rect": [
       117.0,
       2840,
-      196,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/assist"
+     "text": "route /yehu/playing/expression"
     }
    },
    {
@@ -4264,7 +4264,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      365.0,
       2840,
       91,
       22
@@ -4302,13 +4302,13 @@
      "patching_rect": [
       152.0,
       2870,
-      210,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/assist"
+     "text": "prepend /yehu/playing/expression"
     }
    },
    {
@@ -4318,7 +4318,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      414.0,
       2870,
       98,
       22
@@ -4350,12 +4350,12 @@
       104,
       48
      ],
-     "varname": "/playing/variation",
+     "varname": "/playing/assist",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/variation",
-       "parameter_shortname": "variation",
+       "parameter_longname": "/playing/assist",
+       "parameter_shortname": "assist",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4416,14 +4416,14 @@
      "patching_rect": [
       117.0,
       2900,
-      217,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/variation"
+     "text": "route /yehu/playing/assist"
     }
    },
    {
@@ -4433,7 +4433,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      337.0,
       2900,
       91,
       22
@@ -4453,13 +4453,13 @@
      "patching_rect": [
       16.0,
       2930,
-      133,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.25"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -4469,15 +4469,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      173.0,
+      152.0,
       2930,
-      231,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/variation"
+     "text": "prepend /yehu/playing/assist"
     }
    },
    {
@@ -4487,7 +4487,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
+      386.0,
       2930,
       98,
       22
@@ -4519,12 +4519,12 @@
       104,
       48
      ],
-     "varname": "/playing/listening",
+     "varname": "/playing/variation",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/listening",
-       "parameter_shortname": "listening",
+       "parameter_longname": "/playing/variation",
+       "parameter_shortname": "variation",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4592,7 +4592,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/listening"
+     "text": "route /yehu/playing/variation"
     }
    },
    {
@@ -4622,13 +4622,13 @@
      "patching_rect": [
       16.0,
       2990,
-      112,
+      133,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0.25"
     }
    },
    {
@@ -4638,7 +4638,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      173.0,
       2990,
       231,
       22
@@ -4646,7 +4646,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/listening"
+     "text": "prepend /yehu/playing/variation"
     }
    },
    {
@@ -4656,7 +4656,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      428.0,
       2990,
       98,
       22
@@ -4688,12 +4688,12 @@
       104,
       48
      ],
-     "varname": "/playing/phrasing",
+     "varname": "/playing/listening",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/phrasing",
-       "parameter_shortname": "phrasing",
+       "parameter_longname": "/playing/listening",
+       "parameter_shortname": "listening",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4754,14 +4754,14 @@
      "patching_rect": [
       117.0,
       3020,
-      210,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/phrasing"
+     "text": "route /yehu/playing/listening"
     }
    },
    {
@@ -4771,7 +4771,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      351.0,
+      358.0,
       3020,
       91,
       22
@@ -4797,7 +4797,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -4809,13 +4809,13 @@
      "patching_rect": [
       152.0,
       3050,
-      224,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/phrasing"
+     "text": "prepend /yehu/playing/listening"
     }
    },
    {
@@ -4825,7 +4825,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      400.0,
+      407.0,
       3050,
       98,
       22
@@ -4857,14 +4857,14 @@
       104,
       48
      ],
-     "varname": "/playing/section",
+     "varname": "/playing/phrasing",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/section",
-       "parameter_shortname": "section",
-       "parameter_mmin": 1.0,
-       "parameter_mmax": 16.0,
+       "parameter_longname": "/playing/phrasing",
+       "parameter_shortname": "phrasing",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -4884,7 +4884,7 @@
       104,
       22
      ],
-     "text": "1 to 16",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       464,
@@ -4923,14 +4923,14 @@
      "patching_rect": [
       117.0,
       3080,
-      203,
+      210,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/section"
+     "text": "route /yehu/playing/phrasing"
     }
    },
    {
@@ -4940,7 +4940,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      351.0,
       3080,
       91,
       22
@@ -4966,7 +4966,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -4978,13 +4978,13 @@
      "patching_rect": [
       152.0,
       3110,
-      217,
+      224,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/section"
+     "text": "prepend /yehu/playing/phrasing"
     }
    },
    {
@@ -4994,7 +4994,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      400.0,
       3110,
       98,
       22
@@ -5026,17 +5026,17 @@
       104,
       48
      ],
-     "varname": "/playing/attack",
+     "varname": "/playing/section",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/attack",
-       "parameter_shortname": "attack",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 500.0,
+       "parameter_longname": "/playing/section",
+       "parameter_shortname": "section",
+       "parameter_mmin": 1.0,
+       "parameter_mmax": 16.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -5053,7 +5053,7 @@
       104,
       22
      ],
-     "text": "5 to 500 ms",
+     "text": "1 to 16",
      "presentation": 1,
      "presentation_rect": [
       576,
@@ -5092,14 +5092,14 @@
      "patching_rect": [
       117.0,
       3140,
-      196,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/attack"
+     "text": "route /yehu/playing/section"
     }
    },
    {
@@ -5109,7 +5109,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      344.0,
       3140,
       91,
       22
@@ -5129,13 +5129,13 @@
      "patching_rect": [
       16.0,
       3170,
-      119,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 40"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -5145,15 +5145,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      159.0,
+      152.0,
       3170,
-      210,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/attack"
+     "text": "prepend /yehu/playing/section"
     }
    },
    {
@@ -5195,14 +5195,14 @@
       104,
       48
      ],
-     "varname": "/playing/release",
+     "varname": "/playing/attack",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/release",
-       "parameter_shortname": "release",
+       "parameter_longname": "/playing/attack",
+       "parameter_shortname": "attack",
        "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_mmax": 500.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
@@ -5222,7 +5222,7 @@
       104,
       22
      ],
-     "text": "5 to 2000 ms",
+     "text": "5 to 500 ms",
      "presentation": 1,
      "presentation_rect": [
       688,
@@ -5261,14 +5261,14 @@
      "patching_rect": [
       117.0,
       3200,
-      203,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/release"
+     "text": "route /yehu/playing/attack"
     }
    },
    {
@@ -5278,7 +5278,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      337.0,
       3200,
       91,
       22
@@ -5304,7 +5304,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 60"
+     "text": "loadmess set 40"
     }
    },
    {
@@ -5316,13 +5316,13 @@
      "patching_rect": [
       159.0,
       3230,
-      217,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/release"
+     "text": "prepend /yehu/playing/attack"
     }
    },
    {
@@ -5332,7 +5332,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      400.0,
+      393.0,
       3230,
       98,
       22
@@ -5364,17 +5364,17 @@
       104,
       48
      ],
-     "varname": "/playing/portamento",
+     "varname": "/playing/release",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento",
-       "parameter_shortname": "portamento",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/release",
+       "parameter_shortname": "release",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f ms"
       }
      }
     }
@@ -5391,7 +5391,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "5 to 2000 ms",
      "presentation": 1,
      "presentation_rect": [
       800,
@@ -5430,14 +5430,14 @@
      "patching_rect": [
       117.0,
       3260,
-      224,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento"
+     "text": "route /yehu/playing/release"
     }
    },
    {
@@ -5447,7 +5447,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      344.0,
       3260,
       91,
       22
@@ -5467,13 +5467,13 @@
      "patching_rect": [
       16.0,
       3290,
-      112,
+      119,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 60"
     }
    },
    {
@@ -5483,15 +5483,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      159.0,
       3290,
-      238,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento"
+     "text": "prepend /yehu/playing/release"
     }
    },
    {
@@ -5501,7 +5501,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      400.0,
       3290,
       98,
       22
@@ -5533,17 +5533,17 @@
       104,
       48
      ],
-     "varname": "/playing/portamento_time",
+     "varname": "/playing/portamento",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento_time",
-       "parameter_shortname": "portamento time",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_longname": "/playing/portamento",
+       "parameter_shortname": "portamento",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -5560,7 +5560,7 @@
       104,
       22
      ],
-     "text": "5 to 2000 ms",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -5599,14 +5599,14 @@
      "patching_rect": [
       117.0,
       3320,
-      259,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento_time"
+     "text": "route /yehu/playing/portamento"
     }
    },
    {
@@ -5616,7 +5616,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      400.0,
+      365.0,
       3320,
       91,
       22
@@ -5636,13 +5636,13 @@
      "patching_rect": [
       16.0,
       3350,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 120"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -5652,15 +5652,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       3350,
-      273,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento_time"
+     "text": "prepend /yehu/playing/portamento"
     }
    },
    {
@@ -5670,7 +5670,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      463.0,
+      414.0,
       3350,
       98,
       22
@@ -5682,6 +5682,175 @@
    {
     "box": {
      "id": "obj-270",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1024,
+      548,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      1024,
+      548,
+      104,
+      48
+     ],
+     "varname": "/playing/portamento_time",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento_time",
+       "parameter_shortname": "portamento time",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f ms"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-271",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1024,
+      598,
+      104,
+      22
+     ],
+     "text": "5 to 2000 ms",
+     "presentation": 1,
+     "presentation_rect": [
+      1024,
+      598,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-272",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3380,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-273",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      3380,
+      259,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-274",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      400.0,
+      3380,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-275",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3410,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 120"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-276",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      3410,
+      273,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-277",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      463.0,
+      3410,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-278",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5704,7 +5873,7 @@
    },
    {
     "box": {
-     "id": "obj-271",
+     "id": "obj-279",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5742,7 +5911,7 @@
    },
    {
     "box": {
-     "id": "obj-272",
+     "id": "obj-280",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5756,175 +5925,6 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      696,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-273",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      3380,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-274",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      3380,
-      161,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/bow/speed"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-275",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      302.0,
-      3380,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-276",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      3410,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-277",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      3410,
-      175,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/speed"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-278",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      351.0,
-      3410,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-279",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      646,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      646,
-      104,
-      48
-     ],
-     "varname": "/bow/side",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/bow/side",
-       "parameter_shortname": "side",
-       "parameter_mmin": -1.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-280",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      696,
-      104,
-      22
-     ],
-     "text": "-1 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
       696,
       104,
       22
@@ -5960,14 +5960,14 @@
      "patching_rect": [
       117.0,
       3440,
-      154,
+      161,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/bow/side"
+     "text": "route /yehu/bow/speed"
     }
    },
    {
@@ -5977,7 +5977,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      295.0,
+      302.0,
       3440,
       91,
       22
@@ -6015,13 +6015,13 @@
      "patching_rect": [
       152.0,
       3470,
-      168,
+      175,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/bow/side"
+     "text": "prepend /yehu/bow/speed"
     }
    },
    {
@@ -6031,7 +6031,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      344.0,
+      351.0,
       3470,
       98,
       22
@@ -6043,6 +6043,175 @@
    {
     "box": {
      "id": "obj-287",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      128,
+      646,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      646,
+      104,
+      48
+     ],
+     "varname": "/bow/side",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/bow/side",
+       "parameter_shortname": "side",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-288",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      128,
+      696,
+      104,
+      22
+     ],
+     "text": "-1 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-289",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3500,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-290",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      3500,
+      154,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/bow/side"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-291",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      295.0,
+      3500,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-292",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3530,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-293",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3530,
+      168,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/side"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-294",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      344.0,
+      3530,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-295",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6080,7 +6249,7 @@
    },
    {
     "box": {
-     "id": "obj-288",
+     "id": "obj-296",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6104,13 +6273,13 @@
    },
    {
     "box": {
-     "id": "obj-289",
+     "id": "obj-297",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3500,
+      3560,
       77,
       22
      ],
@@ -6122,13 +6291,13 @@
    },
    {
     "box": {
-     "id": "obj-290",
+     "id": "obj-298",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3500,
+      3560,
       161,
       22
      ],
@@ -6141,13 +6310,13 @@
    },
    {
     "box": {
-     "id": "obj-291",
+     "id": "obj-299",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      3500,
+      3560,
       91,
       22
      ],
@@ -6159,13 +6328,13 @@
    },
    {
     "box": {
-     "id": "obj-292",
+     "id": "obj-300",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3530,
+      3590,
       126,
       22
      ],
@@ -6177,13 +6346,13 @@
    },
    {
     "box": {
-     "id": "obj-293",
+     "id": "obj-301",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      3530,
+      3590,
       175,
       22
      ],
@@ -6195,13 +6364,13 @@
    },
    {
     "box": {
-     "id": "obj-294",
+     "id": "obj-302",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      3530,
+      3590,
       98,
       22
      ],
@@ -6211,7 +6380,7 @@
    },
    {
     "box": {
-     "id": "obj-295",
+     "id": "obj-303",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6249,7 +6418,7 @@
    },
    {
     "box": {
-     "id": "obj-296",
+     "id": "obj-304",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6273,13 +6442,13 @@
    },
    {
     "box": {
-     "id": "obj-297",
+     "id": "obj-305",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3560,
+      3620,
       77,
       22
      ],
@@ -6291,13 +6460,13 @@
    },
    {
     "box": {
-     "id": "obj-298",
+     "id": "obj-306",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3560,
+      3620,
       182,
       22
      ],
@@ -6310,13 +6479,13 @@
    },
    {
     "box": {
-     "id": "obj-299",
+     "id": "obj-307",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      3560,
+      3620,
       91,
       22
      ],
@@ -6328,13 +6497,13 @@
    },
    {
     "box": {
-     "id": "obj-300",
+     "id": "obj-308",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3590,
+      3650,
       126,
       22
      ],
@@ -6346,13 +6515,13 @@
    },
    {
     "box": {
-     "id": "obj-301",
+     "id": "obj-309",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      3590,
+      3650,
       196,
       22
      ],
@@ -6364,13 +6533,13 @@
    },
    {
     "box": {
-     "id": "obj-302",
+     "id": "obj-310",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      3590,
+      3650,
       98,
       22
      ],
@@ -6380,7 +6549,7 @@
    },
    {
     "box": {
-     "id": "obj-303",
+     "id": "obj-311",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6418,7 +6587,7 @@
    },
    {
     "box": {
-     "id": "obj-304",
+     "id": "obj-312",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6442,13 +6611,13 @@
    },
    {
     "box": {
-     "id": "obj-305",
+     "id": "obj-313",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3620,
+      3680,
       77,
       22
      ],
@@ -6460,13 +6629,13 @@
    },
    {
     "box": {
-     "id": "obj-306",
+     "id": "obj-314",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3620,
+      3680,
       168,
       22
      ],
@@ -6479,13 +6648,13 @@
    },
    {
     "box": {
-     "id": "obj-307",
+     "id": "obj-315",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      3620,
+      3680,
       91,
       22
      ],
@@ -6497,13 +6666,13 @@
    },
    {
     "box": {
-     "id": "obj-308",
+     "id": "obj-316",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3650,
+      3710,
       112,
       22
      ],
@@ -6515,13 +6684,13 @@
    },
    {
     "box": {
-     "id": "obj-309",
+     "id": "obj-317",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      3650,
+      3710,
       182,
       22
      ],
@@ -6533,13 +6702,13 @@
    },
    {
     "box": {
-     "id": "obj-310",
+     "id": "obj-318",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       358.0,
-      3650,
+      3710,
       98,
       22
      ],
@@ -6549,7 +6718,7 @@
    },
    {
     "box": {
-     "id": "obj-311",
+     "id": "obj-319",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6587,7 +6756,7 @@
    },
    {
     "box": {
-     "id": "obj-312",
+     "id": "obj-320",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6611,13 +6780,13 @@
    },
    {
     "box": {
-     "id": "obj-313",
+     "id": "obj-321",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3680,
+      3740,
       77,
       22
      ],
@@ -6629,13 +6798,13 @@
    },
    {
     "box": {
-     "id": "obj-314",
+     "id": "obj-322",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3680,
+      3740,
       182,
       22
      ],
@@ -6648,13 +6817,13 @@
    },
    {
     "box": {
-     "id": "obj-315",
+     "id": "obj-323",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      3680,
+      3740,
       91,
       22
      ],
@@ -6666,13 +6835,13 @@
    },
    {
     "box": {
-     "id": "obj-316",
+     "id": "obj-324",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3710,
+      3770,
       133,
       22
      ],
@@ -6684,13 +6853,13 @@
    },
    {
     "box": {
-     "id": "obj-317",
+     "id": "obj-325",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      3710,
+      3770,
       196,
       22
      ],
@@ -6702,13 +6871,13 @@
    },
    {
     "box": {
-     "id": "obj-318",
+     "id": "obj-326",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      3710,
+      3770,
       98,
       22
      ],
@@ -6718,7 +6887,7 @@
    },
    {
     "box": {
-     "id": "obj-319",
+     "id": "obj-327",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6756,7 +6925,7 @@
    },
    {
     "box": {
-     "id": "obj-320",
+     "id": "obj-328",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6780,13 +6949,13 @@
    },
    {
     "box": {
-     "id": "obj-321",
+     "id": "obj-329",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3740,
+      3800,
       77,
       22
      ],
@@ -6798,13 +6967,13 @@
    },
    {
     "box": {
-     "id": "obj-322",
+     "id": "obj-330",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3740,
+      3800,
       175,
       22
      ],
@@ -6817,13 +6986,13 @@
    },
    {
     "box": {
-     "id": "obj-323",
+     "id": "obj-331",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      3740,
+      3800,
       91,
       22
      ],
@@ -6835,13 +7004,13 @@
    },
    {
     "box": {
-     "id": "obj-324",
+     "id": "obj-332",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3770,
+      3830,
       112,
       22
      ],
@@ -6853,13 +7022,13 @@
    },
    {
     "box": {
-     "id": "obj-325",
+     "id": "obj-333",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      3770,
+      3830,
       189,
       22
      ],
@@ -6871,13 +7040,13 @@
    },
    {
     "box": {
-     "id": "obj-326",
+     "id": "obj-334",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      3770,
+      3830,
       98,
       22
      ],
@@ -6887,7 +7056,7 @@
    },
    {
     "box": {
-     "id": "obj-327",
+     "id": "obj-335",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6925,7 +7094,7 @@
    },
    {
     "box": {
-     "id": "obj-328",
+     "id": "obj-336",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6949,13 +7118,13 @@
    },
    {
     "box": {
-     "id": "obj-329",
+     "id": "obj-337",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3800,
+      3860,
       77,
       22
      ],
@@ -6967,13 +7136,13 @@
    },
    {
     "box": {
-     "id": "obj-330",
+     "id": "obj-338",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3800,
+      3860,
       161,
       22
      ],
@@ -6986,13 +7155,13 @@
    },
    {
     "box": {
-     "id": "obj-331",
+     "id": "obj-339",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      3800,
+      3860,
       91,
       22
      ],
@@ -7004,13 +7173,13 @@
    },
    {
     "box": {
-     "id": "obj-332",
+     "id": "obj-340",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3830,
+      3890,
       140,
       22
      ],
@@ -7022,13 +7191,13 @@
    },
    {
     "box": {
-     "id": "obj-333",
+     "id": "obj-341",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       180.0,
-      3830,
+      3890,
       175,
       22
      ],
@@ -7040,13 +7209,13 @@
    },
    {
     "box": {
-     "id": "obj-334",
+     "id": "obj-342",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      3830,
+      3890,
       98,
       22
      ],
@@ -7056,7 +7225,7 @@
    },
    {
     "box": {
-     "id": "obj-335",
+     "id": "obj-343",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7079,7 +7248,7 @@
    },
    {
     "box": {
-     "id": "obj-336",
+     "id": "obj-344",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7117,7 +7286,7 @@
    },
    {
     "box": {
-     "id": "obj-337",
+     "id": "obj-345",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7141,13 +7310,13 @@
    },
    {
     "box": {
-     "id": "obj-338",
+     "id": "obj-346",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3860,
+      3920,
       77,
       22
      ],
@@ -7159,13 +7328,13 @@
    },
    {
     "box": {
-     "id": "obj-339",
+     "id": "obj-347",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3860,
+      3920,
       217,
       22
      ],
@@ -7178,13 +7347,13 @@
    },
    {
     "box": {
-     "id": "obj-340",
+     "id": "obj-348",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      3860,
+      3920,
       91,
       22
      ],
@@ -7196,13 +7365,13 @@
    },
    {
     "box": {
-     "id": "obj-341",
+     "id": "obj-349",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3890,
+      3950,
       133,
       22
      ],
@@ -7214,13 +7383,13 @@
    },
    {
     "box": {
-     "id": "obj-342",
+     "id": "obj-350",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      3890,
+      3950,
       231,
       22
      ],
@@ -7232,13 +7401,13 @@
    },
    {
     "box": {
-     "id": "obj-343",
+     "id": "obj-351",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      3890,
+      3950,
       98,
       22
      ],
@@ -7248,7 +7417,7 @@
    },
    {
     "box": {
-     "id": "obj-344",
+     "id": "obj-352",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7286,7 +7455,7 @@
    },
    {
     "box": {
-     "id": "obj-345",
+     "id": "obj-353",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7310,13 +7479,13 @@
    },
    {
     "box": {
-     "id": "obj-346",
+     "id": "obj-354",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3920,
+      3980,
       77,
       22
      ],
@@ -7328,13 +7497,13 @@
    },
    {
     "box": {
-     "id": "obj-347",
+     "id": "obj-355",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3920,
+      3980,
       196,
       22
      ],
@@ -7347,13 +7516,13 @@
    },
    {
     "box": {
-     "id": "obj-348",
+     "id": "obj-356",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      3920,
+      3980,
       91,
       22
      ],
@@ -7365,13 +7534,13 @@
    },
    {
     "box": {
-     "id": "obj-349",
+     "id": "obj-357",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3950,
+      4010,
       112,
       22
      ],
@@ -7383,13 +7552,13 @@
    },
    {
     "box": {
-     "id": "obj-350",
+     "id": "obj-358",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      3950,
+      4010,
       210,
       22
      ],
@@ -7401,13 +7570,13 @@
    },
    {
     "box": {
-     "id": "obj-351",
+     "id": "obj-359",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      3950,
+      4010,
       98,
       22
      ],
@@ -7417,7 +7586,7 @@
    },
    {
     "box": {
-     "id": "obj-352",
+     "id": "obj-360",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7455,7 +7624,7 @@
    },
    {
     "box": {
-     "id": "obj-353",
+     "id": "obj-361",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7479,13 +7648,13 @@
    },
    {
     "box": {
-     "id": "obj-354",
+     "id": "obj-362",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3980,
+      4040,
       77,
       22
      ],
@@ -7497,13 +7666,13 @@
    },
    {
     "box": {
-     "id": "obj-355",
+     "id": "obj-363",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3980,
+      4040,
       217,
       22
      ],
@@ -7516,13 +7685,13 @@
    },
    {
     "box": {
-     "id": "obj-356",
+     "id": "obj-364",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      3980,
+      4040,
       91,
       22
      ],
@@ -7534,13 +7703,13 @@
    },
    {
     "box": {
-     "id": "obj-357",
+     "id": "obj-365",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4010,
+      4070,
       133,
       22
      ],
@@ -7552,13 +7721,13 @@
    },
    {
     "box": {
-     "id": "obj-358",
+     "id": "obj-366",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4010,
+      4070,
       231,
       22
      ],
@@ -7570,13 +7739,13 @@
    },
    {
     "box": {
-     "id": "obj-359",
+     "id": "obj-367",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4010,
+      4070,
       98,
       22
      ],
@@ -7586,7 +7755,7 @@
    },
    {
     "box": {
-     "id": "obj-360",
+     "id": "obj-368",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7624,7 +7793,7 @@
    },
    {
     "box": {
-     "id": "obj-361",
+     "id": "obj-369",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7648,13 +7817,13 @@
    },
    {
     "box": {
-     "id": "obj-362",
+     "id": "obj-370",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4040,
+      4100,
       77,
       22
      ],
@@ -7666,13 +7835,13 @@
    },
    {
     "box": {
-     "id": "obj-363",
+     "id": "obj-371",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4040,
+      4100,
       196,
       22
      ],
@@ -7685,13 +7854,13 @@
    },
    {
     "box": {
-     "id": "obj-364",
+     "id": "obj-372",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4040,
+      4100,
       91,
       22
      ],
@@ -7703,13 +7872,13 @@
    },
    {
     "box": {
-     "id": "obj-365",
+     "id": "obj-373",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4070,
+      4130,
       112,
       22
      ],
@@ -7721,13 +7890,13 @@
    },
    {
     "box": {
-     "id": "obj-366",
+     "id": "obj-374",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4070,
+      4130,
       210,
       22
      ],
@@ -7739,13 +7908,13 @@
    },
    {
     "box": {
-     "id": "obj-367",
+     "id": "obj-375",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4070,
+      4130,
       98,
       22
      ],
@@ -7755,7 +7924,7 @@
    },
    {
     "box": {
-     "id": "obj-368",
+     "id": "obj-376",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7793,7 +7962,7 @@
    },
    {
     "box": {
-     "id": "obj-369",
+     "id": "obj-377",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7817,13 +7986,13 @@
    },
    {
     "box": {
-     "id": "obj-370",
+     "id": "obj-378",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4100,
+      4160,
       77,
       22
      ],
@@ -7835,13 +8004,13 @@
    },
    {
     "box": {
-     "id": "obj-371",
+     "id": "obj-379",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4100,
+      4160,
       217,
       22
      ],
@@ -7854,13 +8023,13 @@
    },
    {
     "box": {
-     "id": "obj-372",
+     "id": "obj-380",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4100,
+      4160,
       91,
       22
      ],
@@ -7872,13 +8041,13 @@
    },
    {
     "box": {
-     "id": "obj-373",
+     "id": "obj-381",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4130,
+      4190,
       133,
       22
      ],
@@ -7890,13 +8059,13 @@
    },
    {
     "box": {
-     "id": "obj-374",
+     "id": "obj-382",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4130,
+      4190,
       231,
       22
      ],
@@ -7908,13 +8077,13 @@
    },
    {
     "box": {
-     "id": "obj-375",
+     "id": "obj-383",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4130,
+      4190,
       98,
       22
      ],
@@ -7924,7 +8093,7 @@
    },
    {
     "box": {
-     "id": "obj-376",
+     "id": "obj-384",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7962,7 +8131,7 @@
    },
    {
     "box": {
-     "id": "obj-377",
+     "id": "obj-385",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7986,13 +8155,13 @@
    },
    {
     "box": {
-     "id": "obj-378",
+     "id": "obj-386",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4160,
+      4220,
       77,
       22
      ],
@@ -8004,13 +8173,13 @@
    },
    {
     "box": {
-     "id": "obj-379",
+     "id": "obj-387",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4160,
+      4220,
       196,
       22
      ],
@@ -8023,13 +8192,13 @@
    },
    {
     "box": {
-     "id": "obj-380",
+     "id": "obj-388",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4160,
+      4220,
       91,
       22
      ],
@@ -8041,13 +8210,13 @@
    },
    {
     "box": {
-     "id": "obj-381",
+     "id": "obj-389",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4190,
+      4250,
       112,
       22
      ],
@@ -8059,13 +8228,13 @@
    },
    {
     "box": {
-     "id": "obj-382",
+     "id": "obj-390",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4190,
+      4250,
       210,
       22
      ],
@@ -8077,13 +8246,13 @@
    },
    {
     "box": {
-     "id": "obj-383",
+     "id": "obj-391",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4190,
+      4250,
       98,
       22
      ],
@@ -8093,7 +8262,7 @@
    },
    {
     "box": {
-     "id": "obj-384",
+     "id": "obj-392",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8131,7 +8300,7 @@
    },
    {
     "box": {
-     "id": "obj-385",
+     "id": "obj-393",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8155,13 +8324,13 @@
    },
    {
     "box": {
-     "id": "obj-386",
+     "id": "obj-394",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4220,
+      4280,
       77,
       22
      ],
@@ -8173,13 +8342,13 @@
    },
    {
     "box": {
-     "id": "obj-387",
+     "id": "obj-395",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4220,
+      4280,
       217,
       22
      ],
@@ -8192,13 +8361,13 @@
    },
    {
     "box": {
-     "id": "obj-388",
+     "id": "obj-396",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4220,
+      4280,
       91,
       22
      ],
@@ -8210,13 +8379,13 @@
    },
    {
     "box": {
-     "id": "obj-389",
+     "id": "obj-397",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4250,
+      4310,
       133,
       22
      ],
@@ -8228,13 +8397,13 @@
    },
    {
     "box": {
-     "id": "obj-390",
+     "id": "obj-398",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4250,
+      4310,
       231,
       22
      ],
@@ -8246,13 +8415,13 @@
    },
    {
     "box": {
-     "id": "obj-391",
+     "id": "obj-399",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4250,
+      4310,
       98,
       22
      ],
@@ -8262,7 +8431,7 @@
    },
    {
     "box": {
-     "id": "obj-392",
+     "id": "obj-400",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8300,7 +8469,7 @@
    },
    {
     "box": {
-     "id": "obj-393",
+     "id": "obj-401",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8324,13 +8493,13 @@
    },
    {
     "box": {
-     "id": "obj-394",
+     "id": "obj-402",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4280,
+      4340,
       77,
       22
      ],
@@ -8342,13 +8511,13 @@
    },
    {
     "box": {
-     "id": "obj-395",
+     "id": "obj-403",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4280,
+      4340,
       196,
       22
      ],
@@ -8361,13 +8530,13 @@
    },
    {
     "box": {
-     "id": "obj-396",
+     "id": "obj-404",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4280,
+      4340,
       91,
       22
      ],
@@ -8379,13 +8548,13 @@
    },
    {
     "box": {
-     "id": "obj-397",
+     "id": "obj-405",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4310,
+      4370,
       112,
       22
      ],
@@ -8397,13 +8566,13 @@
    },
    {
     "box": {
-     "id": "obj-398",
+     "id": "obj-406",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4310,
+      4370,
       210,
       22
      ],
@@ -8415,13 +8584,13 @@
    },
    {
     "box": {
-     "id": "obj-399",
+     "id": "obj-407",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4310,
+      4370,
       98,
       22
      ],
@@ -8431,7 +8600,7 @@
    },
    {
     "box": {
-     "id": "obj-400",
+     "id": "obj-408",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8454,7 +8623,7 @@
    },
    {
     "box": {
-     "id": "obj-401",
+     "id": "obj-409",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8492,7 +8661,7 @@
    },
    {
     "box": {
-     "id": "obj-402",
+     "id": "obj-410",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8506,175 +8675,6 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      892,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-403",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4340,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-404",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      4340,
-      189,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/vibrato/depth"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-405",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      330.0,
-      4340,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-406",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4370,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-407",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      4370,
-      203,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/vibrato/depth"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-408",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      379.0,
-      4370,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-409",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      842,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      842,
-      104,
-      48
-     ],
-     "varname": "/vibrato/press",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/vibrato/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-410",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      892,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
       892,
       104,
       22
@@ -8717,7 +8717,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/vibrato/press"
+     "text": "route /yehu/vibrato/depth"
     }
    },
    {
@@ -8771,7 +8771,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/vibrato/press"
+     "text": "prepend /yehu/vibrato/depth"
     }
    },
    {
@@ -8793,6 +8793,175 @@
    {
     "box": {
      "id": "obj-417",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      128,
+      842,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      842,
+      104,
+      48
+     ],
+     "varname": "/vibrato/press",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/vibrato/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-418",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      128,
+      892,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-419",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4460,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-420",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4460,
+      189,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/vibrato/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-421",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      330.0,
+      4460,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-422",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4490,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-423",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4490,
+      203,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/vibrato/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-424",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      4490,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-425",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8830,7 +8999,7 @@
    },
    {
     "box": {
-     "id": "obj-418",
+     "id": "obj-426",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8854,13 +9023,13 @@
    },
    {
     "box": {
-     "id": "obj-419",
+     "id": "obj-427",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4460,
+      4520,
       77,
       22
      ],
@@ -8872,13 +9041,13 @@
    },
    {
     "box": {
-     "id": "obj-420",
+     "id": "obj-428",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4460,
+      4520,
       182,
       22
      ],
@@ -8891,13 +9060,13 @@
    },
    {
     "box": {
-     "id": "obj-421",
+     "id": "obj-429",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      4460,
+      4520,
       91,
       22
      ],
@@ -8909,13 +9078,13 @@
    },
    {
     "box": {
-     "id": "obj-422",
+     "id": "obj-430",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4490,
+      4550,
       126,
       22
      ],
@@ -8927,13 +9096,13 @@
    },
    {
     "box": {
-     "id": "obj-423",
+     "id": "obj-431",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      4490,
+      4550,
       196,
       22
      ],
@@ -8945,13 +9114,13 @@
    },
    {
     "box": {
-     "id": "obj-424",
+     "id": "obj-432",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4490,
+      4550,
       98,
       22
      ],
@@ -8961,7 +9130,7 @@
    },
    {
     "box": {
-     "id": "obj-425",
+     "id": "obj-433",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8999,7 +9168,7 @@
    },
    {
     "box": {
-     "id": "obj-426",
+     "id": "obj-434",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9023,13 +9192,13 @@
    },
    {
     "box": {
-     "id": "obj-427",
+     "id": "obj-435",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4520,
+      4580,
       77,
       22
      ],
@@ -9041,13 +9210,13 @@
    },
    {
     "box": {
-     "id": "obj-428",
+     "id": "obj-436",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4520,
+      4580,
       189,
       22
      ],
@@ -9060,13 +9229,13 @@
    },
    {
     "box": {
-     "id": "obj-429",
+     "id": "obj-437",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      4520,
+      4580,
       91,
       22
      ],
@@ -9078,13 +9247,13 @@
    },
    {
     "box": {
-     "id": "obj-430",
+     "id": "obj-438",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4550,
+      4610,
       112,
       22
      ],
@@ -9096,13 +9265,13 @@
    },
    {
     "box": {
-     "id": "obj-431",
+     "id": "obj-439",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4550,
+      4610,
       203,
       22
      ],
@@ -9114,13 +9283,13 @@
    },
    {
     "box": {
-     "id": "obj-432",
+     "id": "obj-440",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      4550,
+      4610,
       98,
       22
      ],
@@ -9130,7 +9299,7 @@
    },
    {
     "box": {
-     "id": "obj-433",
+     "id": "obj-441",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9153,7 +9322,7 @@
    },
    {
     "box": {
-     "id": "obj-434",
+     "id": "obj-442",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9191,7 +9360,7 @@
    },
    {
     "box": {
-     "id": "obj-435",
+     "id": "obj-443",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9215,13 +9384,13 @@
    },
    {
     "box": {
-     "id": "obj-436",
+     "id": "obj-444",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4580,
+      4640,
       77,
       22
      ],
@@ -9233,13 +9402,13 @@
    },
    {
     "box": {
-     "id": "obj-437",
+     "id": "obj-445",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4580,
+      4640,
       175,
       22
      ],
@@ -9252,13 +9421,13 @@
    },
    {
     "box": {
-     "id": "obj-438",
+     "id": "obj-446",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      4580,
+      4640,
       91,
       22
      ],
@@ -9270,13 +9439,13 @@
    },
    {
     "box": {
-     "id": "obj-439",
+     "id": "obj-447",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4610,
+      4670,
       112,
       22
      ],
@@ -9288,13 +9457,13 @@
    },
    {
     "box": {
-     "id": "obj-440",
+     "id": "obj-448",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4610,
+      4670,
       189,
       22
      ],
@@ -9306,13 +9475,13 @@
    },
    {
     "box": {
-     "id": "obj-441",
+     "id": "obj-449",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      4610,
+      4670,
       98,
       22
      ],
@@ -9322,7 +9491,7 @@
    },
    {
     "box": {
-     "id": "obj-442",
+     "id": "obj-450",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9360,7 +9529,7 @@
    },
    {
     "box": {
-     "id": "obj-443",
+     "id": "obj-451",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9384,13 +9553,13 @@
    },
    {
     "box": {
-     "id": "obj-444",
+     "id": "obj-452",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4640,
+      4700,
       77,
       22
      ],
@@ -9402,13 +9571,13 @@
    },
    {
     "box": {
-     "id": "obj-445",
+     "id": "obj-453",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4640,
+      4700,
       196,
       22
      ],
@@ -9421,13 +9590,13 @@
    },
    {
     "box": {
-     "id": "obj-446",
+     "id": "obj-454",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4640,
+      4700,
       91,
       22
      ],
@@ -9439,13 +9608,13 @@
    },
    {
     "box": {
-     "id": "obj-447",
+     "id": "obj-455",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4670,
+      4730,
       126,
       22
      ],
@@ -9457,13 +9626,13 @@
    },
    {
     "box": {
-     "id": "obj-448",
+     "id": "obj-456",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      4670,
+      4730,
       210,
       22
      ],
@@ -9475,13 +9644,13 @@
    },
    {
     "box": {
-     "id": "obj-449",
+     "id": "obj-457",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       400.0,
-      4670,
+      4730,
       98,
       22
      ],
@@ -9491,7 +9660,7 @@
    },
    {
     "box": {
-     "id": "obj-450",
+     "id": "obj-458",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9514,7 +9683,7 @@
    },
    {
     "box": {
-     "id": "obj-451",
+     "id": "obj-459",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9552,7 +9721,7 @@
    },
    {
     "box": {
-     "id": "obj-452",
+     "id": "obj-460",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9576,13 +9745,13 @@
    },
    {
     "box": {
-     "id": "obj-453",
+     "id": "obj-461",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4700,
+      4760,
       77,
       22
      ],
@@ -9594,13 +9763,13 @@
    },
    {
     "box": {
-     "id": "obj-454",
+     "id": "obj-462",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4700,
+      4760,
       231,
       22
      ],
@@ -9613,13 +9782,13 @@
    },
    {
     "box": {
-     "id": "obj-455",
+     "id": "obj-463",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       372.0,
-      4700,
+      4760,
       91,
       22
      ],
@@ -9631,13 +9800,13 @@
    },
    {
     "box": {
-     "id": "obj-456",
+     "id": "obj-464",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4730,
+      4790,
       112,
       22
      ],
@@ -9649,13 +9818,13 @@
    },
    {
     "box": {
-     "id": "obj-457",
+     "id": "obj-465",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4730,
+      4790,
       245,
       22
      ],
@@ -9667,13 +9836,13 @@
    },
    {
     "box": {
-     "id": "obj-458",
+     "id": "obj-466",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       421.0,
-      4730,
+      4790,
       98,
       22
      ],
@@ -9683,7 +9852,7 @@
    },
    {
     "box": {
-     "id": "obj-459",
+     "id": "obj-467",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9721,7 +9890,7 @@
    },
    {
     "box": {
-     "id": "obj-460",
+     "id": "obj-468",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9745,13 +9914,13 @@
    },
    {
     "box": {
-     "id": "obj-461",
+     "id": "obj-469",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4760,
+      4820,
       77,
       22
      ],
@@ -9763,13 +9932,13 @@
    },
    {
     "box": {
-     "id": "obj-462",
+     "id": "obj-470",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4760,
+      4820,
       217,
       22
      ],
@@ -9782,13 +9951,13 @@
    },
    {
     "box": {
-     "id": "obj-463",
+     "id": "obj-471",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4760,
+      4820,
       91,
       22
      ],
@@ -9800,13 +9969,13 @@
    },
    {
     "box": {
-     "id": "obj-464",
+     "id": "obj-472",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4790,
+      4850,
       112,
       22
      ],
@@ -9818,13 +9987,13 @@
    },
    {
     "box": {
-     "id": "obj-465",
+     "id": "obj-473",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4790,
+      4850,
       231,
       22
      ],
@@ -9836,13 +10005,13 @@
    },
    {
     "box": {
-     "id": "obj-466",
+     "id": "obj-474",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       407.0,
-      4790,
+      4850,
       98,
       22
      ],
@@ -9852,7 +10021,7 @@
    },
    {
     "box": {
-     "id": "obj-467",
+     "id": "obj-475",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9890,7 +10059,7 @@
    },
    {
     "box": {
-     "id": "obj-468",
+     "id": "obj-476",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9914,13 +10083,13 @@
    },
    {
     "box": {
-     "id": "obj-469",
+     "id": "obj-477",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4820,
+      4880,
       77,
       22
      ],
@@ -9932,13 +10101,13 @@
    },
    {
     "box": {
-     "id": "obj-470",
+     "id": "obj-478",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4820,
+      4880,
       231,
       22
      ],
@@ -9951,13 +10120,13 @@
    },
    {
     "box": {
-     "id": "obj-471",
+     "id": "obj-479",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       372.0,
-      4820,
+      4880,
       91,
       22
      ],
@@ -9969,13 +10138,13 @@
    },
    {
     "box": {
-     "id": "obj-472",
+     "id": "obj-480",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4850,
+      4910,
       112,
       22
      ],
@@ -9987,13 +10156,13 @@
    },
    {
     "box": {
-     "id": "obj-473",
+     "id": "obj-481",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4850,
+      4910,
       245,
       22
      ],
@@ -10005,13 +10174,13 @@
    },
    {
     "box": {
-     "id": "obj-474",
+     "id": "obj-482",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       421.0,
-      4850,
+      4910,
       98,
       22
      ],
@@ -10021,7 +10190,7 @@
    },
    {
     "box": {
-     "id": "obj-475",
+     "id": "obj-483",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10059,7 +10228,7 @@
    },
    {
     "box": {
-     "id": "obj-476",
+     "id": "obj-484",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10083,13 +10252,13 @@
    },
    {
     "box": {
-     "id": "obj-477",
+     "id": "obj-485",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4880,
+      4940,
       77,
       22
      ],
@@ -10101,13 +10270,13 @@
    },
    {
     "box": {
-     "id": "obj-478",
+     "id": "obj-486",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4880,
+      4940,
       217,
       22
      ],
@@ -10120,13 +10289,13 @@
    },
    {
     "box": {
-     "id": "obj-479",
+     "id": "obj-487",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4880,
+      4940,
       91,
       22
      ],
@@ -10138,13 +10307,13 @@
    },
    {
     "box": {
-     "id": "obj-480",
+     "id": "obj-488",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4910,
+      4970,
       112,
       22
      ],
@@ -10156,13 +10325,13 @@
    },
    {
     "box": {
-     "id": "obj-481",
+     "id": "obj-489",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4910,
+      4970,
       231,
       22
      ],
@@ -10174,13 +10343,13 @@
    },
    {
     "box": {
-     "id": "obj-482",
+     "id": "obj-490",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       407.0,
-      4910,
+      4970,
       98,
       22
      ],
@@ -10190,7 +10359,7 @@
    },
    {
     "box": {
-     "id": "obj-483",
+     "id": "obj-491",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10213,7 +10382,7 @@
    },
    {
     "box": {
-     "id": "obj-484",
+     "id": "obj-492",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10251,7 +10420,7 @@
    },
    {
     "box": {
-     "id": "obj-485",
+     "id": "obj-493",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10275,13 +10444,13 @@
    },
    {
     "box": {
-     "id": "obj-486",
+     "id": "obj-494",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4940,
+      5000,
       77,
       22
      ],
@@ -10293,13 +10462,13 @@
    },
    {
     "box": {
-     "id": "obj-487",
+     "id": "obj-495",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4940,
+      5000,
       175,
       22
      ],
@@ -10312,13 +10481,13 @@
    },
    {
     "box": {
-     "id": "obj-488",
+     "id": "obj-496",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      4940,
+      5000,
       91,
       22
      ],
@@ -10330,13 +10499,13 @@
    },
    {
     "box": {
-     "id": "obj-489",
+     "id": "obj-497",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4970,
+      5030,
       112,
       22
      ],
@@ -10348,13 +10517,13 @@
    },
    {
     "box": {
-     "id": "obj-490",
+     "id": "obj-498",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4970,
+      5030,
       189,
       22
      ],
@@ -10366,13 +10535,13 @@
    },
    {
     "box": {
-     "id": "obj-491",
+     "id": "obj-499",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      4970,
+      5030,
       98,
       22
      ],
@@ -10382,7 +10551,7 @@
    },
    {
     "box": {
-     "id": "obj-492",
+     "id": "obj-500",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10420,7 +10589,7 @@
    },
    {
     "box": {
-     "id": "obj-493",
+     "id": "obj-501",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10444,13 +10613,13 @@
    },
    {
     "box": {
-     "id": "obj-494",
+     "id": "obj-502",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5000,
+      5060,
       77,
       22
      ],
@@ -10462,13 +10631,13 @@
    },
    {
     "box": {
-     "id": "obj-495",
+     "id": "obj-503",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5000,
+      5060,
       182,
       22
      ],
@@ -10481,13 +10650,13 @@
    },
    {
     "box": {
-     "id": "obj-496",
+     "id": "obj-504",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      5000,
+      5060,
       91,
       22
      ],
@@ -10499,13 +10668,13 @@
    },
    {
     "box": {
-     "id": "obj-497",
+     "id": "obj-505",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5030,
+      5090,
       112,
       22
      ],
@@ -10517,13 +10686,13 @@
    },
    {
     "box": {
-     "id": "obj-498",
+     "id": "obj-506",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5030,
+      5090,
       196,
       22
      ],
@@ -10535,13 +10704,13 @@
    },
    {
     "box": {
-     "id": "obj-499",
+     "id": "obj-507",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       372.0,
-      5030,
+      5090,
       98,
       22
      ],
@@ -10551,7 +10720,7 @@
    },
    {
     "box": {
-     "id": "obj-500",
+     "id": "obj-508",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10589,7 +10758,7 @@
    },
    {
     "box": {
-     "id": "obj-501",
+     "id": "obj-509",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10603,175 +10772,6 @@
      "presentation": 1,
      "presentation_rect": [
       240,
-      990,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-502",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5060,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-503",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5060,
-      196,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/output/balance"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-504",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      337.0,
-      5060,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-505",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5090,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-506",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5090,
-      210,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/output/balance"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-507",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      386.0,
-      5090,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-508",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      352,
-      940,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      940,
-      104,
-      48
-     ],
-     "varname": "/output/limiter",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/output/limiter",
-       "parameter_shortname": "limiter",
-       "parameter_mmin": -24.0,
-       "parameter_mmax": 0.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f dB"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-509",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      352,
-      990,
-      104,
-      22
-     ],
-     "text": "-24 to 0 dB",
-     "presentation": 1,
-     "presentation_rect": [
-      352,
       990,
       104,
       22
@@ -10814,7 +10814,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/output/limiter"
+     "text": "route /yehu/output/balance"
     }
    },
    {
@@ -10844,13 +10844,13 @@
      "patching_rect": [
       16.0,
       5150,
-      119,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set -3"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -10860,7 +10860,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      159.0,
+      152.0,
       5150,
       210,
       22
@@ -10868,7 +10868,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/output/limiter"
+     "text": "prepend /yehu/output/balance"
     }
    },
    {
@@ -10878,7 +10878,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      386.0,
       5150,
       98,
       22
@@ -10890,6 +10890,175 @@
    {
     "box": {
      "id": "obj-516",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      352,
+      940,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      940,
+      104,
+      48
+     ],
+     "varname": "/output/limiter",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/output/limiter",
+       "parameter_shortname": "limiter",
+       "parameter_mmin": -24.0,
+       "parameter_mmax": 0.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f dB"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-517",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      352,
+      990,
+      104,
+      22
+     ],
+     "text": "-24 to 0 dB",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-518",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5180,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-519",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5180,
+      196,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/output/limiter"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-520",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      337.0,
+      5180,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-521",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5210,
+      119,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set -3"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-522",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      159.0,
+      5210,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/limiter"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-523",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      5210,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-524",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10912,7 +11081,7 @@
    },
    {
     "box": {
-     "id": "obj-517",
+     "id": "obj-525",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10950,7 +11119,7 @@
    },
    {
     "box": {
-     "id": "obj-518",
+     "id": "obj-526",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10964,175 +11133,6 @@
      "presentation": 1,
      "presentation_rect": [
       464,
-      990,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-519",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5180,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-520",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5180,
-      161,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/body/gain"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-521",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      302.0,
-      5180,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-522",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5210,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-523",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5210,
-      175,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/body/gain"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-524",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      351.0,
-      5210,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-525",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      576,
-      940,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      940,
-      104,
-      48
-     ],
-     "varname": "/body/blend",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/body/blend",
-       "parameter_shortname": "blend",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-526",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      576,
-      990,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      576,
       990,
       104,
       22
@@ -11168,14 +11168,14 @@
      "patching_rect": [
       117.0,
       5240,
-      168,
+      161,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/body/blend"
+     "text": "route /yehu/body/gain"
     }
    },
    {
@@ -11185,7 +11185,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      309.0,
+      302.0,
       5240,
       91,
       22
@@ -11223,13 +11223,13 @@
      "patching_rect": [
       152.0,
       5270,
-      182,
+      175,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/blend"
+     "text": "prepend /yehu/body/gain"
     }
    },
    {
@@ -11239,7 +11239,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      358.0,
+      351.0,
       5270,
       98,
       22
@@ -11255,7 +11255,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      688,
+      576,
       940,
       104,
       48
@@ -11266,17 +11266,17 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      688,
+      576,
       940,
       104,
       48
      ],
-     "varname": "/body/width",
+     "varname": "/body/blend",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/body/width",
-       "parameter_shortname": "width",
+       "parameter_longname": "/body/blend",
+       "parameter_shortname": "blend",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -11293,7 +11293,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      688,
+      576,
       990,
       104,
       22
@@ -11301,7 +11301,7 @@
      "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      688,
+      576,
       990,
       104,
       22
@@ -11344,7 +11344,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/body/width"
+     "text": "route /yehu/body/blend"
     }
    },
    {
@@ -11374,13 +11374,13 @@
      "patching_rect": [
       16.0,
       5330,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.3"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -11390,7 +11390,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       5330,
       182,
       22
@@ -11398,7 +11398,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/width"
+     "text": "prepend /yehu/body/blend"
     }
    },
    {
@@ -11408,7 +11408,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      372.0,
+      358.0,
       5330,
       98,
       22
@@ -11424,7 +11424,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      800,
+      688,
       940,
       104,
       48
@@ -11435,17 +11435,17 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      800,
+      688,
       940,
       104,
       48
      ],
-     "varname": "/body/evenness",
+     "varname": "/body/width",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/body/evenness",
-       "parameter_shortname": "evenness",
+       "parameter_longname": "/body/width",
+       "parameter_shortname": "width",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -11462,7 +11462,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      800,
+      688,
       990,
       104,
       22
@@ -11470,7 +11470,7 @@
      "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      800,
+      688,
       990,
       104,
       22
@@ -11506,14 +11506,14 @@
      "patching_rect": [
       117.0,
       5360,
-      189,
+      168,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/body/evenness"
+     "text": "route /yehu/body/width"
     }
    },
    {
@@ -11523,7 +11523,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      330.0,
+      309.0,
       5360,
       91,
       22
@@ -11549,7 +11549,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.9"
+     "text": "loadmess set 0.3"
     }
    },
    {
@@ -11561,13 +11561,13 @@
      "patching_rect": [
       166.0,
       5390,
-      203,
+      182,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/evenness"
+     "text": "prepend /yehu/body/width"
     }
    },
    {
@@ -11577,7 +11577,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      372.0,
       5390,
       98,
       22
@@ -11589,6 +11589,344 @@
    {
     "box": {
      "id": "obj-549",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      800,
+      940,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      940,
+      104,
+      48
+     ],
+     "varname": "/body/brilliance",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/body/brilliance",
+       "parameter_shortname": "brilliance",
+       "parameter_mmin": -24.0,
+       "parameter_mmax": 24.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f dB"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-550",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      800,
+      990,
+      104,
+      22
+     ],
+     "text": "-24 to 24 dB",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-551",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5420,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-552",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5420,
+      203,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/body/brilliance"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-553",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      344.0,
+      5420,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-554",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5450,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-555",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5450,
+      217,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/brilliance"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-556",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      5450,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-557",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      912,
+      940,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      940,
+      104,
+      48
+     ],
+     "varname": "/body/evenness",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/body/evenness",
+       "parameter_shortname": "evenness",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-558",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      912,
+      990,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-559",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5480,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-560",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5480,
+      189,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/body/evenness"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-561",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      330.0,
+      5480,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-562",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5510,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.9"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-563",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      5510,
+      203,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/evenness"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-564",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      5510,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-565",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11611,7 +11949,7 @@
    },
    {
     "box": {
-     "id": "obj-550",
+     "id": "obj-566",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11649,7 +11987,7 @@
    },
    {
     "box": {
-     "id": "obj-551",
+     "id": "obj-567",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11673,13 +12011,13 @@
    },
    {
     "box": {
-     "id": "obj-552",
+     "id": "obj-568",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5420,
+      5540,
       77,
       22
      ],
@@ -11691,13 +12029,13 @@
    },
    {
     "box": {
-     "id": "obj-553",
+     "id": "obj-569",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5420,
+      5540,
       161,
       22
      ],
@@ -11710,13 +12048,13 @@
    },
    {
     "box": {
-     "id": "obj-554",
+     "id": "obj-570",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      5420,
+      5540,
       91,
       22
      ],
@@ -11728,13 +12066,13 @@
    },
    {
     "box": {
-     "id": "obj-555",
+     "id": "obj-571",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5450,
+      5570,
       112,
       22
      ],
@@ -11746,13 +12084,13 @@
    },
    {
     "box": {
-     "id": "obj-556",
+     "id": "obj-572",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5450,
+      5570,
       175,
       22
      ],
@@ -11764,13 +12102,13 @@
    },
    {
     "box": {
-     "id": "obj-557",
+     "id": "obj-573",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       351.0,
-      5450,
+      5570,
       98,
       22
      ],
@@ -11780,7 +12118,7 @@
    },
    {
     "box": {
-     "id": "obj-558",
+     "id": "obj-574",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11818,7 +12156,7 @@
    },
    {
     "box": {
-     "id": "obj-559",
+     "id": "obj-575",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11832,344 +12170,6 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      1088,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-560",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5480,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-561",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5480,
-      168,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/room/decay"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-562",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      309.0,
-      5480,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-563",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5510,
-      126,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0.4"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-564",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      166.0,
-      5510,
-      182,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/decay"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-565",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      372.0,
-      5510,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-566",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      240,
-      1038,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1038,
-      104,
-      48
-     ],
-     "varname": "/room/damping",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/room/damping",
-       "parameter_shortname": "damping",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-567",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      240,
-      1088,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1088,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-568",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5540,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-569",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5540,
-      182,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/room/damping"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-570",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      323.0,
-      5540,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-571",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5570,
-      126,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0.4"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-572",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      166.0,
-      5570,
-      196,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/damping"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-573",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      386.0,
-      5570,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-574",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      352,
-      1038,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      1038,
-      104,
-      48
-     ],
-     "varname": "/room/level",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/room/level",
-       "parameter_shortname": "level",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-575",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      352,
-      1088,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      352,
       1088,
       104,
       22
@@ -12212,7 +12212,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/room/level"
+     "text": "route /yehu/room/decay"
     }
    },
    {
@@ -12242,13 +12242,13 @@
      "patching_rect": [
       16.0,
       5630,
-      133,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.15"
+     "text": "loadmess set 0.4"
     }
    },
    {
@@ -12258,7 +12258,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      173.0,
+      166.0,
       5630,
       182,
       22
@@ -12266,7 +12266,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/room/level"
+     "text": "prepend /yehu/room/decay"
     }
    },
    {
@@ -12276,7 +12276,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      379.0,
+      372.0,
       5630,
       98,
       22
@@ -12288,6 +12288,344 @@
    {
     "box": {
      "id": "obj-582",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      1038,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1038,
+      104,
+      48
+     ],
+     "varname": "/room/damping",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/damping",
+       "parameter_shortname": "damping",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-583",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      1088,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-584",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5660,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-585",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5660,
+      182,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-586",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      323.0,
+      5660,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-587",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5690,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.4"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-588",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      5690,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-589",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      5690,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-590",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      352,
+      1038,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1038,
+      104,
+      48
+     ],
+     "varname": "/room/level",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/level",
+       "parameter_shortname": "level",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-591",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      352,
+      1088,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-592",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5720,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-593",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5720,
+      168,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-594",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      309.0,
+      5720,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-595",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5750,
+      133,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.15"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-596",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      5750,
+      182,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-597",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      5750,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-598",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12325,7 +12663,7 @@
    },
    {
     "box": {
-     "id": "obj-583",
+     "id": "obj-599",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12349,13 +12687,13 @@
    },
    {
     "box": {
-     "id": "obj-584",
+     "id": "obj-600",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5660,
+      5780,
       77,
       22
      ],
@@ -12367,13 +12705,13 @@
    },
    {
     "box": {
-     "id": "obj-585",
+     "id": "obj-601",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5660,
+      5780,
       189,
       22
      ],
@@ -12386,13 +12724,13 @@
    },
    {
     "box": {
-     "id": "obj-586",
+     "id": "obj-602",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      5660,
+      5780,
       91,
       22
      ],
@@ -12404,13 +12742,13 @@
    },
    {
     "box": {
-     "id": "obj-587",
+     "id": "obj-603",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5690,
+      5810,
       112,
       22
      ],
@@ -12422,13 +12760,13 @@
    },
    {
     "box": {
-     "id": "obj-588",
+     "id": "obj-604",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5690,
+      5810,
       203,
       22
      ],
@@ -12440,13 +12778,13 @@
    },
    {
     "box": {
-     "id": "obj-589",
+     "id": "obj-605",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      5690,
+      5810,
       98,
       22
      ],
@@ -12456,7 +12794,7 @@
    },
    {
     "box": {
-     "id": "obj-590",
+     "id": "obj-606",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12494,7 +12832,7 @@
    },
    {
     "box": {
-     "id": "obj-591",
+     "id": "obj-607",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12518,13 +12856,13 @@
    },
    {
     "box": {
-     "id": "obj-592",
+     "id": "obj-608",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5720,
+      5840,
       77,
       22
      ],
@@ -12536,13 +12874,13 @@
    },
    {
     "box": {
-     "id": "obj-593",
+     "id": "obj-609",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5720,
+      5840,
       154,
       22
      ],
@@ -12555,13 +12893,13 @@
    },
    {
     "box": {
-     "id": "obj-594",
+     "id": "obj-610",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       295.0,
-      5720,
+      5840,
       91,
       22
      ],
@@ -12573,13 +12911,13 @@
    },
    {
     "box": {
-     "id": "obj-595",
+     "id": "obj-611",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5750,
+      5870,
       112,
       22
      ],
@@ -12591,13 +12929,13 @@
    },
    {
     "box": {
-     "id": "obj-596",
+     "id": "obj-612",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5750,
+      5870,
       168,
       22
      ],
@@ -12609,13 +12947,13 @@
    },
    {
     "box": {
-     "id": "obj-597",
+     "id": "obj-613",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       344.0,
-      5750,
+      5870,
       98,
       22
      ],
@@ -12625,7 +12963,7 @@
    },
    {
     "box": {
-     "id": "obj-598",
+     "id": "obj-614",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12648,7 +12986,7 @@
    },
    {
     "box": {
-     "id": "obj-599",
+     "id": "obj-615",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12686,7 +13024,7 @@
    },
    {
     "box": {
-     "id": "obj-600",
+     "id": "obj-616",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12710,13 +13048,13 @@
    },
    {
     "box": {
-     "id": "obj-601",
+     "id": "obj-617",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5780,
+      5900,
       77,
       22
      ],
@@ -12728,13 +13066,13 @@
    },
    {
     "box": {
-     "id": "obj-602",
+     "id": "obj-618",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5780,
+      5900,
       224,
       22
      ],
@@ -12747,13 +13085,13 @@
    },
    {
     "box": {
-     "id": "obj-603",
+     "id": "obj-619",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       365.0,
-      5780,
+      5900,
       91,
       22
      ],
@@ -12765,13 +13103,13 @@
    },
    {
     "box": {
-     "id": "obj-604",
+     "id": "obj-620",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5810,
+      5930,
       112,
       22
      ],
@@ -12783,13 +13121,13 @@
    },
    {
     "box": {
-     "id": "obj-605",
+     "id": "obj-621",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5810,
+      5930,
       238,
       22
      ],
@@ -12801,13 +13139,13 @@
    },
    {
     "box": {
-     "id": "obj-606",
+     "id": "obj-622",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       414.0,
-      5810,
+      5930,
       98,
       22
      ],
@@ -12817,7 +13155,7 @@
    },
    {
     "box": {
-     "id": "obj-607",
+     "id": "obj-623",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12855,7 +13193,7 @@
    },
    {
     "box": {
-     "id": "obj-608",
+     "id": "obj-624",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12879,13 +13217,13 @@
    },
    {
     "box": {
-     "id": "obj-609",
+     "id": "obj-625",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5840,
+      5960,
       77,
       22
      ],
@@ -12897,13 +13235,13 @@
    },
    {
     "box": {
-     "id": "obj-610",
+     "id": "obj-626",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5840,
+      5960,
       175,
       22
      ],
@@ -12916,13 +13254,13 @@
    },
    {
     "box": {
-     "id": "obj-611",
+     "id": "obj-627",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      5840,
+      5960,
       91,
       22
      ],
@@ -12934,13 +13272,13 @@
    },
    {
     "box": {
-     "id": "obj-612",
+     "id": "obj-628",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5870,
+      5990,
       112,
       22
      ],
@@ -12952,13 +13290,13 @@
    },
    {
     "box": {
-     "id": "obj-613",
+     "id": "obj-629",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5870,
+      5990,
       189,
       22
      ],
@@ -12970,13 +13308,13 @@
    },
    {
     "box": {
-     "id": "obj-614",
+     "id": "obj-630",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      5870,
+      5990,
       98,
       22
      ],
@@ -15732,6 +16070,19 @@
    {
     "patchline": {
      "source": [
+      "obj-272",
+      0
+     ],
+     "destination": [
+      "obj-273",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-273",
       0
      ],
@@ -15749,7 +16100,7 @@
       0
      ],
      "destination": [
-      "obj-275",
+      "obj-270",
       0
      ],
      "order": 0
@@ -15762,7 +16113,20 @@
       0
      ],
      "destination": [
-      "obj-271",
+      "obj-270",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-270",
+      0
+     ],
+     "destination": [
+      "obj-276",
       0
      ],
      "order": 0
@@ -15775,33 +16139,7 @@
       0
      ],
      "destination": [
-      "obj-271",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-271",
-      0
-     ],
-     "destination": [
       "obj-277",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-277",
-      0
-     ],
-     "destination": [
-      "obj-278",
       0
      ],
      "order": 0
@@ -16356,6 +16694,19 @@
    {
     "patchline": {
      "source": [
+      "obj-337",
+      0
+     ],
+     "destination": [
+      "obj-338",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-338",
       0
      ],
@@ -16373,7 +16724,7 @@
       0
      ],
      "destination": [
-      "obj-340",
+      "obj-335",
       0
      ],
      "order": 0
@@ -16386,7 +16737,20 @@
       0
      ],
      "destination": [
-      "obj-336",
+      "obj-335",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-335",
+      0
+     ],
+     "destination": [
+      "obj-341",
       0
      ],
      "order": 0
@@ -16399,33 +16763,7 @@
       0
      ],
      "destination": [
-      "obj-336",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-336",
-      0
-     ],
-     "destination": [
       "obj-342",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-342",
-      0
-     ],
-     "destination": [
-      "obj-343",
       0
      ],
      "order": 0
@@ -16980,6 +17318,19 @@
    {
     "patchline": {
      "source": [
+      "obj-402",
+      0
+     ],
+     "destination": [
+      "obj-403",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-403",
       0
      ],
@@ -16997,7 +17348,7 @@
       0
      ],
      "destination": [
-      "obj-405",
+      "obj-400",
       0
      ],
      "order": 0
@@ -17010,7 +17361,20 @@
       0
      ],
      "destination": [
-      "obj-401",
+      "obj-400",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-400",
+      0
+     ],
+     "destination": [
+      "obj-406",
       0
      ],
      "order": 0
@@ -17023,33 +17387,7 @@
       0
      ],
      "destination": [
-      "obj-401",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-401",
-      0
-     ],
-     "destination": [
       "obj-407",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-407",
-      0
-     ],
-     "destination": [
-      "obj-408",
       0
      ],
      "order": 0
@@ -17292,6 +17630,19 @@
    {
     "patchline": {
      "source": [
+      "obj-435",
+      0
+     ],
+     "destination": [
+      "obj-436",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-436",
       0
      ],
@@ -17309,7 +17660,7 @@
       0
      ],
      "destination": [
-      "obj-438",
+      "obj-433",
       0
      ],
      "order": 0
@@ -17322,7 +17673,20 @@
       0
      ],
      "destination": [
-      "obj-434",
+      "obj-433",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-433",
+      0
+     ],
+     "destination": [
+      "obj-439",
       0
      ],
      "order": 0
@@ -17335,33 +17699,7 @@
       0
      ],
      "destination": [
-      "obj-434",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-434",
-      0
-     ],
-     "destination": [
       "obj-440",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-440",
-      0
-     ],
-     "destination": [
-      "obj-441",
       0
      ],
      "order": 0
@@ -17448,6 +17786,19 @@
    {
     "patchline": {
      "source": [
+      "obj-452",
+      0
+     ],
+     "destination": [
+      "obj-453",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-453",
       0
      ],
@@ -17465,7 +17816,7 @@
       0
      ],
      "destination": [
-      "obj-455",
+      "obj-450",
       0
      ],
      "order": 0
@@ -17478,7 +17829,20 @@
       0
      ],
      "destination": [
-      "obj-451",
+      "obj-450",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-450",
+      0
+     ],
+     "destination": [
+      "obj-456",
       0
      ],
      "order": 0
@@ -17491,33 +17855,7 @@
       0
      ],
      "destination": [
-      "obj-451",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-451",
-      0
-     ],
-     "destination": [
       "obj-457",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-457",
-      0
-     ],
-     "destination": [
-      "obj-458",
       0
      ],
      "order": 0
@@ -17760,6 +18098,19 @@
    {
     "patchline": {
      "source": [
+      "obj-485",
+      0
+     ],
+     "destination": [
+      "obj-486",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-486",
       0
      ],
@@ -17777,7 +18128,7 @@
       0
      ],
      "destination": [
-      "obj-488",
+      "obj-483",
       0
      ],
      "order": 0
@@ -17790,7 +18141,20 @@
       0
      ],
      "destination": [
-      "obj-484",
+      "obj-483",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-483",
+      0
+     ],
+     "destination": [
+      "obj-489",
       0
      ],
      "order": 0
@@ -17803,33 +18167,7 @@
       0
      ],
      "destination": [
-      "obj-484",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-484",
-      0
-     ],
-     "destination": [
       "obj-490",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-490",
-      0
-     ],
-     "destination": [
-      "obj-491",
       0
      ],
      "order": 0
@@ -18072,6 +18410,19 @@
    {
     "patchline": {
      "source": [
+      "obj-518",
+      0
+     ],
+     "destination": [
+      "obj-519",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-519",
       0
      ],
@@ -18089,7 +18440,7 @@
       0
      ],
      "destination": [
-      "obj-521",
+      "obj-516",
       0
      ],
      "order": 0
@@ -18102,7 +18453,20 @@
       0
      ],
      "destination": [
-      "obj-517",
+      "obj-516",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-516",
+      0
+     ],
+     "destination": [
+      "obj-522",
       0
      ],
      "order": 0
@@ -18115,33 +18479,7 @@
       0
      ],
      "destination": [
-      "obj-517",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-517",
-      0
-     ],
-     "destination": [
       "obj-523",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-523",
-      0
-     ],
-     "destination": [
-      "obj-524",
       0
      ],
      "order": 0
@@ -18384,6 +18722,19 @@
    {
     "patchline": {
      "source": [
+      "obj-551",
+      0
+     ],
+     "destination": [
+      "obj-552",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-552",
       0
      ],
@@ -18401,7 +18752,7 @@
       0
      ],
      "destination": [
-      "obj-554",
+      "obj-549",
       0
      ],
      "order": 0
@@ -18414,7 +18765,20 @@
       0
      ],
      "destination": [
-      "obj-550",
+      "obj-549",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-549",
+      0
+     ],
+     "destination": [
+      "obj-555",
       0
      ],
      "order": 0
@@ -18427,19 +18791,6 @@
       0
      ],
      "destination": [
-      "obj-550",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-550",
-      0
-     ],
-     "destination": [
       "obj-556",
       0
      ],
@@ -18449,11 +18800,11 @@
    {
     "patchline": {
      "source": [
-      "obj-556",
+      "obj-559",
       0
      ],
      "destination": [
-      "obj-557",
+      "obj-560",
       0
      ],
      "order": 0
@@ -18479,7 +18830,7 @@
       0
      ],
      "destination": [
-      "obj-562",
+      "obj-557",
       0
      ],
      "order": 0
@@ -18492,7 +18843,20 @@
       0
      ],
      "destination": [
-      "obj-558",
+      "obj-557",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-557",
+      0
+     ],
+     "destination": [
+      "obj-563",
       0
      ],
      "order": 0
@@ -18505,33 +18869,7 @@
       0
      ],
      "destination": [
-      "obj-558",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-558",
-      0
-     ],
-     "destination": [
       "obj-564",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-564",
-      0
-     ],
-     "destination": [
-      "obj-565",
       0
      ],
      "order": 0
@@ -18852,6 +19190,19 @@
    {
     "patchline": {
      "source": [
+      "obj-600",
+      0
+     ],
+     "destination": [
+      "obj-601",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-601",
       0
      ],
@@ -18869,7 +19220,7 @@
       0
      ],
      "destination": [
-      "obj-603",
+      "obj-598",
       0
      ],
      "order": 0
@@ -18882,7 +19233,20 @@
       0
      ],
      "destination": [
-      "obj-599",
+      "obj-598",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-598",
+      0
+     ],
+     "destination": [
+      "obj-604",
       0
      ],
      "order": 0
@@ -18895,19 +19259,6 @@
       0
      ],
      "destination": [
-      "obj-599",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-599",
-      0
-     ],
-     "destination": [
       "obj-605",
       0
      ],
@@ -18917,11 +19268,11 @@
    {
     "patchline": {
      "source": [
-      "obj-605",
+      "obj-608",
       0
      ],
      "destination": [
-      "obj-606",
+      "obj-609",
       0
      ],
      "order": 0
@@ -18947,7 +19298,7 @@
       0
      ],
      "destination": [
-      "obj-611",
+      "obj-606",
       0
      ],
      "order": 0
@@ -18960,7 +19311,20 @@
       0
      ],
      "destination": [
-      "obj-607",
+      "obj-606",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-606",
+      0
+     ],
+     "destination": [
+      "obj-612",
       0
      ],
      "order": 0
@@ -18973,19 +19337,6 @@
       0
      ],
      "destination": [
-      "obj-607",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-607",
-      0
-     ],
-     "destination": [
       "obj-613",
       0
      ],
@@ -18995,11 +19346,154 @@
    {
     "patchline": {
      "source": [
-      "obj-613",
+      "obj-617",
       0
      ],
      "destination": [
-      "obj-614",
+      "obj-618",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-618",
+      0
+     ],
+     "destination": [
+      "obj-619",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-619",
+      0
+     ],
+     "destination": [
+      "obj-615",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-620",
+      0
+     ],
+     "destination": [
+      "obj-615",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-615",
+      0
+     ],
+     "destination": [
+      "obj-621",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-621",
+      0
+     ],
+     "destination": [
+      "obj-622",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-625",
+      0
+     ],
+     "destination": [
+      "obj-626",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-626",
+      0
+     ],
+     "destination": [
+      "obj-627",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-627",
+      0
+     ],
+     "destination": [
+      "obj-623",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-628",
+      0
+     ],
+     "destination": [
+      "obj-623",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-623",
+      0
+     ],
+     "destination": [
+      "obj-629",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-629",
+      0
+     ],
+     "destination": [
+      "obj-630",
       0
      ],
      "order": 0

@@ -54,7 +54,7 @@ def test_the_players_delay_follows_the_devices_period(until):
     instrument = Instrument(InstrumentSpec(48000))
     told = instrument._rig["published"]
     player = SimpleNamespace(delay=0, know_programs=lambda: None)
-    ensemble = SimpleNamespace(lost_states=0, instruments=[instrument])
+    ensemble = SimpleNamespace(lost_states=0, instruments=[instrument], first=instrument)
     keeper = Housekeeper(ensemble, [player], Delay(instrument, 128), [], lambda: 0, print)
 
     def is_followed() -> bool:

@@ -280,6 +280,8 @@ export default {
   "parameter/body/blend": "Body to bridge",
   "parameter/body/evenness": "Evenness of notes",
   "parameter/body/width": "Width of the body",
+  "parameter/body/brilliance": "Brilliance now",
+  "parameter/playing/brilliance": "Brilliance",
   "parameter/room/size": "Size",
   "parameter/room/decay": "Reverberation",
   "parameter/room/damping": "Damping",

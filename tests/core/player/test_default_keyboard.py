@@ -5,12 +5,12 @@ from __future__ import annotations
 import mido
 import numpy as np
 import pytest
-from yehu_server.playing.options import PlayingOptions
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
 from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import WishPoster
 
 RATE = 44_100

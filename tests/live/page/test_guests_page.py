@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from panel.browser import missing
-from panel.serving import converse, free_port, start, stop
+from live.page.browser import missing
+from live.page.serving import converse, free_port, start, stop
 
 pytestmark = [
     pytest.mark.slow,  # it starts a browser

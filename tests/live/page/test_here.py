@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from panel.browser import missing
-from panel.serving import converse, free_port, start, stop, until
+from live.page.browser import missing
+from live.page.serving import converse, free_port, start, stop, until
 
 pytestmark = [
     pytest.mark.slow,  # it plays a server in real time

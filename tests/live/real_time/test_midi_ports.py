@@ -251,7 +251,7 @@ def test_the_default_mapping_reaches_the_instrument(keys, until):
     assert moves("e0 7f 7f", f"/finger/{finger}/position") > place  # the wheel up: two semitones
     assert heard.player.pitch == 76.0
     assert moves("d0 7f", f"/finger/{finger}/press") == pytest.approx(5.0)
-    assert abs(moves("b0 01 7f", "/bow/speed")) == pytest.approx(0.26, rel=1e-3)
+    assert abs(moves("b0 10 7f", "/bow/speed")) == pytest.approx(0.26, rel=1e-3)
 
     # Reset all controllers.
     assert abs(moves("b0 79 00", "/bow/speed")) == pytest.approx(0.2, rel=1e-3)

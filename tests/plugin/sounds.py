@@ -44,13 +44,13 @@ def by_library(path, messages, frames, rate=48000.0):
 
 
 def frequency(samples, rate):
-    """The frequency (Hz) of the lowest strong partial, near which all others are multiples."""
+    """The frequency (Hz) whose first four multiples are strong together."""
     mono = samples.mean(axis=1) * np.hanning(len(samples))
     spectrum = np.abs(np.fft.rfft(mono, 8 * len(mono))) ** 2
     spacing = rate / (8 * len(mono))
     lowest, highest = (round(hz / spacing) for hz in (300.0, 1500.0))
     candidates = np.arange(lowest, highest)
-    sums = sum(np.sqrt(spectrum[candidates * harmonic]) / harmonic for harmonic in (1, 2, 3))
+    sums = sum(np.log(spectrum[candidates * harmonic] + 1e-9) for harmonic in (1, 2, 3, 4))
     return float(candidates[np.argmax(sums)] * spacing)
 
 

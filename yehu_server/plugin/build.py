@@ -1,4 +1,4 @@
-"""Build the plug-in for CLAP hosts."""
+"""Build the plug-in: one file or folder for each format."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
 from yehu_server.errors import OutputError, YehuError
-from yehu_server.plugin.bundles import put_clap
+from yehu_server.plugin.bundles import put_clap, put_lv2
 from yehu_server.plugin.carried import carried
 from yehu_server.plugin.header import header
 from yehu_server.plugin.objects import make_objects, object_file
-from yehu_server.plugin.parameters import HostParameter, parameters
+from yehu_server.plugin.parameters import parameters
 from yehu_server.plugin.targets import ALL, NAMES, System, systems_of
 
 SOURCE = Path(__file__).parent / "source"
@@ -49,10 +49,13 @@ class Format:
     headers: Path
     sign: str
     package: str
-    put: Callable[[Path, dict[System, Path], Sequence[HostParameter]], Path]
+    put: Callable[[Path, Mapping[System, Path]], Path]
 
 
-FORMATS = (Format("CLAP", "clap.cpp", DPF, "clap/entry.h", "dpf-source", put_clap),)
+FORMATS = (
+    Format("CLAP", "clap.cpp", DPF, "clap/entry.h", "dpf-source", put_clap),
+    Format("LV2", "lv2.cpp", Path("/usr/include"), "lv2/core/lv2.h", "lv2-dev", put_lv2),
+)
 
 
 def build(folder: Path, target: str) -> list[Path]:
@@ -84,29 +87,27 @@ def build(folder: Path, target: str) -> list[Path]:
         with tempfile.TemporaryDirectory() as scratch:
             work = Path(scratch)
             make_objects(work, target)
-            shown = write_header(work)
+            write_header(work)
             return [
                 path
                 for name in names
-                for path in _put(folder / name if target == ALL else folder, name, work, shown)
+                for path in _put(folder / name if target == ALL else folder, name, work)
             ]
     except OSError as error:
         raise OutputError(f"{error.filename or folder}: {error.strerror}") from error
 
 
-def write_header(work: Path) -> list[HostParameter]:
-    """Write the header of parameters and what is carried into a folder; return the parameters."""
+def write_header(work: Path) -> None:
+    """Write the header of parameters and what is carried into a folder."""
     data = carried()
-    shown = parameters(*data.names)
-    (work / HEADER_FILE).write_text(header(shown, data))
-    return shown
+    (work / HEADER_FILE).write_text(header(parameters(*data.names), data))
 
 
-def _put(folder: Path, name: str, work: Path, shown: Sequence[HostParameter]) -> list[Path]:
+def _put(folder: Path, name: str, work: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     systems = systems_of(name)
     return [
-        each.put(folder, {system: link(each, system, work) for system in systems}, shown)
+        each.put(folder, {system: link(each, system, work) for system in systems})
         for each in FORMATS
     ]
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import plistlib
 import shutil
 import struct
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from yehu_server.plugin.carried import carried
 from yehu_server.plugin.header import IDENTITY
-from yehu_server.plugin.parameters import HostParameter
+from yehu_server.plugin.lv2_texts import manifest, plugin_text, presets_text
+from yehu_server.plugin.parameters import parameters
 from yehu_server.plugin.targets import System
 from yehu_server.util import __version__
 
@@ -19,15 +21,41 @@ NAME = "Yehu"
 FAT, PROCESSORS, PAGE = 0xCAFEBABE, {"x86_64": (0x01000007, 3), "arm64": (0x0100000C, 0)}, 14
 
 
-def put_clap(
-    folder: Path, libraries: Mapping[System, Path], _shown: Sequence[HostParameter]
-) -> Path:
+def put_clap(folder: Path, libraries: Mapping[System, Path]) -> Path:
     """Put a CLAP plug-in into a folder: a file; on macOS a bundle."""
     path = folder / f"{NAME}.clap"
     if _is_mac(libraries):
         _put_mac(path, libraries)
     else:
         shutil.copyfile(next(iter(libraries.values())), path)
+    return path
+
+
+def put_vst3(folder: Path, libraries: Mapping[System, Path]) -> Path:
+    """Put a VST3 plug-in into a folder: a bundle on all systems."""
+    path = folder / f"{NAME}.vst3"
+    if _is_mac(libraries):
+        _put_mac(path, libraries)
+    else:
+        for system, library in libraries.items():
+            inside, ending = system.vst3
+            target = path / "Contents" / inside / f"{NAME}{ending}"
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(library, target)
+    return path
+
+
+def put_lv2(folder: Path, libraries: Mapping[System, Path]) -> Path:
+    """Put an LV2 plug-in into a folder: a bundle of the library and texts on what it is."""
+    path = folder / f"{NAME}.lv2"
+    path.mkdir(exist_ok=True)
+    data = carried()
+    shown = parameters(*data.names)
+    ending = next(iter(libraries)).ending
+    (path / f"{NAME}{ending}").write_bytes(_joined(libraries))
+    (path / "manifest.ttl").write_text(manifest(f"{NAME}{ending}", data.presets))
+    (path / f"{NAME}.ttl").write_text(plugin_text(shown))
+    (path / "presets.ttl").write_text(presets_text(shown, data))
     return path
 
 

@@ -39,7 +39,8 @@ bool Instrument::begin(double rate) {
     if (!code.prepare(aligned, (double)own, 2)) return false;
     rig = aligned;
     memset(notes, 0, sizeof notes);
-    wants_tables = true;
+    wants_zone = true;
+    wants_tables = value(MAPPING) != 0.0 || value(TUNING) != 0.0; /* else it has them */
     for (int i = 0; i < PARAMETERS; i++)
         if (parameters[i].row >= 0 && value(i) != parameters[i].usual) flag(set_bits, i);
     return true;
@@ -124,6 +125,7 @@ void Instrument::apply(int64_t frame, int parameter) {
 void Instrument::begin_block() {
     if (!rig) return;
     if (wants_tables) use_tables();
+    if (wants_zone) set_zone();
     const int64_t frame = code.frame(rig);
     for (int word = 0; word < WORDS; word++) {
         uint32_t bits = set_bits[word].load(std::memory_order_relaxed);
@@ -145,10 +147,15 @@ void Instrument::use_tables() {
             memcpy(words + first, runs->word + at + 2, (size_t)count * sizeof *words);
             at += 2 + (int32_t)count;
         }
-    const int64_t frame = code.frame(rig);
-    if (code.map(rig, frame, tables, sizeof *tables) == 0) return;
+    if (code.map(rig, code.frame(rig), tables, sizeof *tables) == 0) return;
     wants_tables = false;
-    /* Notes with expressions need a zone, which other tables may have taken away. */
+    set_zone(); /* which other tables may have taken away */
+}
+
+/* Notes with expressions need a zone: of all channels of a port of their own. */
+void Instrument::set_zone() {
+    const int64_t frame = code.frame(rig);
+    wants_zone = false;
     const int zone[][2] = {{101, 0}, {100, 6}, {6, MEMBERS}, {101, 127}, {100, 127}};
     for (const int *pair : zone) message(frame, 0xB0, pair[0], pair[1]);
 }

@@ -76,6 +76,7 @@ private:
     void message(int64_t frame, int status, int one, int two);
     void apply(int64_t frame, int parameter);
     void use_tables();
+    void set_zone();
     int member_of(int id, int channel, int key) const;
 
     const Engine &code;
@@ -84,7 +85,7 @@ private:
     Resampler resampler;
     std::atomic<double> values[PARAMETERS];
     std::atomic<uint32_t> set_bits[WORDS], moved_bits[WORDS];
-    bool wants_tables = false, plays = false;
+    bool wants_tables = false, wants_zone = false, plays = false;
     Note notes[MEMBERS];
     int latest = 0;
 };

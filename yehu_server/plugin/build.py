@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from yehu_server.errors import OutputError, YehuError
-from yehu_server.plugin.bundles import put_clap, put_lv2
+from yehu_server.plugin.bundles import put_clap, put_lv2, put_vst3
 from yehu_server.plugin.carried import carried
 from yehu_server.plugin.header import header
 from yehu_server.plugin.objects import make_objects, object_file
@@ -21,6 +21,7 @@ from yehu_server.plugin.targets import ALL, NAMES, System, systems_of
 
 SOURCE = Path(__file__).parent / "source"
 COMMON = ("engine.cpp", "instrument.cpp", "resampler.cpp", "text.cpp")
+VST3 = ("vst3.cpp", "vst3_processor.cpp", "vst3_controller.cpp")
 HEADER_FILE = "carried.h"
 # Where the formats' headers may lie, what tells that they do, and the Debian package that has them.
 DPF = Path("/usr/share/dpf/distrho/src")
@@ -36,8 +37,8 @@ class Format:
 
     Attributes
     ----------
-    file : str
-        The source file of its entry points.
+    files : tuple of str
+        The source files of its entry points.
     headers : Path
         The folder of its headers; `sign` lies in it, and `package` of Debian's brings it.
     put : callable
@@ -45,7 +46,7 @@ class Format:
     """
 
     name: str
-    file: str
+    files: tuple[str, ...]
     headers: Path
     sign: str
     package: str
@@ -53,8 +54,9 @@ class Format:
 
 
 FORMATS = (
-    Format("CLAP", "clap.cpp", DPF, "clap/entry.h", "dpf-source", put_clap),
-    Format("LV2", "lv2.cpp", Path("/usr/include"), "lv2/core/lv2.h", "lv2-dev", put_lv2),
+    Format("CLAP", ("clap.cpp",), DPF, "clap/entry.h", "dpf-source", put_clap),
+    Format("LV2", ("lv2.cpp",), Path("/usr/include"), "lv2/core/lv2.h", "lv2-dev", put_lv2),
+    Format("VST3", VST3, DPF, "travesty/base.h", "dpf-source", put_vst3),
 )
 
 
@@ -154,7 +156,7 @@ def link(made: Format, system: System, work: Path) -> Path:
     place = work / f"{system.triple}-{made.name}"
     place.mkdir(exist_ok=True)
     objects = []
-    for name in (*COMMON, made.file):
+    for name in (*COMMON, *made.files):
         objects.append(place / f"{name}.o")
         compile_file(SOURCE / name, objects[-1], system, [work, made.headers])
     versions = (False, True) if system.has_wide else (False,)

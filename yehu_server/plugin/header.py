@@ -37,7 +37,7 @@ OUTLINE = """\
 #define YEHU_VERSION "{version}"
 #define YEHU_IDENTITY "{identity}"
 #define YEHU_LV2_URI "{uri}"
-#define YEHU_VST3_ID {vst3}
+#define YEHU_VST3_ID V3_ID({vst3})
 
 namespace yehu {{
 
@@ -97,7 +97,7 @@ def header(shown: Sequence[HostParameter], data: Carried) -> str:
         version=__version__,
         identity=IDENTITY,
         uri=LV2_URI,
-        vst3=", ".join(f"0x{word:08X}" for word in VST3_ID),
+        vst3=", ".join(f"0x{word:08X}u" for word in VST3_ID),
         choices="\n".join(_choices(shown)),
         parameters="\n".join(_parameter(index, each) for index, each in enumerate(shown)),
         count=len(shown),

@@ -71,7 +71,9 @@ double from_unit(int parameter, double unit) {
     const Parameter &p = parameters[parameter];
     unit = unit < 0.0 ? 0.0 : unit > 1.0 ? 1.0 : unit;
     if (p.steps > 0) return p.lo + floor(unit * p.steps + 0.5);
-    return p.exponential ? p.lo * pow(p.hi / p.lo, unit) : p.lo + unit * (p.hi - p.lo);
+    const double value = p.exponential ? p.lo * pow(p.hi / p.lo, unit) : p.lo + unit * (p.hi - p.lo);
+    /* Hosts that keep numbers of 32 bits give the usual value back as it was. */
+    return fabs(unit - to_unit(parameter, p.usual)) < 1e-7 ? p.usual : value;
 }
 
 void write_value(int parameter, double value, char *into, size_t size) {

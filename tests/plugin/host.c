@@ -12,7 +12,6 @@
  * The first six are events of a block, or told with it; the others happen between two blocks.
  * Prints lines: a word and numbers.
  */
-#include <dlfcn.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +24,20 @@
 #include <clap/ext/state.h>
 #include <clap/plugin-factory.h>
 
+#ifdef _WIN32
+#include <windows.h>
+#define dlopen(path, how) ((void *)LoadLibraryA(path))
+#define dlsym(library, name) ((void *)GetProcAddress(library, name))
+#define dlerror() "no library, or no entry"
+#else
+#include <dlfcn.h>
+#endif
+
+#ifdef UNCOUNTED /* where malloc cannot be replaced */
+static long allocations(void) { return 0; }
+#else
 #include "../ahead/counted.h"
+#endif
 
 #define MOST 65536
 #define MOST_BLOCK 4096
@@ -43,11 +55,11 @@ static union {
 static uint32_t in_block;
 static long told;
 
-static uint32_t size_of(const clap_input_events_t *list) { return (void)list, in_block; }
-static const clap_event_header_t *get(const clap_input_events_t *list, uint32_t i) {
+static uint32_t CLAP_ABI size_of(const clap_input_events_t *list) { return (void)list, in_block; }
+static const clap_event_header_t *CLAP_ABI get(const clap_input_events_t *list, uint32_t i) {
     return (void)list, &events[i].header;
 }
-static bool push(const clap_output_events_t *list, const clap_event_header_t *event) {
+static bool CLAP_ABI push(const clap_output_events_t *list, const clap_event_header_t *event) {
     const clap_event_param_value_t *param = (const void *)event;
     (void)list;
     if (event->type == CLAP_EVENT_PARAM_VALUE) {
@@ -56,14 +68,14 @@ static bool push(const clap_output_events_t *list, const clap_event_header_t *ev
     }
     return true;
 }
-static const void *extension(const clap_host_t *host, const char *id) { return (void)host, (void)id, NULL; }
-static void nothing(const clap_host_t *host) { (void)host; }
+static const void *CLAP_ABI extension(const clap_host_t *host, const char *id) { return (void)host, (void)id, NULL; }
+static void CLAP_ABI nothing(const clap_host_t *host) { (void)host; }
 
-static int64_t put(const clap_ostream_t *stream, const void *bytes, uint64_t n) {
+static int64_t CLAP_ABI put(const clap_ostream_t *stream, const void *bytes, uint64_t n) {
     n = n > 100 ? 100 : n; /* a host may take less than it is given */
     return fwrite(bytes, 1, n, stream->ctx) == n ? (int64_t)n : -1;
 }
-static int64_t take(const clap_istream_t *stream, void *bytes, uint64_t n) {
+static int64_t CLAP_ABI take(const clap_istream_t *stream, void *bytes, uint64_t n) {
     return (int64_t)fread(bytes, 1, n > 100 ? 100 : n, stream->ctx);
 }
 

@@ -85,7 +85,7 @@ def test_the_sources_compile_without_a_word(tmp_path, monkeypatch, name):
     monkeypatch.setattr(building, "FLAGS", (*building.FLAGS, *strict))
     building.write_header(tmp_path)
     (tmp_path / "yehu.h").write_text(engine_header())
-    building.compile_file(building.SOURCE / name, tmp_path / "made.o", SYSTEMS[0], [tmp_path])
+    building.compile_file(building.SOURCE / name, tmp_path / "made.o", SYSTEMS[0], tmp_path)
     assert (tmp_path / "made.o").stat().st_size > 0
 
 

@@ -48,15 +48,15 @@ class Format:
     name: str
     files: tuple[str, ...]
     headers: Path
-    sign: str
+    sign: Path
     package: str
     put: Callable[[Path, Mapping[System, Path]], Path]
 
 
 FORMATS = (
-    Format("CLAP", ("clap.cpp",), DPF, "clap/entry.h", "dpf-source", put_clap),
-    Format("LV2", ("lv2.cpp",), Path("/usr/include"), "lv2/core/lv2.h", "lv2-dev", put_lv2),
-    Format("VST3", VST3, DPF, "travesty/base.h", "dpf-source", put_vst3),
+    Format("CLAP", ("clap.cpp",), DPF, Path("clap/entry.h"), "dpf-source", put_clap),
+    Format("LV2", ("lv2.cpp",), Path("/usr/include"), Path("lv2/core/lv2.h"), "lv2-dev", put_lv2),
+    Format("VST3", VST3, DPF, Path("travesty/base.h"), "dpf-source", put_vst3),
 )
 
 
@@ -90,6 +90,9 @@ def build(folder: Path, target: str) -> list[Path]:
             work = Path(scratch)
             make_objects(work, target)
             write_header(work)
+            # And the formats' own, apart from those of this system that lie beside them.
+            for inside, around in {(each.sign.parts[0], each.headers) for each in FORMATS}:
+                (work / inside).symlink_to(around / inside)
             return [
                 path
                 for name in names
@@ -133,16 +136,26 @@ def compiler_of(system: System) -> list[str]:
     )
 
 
-def compile_file(source: Path, into: Path, system: System, includes: Sequence[Path]) -> None:
-    """Compile a source file into an object file.
+def compile_file(source: Path, into: Path, system: System, headers: Path) -> None:
+    """Compile a source file into an object file, with the headers in a folder.
 
     Raises
     ------
     YehuError
         Where it fails.
     """
-    folders = [f"-I{folder}" for folder in (SOURCE, *includes)]
-    run([*compiler_of(system), *FLAGS, *folders, "-c", str(source), "-o", str(into)])
+    run(
+        [
+            *compiler_of(system),
+            *FLAGS,
+            f"-I{SOURCE}",
+            f"-I{headers}",
+            "-c",
+            str(source),
+            "-o",
+            str(into),
+        ]
+    )
 
 
 def link(made: Format, system: System, work: Path) -> Path:
@@ -157,8 +170,9 @@ def link(made: Format, system: System, work: Path) -> Path:
     place.mkdir(exist_ok=True)
     objects = []
     for name in (*COMMON, *made.files):
-        objects.append(place / f"{name}.o")
-        compile_file(SOURCE / name, objects[-1], system, [work, made.headers])
+        objects.append(work / f"{system.triple}-{name}.o")
+        if not objects[-1].exists():  # of another format
+            compile_file(SOURCE / name, objects[-1], system, work)
     versions = (False, True) if system.has_wide else (False,)
     objects += [object_file(work, system, wide=wide) for wide in versions]
     library = place / f"Yehu{system.ending}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import platform
 import shutil
 import subprocess
@@ -16,7 +17,7 @@ from ahead.programs import compiled
 from yehu_server.ahead.source_hash import sources_hash
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.player.wishes import KINDS
-from yehu_server.params.table import find
+from yehu_server.params.table import TABLE, find
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
@@ -95,3 +96,34 @@ def test_it_allocates_nothing_neither_as_it_is_prepared_nor_as_it_plays(library,
     assert (preparing, playing) == (0, 0)
     assert frames >= 200_000
     assert taken > 200
+
+
+def test_after_a_reset_it_plays_as_at_first_and_keeps_what_was_set(library):
+    yehu = ctypes.CDLL(str(library / "libyehu.so"))
+    number, rig = ctypes.c_int64, ctypes.c_void_p
+    yehu.yehu_size.restype = yehu.yehu_frame.restype = number
+    yehu.yehu_value.restype = ctypes.c_double
+    yehu.yehu_prepare.argtypes = [rig, ctypes.c_double, number]
+    yehu.yehu_midi.argtypes = [rig, number, ctypes.c_char_p, number]
+    yehu.yehu_process.argtypes = [rig, rig, number]
+    memory = np.full(yehu.yehu_size() + 64, 255, np.uint8)  # preparing relies on nothing
+    at = rig((memory.ctypes.data + 63) // 64 * 64)
+    volume = TABLE.index(find("/playing/volume"))
+
+    def sounds(*messages):
+        for message in messages:
+            yehu.yehu_midi(at, yehu.yehu_frame(at), bytes(message), 3)
+        samples = np.zeros((FRAMES // 2, 2), np.float32)
+        yehu.yehu_process(at, samples.ctypes.data, len(samples))
+        return samples
+
+    assert yehu.yehu_prepare(at, RATE, 2)
+    first = sounds((0xB0, 7, 100), (0x90, 69, 100))
+    held = sounds((0x90, 74, 30))  # held as it is reset, as is the one before
+    yehu.yehu_reset(at)
+    assert yehu.yehu_frame(at) == 0
+    assert np.array_equal(sounds((0x90, 69, 100)), first)
+    assert yehu.yehu_value(at, volume) < 0.8
+    assert not np.array_equal(first, held)
+    yehu.yehu_reset(at)
+    assert not sounds().any()

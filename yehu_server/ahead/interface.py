@@ -32,19 +32,21 @@ from yehu_server.core.engine.native import post_to
 from yehu_server.core.engine.output import OUTPUT
 from yehu_server.core.midi.events import CONTROL, MESSAGE, TABLES_TO
 from yehu_server.core.midi.packing import BYTE, LENGTH_AT
-from yehu_server.core.midi.record import MIDI
+from yehu_server.core.midi.record import MIDI, NONE
 from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi.values import NO_KEY, find_values, find_values_native
 from yehu_server.core.physics.layout import STATE
 from yehu_server.core.player.notes import sounding_pitch
-from yehu_server.core.player.record import PLAYER
-from yehu_server.core.player.rows import ROWS, SLOT_OF
-from yehu_server.core.stage.record import STAGE
+from yehu_server.core.player.record import MOST_HELD, PLAYER
+from yehu_server.core.player.rows import IS_ENGINES, IS_OWNED, ROWS, SLOT_OF
+from yehu_server.core.player.wishes import HOLD, RAMP, WISH, WRITE
+from yehu_server.core.stage.late_field import LINES
+from yehu_server.core.stage.record import STAGE, TAPE_AT
 
 Array = Any
 
 WORD = 8  # bytes
-BYTES = memory.memory_bytes(1)
-WORDS = BYTES // WORD
+BYTES = memory.RIG_BYTES + TAPE_AT  # without a tape
 TABLES_BYTES = TABLES.itemsize
 # Numbers of the tables in use, and of those that `map` posted last: the latter lies beside the
 # cursor of the thread that posts, in the same cache line.
@@ -175,8 +177,45 @@ def use_tables(rig: Any, frame: int, tables: Any, size: int) -> int:
 use_tables.name = "yehu_map"
 
 
-def preparing(rates: Sequence[float], images: Sequence[Array]) -> Native:
-    """Make the function `prepare`, which puts one of some images into memory.
+# What is written before it is read. Pages that nothing writes take no memory.
+UNREAD = ("midi_ring", "page_ring", "events", "heap", "reports")
+
+
+def _cleared() -> Array:
+    """First words of what `put` clears, and the words after them: [shape=(n, 2), dtype=int64].
+
+    The lines of the room are not in it. First come the record of the part and its tables.
+    """
+    rig: Any = memory.RIG.fields
+    ends = {name: (at, at + kind.itemsize) for name, (kind, at, *_) in rig.items()}
+    ring = int(memory.RINGS_AT[SERVER])
+    ends["ring"] = (ring, ring + WISH.itemsize)  # the one event that an image has
+    ends["tables"] = (memory.TABLES_AT, memory.TABLES_AT + TABLES_BYTES)  # the first of its slots
+    stage: Any = STAGE.fields
+    line = memory.RIG_BYTES + stage["room"][1] + stage["room"][0].fields["line"][1]
+    others = [name for name in ends if name not in {"midi", "tables", *UNREAD}]
+    ordered = [*(ends[name] for name in ("midi", "tables", *others)), (memory.RIG_BYTES, line)]
+    return np.array(ordered) // WORD
+
+
+CLEARED, OF_PART = _cleared(), 2
+PART, AFTER_PART = memory.MIDI_AT // WORD, memory.HEAP_AT // WORD  # words
+
+
+PUT = "int64(voidptr, float64, int64, int64)"
+
+
+@native(PUT)
+def put(rig: Any, rate: float, channels: int, kept: int) -> int:
+    """Stand for what `putting` makes, where its name and signature are asked for."""
+    raise NotImplementedError
+
+
+put_image = put.symbol
+
+
+def putting(rates: Sequence[float], images: Sequence[Array]) -> Native:
+    """Make the function `put`, which puts one of some images into memory.
 
     Parameters
     ----------
@@ -187,25 +226,74 @@ def preparing(rates: Sequence[float], images: Sequence[Array]) -> Native:
     ends = np.cumsum([len(image) for image in images])
     words = np.concatenate(images)
 
-    def prepare(rig: Any, rate: float, channels: int) -> int:
-        """Make an instrument at a rate (Hz), at rest; return 0 where there is none for it."""
-        words_of = carray(rig, (WORDS,), np.int64)
+    def put(rig: Any, rate: float, channels: int, kept: int) -> int:
+        """Make an instrument; the part's record and tables stay where they are `kept`."""
+        words_of = carray(rig, (BYTES // WORD,), np.int64)
         start = 0
         for i in range(len(known)):
             if known[i] == rate:
-                for word in range(WORDS):
-                    words_of[word] = 0
+                for place in range(OF_PART if kept != 0 else 0, len(CLEARED)):
+                    for word in range(CLEARED[place, 0], CLEARED[place, 1]):
+                        words_of[word] = 0
                 while start < ends[i]:
                     first, count = words[start], words[start + 1]
-                    for word in range(count):
-                        words_of[first + word] = words[start + 2 + word]
+                    if kept == 0 or not PART <= first < AFTER_PART:
+                        for word in range(count):
+                            words_of[first + word] = words[start + 2 + word]
                     start += 2 + count
-                carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0].channels = channels
+                stage = carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0]
+                stage.channels = channels
+                for line in range(LINES):
+                    for place in range(stage.room.mask + 1):
+                        stage.room.line[line, place] = 0.0
                 return 1
             start = ends[i]
         return 0
 
-    return native("int64(voidptr, float64, int64)")(prepare)
+    return native(PUT)(put)
+
+
+def prepare(rig: Any, rate: float, channels: int) -> int:
+    """Make an instrument at a rate (Hz), at rest; return 0 where there is none for it."""
+    return int(put_image(rig, rate, channels, 0))
+
+
+def reset(rig: Any) -> None:
+    """Begin anew at frame 0: no key is held, nothing sounds, and all chance is as at first.
+
+    Parameters, positions of controllers, pedals and tables stay. For the thread of process, while
+    nothing is posted.
+    """
+    m = carray(at(rig, memory.MIDI_AT), (1,), MIDI)[0]
+    t = carray(at(rig, memory.TABLES_AT + m.tables * TABLES_BYTES), (1,), TABLES)[0]
+    stage = carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0]
+    last = carray(at(rig, LAST_AT), (1,), np.int64)
+    tables = last[0]
+    if put_image(rig, m.rate, stage.channels, 1) == 0:
+        return
+    m.held, m.sounding, m.listed = 0, NONE, 0
+    for n in range(MOST_HELD):
+        m.is_listed[n] = 0
+    if m.has_last != 0:  # values as they are for no note, without its velocity
+        find_values(m, t, m.last_channel, NO_KEY)
+        for n in range(m.targets):
+            row = m.target[n]
+            if m.is_held[row] == 0:
+                m.value[row] = m.found_value[row]
+    # The image has an event, for start values, which are not wanted here.
+    carray(at(rig, memory.POSTED_AT), (1,), np.int64)[0] = 0
+    last[0] = tables
+    if tables != m.tables:
+        post_to(rig, SERVER, 0, TABLES_TO, tables, 0.0, 0.0)
+    p = carray(at(rig, memory.PLAYER_AT), (1,), PLAYER)[0]
+    for row in range(ROWS):
+        wished, is_held = m.value[row], m.is_held[row] != 0
+        if is_held:
+            post_to(rig, SERVER, 0, HOLD, row, wished, 0.0)
+        elif not IS_OWNED[row] and wished != p.value[row]:
+            if IS_ENGINES[row]:  # at once
+                post_to(rig, SERVER, 0, RAMP, SLOT_OF[row], wished, 0.0)
+            post_to(rig, SERVER, 0, WRITE, row, wished, 0.0)
 
 
 def telling(sources: str) -> Native:
@@ -223,6 +311,10 @@ def telling(sources: str) -> Native:
 
 def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> list[Native]:
     """List all functions of the interface, for the images and the hash of sources given."""
-    prepare, told = preparing(rates, images), telling(sources)
+    put, told = putting(rates, images), telling(sources)
+    beginning = [
+        native("int64(voidptr, float64, int64)", calls=[put])(prepare),
+        native("void(voidptr)", calls=[put, find_values_native])(reset),
+    ]
     posting = [engine.post, midi, control, use_tables]
-    return [told, size, prepare, *posting, process, frame, value, pitch, look, lost]
+    return [told, size, *beginning, *posting, process, frame, value, pitch, look, lost]

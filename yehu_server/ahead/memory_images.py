@@ -6,18 +6,22 @@ Only words that are not zero are kept, as runs: where one begins, how long it is
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
-from yehu_server.core.engine.rig import memory_bytes
+from yehu_server.core.engine.rig import HEAP_AT, MIDI_AT, RIG_BYTES, memory_bytes
 from yehu_server.core.midi.events import START
+from yehu_server.core.stage.record import STAGE
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
 Array = Any
+
+WORD = 8  # bytes
 
 # A run is worth its two words of heading only beyond a gap as long as that.
 SHORTEST_GAP = 3
@@ -43,14 +47,24 @@ def image(rate: float) -> Array:
     first.lead(playing.tables(Controls()))
     first.tables["program_row"] = 0.0  # not read, as there are no programs
     first.post(START)
+    np.frombuffer(memory, STAGE, offset=RIG_BYTES)["taping"] = 0
     words = np.frombuffer(memory, np.int64)
-    return np.concatenate([np.zeros(0, np.int64), *runs(words)])
+    # No run goes beyond the record of the part, which `reset` leaves as it is.
+    ends = [0, MIDI_AT // WORD, HEAP_AT // WORD, len(words)]
+    parts = (runs(words[begin:end], begin) for begin, end in pairwise(ends))
+    return np.concatenate([np.zeros(0, np.int64), *chain.from_iterable(parts)])
 
 
-def runs(words: Array) -> Iterable[Array]:
-    """The runs of words of a record [dtype=int64] that are not zero, each with its heading."""
+def runs(words: Array, begin: int = 0) -> Iterable[Array]:
+    """The runs of words of a record [dtype=int64] that are not zero, each with its heading.
+
+    Parameters
+    ----------
+    begin : int
+        Number of the first of these words in the record.
+    """
     places = np.flatnonzero(words)
     for run in np.split(places, np.flatnonzero(np.diff(places) > SHORTEST_GAP) + 1):
         if len(run):
             first, count = int(run[0]), int(run[-1] - run[0] + 1)
-            yield np.array([first, count, *words[first : first + count]], np.int64)
+            yield np.array([begin + first, count, *words[first : first + count]], np.int64)

@@ -14,6 +14,7 @@ from typing import Any
 from llvmlite import binding
 
 from yehu_server.compile.jit import Native
+from yehu_server.core.engine.processor import ARM_BIT, X86_BITS
 from yehu_server.errors import YehuError
 
 PAGE_FEATURES = "+simd128,+bulk-memory,+nontrapping-fptoint,+sign-ext,+mutable-globals"
@@ -25,15 +26,33 @@ class Target:
 
     Attributes
     ----------
-    sets_mode : bool
-        Whether it has the mode of this machine's processor that flushes denormal numbers.
+    prefix : str
+        What stands before the names of functions, where several versions are linked together.
+    is_inner : bool
+        Whether the functions are for the library alone that they are linked into.
     """
 
     triple: str
     cpu: str = ""
     features: str = ""
-    sets_mode: bool = True
     reloc: str = "pic"
+    prefix: str = ""
+    is_inner: bool = False
+
+    @property
+    def is_page(self) -> bool:
+        """Whether it is WebAssembly, which has no mode that flushes denormal numbers."""
+        return self.triple.startswith("wasm")
+
+    @property
+    def is_arm(self) -> bool:
+        """Whether its processor has ARM's mode for that, of 64 bits."""
+        return self.triple.startswith(("aarch64", "arm64"))
+
+    @property
+    def has_clocks(self) -> bool:
+        """Whether its `clock_gettime` is the one that this machine's code calls."""
+        return self.is_page or "linux" in self.triple or self.triple == binding.get_process_triple()
 
     def machine(self) -> Any:
         """LLVM's code generator for it."""
@@ -44,7 +63,7 @@ class Target:
         )
 
 
-PAGE = Target("wasm32-unknown-unknown", "", PAGE_FEATURES, sets_mode=False, reloc="static")
+PAGE = Target("wasm32-unknown-unknown", "", PAGE_FEATURES, reloc="static")
 
 
 def here(cpu: str = "generic") -> Target:
@@ -54,7 +73,8 @@ def here(cpu: str = "generic") -> Target:
 
 # What the machine's C library gives, or the page.
 MATHEMATICS = "asin cos exp exp2 log log10 log2 pow sin sqrt tan tanh"
-OUTSIDE = {"clock_gettime", "memcpy", "memmove", "memset", *MATHEMATICS.split()}
+CLOCK, OTHER_CLOCK = "clock_gettime", "yehu_clock"  # the program has the other where one is wanted
+OUTSIDE = {CLOCK, OTHER_CLOCK, "memcpy", "memmove", "memset", *MATHEMATICS.split()}
 LAYOUT = re.compile(r'^target datalayout = ".*"', re.MULTILINE)
 TRIPLE = re.compile(r'^target triple = ".*"', re.MULTILINE)
 TRAP = "declare void @llvm.trap()"
@@ -70,6 +90,29 @@ COUNTED_DOWN = re.compile(
     r"\(ptr (?:nonnull )?(?P<at>%\S+), i64 (?P<by>\d+), i32 \d+\)"
 )
 MODE = re.compile(r"^ *(?:tail )?call void @llvm\.x86\.sse\.(?:st|ld)mxcsr\(.*\)$", re.MULTILINE)
+# ARM's mode in the place of x86's, whose two bits stand for the one that flushes denormal numbers.
+MODE_DECLARED = re.compile(r"^declare void @llvm\.x86\.sse\.(?:st|ld)mxcsr\(.*$", re.MULTILINE)
+MODE_OF_ARM = f"""
+declare i64 @llvm.aarch64.get.fpcr()
+declare void @llvm.aarch64.set.fpcr(i64)
+define internal void @llvm_read_mode(ptr %into) {{
+  %mode = call i64 @llvm.aarch64.get.fpcr()
+  %word = trunc i64 %mode to i32
+  store i32 %word, ptr %into, align 4
+  ret void
+}}
+define internal void @llvm_write_mode(ptr %from) {{
+  %word = load i32, ptr %from, align 4
+  %asked = and i32 %word, {X86_BITS}
+  %flushes = icmp ne i32 %asked, 0
+  %others = and i32 %word, {~X86_BITS}
+  %flushing = or i32 %others, {ARM_BIT}
+  %now = select i1 %flushes, i32 %flushing, i32 %word
+  %mode = zext i32 %now to i64
+  call void @llvm.aarch64.set.fpcr(i64 %mode)
+  ret void
+}}
+"""
 # LLVM calls it for products of 128 bits, which WebAssembly has none of.
 MULTIPLY = "__multi3"
 MULTIPLY_128 = f"""
@@ -106,7 +149,7 @@ define hidden void @{MULTIPLY}(ptr %into, i64 %a, i64 %a_high, i64 %b, i64 %b_hi
 def joined(functions: Sequence[Native], target: Target) -> Any:
     """Join functions, and those that they call by symbol, into a module for a machine.
 
-    They keep their names (`Native.name`); all else is internal.
+    They keep their names (`Native.name`, behind the target's prefix); all else is internal.
 
     Raises
     ------
@@ -123,6 +166,11 @@ def joined(functions: Sequence[Native], target: Target) -> Any:
         if not symbol.is_declaration and symbol.name not in exported:
             symbol.linkage = binding.Linkage.internal
     _drop_unused(module, machine)
+    for function in functions:
+        entry = module.get_function(function.name)
+        entry.name = target.prefix + function.name
+        if target.is_inner:
+            entry.visibility = binding.Visibility.hidden
     module.verify()
     if strange := set(unresolved(module)) - OUTSIDE:
         raise YehuError(f"compiled code calls {', '.join(sorted(strange))}, which nothing has")
@@ -164,9 +212,12 @@ def _for_machine(text: str, target: Target, layout: str) -> str:
     text = COUNTED_DOWN.sub(_count_down, text)
     text = PYTHONS.sub(_trap, text)
     text += f"\n{TRAP}\n" if TRAP not in text else ""
-    if not target.sets_mode:
-        text = MODE.sub("", text) + MULTIPLY_128
-    return text
+    if target.is_page:
+        return MODE.sub("", text) + MULTIPLY_128
+    if target.is_arm and "@llvm.x86.sse." in text:
+        text = MODE_DECLARED.sub("", text).replace("@llvm.x86.sse.stmxcsr", "@llvm_read_mode")
+        text = text.replace("@llvm.x86.sse.ldmxcsr", "@llvm_write_mode") + MODE_OF_ARM
+    return text if target.has_clocks else text.replace(f"@{CLOCK}(", f"@{OTHER_CLOCK}(")
 
 
 def _count_down(found: re.Match[str]) -> str:

@@ -11,14 +11,16 @@ from yehu_server.cli.converters import positive, target
 from yehu_server.cli.playing_options import add_tables, table_options_of
 from yehu_server.cli.terminal import print_result
 
+TARGETS = ("linux", "linux-arm", "windows", "macos", "all")
 EXAMPLES = """\
 examples:
   yehu-server build wasm -o page
   yehu-server build library -o lib --rate 48000 96000 --cpu native
+  yehu-server build plugin -o plug-ins
   yehu-server build tables --mapping wind --tuning chaozhou-seven-equal -o wind.tables
 
-build tables writes a mapping, a tuning and presets for both, as numbers.
-docs/ahead.md tells how pages and C programs use them.
+build plugin makes a plug-in for music programs (docs/plugin.md). build tables writes a mapping, a
+tuning and presets for pages and C programs, as numbers; docs/ahead.md tells how they use them.
 """
 
 
@@ -50,6 +52,36 @@ def add_to(commands: Any) -> None:
         cpu={"default": "generic"},
     )
     _add_tables(parser)
+    _add_plugin(parser)
+
+
+def _add_plugin(command: Parser) -> None:
+    """Add `build plugin` to the parser of `build`."""
+    parser = command.add_word("plugin", build_plugin, "make a plug-in for music programs")
+    add_folder(parser)
+    add_options(
+        parser,
+        """
+        --target: the system it is for (default: this machine's); all: a folder for each
+        """,
+        target={"choices": TARGETS},
+    )
+
+
+def build_plugin(arguments: argparse.Namespace) -> int:
+    """Build the plug-in; return the exit code.
+
+    Raises
+    ------
+    YehuError
+        Where something is missing to build with, or the folder cannot be written.
+    """
+    from yehu_server.plugin.build import build
+    from yehu_server.plugin.targets import usual
+
+    for path in build(arguments.output, arguments.target or usual()):
+        print_result(str(path))
+    return 0
 
 
 def _add_tables(command: Parser) -> None:

@@ -219,8 +219,9 @@ def finish(rigs: Any, stage: Any, soft: float, frame: int, n: int, out: Any) -> 
         reset_state(rigs, stage)
     mean: Any = np.float32(0.5 * (limited_left + limited_right))
     both: Any = (np.float32(limited_left), np.float32(limited_right))
-    tape = carray(at_tape(rigs), (TAPE, EARS), np.float32)
-    tape[frame & (TAPE - 1), LEFT], tape[frame & (TAPE - 1), RIGHT] = both
+    if stage.taping != 0:
+        tape = carray(at_tape(rigs), (TAPE, EARS), np.float32)
+        tape[frame & (TAPE - 1), LEFT], tape[frame & (TAPE - 1), RIGHT] = both
     channels = stage.channels
     samples = carray(out, ((n + 1) * channels,), np.float32)
     for channel in range(channels):

@@ -19,6 +19,7 @@ STAGE = np.dtype(
     [
         ("has_room", np.int64),  # 0: dry
         ("channels", np.int64),  # of the device: left and right in turn, or one with both
+        ("taping", np.int64),  # 0: there is no tape, which need not have memory then
         (
             "invalid_samples",
             np.int64,
@@ -38,12 +39,12 @@ STAGE = np.dtype(
     align=True,
 )
 _fields: Any = STAGE.fields
-TAPE_AT = int(_fields["tape"][1])
+TAPE_AT = int(_fields["tape"][1])  # it is the last field
 
 
 def prepare_stage(stage: Any, rate: float, channels: int, *, has_room: bool) -> None:
     """Prepare a record of dtype STAGE [shape=()] for a rate (Hz), in place; it is zeroed before."""
-    stage["channels"], stage["has_room"] = channels, has_room
+    stage["channels"], stage["has_room"], stage["taping"] = channels, has_room, 1
     prepare_room(stage["room"], rate)
 
 

@@ -1,0 +1,222 @@
+/* A small CLAP host: plays a script by a plug-in, and tells what happened.
+ *
+ *     host PLUGIN RATE BLOCK FRAMES SCRIPT SAMPLES
+ *
+ * BLOCK 0: blocks of changing sizes, 1 to 4096. Each line of SCRIPT begins with a frame, in order:
+ *
+ *     FRAME midi STATUS ONE TWO              FRAME on ID CHANNEL KEY VELOCITY
+ *     FRAME off ID CHANNEL KEY               FRAME express KIND ID VALUE
+ *     FRAME set NUMBER VALUE                 FRAME play 0|1
+ *     FRAME reset      FRAME save FILE      FRAME load FILE      FRAME rate HZ (0: as it is)
+ *
+ * The first six are events of a block, or told with it; the others happen between two blocks.
+ * Prints lines: a word and numbers.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <clap/entry.h>
+#include <clap/ext/latency.h>
+#include <clap/ext/params.h>
+#include <clap/ext/state.h>
+#include <clap/plugin-factory.h>
+
+#ifdef _WIN32
+#include <windows.h>
+#define dlopen(path, how) ((void *)LoadLibraryA(path))
+#define dlsym(library, name) ((void *)GetProcAddress(library, name))
+#define dlerror() "no library, or no entry"
+#else
+#include <dlfcn.h>
+#endif
+
+#ifdef UNCOUNTED /* where malloc cannot be replaced */
+static long allocations(void) { return 0; }
+#else
+#include "../ahead/counted.h"
+#endif
+
+#define MOST 65536
+#define MOST_BLOCK 4096
+
+struct line { long frame; char word[16]; double number[4]; char text[256]; };
+static struct line lines[MOST];
+static int count, first, last; /* those of the block are from `first` to before `last` */
+static union {
+    clap_event_header_t header;
+    clap_event_midi_t midi;
+    clap_event_note_t note;
+    clap_event_note_expression_t expression;
+    clap_event_param_value_t param;
+} events[MOST];
+static uint32_t in_block;
+static long told;
+
+static uint32_t CLAP_ABI size_of(const clap_input_events_t *list) { return (void)list, in_block; }
+static const clap_event_header_t *CLAP_ABI get(const clap_input_events_t *list, uint32_t i) {
+    return (void)list, &events[i].header;
+}
+static bool CLAP_ABI push(const clap_output_events_t *list, const clap_event_header_t *event) {
+    const clap_event_param_value_t *param = (const void *)event;
+    (void)list;
+    if (event->type == CLAP_EVENT_PARAM_VALUE) {
+        told++;
+        printf("moved %u %.17g\n", param->param_id, param->value);
+    }
+    return true;
+}
+static const void *CLAP_ABI extension(const clap_host_t *host, const char *id) { return (void)host, (void)id, NULL; }
+static void CLAP_ABI nothing(const clap_host_t *host) { (void)host; }
+
+static int64_t CLAP_ABI put(const clap_ostream_t *stream, const void *bytes, uint64_t n) {
+    n = n > 100 ? 100 : n; /* a host may take less than it is given */
+    return fwrite(bytes, 1, n, stream->ctx) == n ? (int64_t)n : -1;
+}
+static int64_t CLAP_ABI take(const clap_istream_t *stream, void *bytes, uint64_t n) {
+    return (int64_t)fread(bytes, 1, n > 100 ? 100 : n, stream->ctx);
+}
+
+static int is_event(const char *word) {
+    const char *words[] = {"midi", "on", "off", "express", "set"};
+    for (int i = 0; i < 5; i++)
+        if (!strcmp(word, words[i])) return 1;
+    return 0;
+}
+
+static void add_event(const struct line *line, long at) {
+    const double *n = line->number;
+    clap_event_header_t header = {0, (uint32_t)at, CLAP_CORE_EVENT_SPACE_ID, 0, 0};
+    if (!strcmp(line->word, "midi")) {
+        clap_event_midi_t e = {header, 0, {(uint8_t)n[0], (uint8_t)n[1], (uint8_t)n[2]}};
+        events[in_block].midi = e;
+        header.type = CLAP_EVENT_MIDI, header.size = sizeof e;
+    } else if (!strcmp(line->word, "express")) {
+        clap_event_note_expression_t e = {header, (int)n[0], (int)n[1], -1, -1, -1, n[2]};
+        events[in_block].expression = e;
+        header.type = CLAP_EVENT_NOTE_EXPRESSION, header.size = sizeof e;
+    } else if (!strcmp(line->word, "set")) {
+        clap_event_param_value_t e = {header, (clap_id)n[0], NULL, -1, -1, -1, -1, n[1]};
+        events[in_block].param = e;
+        header.type = CLAP_EVENT_PARAM_VALUE, header.size = sizeof e;
+    } else {
+        const int is_on = !strcmp(line->word, "on");
+        clap_event_note_t e = {header, (int)n[0], 0, (int16_t)n[1], (int16_t)n[2], is_on ? n[3] : 0.0};
+        events[in_block].note = e;
+        header.type = is_on ? CLAP_EVENT_NOTE_ON : CLAP_EVENT_NOTE_OFF, header.size = sizeof e;
+    }
+    events[in_block++].header = header;
+}
+
+static void read_script(const char *path) {
+    char text[512];
+    FILE *file = fopen(path, "r");
+    while (file && count < MOST && fgets(text, sizeof text, file)) {
+        struct line *line = &lines[count];
+        double *n = line->number;
+        if (sscanf(text, "%ld %15s %255[^\n]", &line->frame, line->word, line->text) < 2) continue;
+        sscanf(line->text, "%lf %lf %lf %lf", n, n + 1, n + 2, n + 3);
+        count++;
+    }
+    if (file) fclose(file);
+}
+
+static void between(const clap_plugin_t *plugin, const struct line *line, double *rate) {
+    const clap_plugin_state_t *state = plugin->get_extension(plugin, CLAP_EXT_STATE);
+    if (!strcmp(line->word, "reset")) plugin->reset(plugin);
+    if (!strcmp(line->word, "save")) {
+        const clap_ostream_t stream = {fopen(line->text, "wb"), put};
+        printf("saved %d\n", state->save(plugin, &stream));
+        fclose(stream.ctx);
+    }
+    if (!strcmp(line->word, "load")) {
+        const clap_istream_t stream = {fopen(line->text, "rb"), take};
+        printf("loaded %d\n", state->load(plugin, &stream));
+        fclose(stream.ctx);
+    }
+    if (!strcmp(line->word, "rate")) {
+        plugin->stop_processing(plugin), plugin->deactivate(plugin);
+        *rate = line->number[0] > 0.0 ? line->number[0] : *rate;
+        if (!plugin->activate(plugin, *rate, 1, MOST_BLOCK) || !plugin->start_processing(plugin)) exit(5);
+    }
+}
+
+static double seconds(clockid_t clock) {
+    struct timespec now;
+    clock_gettime(clock, &now);
+    return now.tv_sec + 1e-9 * now.tv_nsec;
+}
+
+int main(int words, char **word) {
+    if (words != 7) return 2;
+    double rate = atof(word[2]);
+    const long block = atol(word[3]), frames = atol(word[4]);
+    read_script(word[5]);
+    void *library = dlopen(word[1], RTLD_NOW | RTLD_LOCAL);
+    const clap_plugin_entry_t *entry = library ? dlsym(library, "clap_entry") : NULL;
+    if (!entry || !entry->init(word[1])) return fprintf(stderr, "%s\n", dlerror()), 3;
+    const clap_plugin_factory_t *factory = entry->get_factory(CLAP_PLUGIN_FACTORY_ID);
+    const clap_host_t host = {CLAP_VERSION, NULL, "host", "", "", "1", extension, nothing, nothing, nothing};
+    const char *id = factory->get_plugin_descriptor(factory, 0)->id;
+    const double began = seconds(CLOCK_MONOTONIC);
+    const clap_plugin_t *plugin = factory->create_plugin(factory, &host, id);
+    if (!plugin || !plugin->init(plugin)) return 4;
+    if (!plugin->activate(plugin, rate, 1, MOST_BLOCK) || !plugin->start_processing(plugin)) return 5;
+    printf("opened %g\n", seconds(CLOCK_MONOTONIC) - began);
+    const clap_plugin_latency_t *latency = plugin->get_extension(plugin, CLAP_EXT_LATENCY);
+    const clap_plugin_latency_t *tail = plugin->get_extension(plugin, "clap.tail");
+    printf("latency %u\ntail %u\n", latency->get(plugin), tail->get(plugin));
+    float *sound = calloc(2 * frames + 1, sizeof *sound), left[MOST_BLOCK], right[MOST_BLOCK];
+    float *both[2] = {left, right};
+    clap_audio_buffer_t out = {both, NULL, 2, 0, 0};
+    const clap_input_events_t in = {NULL, size_of, get};
+    const clap_output_events_t ignored = {NULL, push};
+    clap_event_transport_t transport = {{sizeof transport, 0, CLAP_CORE_EVENT_SPACE_ID, CLAP_EVENT_TRANSPORT, 0}, .flags = 0};
+    long allocated = 0, changing = 1;
+    double took = 0.0, longest = 0.0;
+    for (long done = 0, now; done < frames; done += now) {
+        changing = changing * 1103515245 + 12345;
+        now = block > 0 ? block : 1 + (changing >> 16 & (MOST_BLOCK - 1));
+        now = now < frames - done ? now : frames - done;
+        for (; last < count && lines[last].frame <= done && !is_event(lines[last].word); last++) {
+            if (!strcmp(lines[last].word, "play"))
+                transport.flags = lines[last].number[0] ? CLAP_TRANSPORT_IS_PLAYING : 0;
+            else between(plugin, &lines[last], &rate);
+        }
+        in_block = 0;
+        for (first = last; last < count && lines[last].frame < done + now; last++) {
+            if (!is_event(lines[last].word)) { /* it is between two blocks: a block ends there */
+                now = lines[last].frame - done;
+                break;
+            }
+            add_event(&lines[last], lines[last].frame - done);
+        }
+        const clap_process_t process = {done, (uint32_t)now, &transport, NULL, &out, 0, 1, &in, &ignored};
+        const long before = allocations();
+        const double start = seconds(CLOCK_THREAD_CPUTIME_ID);
+        if (plugin->process(plugin, &process) == CLAP_PROCESS_ERROR) return 6;
+        const double one = seconds(CLOCK_THREAD_CPUTIME_ID) - start;
+        if (!told) allocated += allocations() - before; /* printing allocates once */
+        took += one, longest = one > longest ? one : longest;
+        for (long n = 0; n < now; n++)
+            sound[2 * (done + n)] = left[n], sound[2 * (done + n) + 1] = right[n];
+    }
+    const clap_plugin_params_t *params = plugin->get_extension(plugin, CLAP_EXT_PARAMS);
+    for (uint32_t i = 0; i < params->count(plugin); i++) {
+        clap_param_info_t info;
+        char text[64] = "";
+        double value = NAN, back = NAN;
+        params->get_info(plugin, i, &info);
+        params->get_value(plugin, info.id, &value);
+        params->value_to_text(plugin, info.id, value, text, sizeof text);
+        params->text_to_value(plugin, info.id, text, &back);
+        printf("value %u %.17g %.17g\n", info.id, value, back);
+    }
+    printf("allocated %ld\ntook %g\nlongest %g\n", allocated, took, longest);
+    plugin->stop_processing(plugin), plugin->deactivate(plugin), plugin->destroy(plugin);
+    entry->deinit();
+    FILE *file = fopen(word[6], "wb");
+    return file && fwrite(sound, 2 * sizeof *sound, frames, file) == (size_t)frames && !fclose(file) ? 0 : 7;
+}

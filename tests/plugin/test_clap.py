@@ -1,0 +1,134 @@
+"""The CLAP plug-in in a small host."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from plugin.sounds import FRAMES, PHRASE, by_library, frequency, level_db, script
+
+pytestmark = pytest.mark.slow
+PLAYS = ["0 play 1"]
+
+
+def test_it_plays_the_samples_of_the_library_in_blocks_of_any_size(play, library):
+    wanted = by_library(library, PHRASE, FRAMES)
+    assert np.abs(wanted).max() > 0.1
+    for block in (1, 32, 441, 4096, 0):
+        samples, told = play(PLAYS + script(PHRASE), FRAMES, block=block)
+        assert np.array_equal(samples, wanted), block
+        assert told["allocated"] == [[0.0]]
+        assert told["latency"] == [[0.0]]
+
+
+def test_it_plays_at_any_rate_alike(play):
+    usual, _ = play(PLAYS + script(PHRASE), FRAMES)
+    pitch, level = frequency(usual[12000:26000], 48000), level_db(usual[12000:26000])
+    assert 1200.0 * abs(np.log2(pitch / 440.0)) < 12.0
+    for rate in (22050, 32000, 44100, 88200, 96000, 176400, 192000, 37800):
+        scale = rate / 48000
+        samples, told = play(PLAYS + script(PHRASE, scale), int(FRAMES * scale), rate=rate, block=0)
+        part = samples[int(12000 * scale) : int(26000 * scale)]
+        assert 1200.0 * abs(np.log2(frequency(part, rate) / pitch)) < 3.0, rate
+        assert abs(level_db(part) - level) < 1.0, rate
+        assert (told["latency"] == [[0.0]]) == (rate == 44100)
+
+
+def test_resampled_sound_is_that_of_the_own_rate_but_late(play):
+    usual, _ = play(PLAYS + script(PHRASE), FRAMES)
+    double, told = play(PLAYS + script(PHRASE, 2.0), 2 * FRAMES, rate=96000, block=0)
+    late = int(told["latency"][0][0])
+    begin = slice(0, 20000)  # before rounding of times can matter
+    difference = double[late::2][begin] - usual[begin]
+    assert level_db(difference) < level_db(usual[begin]) - 35.0
+
+
+def test_a_parameter_moves_at_its_frame(play, shown):
+    gain = shown["/output/gain"].number
+    still, _ = play(PLAYS + script(PHRASE), FRAMES)
+    for block in (64, 4096):
+        moved, _ = play([*PLAYS, *script(PHRASE[:2]), f"14461 set {gain} -40"], FRAMES, block=block)
+        assert np.array_equal(moved[:14461], still[:14461])
+        assert not np.array_equal(moved[14461:14480], still[14461:14480])
+        later = slice(26000, 28000)  # the room has decayed
+        assert level_db(moved[later]) < level_db(still[later]) - 30.0
+
+
+def test_a_preset_moves_what_it_names_and_tells_the_host(play, shown):
+    hall = shown["/preset"].choices.index("hall")
+    _, told = play([*PLAYS, f"100 set {shown['/preset'].number} {hall}"], 2000)
+    moved = {int(number): value for number, value in told["moved"]}
+    assert moved[shown["/room/size"].number] == 25.0
+    values = {int(number): value for number, value, _ in told["value"]}
+    assert values[shown["/room/decay"].number] == 1.6
+    assert values[shown["/playing/speed"].number] == shown["/playing/speed"].default
+
+
+def test_text_leads_back_to_the_value(play, shown):
+    _, told = play([], 64)
+    by_number = {each.number: each for each in shown.values()}
+    assert len(told["value"]) == len(shown)
+    for number, value, back in told["value"]:
+        assert back == pytest.approx(value, abs=1e-3), by_number[int(number)].address
+
+
+def test_state_opens_in_a_new_instance(play, shown, tmp_path):
+    state = tmp_path / "state"
+    wind = shown["/mapping"].choices.index("wind")
+    changed = [
+        f"0 set {shown['/mapping'].number} {wind}",
+        f"0 set {shown['/tuning'].number} 1",
+        f"0 set {shown['/playing/bow_position'].number} 0.2",
+        f"0 set {shown['/room/level'].number} 0",
+    ]
+    first, told = play([*changed, f"2000 save {state}", "2000 reset", *later()], FRAMES)
+    assert told["saved"] == [[1.0]]
+    second, again = play([f"0 load {state}", "2000 reset", *later()], FRAMES)
+    assert again["loaded"] == [[1.0]]
+    assert again["value"] == told["value"]
+    assert np.array_equal(first[2000:], second[2000:])
+    assert np.abs(first).max() > 0.01
+
+
+def later():
+    """The phrase, with breath, from frame 2000 on."""
+    breath = [(0, 0xB0, 2, 90)]
+    return script([(frame + 2000, *message) for frame, *message in [*breath, *PHRASE]])
+
+
+def test_a_state_of_another_version_opens_as_far_as_it_is_known(play, shown, tmp_path):
+    state = tmp_path / "state"
+    state.write_text("yehu 9\n/playing/nothing=3\n/mapping=theremin\n/playing/press=2.5\nand more")
+    _, told = play([f"0 load {state}"], 64)
+    values = {int(number): value for number, value, _ in told["value"]}
+    assert values[shown["/playing/press"].number] == 2.5
+    assert values[shown["/mapping"].number] == 0.0
+    state.write_text("RIFF")
+    assert play([f"0 load {state}"], 64)[1]["loaded"] == [[0.0]]
+
+
+def test_a_bounce_sounds_like_the_last_one(play, shown):
+    once = script(PHRASE)
+    again = [f"{int(line.split()[0]) + 100000} {line.partition(' ')[2]}" for line in once]
+    end = ["95000 midi 176 121 0", "95000 midi 176 1 64", "95000 play 0", "100000 play 1"]
+    begin = ["0 play 1", "0 midi 176 1 64"]
+    samples, _ = play([*begin, *once, *end, *again], 100000 + FRAMES, block=256)
+    assert np.array_equal(samples[:FRAMES], samples[100000:])
+    live = [f"0 set {shown['/chance'].number} 0", *begin]
+    samples, _ = play([*live, *once, *end, *again], 100000 + FRAMES, block=256)
+    assert not np.array_equal(samples[:FRAMES], samples[100000:])
+
+
+def test_notes_with_expressions_bend_one_by_one_and_pedals_hold_them(play):
+    notes = ["0 on 7 0 69 0.7", "24000 express 2 7 1.5", "40000 off 7 0 69", "44000 on 8 0 69 0.7"]
+    samples, _ = play(notes, 64000)
+    bent, plain = (frequency(samples[a : a + 10000], 48000) for a in (28000, 52000))
+    assert 1200.0 * np.log2(bent / plain) == pytest.approx(150.0, abs=8.0)
+    held, _ = play(["0 midi 176 64 127", *notes[:1], "24000 off -1 0 69"], 64000)
+    assert level_db(held[50000:]) > level_db(held[10000:20000]) - 6.0
+
+
+def test_it_goes_on_at_another_rate_and_after_a_reset(play):
+    lines = [*script(PHRASE[:2]), "24000 rate 44100", "26000 midi 144 69 96", "60000 reset"]
+    samples, _ = play(lines, 80000, block=0)
+    assert frequency(samples[36000:56000], 44100) == pytest.approx(440.0, rel=0.006)
+    assert not samples[60000:].any()

@@ -1,0 +1,92 @@
+"""The LV2 bundle: what it tells, and what it plays."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from plugin.lv2_host import Plugin
+from plugin.sounds import FRAMES, PHRASE, by_library, frequency
+
+from yehu_server.plugin.carried import carried
+from yehu_server.plugin.lv2_texts import (
+    FIRST_PARAMETER,
+    in_lv2,
+    manifest,
+    plugin_text,
+    presets_text,
+)
+
+slow = pytest.mark.slow
+
+
+@pytest.fixture
+def ports(shown):
+    """All ports of parameters at their defaults, and the port of each address."""
+    listed = in_lv2(shown.values())
+    places = {each.address: FIRST_PARAMETER + i for i, each in enumerate(listed)}
+    return {places[each.address]: each.default for each in listed}, places
+
+
+@slow
+def test_it_plays_the_samples_of_the_library(built, library, ports):
+    plugin = Plugin(built / "Yehu.lv2" / "Yehu.so", 48000.0, ports[0])
+    samples = plugin.play(PHRASE, FRAMES, 441, speed=1.0)
+    assert np.array_equal(samples, by_library(library, PHRASE, FRAMES))
+    again = plugin.play(PHRASE, 1000, 100, speed=0.0)  # stops, plays on
+    assert not np.array_equal(again, samples[:1000])
+    plugin.close()
+
+
+@slow
+def test_its_ports_are_its_state(built, ports):
+    values, places = ports
+    changed = values | {places["/mapping"]: 2.0, places["/room/level"]: 0.0}
+    plugin = Plugin(built / "Yehu.lv2" / "Yehu.so", 96000.0, changed)
+    bent = [(0, 0x91, 69, 100), (100, 0xE1, 0, 80)]  # by MPE: 12 of 48 semitones
+    samples = plugin.play(bent, 96000, 1024)
+    assert frequency(samples[48000:], 96000) == pytest.approx(880.0, rel=0.006)
+    assert plugin.latency[0] == 64.0
+    plugin.close()
+
+
+@slow
+@pytest.mark.skipif(shutil.which("lv2_validate") is None, reason="there is no lv2_validate")
+def test_the_validator_finds_nothing(built):
+    files = sorted(map(str, (built / "Yehu.lv2").glob("*.ttl")))
+    done = subprocess.run(
+        [shutil.which("lv2_validate"), *files], capture_output=True, text=True, check=False
+    )
+    assert "Found 0 errors" in done.stdout + done.stderr
+
+
+@slow
+@pytest.mark.skipif(shutil.which("lv2info") is None, reason="there is no lilv")
+def test_lilv_finds_plug_in_and_presets(built, tmp_path):
+    (tmp_path / "Yehu.lv2").symlink_to(built / "Yehu.lv2")
+    told = subprocess.run(
+        [shutil.which("lv2info"), "urn:yehu-server:yehu"],
+        env={**os.environ, "LV2_PATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert not told.stderr
+    assert "sul-ponticello" in told.stdout
+    assert "Finger 4 press by hand" in told.stdout
+
+
+def test_texts_name_each_parameter_and_preset(shown):
+    data = carried()
+    text = plugin_text(list(shown.values()))
+    for each in in_lv2(shown.values()):
+        assert f'lv2:symbol "{each.symbol}" ;' in text
+    assert "preset" not in {each.symbol for each in in_lv2(shown.values())}
+    presets = presets_text(shown.values(), data)
+    listed = manifest("Yehu.so", data.presets)
+    for name in set(data.presets) - {"none"}:
+        assert f":preset:{name}>" in presets
+        assert f":preset:{name}>" in listed

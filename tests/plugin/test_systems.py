@@ -1,0 +1,75 @@
+"""The plug-in for other systems than this one: what can be known of it without them."""
+
+from __future__ import annotations
+
+import plistlib
+import shutil
+import struct
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+from plugin.conftest import HEADERS, HERE
+from plugin.sounds import FRAMES, PHRASE, by_library, script
+
+from yehu_server.plugin.build import build
+from yehu_server.plugin.targets import SYSTEMS
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(find_spec("ziglang") is None, reason="there is no zig"),
+]
+WINE = shutil.which("wine64", path="/usr/bin:/usr/lib/wine")
+QEMU = shutil.which("qemu-aarch64-static")
+
+
+@pytest.fixture(scope="module")
+def everywhere(tmp_path_factory) -> Path:
+    """A folder with the plug-in for all systems."""
+    folder = tmp_path_factory.mktemp("everywhere")
+    build(folder, "all")
+    return folder
+
+
+def played(tmp_path, system, command, plugin):
+    """What the host, compiled for another system, plays by a plug-in of it."""
+    program, lines, samples = (tmp_path / name for name in ("host.exe", "script", "samples"))
+    zig = [sys.executable, "-m", "ziglang", "cc", "-target", system.zig]
+    flags = ["-O1", "-DUNCOUNTED", f"-I{HEADERS}", str(HERE / "host.c"), "-o", str(program)]
+    subprocess.run([*zig, *flags, "-lm"], check=True, capture_output=True)
+    lines.write_text("".join(f"{line}\n" for line in ["0 play 1", *script(PHRASE)]))
+    arguments = [str(plugin), "48000", "128", str(FRAMES), str(lines), str(samples)]
+    environment = {"WINEPREFIX": str(tmp_path / "wine"), "WINEDEBUG": "-all", "HOME": str(tmp_path)}
+    subprocess.run([*command, str(program), *arguments], env=environment, check=True)
+    return np.fromfile(samples, np.float32).reshape(-1, 2)
+
+
+@pytest.mark.skipif(WINE is None, reason="there is no wine")
+def test_on_windows_it_plays_the_same(everywhere, library, tmp_path):
+    samples = played(tmp_path, SYSTEMS[2], [WINE], everywhere / "windows" / "Yehu.clap")
+    np.testing.assert_allclose(samples, by_library(library, PHRASE, FRAMES), atol=1e-6)
+
+
+@pytest.mark.skipif(QEMU is None, reason="there is no qemu")
+def test_on_arm_it_plays_the_same(everywhere, library, tmp_path):
+    command = [QEMU, "-L", "/usr/aarch64-linux-gnu"]
+    samples = played(tmp_path, SYSTEMS[1], command, everywhere / "linux-arm" / "Yehu.clap")
+    np.testing.assert_allclose(samples, by_library(library, PHRASE, FRAMES), atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["Yehu.clap", "Yehu.vst3"])
+def test_a_bundle_of_macos_has_both_processors_and_tells_what_it_is(everywhere, name):
+    inside = everywhere / "macos" / name / "Contents"
+    told = plistlib.loads((inside / "Info.plist").read_bytes())
+    binary = (inside / "MacOS" / told["CFBundleExecutable"]).read_bytes()
+    assert struct.unpack_from(">II", binary) == (0xCAFEBABE, 2)
+    for number, processor in enumerate((0x01000007, 0x0100000C)):
+        kind, _, at, size, power = struct.unpack_from(">IIIII", binary, 8 + 20 * number)
+        assert kind == processor
+        assert at % (1 << power) == 0
+        assert struct.unpack_from("<II", binary, at) == (0xFEEDFACF, processor)
+        entry = b"_clap_entry" if name == "Yehu.clap" else b"_GetPluginFactory"
+        assert entry in binary[at : at + size]

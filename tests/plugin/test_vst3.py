@@ -1,0 +1,96 @@
+"""The VST3 plug-in in hosts that others wrote: pedalboard and dawdreamer, both of JUCE."""
+
+from __future__ import annotations
+
+import mido
+import numpy as np
+import pytest
+from plugin.sounds import FRAMES, PHRASE, by_library, frequency, level_db
+
+pytestmark = pytest.mark.slow
+# These hosts move controllers to the beginning of a block, so that they come there.
+BLOCK = 512
+ALIGNED = [(frame // BLOCK * BLOCK if kind not in (0x80, 0x90) else frame, kind, *data)
+           for frame, kind, *data in PHRASE]  # fmt: skip
+RATES = (22050, 32000, 44100, 88200, 96000, 192000)
+
+
+@pytest.fixture
+def plugin(built):
+    """The plug-in in pedalboard."""
+    pedalboard = pytest.importorskip("pedalboard", reason="there is no pedalboard")
+    return pedalboard.load_plugin(str(built / "Yehu.vst3"))
+
+
+def played(plugin, messages=ALIGNED, rate=48000, block=BLOCK, frames=FRAMES):
+    """What pedalboard plays of messages [shape=(frames, 2)]; frames are of 48 kHz."""
+    listed = [
+        mido.Message.from_bytes(bytes(message)).copy(time=(frame + 0.01) / 48000)
+        for frame, *message in messages
+    ]
+    return plugin.process(listed, frames / 48000, rate, 2, block, True).T
+
+
+def test_it_plays_the_samples_of_the_library(plugin, library):
+    assert np.array_equal(played(plugin), by_library(library, ALIGNED, FRAMES))
+
+
+def test_notes_are_the_same_in_blocks_of_any_size(plugin):
+    notes = [message for message in ALIGNED if message[1] in (0x80, 0x90)]
+    first = played(plugin, notes)
+    assert all(np.array_equal(played(plugin, notes, block=n), first) for n in (32, 441, 4096))
+
+
+@pytest.mark.parametrize("rate", RATES)
+def test_pitch_and_level_are_the_same_at_any_rate(plugin, rate):
+    usual, other = (played(plugin, rate=r)[int(0.25 * r) : int(0.54 * r)] for r in (48000, rate))
+    pitch = frequency(usual, 48000)
+    assert 1200.0 * abs(np.log2(frequency(other, rate) / pitch)) < 3.0
+    assert abs(level_db(other) - level_db(usual)) < 1.0
+
+
+def raw(plugin, name):
+    """A parameter by its name, from 0 to 1; pedalboard's own attributes round."""
+    return next(each for each in plugin._parameters if each.name == name)
+
+
+def test_parameters_presets_and_state_open_in_a_new_instance(plugin, built, shown):
+    import pedalboard
+
+    wanted = {"Output gain": 0.25, "Preset": 1.0, "Mapping": 1.0}
+    for name, unit in wanted.items():
+        raw(plugin, name).raw_value = unit
+    quiet = played(plugin)
+    assert level_db(quiet) < -45.0
+    other = pedalboard.load_plugin(str(built / "Yehu.vst3"))
+    assert raw(other, "Preset").string_value == "none"
+    other.raw_state = plugin.raw_state
+    for name, unit in wanted.items():
+        assert raw(other, name).raw_value == pytest.approx(unit)
+    assert raw(other, "Room size").string_value == "25 m"  # by the preset, which is a hall
+    assert raw(other, "Mapping").string_value == shown["/mapping"].choices[-1]
+    assert level_db(played(other)) == pytest.approx(level_db(quiet), abs=0.5)
+
+
+def test_dawdreamer_plays_and_automates_it(built):
+    dawdreamer = pytest.importorskip("dawdreamer", reason="there is no dawdreamer")
+    engine = dawdreamer.RenderEngine(48000, 256)
+    synth = engine.make_plugin_processor("yehu", str(built / "Yehu.vst3"))
+    synth.add_midi_note(69, 96, 0.1, 1.8)
+    engine.load_graph([(synth, [])])
+    sounds = []
+    for _ in range(2):
+        engine.render(2.0)
+        sounds.append(engine.get_audio().copy())
+    assert np.array_equal(*sounds)
+    number = next(
+        each["index"]
+        for each in synth.get_parameters_description()
+        if each["name"] == "Output gain"
+    )
+    synth.set_automation(number, np.linspace(0.714, 0.0, 96000).astype(np.float32))
+    engine.render(2.0)
+    moved = engine.get_audio()
+    parts = [(moved[:, a:b], sounds[0][:, a:b]) for a, b in ((9600, 14400), (80000, 96000))]
+    changes = [level_db(one) - level_db(other) for one, other in parts]
+    assert changes[0] > changes[1] + 20.0

@@ -1,0 +1,199 @@
+"""Build the plug-in: one file or folder for each format."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from yehu_server.errors import OutputError, YehuError
+from yehu_server.plugin.bundles import put_clap, put_lv2, put_vst3
+from yehu_server.plugin.carried import carried
+from yehu_server.plugin.header import header
+from yehu_server.plugin.objects import make_objects, object_file
+from yehu_server.plugin.parameters import parameters
+from yehu_server.plugin.targets import ALL, NAMES, System, systems_of
+
+SOURCE = Path(__file__).parent / "source"
+COMMON = ("engine.cpp", "instrument.cpp", "resampler.cpp", "text.cpp")
+VST3 = ("vst3.cpp", "vst3_processor.cpp", "vst3_controller.cpp")
+HEADER_FILE = "carried.h"
+# Where the formats' headers may lie, what tells that they do, and the Debian package that has them.
+DPF = Path("/usr/share/dpf/distrho/src")
+FLAGS = (
+    *("-std=c++17", "-O2", "-ftree-vectorize", "-fPIC", "-fvisibility=hidden"),
+    *("-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics", "-fno-math-errno"),
+)
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format of plug-ins.
+
+    Attributes
+    ----------
+    files : tuple of str
+        The source files of its entry points.
+    headers : Path
+        The folder of its headers; `sign` lies in it, and `package` of Debian's brings it.
+    put : callable
+        Puts linked libraries, by system, into a folder; returns what it wrote.
+    """
+
+    name: str
+    files: tuple[str, ...]
+    headers: Path
+    sign: Path
+    package: str
+    put: Callable[[Path, Mapping[System, Path]], Path]
+
+
+FORMATS = (
+    Format("CLAP", ("clap.cpp",), DPF, Path("clap/entry.h"), "dpf-source", put_clap),
+    Format("LV2", ("lv2.cpp",), Path("/usr/include"), Path("lv2/core/lv2.h"), "lv2-dev", put_lv2),
+    Format("VST3", VST3, DPF, Path("travesty/base.h"), "dpf-source", put_vst3),
+)
+
+
+def build(folder: Path, target: str) -> list[Path]:
+    """Build all formats for a `--target` into a folder; for several, into a folder for each.
+
+    Parameters
+    ----------
+    target : str
+        One of `targets.NAMES`, or `targets.ALL`.
+
+    Returns
+    -------
+    list of Path
+        The files and bundles.
+
+    Raises
+    ------
+    YehuError
+        Where something is missing to build with, or the folder cannot be written.
+    """
+    names = [name for name in NAMES if target in (name, ALL)]
+    for system in systems_of(target):
+        compiler_of(system)  # or there would be none after a minute of compiling
+    for each in FORMATS:
+        if not (each.headers / each.sign).is_file():
+            wanted = f"Debian's package {each.package} has them"
+            raise YehuError(f"there are no headers of {each.name} here; {wanted}")
+    try:
+        with tempfile.TemporaryDirectory() as scratch:
+            work = Path(scratch)
+            make_objects(work, target)
+            write_header(work)
+            # And the formats' own, apart from those of this system that lie beside them.
+            for inside, around in {(each.sign.parts[0], each.headers) for each in FORMATS}:
+                (work / inside).symlink_to(around / inside)
+            return [
+                path
+                for name in names
+                for path in _put(folder / name if target == ALL else folder, name, work)
+            ]
+    except OSError as error:
+        raise OutputError(f"{error.filename or folder}: {error.strerror}") from error
+
+
+def write_header(work: Path) -> None:
+    """Write the header of parameters and what is carried into a folder."""
+    data = carried()
+    (work / HEADER_FILE).write_text(header(parameters(*data.names), data))
+
+
+def _put(folder: Path, name: str, work: Path) -> list[Path]:
+    folder.mkdir(parents=True, exist_ok=True)
+    systems = systems_of(name)
+    return [
+        each.put(folder, {system: link(each, system, work) for system in systems})
+        for each in FORMATS
+    ]
+
+
+def compiler_of(system: System) -> list[str]:
+    """The command that compiles and links C++ for a system.
+
+    Raises
+    ------
+    YehuError
+        Where there is none.
+    """
+    if system.is_here and (found := shutil.which("g++")):
+        return [found]
+    if find_spec("ziglang") is not None:
+        return [sys.executable, "-m", "ziglang", "c++", "-target", system.zig]
+    if system.is_here:
+        raise YehuError("there is no C++ compiler here; Debian's package g++ has it")
+    raise YehuError(
+        f"building for {system.name} needs zig; install it: pip install yehu-server[plugin]"
+    )
+
+
+def compile_file(source: Path, into: Path, system: System, headers: Path) -> None:
+    """Compile a source file into an object file, with the headers in a folder.
+
+    Raises
+    ------
+    YehuError
+        Where it fails.
+    """
+    run(
+        [
+            *compiler_of(system),
+            *FLAGS,
+            f"-I{SOURCE}",
+            f"-I{headers}",
+            "-c",
+            str(source),
+            "-o",
+            str(into),
+        ]
+    )
+
+
+def link(made: Format, system: System, work: Path) -> Path:
+    """Compile and link the library of a format for a system; return its file in a folder.
+
+    Raises
+    ------
+    YehuError
+        Where it fails.
+    """
+    place = work / f"{system.triple}-{made.name}"
+    place.mkdir(exist_ok=True)
+    objects = []
+    for name in (*COMMON, *made.files):
+        objects.append(work / f"{system.triple}-{name}.o")
+        if not objects[-1].exists():  # of another format
+            compile_file(SOURCE / name, objects[-1], system, work)
+    versions = (False, True) if system.has_wide else (False,)
+    objects += [object_file(work, system, wide=wide) for wide in versions]
+    library = place / f"Yehu{system.ending}"
+    options = ["-shared", "-s"]
+    if "linux" in system.triple:
+        options += ["-Wl,--no-undefined", "-Wl,--build-id=none", "-Wl,-Bsymbolic"]
+    if system.is_here:
+        options += ["-static-libstdc++", "-static-libgcc", "-Wl,--as-needed"]
+    run([*compiler_of(system), *options, *map(str, objects), "-lm", "-o", str(library)])
+    return library
+
+
+def run(command: Sequence[str]) -> None:
+    """Run a compiler.
+
+    Raises
+    ------
+    YehuError
+        With what it said, where it fails.
+    """
+    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - ours
+    if done.returncode != 0:
+        said = done.stderr.strip() or str(done.returncode)
+        raise YehuError(f"{Path(command[0]).name}: {said}")

@@ -1,0 +1,91 @@
+"""What a plug-in carries: presets, mappings and tunings, as the instrument reads them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from yehu_server.ahead.memory_images import runs
+from yehu_server.core.midi.tables import TABLES
+from yehu_server.params.table import find
+from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.preset_folders import Presets
+from yehu_server.playing.tables import Controls
+from yehu_server.playing.tuning import EQUAL, read_tuning
+from yehu_server.util.files import shipped_folder
+
+Array = Any
+OF_TUNING = ("is_equal", "pitch")
+NO_PRESET = "none"
+# Hosts keep the number of a choice: new ones come last. (Presets have numbers: their programs.)
+MAPPINGS = (
+    DEFAULT, "keyboard-expressive", "mpe", "sustain-pedal-tremolo", "wind", "keyboard-bow-speed",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Carried:
+    """Values by address, and runs of words of tables (``ahead.memory_images``), by name.
+
+    Attributes
+    ----------
+    presets, starts : dict
+        Values of parameters by address: of each preset, and those that each mapping starts with.
+    mappings, tunings : dict
+        Runs of words of ``midi.tables``; those of a tuning are for the fields OF_TUNING.
+    """
+
+    presets: dict[str, dict[str, float]]
+    mappings: dict[str, Array]
+    starts: dict[str, dict[str, float]]
+    tunings: dict[str, Array]
+
+    @cached_property
+    def names(self) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
+        """The names of presets, mappings and tunings."""
+        return tuple(self.presets), tuple(self.mappings), tuple(self.tunings)
+
+
+def carried() -> Carried:
+    """Read all that is shipped.
+
+    Raises
+    ------
+    YehuError
+        Where a file is wrong.
+    """
+    files = sorted(path.stem for path in shipped_folder("mappings").glob("*.toml"))
+    loaded = {name: load(name) for name in (*MAPPINGS, *files)}
+    presets = [preset for _, preset in sorted(Presets(user_first=False).programs().items())]
+    return Carried(
+        {NO_PRESET: {}} | {preset.name: dict(preset.values) for preset in presets},
+        {name: _runs(PlayingOptions(mapping=mapping)) for name, mapping in loaded.items()},
+        {
+            name: {address: find(address).accept(value) for address, value in mapping.start}
+            for name, mapping in loaded.items()
+        },
+        _tunings(),
+    )
+
+
+def _tunings() -> dict[str, Array]:
+    folder = shipped_folder("tunings")
+    found = {"equal": EQUAL}
+    for scale in sorted(folder.glob("*.scl")):
+        found[scale.stem] = read_tuning(scale)
+        for keys in sorted(folder.glob("*.kbm")):
+            found[f"{scale.stem}, {keys.stem}"] = read_tuning(scale, keys)
+    return {name: _runs(PlayingOptions(tuning=tuning), OF_TUNING) for name, tuning in found.items()}
+
+
+def _runs(style: PlayingOptions, fields: tuple[str, ...] = ()) -> Array:
+    """The runs of a style's tables: of some fields, or all but those of a tuning and programs."""
+    made, kept = style.tables(Controls()), np.zeros(1, TABLES)
+    left_out = {*OF_TUNING, "program_row", "program_value"}
+    for name in fields or [name for name in TABLES.names or () if name not in left_out]:
+        kept[name] = made[name]
+    return np.concatenate([np.zeros(0, np.int64), *runs(kept.view(np.int64))])

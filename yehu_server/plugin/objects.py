@@ -1,0 +1,70 @@
+"""The instrument's code for several systems, made in a process that compiles for one processor.
+
+`python -m yehu_server.plugin.objects FOLDER PROCESSOR TARGET...` writes an object file for each
+target into a folder, and the header of its functions.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from yehu_server.ahead import interface
+from yehu_server.ahead.build import RATES, compiled
+from yehu_server.ahead.header import header
+from yehu_server.ahead.memory_images import image
+from yehu_server.ahead.source_hash import sources_hash
+from yehu_server.errors import YehuError
+from yehu_server.plugin.targets import ANY, WIDE, System, systems_of
+from yehu_server.util import __version__
+
+ENGINE_HEADER = "yehu.h"
+
+
+def object_file(folder: Path, system: System, *, wide: bool) -> Path:
+    """Where the object of a system's version lies."""
+    return folder / f"{system.triple}{'-wide' if wide else ''}.o"
+
+
+def make_objects(folder: Path, name: str) -> None:
+    """Make the objects of all systems of a `--target`, and their header, in a folder.
+
+    Raises
+    ------
+    YehuError
+        Where it fails.
+    """
+    for cpu in (ANY, WIDE):
+        if cpu == WIDE and not any(system.has_wide for system in systems_of(name)):
+            continue
+        command = [sys.executable, "-m", "yehu_server.plugin.objects", str(folder), cpu, name]
+        environment = {**os.environ, "NUMBA_CPU_NAME": cpu, "NUMBA_CPU_FEATURES": ""}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603 - our own
+        if done.returncode != 0:
+            said = done.stderr.strip().rpartition("\n")[2]
+            raise YehuError(said or f"exit code {done.returncode}")
+
+
+def make_here(folder: Path, cpu: str, systems: Sequence[System]) -> None:
+    """Make objects of one version in this process, which compiles for that processor."""
+    images = [image(rate) for rate in RATES]
+    functions = interface.functions(RATES, images, sources_hash())
+    wide = cpu == WIDE
+    for system in systems:
+        if wide and not system.has_wide:
+            continue
+        code = compiled(functions, system.target(wide=wide))
+        object_file(folder, system, wide=wide).write_bytes(code)
+    text = header(functions, version=__version__, sources=sources_hash(), rates=RATES)
+    (folder / ENGINE_HEADER).write_text(text)
+
+
+if __name__ == "__main__":
+    try:
+        _folder, _cpu, _name = sys.argv[1:]
+        make_here(Path(_folder), _cpu, systems_of(_name))
+    except YehuError as error:
+        sys.exit(str(error))

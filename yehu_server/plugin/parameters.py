@@ -1,0 +1,117 @@
+"""The parameters that a host sees: those of the table, and choices of preset, mapping and tuning.
+
+A host keeps automation and state by a parameter's number, so numbers are for ever. They come from
+the address, which a parameter keeps as long as it is there (a test holds the numbers).
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+from yehu_server.core.player.rows import ROW
+from yehu_server.params.spec import Curve, Param
+from yehu_server.params.table import TABLE
+
+# A plug-in is a part of one player.
+LEFT_OUT = {"/playing/section"}
+HANDS = ("bow", "finger", "vibrato", "pluck")
+# Numbers below are for controllers of MIDI, where a format has them as parameters.
+LEAST_NUMBER, NUMBERS = 1 << 30, (1 << 30) - 1
+PRESET, MAPPING, TUNING, CHANCE = "/preset", "/mapping", "/tuning", "/chance"
+CHANCES = ("goes on", "begins with the transport")
+
+
+@dataclass(frozen=True)
+class HostParameter:
+    """One parameter as a host sees it.
+
+    Attributes
+    ----------
+    row : int
+        In the parameter table; -1 for a choice of the plug-in's own.
+    steps : int
+        How many steps there are from the lowest to the highest value; 0: it is continuous.
+    choices : tuple of str
+        What each step is called; empty: by its number.
+    """
+
+    address: str
+    name: str
+    group: str
+    unit: str
+    lo: float
+    hi: float
+    default: float
+    doc: str
+    row: int = -1
+    steps: int = 0
+    is_exponential: bool = False
+    choices: tuple[str, ...] = ()
+
+    @property
+    def number(self) -> int:
+        """Its number, for ever."""
+        return LEAST_NUMBER | zlib.crc32(self.address.encode()) & NUMBERS
+
+    @property
+    def symbol(self) -> str:
+        """Its name in LV2, for ever."""
+        return self.address.strip("/").replace("/", "_")
+
+
+def parameters(
+    presets: tuple[str, ...], mappings: tuple[str, ...], tunings: tuple[str, ...]
+) -> list[HostParameter]:
+    """List all parameters: the choices first, then those of the table, what one plays by before.
+
+    Parameters
+    ----------
+    presets, mappings, tunings : tuple of str
+        Names; the first of each is the one to begin with.
+    """
+    choices = [
+        _choice(PRESET, "Preset", presets, "Sets the parameters that the preset names."),
+        _choice(MAPPING, "Mapping", mappings, "What keys and controllers of MIDI move."),
+        _choice(TUNING, "Tuning", tunings, "The pitch of each key."),
+        _choice(
+            CHANCE,
+            "Chance",
+            CHANCES,
+            "When hands and hair begin anew: a bounce sounds like the last one if they do with "
+            "the transport.",
+            default=1,
+        ),
+    ]
+    rows = [_of_table(param) for param in TABLE if param.address not in LEFT_OUT]
+    return choices + sorted(rows, key=lambda param: param.group != "Playing")
+
+
+def _choice(
+    address: str, name: str, choices: tuple[str, ...], doc: str, default: int = 0
+) -> HostParameter:
+    last = len(choices) - 1
+    return HostParameter(
+        address, name, "Plug-in", "", 0.0, last, default, doc, steps=last, choices=choices
+    )
+
+
+def _of_table(param: Param) -> HostParameter:
+    group, *rest = param.address.strip("/").split("/")
+    words = " ".join(rest).replace("_", " ")
+    name = words if group == "playing" else f"{group} {words}"
+    # What the player moves; whoever moves it takes it over until the next note.
+    name += " by hand" if param.owned and group in HANDS else ""
+    return HostParameter(
+        param.address,
+        name[0].upper() + name[1:],
+        group.capitalize(),
+        "" if param.unit == "1" else param.unit,
+        param.lo,
+        param.hi,
+        param.default,
+        param.doc,
+        row=ROW[param.address],
+        steps=round(param.hi - param.lo) if param.is_choice else 0,
+        is_exponential=param.curve is Curve.EXP,
+    )

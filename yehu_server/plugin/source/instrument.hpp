@@ -1,0 +1,95 @@
+/* One instrument in a host: its memory, rate, parameters and state. It knows no format of plug-ins.
+ *
+ * `begin` and what is said to be for the main thread may allocate; nothing else does. Offsets are
+ * frames of the host from the beginning of the block that is processed next.
+ */
+#ifndef YEHU_INSTRUMENT_HPP
+#define YEHU_INSTRUMENT_HPP
+
+#include <atomic>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "carried.h"
+#include "engine.hpp"
+#include "resampler.hpp"
+
+namespace yehu {
+
+/* The parameter of a number, or -1. */
+int parameter_of(uint32_t number);
+/* 0 to 1, along the parameter's curve, and back. */
+double to_unit(int parameter, double value);
+double from_unit(int parameter, double unit);
+/* A value as text, and a text's value; whatever the locale is. */
+void write_value(int parameter, double value, char *into, size_t size);
+bool read_value(int parameter, const char *text, double *value);
+
+class Instrument {
+public:
+    Instrument();
+    ~Instrument();
+    Instrument(const Instrument &) = delete;
+    Instrument &operator=(const Instrument &) = delete;
+
+    /* Prepare for a rate (Hz), while nothing is processed; false where there is no memory. */
+    bool begin(double rate);
+    bool is_ready() const { return rig != nullptr; }
+    int latency() const { return resampler.latency(); }
+    double tail_seconds() const;
+
+    /* From the audio thread; in each block first `transport`, if the host tells, and
+     * `begin_block`, then what happens in it, and at last `process`. */
+    void reset();
+    void transport(bool plays);
+    void begin_block();
+    void parameter(uint32_t offset, int parameter, double value);
+    void midi(uint32_t offset, const uint8_t *bytes, size_t size);
+    void note_on(uint32_t offset, int channel, int key, double velocity);
+    void note_off(uint32_t offset, int channel, int key);
+    /* Notes that have expressions of their own; -1 stands for any id, channel or key. */
+    void own_note_on(uint32_t offset, int id, int channel, int key, double velocity);
+    void own_note_off(uint32_t offset, int id, int channel, int key);
+    void express(uint32_t offset, int kind, int id, int channel, int key, double value);
+    void process(float *left, float *right, uint32_t frames);
+
+    /* From any thread. A parameter that is set is heard from the next block on. */
+    double value(int parameter) const { return values[parameter].load(std::memory_order_relaxed); }
+    void set(int parameter, double value);
+    /* Whether a parameter was changed by another one since this was asked. */
+    bool was_moved(int parameter);
+
+    /* State as text; `save` returns its length, which may be more than `size`. */
+    size_t save(char *into, size_t size) const;
+    bool load(const char *text, size_t size);
+
+private:
+    static constexpr int WORDS = (PARAMETERS + 31) / 32;
+    static constexpr int MEMBERS = 15;
+    struct Note { int id, channel, key; bool sounds, touched; };
+
+    template <class Each> void change(int parameter, double value, Each each);
+    void store(int parameter, double value);
+    void flag(std::atomic<uint32_t> *bits, int parameter);
+    int64_t frame_at(uint32_t offset) const;
+    void post(int64_t frame, int kind, int64_t index, double value, double other = 0.0);
+    void message(int64_t frame, int status, int one, int two);
+    void apply(int64_t frame, int parameter);
+    void use_tables();
+    void set_zone();
+    int member_of(int id, int channel, int key) const;
+
+    const Engine &code;
+    void *allocated = nullptr, *rig = nullptr;
+    yehu_tables *tables = nullptr;
+    Resampler resampler;
+    std::atomic<double> values[PARAMETERS];
+    std::atomic<uint32_t> set_bits[WORDS], moved_bits[WORDS];
+    bool wants_tables = false, wants_zone = false, plays = false;
+    Note notes[MEMBERS];
+    int latest = 0;
+};
+
+} /* namespace yehu */
+
+#endif

@@ -1,0 +1,96 @@
+"""The systems that a plug-in is built for, and how each names and arranges its files."""
+
+from __future__ import annotations
+
+import platform
+import sys
+from dataclasses import dataclass
+
+from llvmlite import binding
+
+from yehu_server.ahead.module import Target
+
+ANY, WIDE = "generic", "x86-64-v3"  # processors, by LLVM's names
+WIDE_PREFIX = "wide_"
+
+
+@dataclass(frozen=True)
+class System:
+    """A system and kind of processor.
+
+    Attributes
+    ----------
+    name : str
+        As `--target` has it; macOS is both of its processors.
+    triple, zig : str
+        By LLVM's name, and by zig's.
+    cpu : str
+        The least processor that it runs on, by LLVM's name.
+    ending : str
+        Of a shared library.
+    vst3 : str
+        The folder of VST3's bundle that has the library, and the library's ending there.
+    """
+
+    name: str
+    triple: str
+    zig: str
+    ending: str
+    vst3: tuple[str, str]
+    cpu: str = ANY
+
+    @property
+    def has_wide(self) -> bool:
+        """Whether it has a second version, for processors with AVX2."""
+        return self.triple.startswith("x86_64")
+
+    @property
+    def is_here(self) -> bool:
+        """Whether it is this machine's own system."""
+        return self.triple == binding.get_process_triple() and sys.platform == "linux"
+
+    def target(self, *, wide: bool) -> Target:
+        """What LLVM makes one of its versions for."""
+        if wide:
+            return Target(self.triple, WIDE, prefix=WIDE_PREFIX, is_inner=True)
+        return Target(self.triple, self.cpu, is_inner=True)
+
+
+SYSTEMS = (
+    System(
+        "linux", "x86_64-unknown-linux-gnu", "x86_64-linux-gnu.2.31", ".so", ("x86_64-linux", ".so")
+    ),
+    System(
+        "linux-arm",
+        "aarch64-unknown-linux-gnu",
+        "aarch64-linux-gnu.2.31",
+        ".so",
+        ("aarch64-linux", ".so"),
+    ),
+    System(
+        "windows", "x86_64-pc-windows-gnu", "x86_64-windows-gnu", ".dll", ("x86_64-win", ".vst3")
+    ),
+    System("macos", "x86_64-apple-macosx11.0.0", "x86_64-macos.11.0", ".dylib", ("MacOS", "")),
+    System(
+        "macos",
+        "arm64-apple-macosx11.0.0",
+        "aarch64-macos.11.0",
+        ".dylib",
+        ("MacOS", ""),
+        cpu="apple-m1",
+    ),
+)
+NAMES = tuple(dict.fromkeys(system.name for system in SYSTEMS))
+ALL = "all"
+
+
+def usual() -> str:
+    """The name of this machine's own system."""
+    if sys.platform == "darwin":
+        return "macos"
+    return "linux-arm" if platform.machine() in {"aarch64", "arm64"} else "linux"
+
+
+def systems_of(name: str) -> list[System]:
+    """The systems of a `--target`."""
+    return [system for system in SYSTEMS if name in (ALL, system.name)]

@@ -166,10 +166,3 @@ def test_a_part_of_one_player_is_the_instrument_of_its_style():
         instrument.process(out[-1])
     assert np.abs(out[0]).max() > 1e-3
     assert np.array_equal(*out)
-
-
-def test_players_of_a_section_do_not_vibrate_in_step():
-    specs = section_specs(PlayingOptions(), 44100.0, ideal(), people=8)
-    phases = [float(Instrument(spec)._rig["controls"]["vibrato"][0]) for spec in specs]
-    assert phases[0] == 0.0
-    assert np.abs(np.mean(np.exp(2j * np.pi * np.array(phases)))) < 0.3

@@ -20,15 +20,6 @@ EVERY = 16
 PER_CENT = math.log(2.0) / 1200.0
 
 
-GOLDEN_TURN = 0.6180339887498949  # its multiples spread evenly over a turn
-
-
-@compiled
-def first_phase(seed: float) -> float:
-    """Phase (turns) that the vibrato of a seed begins with: players of a section differ."""
-    return float(seed * GOLDEN_TURN - math.floor(seed * GOLDEN_TURN))
-
-
 @compiled
 def advance(c: Any) -> None:
     """Advance what drifts by one sample. Real time: safe."""

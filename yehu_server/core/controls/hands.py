@@ -69,7 +69,7 @@ def vibrato_at(c: Any, phase: float) -> float:
 def vibrate(c: Any) -> float:
     """Advance the vibrato by one sample; its value."""
     if c.value[DEPTH] == 0.0 and c.value[VIBRATO_PRESS] == 0.0:
-        c.vibrato = c.vibrato_from
+        c.vibrato = 0.0
         return 0.0
     c.vibrato += c.vibrato_pace * c.value[RATE] / c.second
     c.vibrato -= math.floor(c.vibrato)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.controls.drift import DRIFTS, first_phase
+from yehu_server.core.controls.drift import DRIFTS
 from yehu_server.core.controls.ramps import DECIBELS, pole_of_time
 from yehu_server.core.controls.slots import (
     FINGER_POSITION,
@@ -62,7 +62,6 @@ CONTROLS = np.dtype(
         ("fade", np.int64),  # length of a fade to silence (frames)
         ("vibrato_pace", np.float64),  # of this turn of the vibrato: factors on rate and depth
         ("vibrato_width", np.float64),
-        ("vibrato_from", np.float64),  # phase that a vibrato begins with
         ("vibrato", np.float64),  # phases of vibrato and tremolo (turns)
         ("tremolo", np.float64),
         ("follow", np.float64),
@@ -77,9 +76,7 @@ CONTROLS = np.dtype(
 )
 
 
-def prepare_controls(
-    quantities: Quantities, rate: float, values: Mapping[str, float], seed: int = 0
-) -> Any:
+def prepare_controls(quantities: Quantities, rate: float, values: Mapping[str, float]) -> Any:
     """Prepare the record.
 
     Parameters
@@ -87,8 +84,6 @@ def prepare_controls(
     rate : float, Hz
     values : mapping
         The value of every parameter, by address.
-    seed : int
-        Which of many players; their vibratos are not in step.
 
     Returns
     -------
@@ -103,7 +98,6 @@ def prepare_controls(
     controls["second"] = rate
     controls["fade"] = max(1, round(FADE_S * rate))
     controls["let_go"] = max(1, round(LET_GO_S * rate))
-    controls["vibrato_from"] = first_phase(seed)
     steady(controls)
     controls["bridge_x"] = quantities.bridge_x
     grip = quantities.bow.mu_S - quantities.bow.mu_C
@@ -133,7 +127,7 @@ def settle(controls: Any) -> None:
 def steady(controls: Any) -> None:
     """Let nothing drift or swing any more in a record of dtype CONTROLS, in place."""
     controls["tremolo"] = FORWARD
-    controls["vibrato"], controls["place"] = controls["vibrato_from"], 0.0
+    controls["vibrato"], controls["place"] = 0.0, 0.0
     controls["vibrato_pace"] = controls["vibrato_width"] = 1.0
     controls["drift"], controls["drift_slope"], controls["drifting"] = 0.0, 0.0, 0
     controls["sounding_drift"] = controls["place_drift"] = 1.0

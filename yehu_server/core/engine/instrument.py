@@ -89,7 +89,7 @@ class Instrument:
         """
         rig, spec, values = self._rig, self.spec, self.spec.values
         rig["state"] = kernel.at_rest(rig["model"])
-        rig["controls"] = prepare_controls(spec.quantities, self.rate, values, spec.seed)
+        rig["controls"] = prepare_controls(spec.quantities, self.rate, values)
         rig["player"] = prepare_player(
             spec.quantities,
             self.rate,

@@ -10,7 +10,6 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.drift import first_phase
 from yehu_server.core.controls.slots import SIDE
 from yehu_server.core.physics.elementary import chance
 from yehu_server.core.player.rows import (
@@ -30,12 +29,9 @@ VARIED_LANDING, MOST_LANDING = 0.8, 2.0  # of the time of a landing; and its lar
 
 
 @compiled_exactly
-def begin_sequence(p: Any, c: Any, seed: int) -> None:
-    """Begin the sequence of a seed. Players of different ones don't vibrate in step."""
+def begin_sequence(p: Any, seed: int) -> None:
+    """Begin the sequence of a seed."""
     p.seed, p.drawn = seed, 0
-    c.vibrato_from = first_phase(seed)
-    if p.sounding < 0:
-        c.vibrato = c.vibrato_from
     p.drift_state.slow[:], p.drift_state.tremor[:], p.drift_state.drawn = 0.0, 0.0, 0
 
 

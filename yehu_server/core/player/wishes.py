@@ -200,4 +200,4 @@ def follow(p: Any, c: Any, row: int) -> None:
     elif row == LISTENING and p.value[LISTENING] == 0.0:
         notes.reset_corrections(p, c)
     elif row == SEED:
-        begin_sequence(p, c, int(p.value[SEED]))
+        begin_sequence(p, int(p.value[SEED]))

@@ -10,8 +10,8 @@ from yehu_server.cli.arguments import Parser, add_command, add_folder, add_optio
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.playing_options import add_tables, table_options_of
 from yehu_server.cli.terminal import print_result
+from yehu_server.plugin.targets import ALL, NAMES, usual
 
-TARGETS = ("linux", "linux-arm", "windows", "macos", "all")
 EXAMPLES = """\
 examples:
   yehu-server build wasm -o page
@@ -64,7 +64,7 @@ def _add_plugin(command: Parser) -> None:
         """
         --target: the system it is for (default: this machine's); all: a folder for each
         """,
-        target={"choices": TARGETS},
+        target={"choices": (*NAMES, ALL)},
     )
 
 
@@ -77,7 +77,6 @@ def build_plugin(arguments: argparse.Namespace) -> int:
         Where something is missing to build with, or the folder cannot be written.
     """
     from yehu_server.plugin.build import build
-    from yehu_server.plugin.targets import usual
 
     for path in build(arguments.output, arguments.target or usual()):
         print_result(str(path))

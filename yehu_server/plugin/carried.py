@@ -82,9 +82,9 @@ def _tunings() -> dict[str, Array]:
     return {name: _runs(PlayingOptions(tuning=tuning), OF_TUNING) for name, tuning in found.items()}
 
 
-def _runs(style: PlayingOptions, fields: tuple[str, ...] = ()) -> Array:
-    """The runs of a style's tables: of some fields, or all but those of a tuning and programs."""
-    made, kept = style.tables(Controls()), np.zeros(1, TABLES)
+def _runs(playing: PlayingOptions, fields: tuple[str, ...] = ()) -> Array:
+    """The runs of tables: of some fields, or all but those of a tuning and programs."""
+    made, kept = playing.tables(Controls()), np.zeros(1, TABLES)
     left_out = {*OF_TUNING, "program_row", "program_value"}
     for name in fields or [name for name in TABLES.names or () if name not in left_out]:
         kept[name] = made[name]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import platform
 import sys
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from llvmlite import binding
-
-from yehu_server.ahead.module import Target
+if TYPE_CHECKING:  # the command line reads the names, and does not wait for LLVM
+    from yehu_server.ahead.module import Target
 
 ANY, WIDE = "generic", "x86-64-v3"  # processors, by LLVM's names
 WIDE_PREFIX = "wide_"
@@ -47,10 +47,14 @@ class System:
     @property
     def is_here(self) -> bool:
         """Whether it is this machine's own system."""
+        from llvmlite import binding
+
         return self.triple == binding.get_process_triple() and sys.platform == "linux"
 
     def target(self, *, wide: bool) -> Target:
         """What LLVM makes one of its versions for."""
+        from yehu_server.ahead.module import Target
+
         if wide:
             return Target(self.triple, WIDE, prefix=WIDE_PREFIX, is_inner=True)
         return Target(self.triple, self.cpu, is_inner=True)

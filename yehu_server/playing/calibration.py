@@ -33,7 +33,7 @@ from yehu_server.core.player.bowing import (
     at_pitch,
     share,
 )
-from yehu_server.core.player.brilliance import USUAL_DB
+from yehu_server.core.player.brilliance import USUAL_EFFORT, USUAL_PLACE, brilliance_db
 from yehu_server.core.player.calibration import (
     OPEN_NOTES,
     PITCHES,
@@ -150,7 +150,8 @@ def _bow(
     instrument.write("/bow/noise", 0.0, ramp_ms=0.0)  # an even bow: the same at every try
     instrument.write("/bow/position", beta, ramp_ms=0.0)
     instrument.write("/bow/pressure", pressure, ramp_ms=0.0)
-    instrument.write("/body/brilliance", USUAL_DB, ramp_ms=0.0)
+    usual_db = brilliance_db(USUAL_EFFORT, USUAL_PLACE, pitch)
+    instrument.write("/body/brilliance", usual_db, ramp_ms=0.0)
     instrument.write("/bow/side", 1.0 if string == 0 else -1.0)
     instrument.write("/bow/speed", min(speed, fastest), ramp_ms=40.0)
     settle_s = OPEN_SETTLE_S if x_f is None else SETTLE_S

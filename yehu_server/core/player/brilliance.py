@@ -21,13 +21,33 @@ USUAL_DB, HARDER_DB, NEARER_DB = 5.0, 7.0, 11.0
 USUAL_EFFORT = 0.08  # m/s, speed times share of Schelleng's limit
 USUAL_PLACE = 0.13
 LEAST_DB, MOST_DB = -6.0, 18.0
+# A higher note has its fundamental in the band, which then is loudness more than colour.
+FULL_UP_TO = 76.0  # E5, fractional MIDI note
+HALVED_IN = 8.0  # semitones
 
 
 @compiled_exactly
-def set_brilliance(p: Any, c: Any, effort: float) -> None:
-    """Set ``/body/brilliance`` for an effort of the bow: its speed (m/s) times its pressure."""
+def brilliance_db(effort: float, place: float, pitch: float) -> float:
+    """Gain of the high band (dB).
+
+    Parameters
+    ----------
+    effort : float, m/s
+        Speed of the bow times its share of Schelleng's limit; above 0.
+    place : float
+        Distance of the bow from the bridge, as a share of the sounding length.
+    pitch : float
+        Fractional MIDI note.
+    """
+    gain_db = USUAL_DB + HARDER_DB * math.log2(effort / USUAL_EFFORT)
+    gain_db -= NEARER_DB * math.log2(place / USUAL_PLACE)
+    gain_db = min(max(gain_db, LEAST_DB), MOST_DB)
+    return float(gain_db * 0.5 ** (max(pitch - FULL_UP_TO, 0.0) / HALVED_IN))
+
+
+@compiled_exactly
+def set_brilliance(p: Any, c: Any, effort: float, pitch: float) -> None:
+    """Set ``/body/brilliance`` for a pitch and an effort of the bow (m/s)."""
     if effort > 0.0:
-        gain_db = USUAL_DB + HARDER_DB * math.log2(effort / USUAL_EFFORT)
-        gain_db -= NEARER_DB * math.log2(p.value[POSITION] / USUAL_PLACE)
-        gain_db = min(max(gain_db, LEAST_DB), MOST_DB)
+        gain_db = brilliance_db(effort, p.value[POSITION], pitch)
         move(p, c, BODY_BRILLIANCE, p.value[BRILLIANCE] * gain_db, USUAL_MS)

@@ -281,7 +281,8 @@ def set_bow_pressure(p: Any, c: Any) -> None:
 def set_brilliance(p: Any, c: Any) -> None:
     """Set the gain of the high band, as the bow is wished or drawn by hand."""
     effort = wished_speed(p) * p.value[PRESSURE]
-    brilliance.set_brilliance(p, c, p.effort if p.by_hand != 0 else effort)
+    pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
+    brilliance.set_brilliance(p, c, p.effort if p.by_hand != 0 else effort, pitch)
 
 
 @compiled_exactly

@@ -147,6 +147,11 @@ async function main() {
   showGuide(page);
 }
 
+const worker = document.querySelector('meta[name="yehu-worker"]')?.getAttribute("content");
+if (worker && "serviceWorker" in navigator) {
+  navigator.serviceWorker.register(worker).catch(() => {}); // it works without
+}
+
 main().catch((error) => {
   const notice = find("notice", HTMLElement);
   notice.hidden = false;

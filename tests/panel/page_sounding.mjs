@@ -54,7 +54,8 @@ async function playAndKeep(page) {
   await page.keyboard.up(KEY);
   await page.waitForTimeout(300);
   const pressed = page.locator("#panel-keep button[aria-pressed=true]");
-  await save(page, pressed.nth(1), "kept.jsonl");
+  await pressed.first().click();
+  await save(page, page.getByRole("button", { name: "Save as a file" }), "kept.jsonl");
   await save(page, pressed.first(), "recorded.wav");
   return status;
 }

@@ -15,10 +15,11 @@ const READ = 9000; // ms in which the last words are read
 const HELP = "?";
 
 /** @param {Page} page */
-export function showGuide({ instrument, hands, bow, keys, yehu }) {
+export function showGuide({ hands, bow, fingerboard, keys, yehu }) {
   const stage = find("stage", HTMLElement);
   const guide = find("guide", HTMLElement);
   let at = -1; // before it, or after
+  let hasBegun = false;
   let goodMs = 0;
   let last = 0;
 
@@ -76,9 +77,10 @@ export function showGuide({ instrument, hands, bow, keys, yehu }) {
 
   const begin = () => {
     find("invite", HTMLElement).hidden = true;
-    if (!settings.isTaught && at < 0) go(0);
+    if (!settings.isTaught && at < 0 && !hasBegun) go(0);
+    hasBegun = true;
   };
-  instrument.addEventListener("start", begin, { once: true });
+  for (const hand of [keys, fingerboard, bow]) hand.addEventListener("play", begin);
   // The computer's keys are printed on the fingerboard, once one is pressed.
   const print = () => {
     yehu.keys = new Map([...NOTES].map(([code, note]) => [note + keys.octave, signOf(code)]));

@@ -66,7 +66,7 @@ async function bowMoves(page) {
     page.locator("#yehu").evaluate((canvas) => {
       const [x, width] = [0.68, 0.08].map((share) => Math.round(share * canvas.width));
       const part = document.createElement("canvas");
-      Object.assign(part, { width, height: Math.round(0.3 * canvas.height) });
+      Object.assign(part, { width, height: Math.round(0.12 * canvas.height) });
       part.getContext("2d").drawImage(canvas, -x, 0);
       return part.toDataURL();
     });

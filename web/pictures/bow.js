@@ -42,7 +42,7 @@ export function drawBow(context, surface, bow, colours, state, isCalm) {
   const tip = frog - out * long;
   const stick = Math.min(Math.max(STICK * breadth, 10), 26);
   const force = Math.abs(state?.bow.force ?? 0);
-  const thick = THIN + (THICK - THIN) * Math.min(force / FIRM, 1);
+  const thick = Math.round(THIN + (THICK - THIN) * Math.min(force / FIRM, 1));
   context.globalAlpha = isOn ? 1 : 0.55;
   context.lineCap = "round";
   context.strokeStyle = colours.edge;

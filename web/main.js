@@ -18,6 +18,7 @@ import { Tuner } from "./pictures/tuner.js";
 import { Yehu } from "./pictures/yehu.js";
 import { settings } from "./settings.js";
 import { MidiLearn } from "./midi_learn.js";
+import { AT_FIRST } from "./views/cards.js";
 import { showConnections } from "./views/connect.js";
 import { showHeader } from "./views/header.js";
 import { showRecording } from "./views/recording.js";
@@ -30,8 +31,6 @@ import { showTunes } from "./views/tunes.js";
 import { showPlayingOptions } from "./views/playing_options.js";
 import { fillWords, loadWords } from "./i18n.js";
 
-/** Presets that the page begins with. */
-const AT_FIRST = ["vibrato", "courtyard"];
 /** The note of a first finger that was lifted before it could sound. */
 const FIRST = "first";
 const FIRST_MS = 1500;
@@ -96,8 +95,7 @@ function assemble() {
 
 /** @param {Page} page */
 function connect({ instrument, hands, keys, fingerboard, bow, gallery }) {
-  // A server has its own sound; here it begins with one to fall for.
-  if (!document.querySelector('meta[name="yehu-server"]')) {
+  if (AT_FIRST.length) {
     instrument.addEventListener("ready", () => {
       for (const preset of AT_FIRST) instrument.player.applyPreset(preset);
       instrument.prepareHere();

@@ -64,7 +64,9 @@ await run(
   async (browser, url) => {
     await browser.addInitScript(keepAnalysers);
     let asked = 0;
-    browser.on("request", (request) => (asked += request.url().endsWith("yehu.wasm") ? 1 : 0));
+    browser.on("request", (request) => {
+      if (request.url().endsWith("yehu.wasm") && !request.serviceWorker()) asked += 1;
+    });
     const { page, errors } = await open(browser, url);
     const found = { seconds: (await start(page)) / 1e3, asked };
     await page.keyboard.up(KEY);

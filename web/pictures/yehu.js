@@ -25,6 +25,7 @@ const MOST_SWING = 80; // px
 const TRAIL = 10; // shapes that are still seen, in the view of all
 const QUIET = -55; // dBFS; from here on a string glows
 const LOUD = -15;
+const SILENT = -60;
 const FINGER = 15; // px
 const SAME = 0.01; // semitones
 
@@ -85,10 +86,10 @@ export class Yehu extends Picture {
       if (this.rests[string].isNew) {
         this.slow[string].clear();
         this.trails[string].length = 0;
-        if (string === this.string) this.swing = LEAST_SWING; // another note has its own scale
+        if (string === state.bow.string) this.swing = LEAST_SWING; // another note has its own scale
       }
       if (!this.rests[string].isSettled) continue;
-      if (string === this.string) {
+      if (string === state.bow.string) {
         for (const y of shape) this.swing = Math.max(this.swing, Math.abs(y));
       }
       this.slow[string].add(shape, state.time, state.period);
@@ -221,7 +222,10 @@ export class Yehu extends Picture {
     context.moveTo(surface.board[0] * (string ? 0.34 : 0.68), lane);
     context.lineTo(along[0], lane);
     context.stroke();
-    if (string === this.string) this.#envelope(context, string, lane, along, gain);
+    const level = state?.level ?? SILENT;
+    // Else it only gives way to a finger that sways.
+    const isHeard = level > SILENT && string === this.string;
+    if (isHeard) this.#envelope(context, string, lane, along, gain);
     const line = (/** @type {Float32Array} */ shape, /** @type {number} */ width) => {
       context.lineWidth = width;
       context.beginPath();
@@ -230,10 +234,10 @@ export class Yehu extends Picture {
     };
     /** @type {Float32Array} */
     let shape = new Float32Array(POINTS);
-    if (view === "slowed" && this.slow[string].known > 0) shape = this.slow[string].at(this.phase);
-    else if (view === "moving" && trail.length) shape = trail[trail.length - 1];
-    const level = state && string === this.string ? state.level : QUIET;
-    const glow = Math.min(Math.max((level - QUIET) / (LOUD - QUIET), 0), 1);
+    if (isHeard && view === "slowed" && this.slow[string].known > 0) {
+      shape = this.slow[string].at(this.phase);
+    } else if (isHeard && view === "moving" && trail.length) shape = trail[trail.length - 1];
+    const glow = isHeard ? Math.min(Math.max((level - QUIET) / (LOUD - QUIET), 0), 1) : 0;
     for (const width of glow > 0 ? [16, 9, 5] : []) {
       context.globalAlpha = 0.16 * glow;
       line(shape, width);

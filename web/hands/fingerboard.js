@@ -84,10 +84,13 @@ export class Fingerboard extends EventTarget {
    */
   bring(pitch) {
     this.wanted = pitch;
+    if (pitch !== null) this.show(pitch);
+  }
+
+  /** @param {number} pitch shown now, if no finger is on the board */
+  show(pitch) {
     const { first, span } = this.scale;
-    if (pitch === null || this.hands.fingers.length || (pitch >= first && pitch <= first + span)) {
-      return;
-    }
+    if (this.hands.fingers.length || (pitch >= first && pitch <= first + span)) return;
     this.lowest = pitch < first ? pitch : pitch - span;
     this.measure();
   }

@@ -127,6 +127,11 @@ export class Picture {
     this.draw(this.context, { ...moment, elapsed });
   }
 
+  /** Whether all of it becomes larger on a large canvas. */
+  get isMagnified() {
+    return true;
+  }
+
   /** Whether somebody has asked for its motion. */
   get isWanted() {
     return false;
@@ -163,7 +168,7 @@ export class Picture {
     this.isStale = false;
     const { clientWidth, clientHeight } = this.canvas;
     const room = Math.min(clientWidth / LARGE.width, clientHeight / LARGE.height, LARGE.most);
-    const zoom = this.canvas.closest(".large") ? Math.max(room, 1) : 1;
+    const zoom = this.isMagnified && this.canvas.closest(".large") ? Math.max(room, 1) : 1;
     const dots = Math.min(devicePixelRatio || 1, MOST_DOTS);
     this.width = clientWidth / zoom;
     this.height = clientHeight / zoom;

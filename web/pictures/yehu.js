@@ -5,7 +5,7 @@
 /** @typedef {import("../hands/fingerboard.js").Fingerboard} Fingerboard */
 /** @typedef {'slowed' | 'moving' | 'still'} View */
 
-import { OPEN } from "../hands/scale.js";
+import { LOWEST, OPEN } from "../hands/scale.js";
 import { translate } from "../i18n.js";
 import { POINTS } from "../sound/snapshot.js";
 import { drawBow, drawForces } from "./bow.js";
@@ -73,9 +73,18 @@ export class Yehu extends Picture {
     return this.view !== "still";
   }
 
+  /** It is played at the same places, however large it is. */
+  get isMagnified() {
+    return false;
+  }
+
   /** @param {Moment} moment */
   notice({ state, isNew }) {
-    if (state && isNew) this.#collect(state);
+    if (!state || !isNew) return;
+    this.#collect(state);
+    // Whoever else plays is seen where the board goes on.
+    if (state.bow.string >= 0 && state.pitch >= LOWEST)
+      this.fingerboard.show(Math.round(state.pitch));
   }
 
   /** @param {Snapshot} state */
@@ -355,13 +364,13 @@ export class Yehu extends Picture {
     const text = `${Math.abs(speed).toFixed(2)} m/s  ${force.toFixed(2)} N`;
     context.font = font(14, 600);
     context.fillStyle = this.colours.ink;
-    context.textAlign = "right";
+    context.textAlign = "left";
     context.textBaseline = "bottom";
-    context.fillText(text, this.width - 12, this.height - 10);
+    const left = this.surface.isUpright ? 12 : this.surface.board[1] + 10;
+    context.fillText(text, left, this.height - 56);
     context.font = font(14);
     context.fillStyle = this.colours.good;
-    context.textBaseline = "top";
-    context.fillText(translate("bow.green"), this.width - 12, 56);
+    context.fillText(translate("bow.green"), left, this.height - 76);
   }
 }
 

@@ -3,7 +3,7 @@
 //   scripts/yehu page --port 8010 &
 //   node scripts/page_figures.mjs http://127.0.0.1:8010/ /usr/bin/chromium docs/figures
 
-import { FLAGS, SIZES, open, run } from "../tests/live/page/browser.mjs";
+import { FLAGS, READY, SIZES, open, run } from "../tests/live/page/browser.mjs";
 
 const [, , folder] = process.argv.slice(2);
 const PICTURES = [
@@ -19,6 +19,9 @@ await run(
       const { page } = await open(browser, url);
       await page.emulateMedia({ colorScheme });
       await page.setViewportSize(size);
+      await page.evaluate(() => (localStorage.yehu = '{"isTaught":true}'));
+      await page.reload();
+      await page.waitForSelector(READY);
       if (view) await page.click(`#tab-${view}`);
       await page.click("#start");
       await page.keyboard.down(key);

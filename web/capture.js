@@ -2,7 +2,6 @@
 
 /** @typedef {import('./instrument.js').Instrument} Instrument */
 /** @typedef {import('./instrument.js').Wish} Wish */
-/** @typedef {import('./interfaces.js').CapturedWishes} CapturedWishes */
 
 import facts from "./facts.js";
 import { TABLE, find } from "./playing/table.js";
@@ -39,39 +38,44 @@ export class CaptureWriter {
     sound?.keep?.start();
   }
 
-  /** End, and return the file. */
+  /**
+   * End.
+   * @returns {Promise<Performance & {frames: number}>}
+   */
   async stop() {
     const { sound } = this.instrument;
     if (!sound?.keep) throw new Error("nothing is kept");
-    const kept = await sound.keep.stop();
-    const answer = await fetch(new URL(`captures/${sound.status.rate}.json`, import.meta.url));
-    if (!answer.ok) throw new Error(`${answer.status} ${answer.statusText}`);
-    const head = await answer.json();
-    Object.assign(head.players[OWN - 1].values, this.values);
-    const lines = [head, ...linesOf(kept), { end: kept.to - kept.from }];
-    const text = lines.map((line) => `${JSON.stringify(line)}\n`);
-    return new Blob(text, { type: "application/jsonl" });
+    const { from, to, wishes } = await sound.keep.stop();
+    const rows = Array.from({ length: wishes.length / WISH }, (_, i) => {
+      const [frame, kind, index, value, other] = wishes.slice(i * WISH, (i + 1) * WISH);
+      return { frame: frame - from, kind, index, value, other };
+    });
+    return {
+      rate: sound.status.rate,
+      values: this.values,
+      wishes: rows.sort((one, other) => one.frame - other.frame),
+      players: 1,
+      frames: to - from,
+    };
   }
-}
-
-/** @param {CapturedWishes} kept */
-function linesOf({ from, wishes }) {
-  const lines = [];
-  for (let i = 0; i < wishes.length; i += WISH) {
-    const [frame, ...wish] = wishes.slice(i, i + WISH);
-    lines.push(lineOf(frame - from, wish[0], wish[1], wish[2], wish[3]));
-  }
-  return lines.sort((one, other) => Number(one[0]) - Number(other[0]));
 }
 
 /**
- * @param {number} frame
- * @param {number} kind
- * @param {number} index
- * @param {number} value
- * @param {number} other
+ * A performance as a file.
+ * @param {Performance & {frames: number}} performance
  */
-function lineOf(frame, kind, index, value, other) {
+export async function fileOf({ rate, values, wishes, frames }) {
+  const answer = await fetch(new URL(`captures/${rate}.json`, import.meta.url));
+  if (!answer.ok) throw new Error(`${answer.status} ${answer.statusText}`);
+  const head = await answer.json();
+  Object.assign(head.players[OWN - 1].values, values);
+  const lines = [head, ...wishes.map(lineOf), { end: frames }];
+  const text = lines.map((line) => `${JSON.stringify(line)}\n`);
+  return new Blob(text, { type: "application/jsonl" });
+}
+
+/** @param {Wish} wish */
+function lineOf({ frame, kind, index, value, other }) {
   const line = [frame, OWN, NAMES[kind]];
   if (kind === RAMP) return [...line, OF_SLOT[index] ?? SILENCE, value, other];
   if (kind === WRITE || kind === HOLD) return [...line, TABLE[index].address, value, other];
@@ -159,6 +163,8 @@ export class Replayer extends EventTarget {
     for (const [address, value] of Object.entries(values)) instrument.player.write(address, value);
     this.begun = instrument.horizon;
     this.latest = 0; // frame of the last wish that was posted
+    /** Notes that sound, by key. @type {Map<string, Wish>} */
+    this.open = new Map();
     this.timer = window.setInterval(() => this.#play(), EVERY);
   }
 
@@ -167,10 +173,27 @@ export class Replayer extends EventTarget {
       const { frame, kind, index, value, other } = this.wishes[this.next];
       const at = Math.round(this.begun + frame * this.ratio);
       if (at > this.instrument.horizon) return;
-      this.instrument.post(at, kind, index, value, other);
+      this.#post(at, kind, index, value, other);
       this.latest = at;
     }
     if (this.instrument.frame > this.latest) this.#end();
+  }
+
+  /** @type {import('./interfaces.js').Post} */
+  #post(frame, kind, index, value, other) {
+    const key = `${index} ${value}`;
+    if (kind === BEGIN) this.open.set(key, { frame: 0, kind: END, index, value, other: 0 });
+    else if (kind === END) this.open.delete(key);
+    this.instrument.post(frame, kind, index, value, other);
+  }
+
+  /** Leave the instrument to somebody who plays on: only what this plays ends. */
+  yield() {
+    const at = Math.max(this.latest, this.instrument.frame);
+    for (const { kind, index, value } of [...this.open.values()]) {
+      this.#post(at, kind, index, value, 0);
+    }
+    this.#end();
   }
 
   /** End it early. */

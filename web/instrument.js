@@ -40,6 +40,8 @@ export class Instrument extends EventTarget {
     this.error = null;
     /** What others have set who play the same. @type {{wasSet: Sink["wasSet"]} | null} */
     this.others = null;
+    /** A sound of this page, which may be opened before it is asked for. @type {Promise<Sound> | null} */
+    this.here = null;
     /** How the sound is opened; `change` takes another way. @type {() => Promise<Sound>} */
     this.way = () => this.openHere();
     /** @type {Parameters<Post>[]} */
@@ -120,11 +122,17 @@ export class Instrument extends EventTarget {
     );
   }
 
-  /** Open the sound, which a browser allows after a touch only; at most once. */
+  /** Open the sound, at most once; a browser lets it sound after a touch only. */
   start() {
     if (this.sound && !this.sound.status.running) this.sound.resume?.();
     this.opening ??= this.#open();
     return this.opening;
+  }
+
+  /** Load all that a sound of this page needs, so that the first touch is heard at once. */
+  prepareHere() {
+    this.here ??= this.openHere();
+    this.here.catch(() => (this.here = null)); // told when it is started
   }
 
   /**
@@ -153,6 +161,9 @@ export class Instrument extends EventTarget {
    * @returns {Promise<Sound>}
    */
   async openHere() {
+    const { here } = this;
+    this.here = null; // whoever gets it may close it
+    if (here) return here;
     const { Sound } = await import("./sound/sound.js");
     return Sound.open(this.module);
   }
@@ -167,6 +178,7 @@ export class Instrument extends EventTarget {
       }
       sound.addEventListener("state", () => (this.isSeen = true), { once: true });
       this.sound = sound;
+      sound.resume?.();
       for (const wish of this.waiting.splice(0)) sound.post(...wish);
       this.error = null;
       this.dispatchEvent(new Event("start"));

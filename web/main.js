@@ -4,31 +4,37 @@ import { find } from "./elements.js";
 import { Bow } from "./hands/bow.js";
 import { Diagram } from "./hands/schelleng.js";
 import { Fingerboard } from "./hands/fingerboard.js";
+import { Surface } from "./hands/surface.js";
 import { Hands } from "./hands/hands.js";
 import { Keys } from "./hands/keys.js";
 import { KeyTuning } from "./hands/key_tuning.js";
 import { Instrument } from "./instrument.js";
 import { Midi } from "./midi.js";
-import { Board } from "./pictures/fingerboard.js";
-import { Bowing } from "./pictures/bow.js";
 import { Level } from "./pictures/level.js";
 import { Gallery } from "./pictures/picture.js";
 import { Schelleng } from "./pictures/schelleng.js";
 import { Spectrum } from "./pictures/spectrum.js";
-import { Strings } from "./pictures/strings.js";
 import { Tuner } from "./pictures/tuner.js";
+import { Yehu } from "./pictures/yehu.js";
 import { settings } from "./settings.js";
 import { MidiLearn } from "./midi_learn.js";
+import { AT_FIRST } from "./views/cards.js";
 import { showConnections } from "./views/connect.js";
 import { showHeader } from "./views/header.js";
 import { showRecording } from "./views/recording.js";
 import { showParameters } from "./views/parameters.js";
+import { showGuide } from "./views/guide.js";
 import { showSeeing } from "./views/see.js";
 import { showSounds } from "./views/sounds.js";
 import { showTabs } from "./views/tabs.js";
 import { showTunes } from "./views/tunes.js";
 import { showPlayingOptions } from "./views/playing_options.js";
 import { fillWords, loadWords } from "./i18n.js";
+
+/** The note of a first finger that was lifted before it could sound. */
+const FIRST = "first";
+const FIRST_MS = 1500;
+const FIRST_VELOCITY = 0.63;
 
 /**
  * All that the views work with.
@@ -39,8 +45,8 @@ import { fillWords, loadWords } from "./i18n.js";
  * @property {Keys} keys
  * @property {Fingerboard} fingerboard
  * @property {Bow} bow
- * @property {Board} board
- * @property {Strings} strings
+ * @property {Surface} surface
+ * @property {Yehu} yehu
  * @property {Gallery} gallery
  * @property {MidiLearn} taught
  * @property {Midi} midi
@@ -54,14 +60,16 @@ function assemble() {
   const midi = new Midi(instrument, taught);
   const tuned = new KeyTuning();
   const keys = new Keys(hands, tuned);
-  const fingerboard = new Fingerboard(find("fingerboard", HTMLCanvasElement), hands, tuned);
-  const bow = new Bow(find("bow", HTMLCanvasElement), hands);
-  const board = new Board(fingerboard.element, fingerboard);
-  const strings = new Strings(find("strings", HTMLCanvasElement));
+  const wished = settings.direction === "down" || settings.direction === "across";
+  const surface = new Surface(
+    find("stage", HTMLElement),
+    wished ? /** @type {'across' | 'down'} */ (settings.direction) : "",
+  );
+  const fingerboard = new Fingerboard(find("fingerboard", HTMLElement), hands, tuned, surface);
+  const bow = new Bow(find("bow", HTMLElement), hands, surface);
+  const yehu = new Yehu(find("yehu", HTMLCanvasElement), fingerboard, bow);
   const gallery = new Gallery(() => instrument.state);
-  gallery.add(board);
-  gallery.add(new Bowing(bow.element, bow));
-  gallery.add(strings);
+  gallery.add(yehu);
   gallery.add(new Tuner(find("tuner", HTMLCanvasElement)));
   gallery.add(new Level(find("level", HTMLCanvasElement)));
   const schelleng = new Schelleng(find("schelleng", HTMLCanvasElement));
@@ -77,8 +85,8 @@ function assemble() {
     keys,
     fingerboard,
     bow,
-    board,
-    strings,
+    surface,
+    yehu,
     gallery,
     taught,
     midi,
@@ -86,7 +94,23 @@ function assemble() {
 }
 
 /** @param {Page} page */
-function connect({ instrument, hands, keys, fingerboard, bow }) {
+function connect({ instrument, hands, keys, fingerboard, bow, gallery }) {
+  if (AT_FIRST.length) {
+    instrument.addEventListener("ready", () => {
+      for (const preset of AT_FIRST) instrument.player.applyPreset(preset);
+      instrument.prepareHere();
+    });
+  }
+  // Touch screens let sound begin only when a finger is lifted: its note is heard then.
+  const lifted = () => {
+    if (instrument.sound?.status.running) return;
+    instrument.sound?.resume?.();
+    const { top } = hands;
+    if (!top?.isNote) return;
+    hands.touch(FIRST, top.pitch, FIRST_VELOCITY);
+    setTimeout(() => hands.lift(FIRST), FIRST_MS);
+  };
+  window.addEventListener("pointerup", lifted, { capture: true });
   hands.isAssisted = settings.isAssisted;
   fingerboard.isLandingInTune = settings.isLandingInTune;
   // Whoever plays wants to hear it: any hand on the instrument starts the sound.
@@ -98,6 +122,7 @@ function connect({ instrument, hands, keys, fingerboard, bow }) {
   instrument.addEventListener("start", () => {
     instrument.sound?.addEventListener("state", () => {
       if (instrument.state) bow.follow(instrument.state);
+      gallery.wake();
     });
   });
 }
@@ -117,6 +142,12 @@ async function main() {
   showRecording(page);
   showConnections(page);
   showParameters(page);
+  showGuide(page);
+}
+
+const worker = document.querySelector('meta[name="yehu-worker"]')?.getAttribute("content");
+if (worker && "serviceWorker" in navigator) {
+  navigator.serviceWorker.register(worker).catch(() => {}); // it works without
 }
 
 main().catch((error) => {

@@ -12,6 +12,7 @@ import {
   readLearned,
   spanned,
   withBind,
+  withoutBind,
 } from "./playing/learned.js";
 import { Learner } from "./playing/learner.js";
 import { remember, settings } from "./settings.js";
@@ -103,7 +104,7 @@ export class MidiLearn extends EventTarget {
 
   /** @param {LearnedBind} bind */
   forget(bind) {
-    this.#keep(this.binds.filter((own) => own !== bind));
+    this.#keep(withoutBind(this.binds, bind));
   }
 
   /**

@@ -6,11 +6,12 @@ const KEY = "yehu";
 const FIRST = {
   language: "", // '': the browser's
   theme: "", // '': the system's
-  direction: "across",
+  direction: "", // of the instrument; '': as there is room
   isAssisted: true,
   isLandingInTune: true,
   view: "slowed",
-  panel: "see",
+  panel: "", // '': none
+  isTaught: false, // has seen, or skipped, the first gestures
   mapping: "", // '': the default one
   /** Binds that were learned, by the mapping that they lie over. @type {Record<string, unknown>} */
   learned: {},

@@ -2,7 +2,7 @@
 
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { SIZES, run } from "../panel/browser.mjs";
+import { SIZES, run } from "../live/page/browser.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core"), "utf8");
 // The theme gives the place of each copy button the same name.

@@ -1,4 +1,4 @@
-/** The bow: drawn across an area by touch, pen, mouse or arrow keys. */
+/** The bow: drawn across the strings by touch, pen, mouse or arrow keys. */
 
 /** @typedef {import('./hands.js').Hands} Hands */
 /** @typedef {import('./pointers.js').Touch} Touch */
@@ -6,14 +6,14 @@
 
 import { Pointers } from "./pointers.js";
 
-/** Length of hair that the area's width is, m. */
+/** Length of hair that the breadth of the instrument is, m. */
 const HAIR = 0.55;
 /** The speed is that over so long, ms: shorter is uneven, longer is sluggish. */
 const WINDOW = 45;
 /** A finger of which nothing was heard for so long, ms, comes to rest within as much again. */
 const RESTS_AFTER = 50;
 const FASTEST = 1; // m/s
-/** Bow force in newtons, from the top of the area to its bottom. */
+/** Bow force in newtons, from the fingerboard to the end of the coconut. */
 const FORCES = /** @type {const} */ ([0.08, 4]);
 /** With assist, from the least force to the greatest of the present note, and beyond by these. */
 const BELOW = 0.6;
@@ -26,27 +26,29 @@ const USUAL_LIMIT = 7.3;
 /** The least force as a share of the greatest, until the instrument tells it. */
 const USUAL_LEAST = 0.03;
 const KEYS_SPEED = 0.2; // m/s
+const STROKES = { ArrowLeft: -1, ArrowRight: 1 };
 const KEYS_STEP = 0.05; // of the height
 const STILL = 0.002; // m/s; slower is at rest
 
 export class Bow extends EventTarget {
   /**
-   * @param {HTMLCanvasElement} element
+   * @param {HTMLElement} element
    * @param {Hands} hands
+   * @param {import('./surface.js').Surface} surface
    */
-  constructor(element, hands) {
+  constructor(element, hands, surface) {
     super();
     this.element = element;
     this.hands = hands;
-    /** @type {{x: number, time: number}[]} where the finger was of late, px and ms */
+    this.surface = surface;
+    /** @type {{place: number, time: number}[]} where across the strings the finger was of late, px and ms */
     this.way = [];
-    this.height = 0.5; // of the finger: 0 at the top, lightest
+    this.height = 0.5; // of the finger: 0 at the fingerboard, lightest
     /** @type {number | null} the pointer that draws */
     this.by = null;
     this.keysSpeed = 0;
     this.limit = USUAL_LIMIT;
     this.least = USUAL_LEAST; // as a share of the limit
-    this.hair = 0; // where the hair is, in widths of the area: for the picture
     this.pointers = new Pointers(element, {
       down: (touch) => this.#down(touch),
       move: (touches) => this.#move(touches),
@@ -75,7 +77,7 @@ export class Bow extends EventTarget {
     if (this.by !== null) return; // one bow
     this.#stopKeys();
     this.by = touch.id;
-    this.way = [{ x: touch.x, time: touch.time }];
+    this.way = [{ place: this.#across(touch), time: touch.time }];
     this.height = this.#heightOf(touch);
     this.dispatchEvent(new Event("play"));
     this.#draw(0);
@@ -85,10 +87,7 @@ export class Bow extends EventTarget {
   /** @param {Touch[]} touches */
   #move(touches) {
     if (touches[0].id !== this.by) return;
-    for (const { x, time } of touches) {
-      this.hair += (x - this.way[this.way.length - 1].x) / this.element.clientWidth;
-      this.way.push({ x, time });
-    }
+    for (const touch of touches) this.way.push({ place: this.#across(touch), time: touch.time });
     const last = touches[touches.length - 1];
     this.height = this.#heightOf(last);
     this.#draw(this.#speedAt(last.time));
@@ -122,7 +121,7 @@ export class Bow extends EventTarget {
     // A finger that rested before it moved was not slow.
     const lasted = Math.min(Math.max(last.time - first.time, WINDOW / 3), 2 * WINDOW);
     const rests = Math.min(Math.max((now - last.time) / RESTS_AFTER - 1, 0), 1);
-    const moved = ((last.x - first.x) / this.element.clientWidth) * HAIR;
+    const moved = ((last.place - first.place) / this.surface.breadth) * HAIR;
     const speed = (moved / lasted) * 1000 * (1 - rests);
     return Math.abs(speed) < STILL ? 0 : Math.min(Math.max(speed, -FASTEST), FASTEST);
   }
@@ -133,7 +132,7 @@ export class Bow extends EventTarget {
   }
 
   /**
-   * The forces from the top of the area to its bottom: newtons; with assist, shares of the greatest
+   * The forces from the fingerboard to the end of the coconut: newtons; with assist, shares of the greatest
    * force with which the present note sounds.
    */
   get range() {
@@ -167,17 +166,24 @@ export class Bow extends EventTarget {
   }
 
   /** @param {Touch} touch */
-  #heightOf({ y, pressure }) {
-    return Math.min(Math.max(pressure ?? y / this.element.clientHeight, 0), 1);
+  #heightOf({ x, y, pressure }) {
+    const { isUpright, length, board } = this.surface;
+    const share = (isUpright ? y : x) / (length - board[1]);
+    return Math.min(Math.max(pressure ?? share, 0), 1);
+  }
+
+  /** @param {Touch} touch */
+  #across({ x, y }) {
+    return this.surface.isUpright ? x : y;
   }
 
   /** @param {KeyboardEvent} event */
   #press(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.key === "ArrowLeft" || event.key === "ArrowRight") {
+    if (event.key in STROKES) {
       if (!event.repeat && this.by === null) {
         this.dispatchEvent(new Event("play"));
-        this.keysSpeed = event.key === "ArrowRight" ? KEYS_SPEED : -KEYS_SPEED;
+        this.keysSpeed = STROKES[/** @type {keyof typeof STROKES} */ (event.key)] * KEYS_SPEED;
         this.#draw(this.keysSpeed);
       }
     } else if (event.key === "ArrowUp" || event.key === "ArrowDown") {
@@ -193,8 +199,8 @@ export class Bow extends EventTarget {
 
   /** @param {KeyboardEvent} event */
   #release(event) {
-    const speed = { ArrowLeft: -KEYS_SPEED, ArrowRight: KEYS_SPEED }[event.key];
-    if (speed === this.keysSpeed) this.#stopKeys();
+    const way = STROKES[/** @type {keyof typeof STROKES} */ (event.key)];
+    if (way * KEYS_SPEED === this.keysSpeed) this.#stopKeys();
   }
 
   #stopKeys() {

@@ -4,35 +4,36 @@
 /** @typedef {import('./pointers.js').Touch} Touch */
 
 import { Pointers } from "./pointers.js";
+import { Rocking } from "./rocking.js";
 import { HIGHEST, Landing, LOWEST, Scale, nameOf, withinRange } from "./scale.js";
 
 const VELOCITY = 0.63; // of a keyboard's 80
-/** Fingers press as usual in the middle of the board; at its sides these times as hard. */
-const LIGHTEST = 0.4;
-const HARDEST = 3;
-const MIDDLE = 0.25; // half the middle's share of the board
+/** The softest note, as a share of the usual dynamics; the loudest is the usual one. */
+const SOFTEST = 0.25;
+const EDGE = 0.06; // of the breadth, in which it is as soft or loud as can be
+const BEND = 1.5; // middle notes are nearer to the loud ones
 const ARROWS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 };
 const FINE = 0.1; // semitones, with the shift key
 const BY_KEYS = "arrows";
 
 export class Fingerboard extends EventTarget {
   /**
-   * @param {HTMLCanvasElement} element
+   * @param {HTMLElement} element
    * @param {Hands} hands
    * @param {import('./key_tuning.js').KeyTuning} tuned
+   * @param {import('./surface.js').Surface} surface
    */
-  constructor(element, hands, tuned) {
+  constructor(element, hands, tuned, surface) {
     super();
     this.tuned = tuned;
     this.element = element;
     this.hands = hands;
-    /** @type {'across' | 'down'} which way pitches rise: to the right, or downwards */
-    this.direction = "across";
+    this.surface = surface;
     this.isLandingInTune = true;
     this.lowest = LOWEST;
     this.scale = new Scale(1);
-    /** @type {Map<number, Landing>} */
-    this.landings = new Map();
+    /** Fingers that are down. @type {Map<number, {landing: Landing, rocking: Rocking, loud: number}>} */
+    this.touches = new Map();
     this.place = 69; // where the arrow keys stop the string
     /** @type {number | null} a pitch that should be shown */
     this.wanted = null;
@@ -40,9 +41,9 @@ export class Fingerboard extends EventTarget {
     this.pointers = new Pointers(element, {
       down: (touch) => this.#down(touch),
       move: (touches) => this.#move(touches),
-      up: (id) => this.#up(id),
+      up: (id, kind) => this.#up(id, kind),
     });
-    new ResizeObserver(() => this.measure()).observe(element);
+    surface.addEventListener("change", () => this.measure());
     element.addEventListener("keydown", (event) => this.#press(event));
     element.addEventListener("keyup", (event) => {
       if (event.key === " " || event.key === "Enter") hands.lift(BY_KEYS);
@@ -53,8 +54,8 @@ export class Fingerboard extends EventTarget {
 
   /** Fit the scale to the element's size. */
   measure() {
-    const { clientWidth, clientHeight } = this.element;
-    this.scale = new Scale(this.direction === "across" ? clientWidth : clientHeight, this.lowest);
+    const { board } = this.surface;
+    this.scale = new Scale(board[1] - board[0], this.lowest);
     this.lowest = this.scale.first;
     this.#tell();
     this.dispatchEvent(new Event("change"));
@@ -70,13 +71,6 @@ export class Fingerboard extends EventTarget {
     return this.scale.first + this.scale.span >= HIGHEST;
   }
 
-  /** @param {'across' | 'down'} direction */
-  turn(direction) {
-    this.pointers.endAll();
-    this.direction = direction;
-    this.measure();
-  }
-
   /** @param {number} semitones */
   shift(semitones) {
     this.pointers.endAll();
@@ -90,10 +84,13 @@ export class Fingerboard extends EventTarget {
    */
   bring(pitch) {
     this.wanted = pitch;
+    if (pitch !== null) this.show(pitch);
+  }
+
+  /** @param {number} pitch shown now, if no finger is on the board */
+  show(pitch) {
     const { first, span } = this.scale;
-    if (pitch === null || this.hands.fingers.length || (pitch >= first && pitch <= first + span)) {
-      return;
-    }
+    if (this.hands.fingers.length || (pitch >= first && pitch <= first + span)) return;
     this.lowest = pitch < first ? pitch : pitch - span;
     this.measure();
   }
@@ -102,48 +99,49 @@ export class Fingerboard extends EventTarget {
   #down(touch) {
     const place = this.#placeOf(touch);
     const landing = new Landing(place, this.tuned.nearest(withinRange(place)));
-    this.landings.set(touch.id, landing);
+    const loud = this.#loudnessOf(touch);
+    this.touches.set(touch.id, { landing, rocking: new Rocking(), loud });
     this.dispatchEvent(new Event("play"));
-    this.hands.touch(
-      touch.id,
-      this.isLandingInTune ? landing.pitchAt(landing.place) : place,
-      touch.pressure === null ? VELOCITY : 0.3 + 0.7 * touch.pressure,
-    );
-    this.hands.lean(touch.id, this.#pressOf(touch));
+    const pitch = this.isLandingInTune ? landing.pitchAt(place) : place;
+    this.hands.touch(touch.id, pitch, VELOCITY, dynamicsOf(loud));
   }
 
   /** @param {Touch[]} touches */
   #move(touches) {
     // A finger is where it is last: a wish for each point of its way says no more.
     const touch = touches[touches.length - 1];
+    const held = this.touches.get(touch.id);
+    if (!held) return;
     const place = this.#placeOf(touch);
-    const landing = this.landings.get(touch.id);
-    this.hands.slide(touch.id, landing && this.isLandingInTune ? landing.pitchAt(place) : place);
-    this.hands.lean(touch.id, this.#pressOf(touch));
+    held.loud = this.#loudnessOf(touch);
+    this.hands.slide(touch.id, this.isLandingInTune ? held.landing.pitchAt(place) : place);
+    this.hands.swell(touch.id, dynamicsOf(held.loud));
+    if (held.rocking.isOn(place, touch.time)) this.hands.rock();
   }
 
-  /** @param {number} id */
-  #up(id) {
-    this.landings.delete(id);
-    this.hands.lift(id);
+  /**
+   * @param {number} id
+   * @param {string} kind of its pointer
+   */
+  #up(id, kind) {
+    this.touches.delete(id);
+    // A mouse cannot hold a finger and draw the bow: what it has stopped stays so.
+    if (kind !== "mouse" || this.hands.isAssisted) this.hands.lift(id);
   }
 
   /** @param {Touch} touch */
   #placeOf({ x, y }) {
-    return this.scale.pitchAt(this.direction === "across" ? x : y);
+    return this.scale.pitchAt(this.surface.isUpright ? y : x);
   }
 
   /**
-   * The factor on the usual press: by pressure, or by the place beside the string.
+   * How loud a touch asks to be: by its pressure, or by its place across the strings; 0 to 1.
    * @param {Touch} touch
    */
-  #pressOf({ x, y, pressure }) {
+  #loudnessOf({ x, y, pressure }) {
     const { clientWidth, clientHeight } = this.element;
-    const across = this.direction === "across" ? 0.5 - y / clientHeight : x / clientWidth - 0.5;
-    const away = pressure === null ? across : pressure - 0.5;
-    const beyond = (Math.min(Math.abs(away), 0.5) - MIDDLE) / (0.5 - MIDDLE);
-    if (beyond <= 0) return 1;
-    return (away > 0 ? HARDEST : LIGHTEST) ** beyond;
+    const share = pressure ?? (this.surface.isUpright ? x / clientWidth : 1 - y / clientHeight);
+    return Math.min(Math.max((share - EDGE) / (1 - 2 * EDGE), 0), 1);
   }
 
   /** @param {KeyboardEvent} event */
@@ -174,7 +172,15 @@ export class Fingerboard extends EventTarget {
     this.element.setAttribute("aria-valuetext", nameOf(this.place) + beside);
     this.element.setAttribute(
       "aria-orientation",
-      this.direction === "across" ? "horizontal" : "vertical",
+      this.surface.isUpright ? "vertical" : "horizontal",
     );
   }
+}
+
+/**
+ * The dynamics of a loudness, as a share of the usual ones.
+ * @param {number} loud 0 to 1
+ */
+function dynamicsOf(loud) {
+  return SOFTEST ** ((1 - loud) ** BEND);
 }

@@ -5,9 +5,12 @@
 
 import { OPEN, withinRange } from "./scale.js";
 
-const PRESS = "/playing/press";
-/** Least change of the press that is worth a wish, as a share of it. */
-const PRESS_STEP = 0.02;
+const DYNAMICS = "/playing/dynamics";
+const VIBRATO = "/playing/vibrato";
+/** Least change of the dynamics that is worth a wish, as a share of them. */
+const STEP = 0.02;
+/** After so long without a finger, ms, others play as loud as before: a note has died away. */
+const RETURNS_AFTER = 600;
 
 /**
  * @typedef {object} HeldFinger
@@ -31,9 +34,10 @@ export class Hands extends EventTarget {
     this.isBowing = false;
     /** @type {HeldFinger[]} in the order in which they came */
     this.fingers = [];
-    /** @type {number | null} press before fingers changed it */
-    this.usualPress = null;
-    this.press = 1;
+    /** Parameters that fingers move, and their values before. @type {Map<string, number>} */
+    this.usual = new Map();
+    this.dynamics = 1; // as a share of the usual ones
+    this.returning = 0; // timer
     this.stroke = { speed: 0, force: 0 };
   }
 
@@ -47,9 +51,11 @@ export class Hands extends EventTarget {
    * @param {NoteId} id
    * @param {number} pitch fractional MIDI note
    * @param {number} velocity 0 to 1
+   * @param {number} dynamics as a share of the usual ones
    */
-  touch(id, pitch, velocity) {
+  touch(id, pitch, velocity, dynamics = 1) {
     this.lift(id);
+    this.#swell(dynamics);
     const isNote = this.isAssisted && !this.isBowing;
     const stopped = withinRange(pitch);
     this.fingers.push({ id, pitch: stopped, begun: stopped, isNote });
@@ -73,15 +79,43 @@ export class Hands extends EventTarget {
   }
 
   /**
-   * The top finger presses harder or lighter.
+   * The note of the top finger becomes louder or softer.
    * @param {NoteId} id
-   * @param {number} factor on the usual press
+   * @param {number} dynamics as a share of the usual ones
    */
-  lean(id, factor) {
-    if (this.top?.id !== id || Math.abs(factor / this.press - 1) < PRESS_STEP) return;
-    this.usualPress ??= this.player.value(PRESS);
-    this.press = factor;
-    this.player.write(PRESS, this.usualPress * factor);
+  swell(id, dynamics) {
+    if (this.top?.id === id) this.#swell(dynamics);
+  }
+
+  /** @param {number} dynamics */
+  #swell(dynamics) {
+    clearTimeout(this.returning);
+    if (Math.abs(dynamics / this.dynamics - 1) < STEP) return;
+    this.dynamics = dynamics;
+    this.#move(DYNAMICS, dynamics);
+  }
+
+  /** The finger rocks by itself: the player's own vibrato rests until it goes. */
+  rock() {
+    if (!this.usual.has(VIBRATO)) this.#move(VIBRATO, 0);
+    this.dispatchEvent(new Event("rock"));
+  }
+
+  /**
+   * @param {string} address
+   * @param {number} factor on its usual value
+   */
+  #move(address, factor) {
+    const usual = this.usual.get(address) ?? this.player.value(address);
+    this.usual.set(address, usual);
+    this.player.write(address, usual * factor);
+  }
+
+  /** What fingers moved is as it was before. */
+  #return() {
+    for (const [address, value] of this.usual) this.player.write(address, value);
+    this.usual.clear();
+    this.dynamics = 1;
   }
 
   /**
@@ -93,8 +127,11 @@ export class Hands extends EventTarget {
     if (at < 0) return;
     const [finger] = this.fingers.splice(at, 1);
     if (finger.isNote) this.player.noteOff(id);
-    if (at === this.fingers.length) this.#return(finger);
-    if (this.fingers.length === 0) this.#restPress();
+    if (at === this.fingers.length) this.#stopBelow(finger);
+    if (this.fingers.length === 0) {
+      clearTimeout(this.returning);
+      this.returning = window.setTimeout(() => this.#return(), RETURNS_AFTER);
+    }
     this.#changed();
   }
 
@@ -102,7 +139,7 @@ export class Hands extends EventTarget {
    * The string is stopped by the finger before, or open.
    * @param {HeldFinger} last
    */
-  #return(last) {
+  #stopBelow(last) {
     const top = this.top;
     if (!top) {
       // The player lifts the finger of a note that ends; a finger that only stopped is lifted here.
@@ -110,12 +147,6 @@ export class Hands extends EventTarget {
     } else if (!top.isNote || !last.isNote || top.pitch !== top.begun) {
       this.player.slide(top.pitch);
     }
-  }
-
-  #restPress() {
-    if (this.usualPress !== null) this.player.write(PRESS, this.usualPress);
-    this.usualPress = null;
-    this.press = 1;
   }
 
   /**

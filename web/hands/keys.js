@@ -51,6 +51,16 @@ export const NOTES = new Map([
   ...UPPER.map((code, step) => /** @type {[string, number]} */ ([code, FIRST_UPPER + step])),
 ]);
 
+const SIGNS = { Comma: ",", Period: ".", Slash: "/", Semicolon: ";" };
+
+/**
+ * What is written on a key.
+ * @param {string} code
+ */
+export function signOf(code) {
+  return SIGNS[/** @type {keyof typeof SIGNS} */ (code)] ?? code.replace(/Key|Digit/, "");
+}
+
 /** Elements that take letters themselves. */
 const WRITING = "input:not([type=range], [type=checkbox], [type=radio]), select, textarea";
 
@@ -87,6 +97,7 @@ export class Keys extends EventTarget {
   /** @param {KeyboardEvent} event */
   #press(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || event.isComposing) return;
+    if (event.key === "?") return; // asks for help
     if (event.target instanceof Element && event.target.matches(WRITING)) return;
     if (event.code in OCTAVE) {
       this.#shift(OCTAVE[/** @type {keyof typeof OCTAVE} */ (event.code)]);

@@ -11,7 +11,7 @@
  * @typedef {object} Followers
  * @property {(touch: Touch) => void} down
  * @property {(touches: Touch[]) => void} move the way since the last call, in order; one finger's
- * @property {(id: number) => void} up
+ * @property {(id: number, kind: string) => void} up with the kind of its pointer
  */
 
 /** Pressures that devices without a sensor report. */
@@ -84,9 +84,11 @@ export class Pointers {
 
   /** @param {number} id */
   #end(id) {
-    if (!this.down.delete(id)) return;
+    const kind = this.down.get(id);
+    if (kind === undefined) return;
+    this.down.delete(id);
     if (this.element.hasPointerCapture(id)) this.element.releasePointerCapture(id);
-    this.followers.up(id);
+    this.followers.up(id, kind);
   }
 
   /**

@@ -10,7 +10,9 @@ export const OPEN = facts.notes.OPEN;
 const MARGIN = 0.6;
 /** A finger's room for a semitone, px; where there is less, a part of the board is shown. */
 const ROOM = 22;
-const LEAST_SHOWN = 13;
+const LEAST_SHOWN = 8;
+
+const FLAT = 10; // in F, the scale of the open strings, it is no A sharp
 
 const NAMES = facts.notes.NAMES.map((name) => name.replace("#", "♯"));
 
@@ -18,6 +20,32 @@ const NAMES = facts.notes.NAMES.map((name) => name.replace("#", "♯"));
 export function nameOf(pitch) {
   const note = Math.round(pitch);
   return `${NAMES[((note % 12) + 12) % 12]}${Math.floor(note / 12) - 1}`;
+}
+
+/** Steps above the inner string, which is do, and how jianpu writes them. */
+const DEGREES = new Map([0, 2, 4, 5, 7, 9, 11].map((step, at) => [step, String(at + 1)]));
+
+/**
+ * Whether a note is one of the major scale on the inner string.
+ * @param {number} note
+ */
+export function isDegree(note) {
+  return DEGREES.has((note - OPEN[0]) % 12);
+}
+
+/**
+ * A degree as jianpu writes it: a digit, with a dot above for each octave.
+ * @param {number} note
+ */
+export function jianpu(note) {
+  const above = note - OPEN[0];
+  return { digit: DEGREES.get(above % 12) ?? "", dots: Math.floor(above / 12) };
+}
+
+/** @param {number} note */
+export function letterOf(note) {
+  const step = note % 12;
+  return step === FLAT ? "B♭" : NAMES[step];
 }
 
 /** @param {number} note */

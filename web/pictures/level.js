@@ -37,7 +37,7 @@ export class Level extends Picture {
     context.fill();
     context.save();
     context.clip();
-    context.fillStyle = this.level > LOUD ? this.colours.bad : this.colours.accent;
+    context.fillStyle = this.level > LOUD ? this.colours.bad : this.colours.soft;
     context.fillRect(0, 0, place(this.level), height);
     context.fillStyle = this.colours.ink;
     if (this.most > QUIETEST) context.fillRect(place(this.most) - 2, 0, 2, height);

@@ -6,13 +6,14 @@
  * @typedef {object} Moment What a picture is drawn from.
  * @property {Snapshot | null} state null before the start
  * @property {boolean} isNew the state is another than at the last moment
+ * @property {boolean} isTouched a hand has changed something
  * @property {number} now s
  * @property {number} elapsed s since it was drawn last; 0 at first
  * @property {boolean} isCalm whoever looks wants as little motion as possible
  *
  * @typedef {Record<Colour, string>} Colours
  * @typedef {'ink' | 'soft' | 'faint' | 'line' | 'paper' | 'surface' | 'inner' | 'outer' | 'accent'
- *   | 'good' | 'bad' | 'glow'} Colour
+ *   | 'good' | 'bad' | 'glow' | 'wood' | 'edge' | 'shell' | 'lid' | 'hair'} Colour
  */
 
 /** Custom properties of the style sheet. */
@@ -29,9 +30,15 @@ const COLOURS = /** @type {Colour[]} */ ([
   "good",
   "bad",
   "glow",
+  "wood",
+  "edge",
+  "shell",
+  "lid",
+  "hair",
 ]);
 /** Whoever wants little motion sees a picture anew so often only, s; and at once what a hand has changed. */
 const CALM = 0.4;
+const RESTS_AFTER = 300; // ms without news
 const LONGEST = 0.5; // s that a picture goes on by at once
 const MOST_DOTS = 3; // per px: finer is not seen, and costs
 /** A large picture is drawn as one of this size, magnified: it is read from the last row. */
@@ -73,7 +80,9 @@ export class Picture {
     this.width = 0;
     this.height = 0;
     this.isSeen = true;
-    this.isStale = true; // has to be drawn even where nothing moves
+    /** Asks for the next moment. */
+    this.wake = () => {};
+    this.isOutdated = true;
     this.drawnAt = 0; // s
     new ResizeObserver(() => {
       this.isStale = true;
@@ -82,6 +91,16 @@ export class Picture {
       this.isSeen = entries[entries.length - 1].isIntersecting;
       this.isStale = true;
     }).observe(canvas);
+  }
+
+  /** Whether it has to be drawn and measured anew, even where nothing moves. */
+  get isStale() {
+    return this.isOutdated;
+  }
+
+  set isStale(isStale) {
+    this.isOutdated = isStale;
+    if (isStale) this.wake();
   }
 
   get colours() {
@@ -98,12 +117,19 @@ export class Picture {
     const lasted = moment.now - this.drawnAt;
     const isEarly = moment.isCalm && !this.isWanted && lasted < CALM;
     if (!this.isStale && (isEarly || !this.changes(moment))) return;
-    if (this.isStale) this.#fit();
+    const isFitted = this.isStale;
+    if (isFitted) this.#fit();
     if (this.width === 0 || this.height === 0) return;
+    if (isFitted) this.fitted();
     const elapsed = this.drawnAt ? Math.min(lasted, LONGEST) : 0;
     this.drawnAt = moment.now;
     this.context.clearRect(0, 0, this.width, this.height);
     this.draw(this.context, { ...moment, elapsed });
+  }
+
+  /** Whether all of it becomes larger on a large canvas. */
+  get isMagnified() {
+    return true;
   }
 
   /** Whether somebody has asked for its motion. */
@@ -122,8 +148,11 @@ export class Picture {
    * @param {Moment} moment
    */
   changes(moment) {
-    return moment.state !== null;
+    return moment.isNew || moment.isTouched;
   }
+
+  /** Draw what stays until it is stale again. */
+  fitted() {}
 
   /**
    * Draw it.
@@ -139,7 +168,7 @@ export class Picture {
     this.isStale = false;
     const { clientWidth, clientHeight } = this.canvas;
     const room = Math.min(clientWidth / LARGE.width, clientHeight / LARGE.height, LARGE.most);
-    const zoom = this.canvas.closest(".large") ? Math.max(room, 1) : 1;
+    const zoom = this.isMagnified && this.canvas.closest(".large") ? Math.max(room, 1) : 1;
     const dots = Math.min(devicePixelRatio || 1, MOST_DOTS);
     this.width = clientWidth / zoom;
     this.height = clientHeight / zoom;
@@ -159,13 +188,27 @@ export class Gallery {
     this.calm = matchMedia("(prefers-reduced-motion: reduce)");
     /** @type {Snapshot | null} */
     this.seen = null;
-    // The browser asks for no frames while the page is hidden, so that nothing is drawn then.
+    this.isAwake = false;
+    this.isTouched = false;
+    this.changedAt = 0; // ms
+    this.wake();
+  }
+
+  /**
+   * Draw from the next frame on, until nothing has changed for a while. The browser asks for no
+   * frames while the page is hidden, so that nothing is drawn then.
+   */
+  wake() {
+    this.isTouched = true;
+    if (this.isAwake) return;
+    this.isAwake = true;
     requestAnimationFrame((now) => this.#next(now));
   }
 
   /** @param {Picture} picture */
   add(picture) {
     this.pictures.push(picture);
+    picture.wake = () => this.wake();
   }
 
   /** Draw all anew: the theme or the language has changed. */
@@ -176,12 +219,19 @@ export class Gallery {
 
   /** @param {number} now ms */
   #next(now) {
-    requestAnimationFrame((next) => this.#next(next));
+    const { isTouched } = this;
+    this.isAwake = this.isTouched = false;
     const state = this.latest();
     const isNew = state !== this.seen;
     /** @type {Moment} */
-    const moment = { state, isNew, now: now / 1000, elapsed: 0, isCalm: this.calm.matches };
+    const moment = {
+      state, isNew, isTouched, now: now / 1000, elapsed: 0, isCalm: this.calm.matches,
+    }; // prettier-ignore
     this.seen = state;
     for (const picture of this.pictures) picture.show(moment);
+    if (isNew || isTouched) this.changedAt = now;
+    if (this.isAwake || now - this.changedAt > RESTS_AFTER) return;
+    this.isAwake = true;
+    requestAnimationFrame((next) => this.#next(next));
   }
 }

@@ -27,6 +27,11 @@ export class RestShape {
     return this.count === 1;
   }
 
+  /** Whether it has been there for long enough that its motion is known. */
+  get isSettled() {
+    return this.count > SETTLES;
+  }
+
   /**
    * The displacement of a string from its place of rest (m).
    * @param {Float32Array} shape

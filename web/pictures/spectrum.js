@@ -79,7 +79,7 @@ export class Spectrum extends Picture {
    * @param {number} fundamental Hz
    */
   #partials(context, fundamental) {
-    context.fillStyle = this.colours.accent;
+    context.fillStyle = this.colours.outer;
     for (let n = 1; n * fundamental < HIGHEST && n <= 20; n++) {
       context.globalAlpha = 0.7 / Math.sqrt(n);
       context.fillRect(this.#across(n * fundamental) - 1, this.height - 18, 2, 5);
@@ -106,10 +106,10 @@ export class Spectrum extends Picture {
     }
     context.lineTo(this.width, bottom);
     context.globalAlpha = 0.16;
-    context.fillStyle = this.colours.accent;
+    context.fillStyle = this.colours.outer;
     context.fill();
     context.globalAlpha = 1;
-    context.strokeStyle = this.colours.accent;
+    context.strokeStyle = this.colours.outer;
     context.lineWidth = 1.3;
     context.stroke();
   }

@@ -134,7 +134,7 @@ export class Tuner extends Picture {
    */
   #needle(context, left, cents, isTrue) {
     const bottom = this.height - 20;
-    context.fillStyle = isTrue ? this.colours.good : this.colours.accent;
+    context.fillStyle = isTrue ? this.colours.good : this.colours.bad;
     context.beginPath();
     context.roundRect(this.#across(left, cents) - 2.5, bottom - 26, 5, 26, 2.5);
     context.fill();

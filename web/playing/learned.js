@@ -18,6 +18,7 @@ import { ParameterError, TABLE, find } from "./table.js";
  * @property {readonly number[] | null} span the target's values at the two ends; null: its range
  * @property {boolean} isSoft the target moves only once the source has reached its value
  * @property {boolean} isGlobal whether it moves every note, wherever the source is moved
+ * @property {readonly LearnedBind[]} replaces those that come back when it is forgotten
  *
  * @typedef {ShippedBind | LearnedBind} Bind
  *
@@ -54,6 +55,7 @@ export function bindOf(target, source, isSoft) {
     span: null,
     isSoft: isSoft && !isOfOneNote(source) && !isByRange, // these cannot wait
     isGlobal: !isOfOneNote(source),
+    replaces: [],
   };
 }
 
@@ -88,9 +90,48 @@ function isWithin({ target }, span) {
  * @param {LearnedBind} bind
  */
 export function withBind(learned, bind) {
-  const key = overrideKey(bind);
-  const kept = learned.filter((own) => overrideKey(own) !== key && own.target !== bind.target);
-  return [...kept, bind];
+  const dropped = learned.filter((own) => excludes(bind, own));
+  return [...learned.filter((own) => !dropped.includes(own)), replacing(bind, dropped)];
+}
+
+/**
+ * Learned binds without one: what it replaced comes back, but for what was learned since.
+ * @param {readonly LearnedBind[]} learned
+ * @param {LearnedBind} bind
+ */
+export function withoutBind(learned, bind) {
+  const binds = learned.filter((own) => own !== bind);
+  for (const returned of bind.replaces) {
+    const newer = binds.findIndex((own) => excludes(own, returned));
+    if (newer < 0) binds.push(returned);
+    else binds[newer] = replacing(binds[newer], [returned]);
+  }
+  return binds;
+}
+
+/**
+ * Whether two binds cannot stand beside each other.
+ * @param {LearnedBind} bind
+ * @param {LearnedBind} other
+ */
+function excludes(bind, other) {
+  return overrideKey(bind) === overrideKey(other) || bind.target === other.target;
+}
+
+/**
+ * A bind that keeps others, which come back with it: but not what its target has learned before.
+ * @param {LearnedBind} bind
+ * @param {readonly LearnedBind[]} dropped
+ * @returns {LearnedBind}
+ */
+function replacing(bind, dropped) {
+  const kept = new Map(bind.replaces.map((own) => [JSON.stringify(own), own]));
+  for (const other of dropped) {
+    const isPlain = other.target === bind.target && other.span === null;
+    for (const own of [...(isPlain ? [] : [{ ...other, replaces: [] }]), ...other.replaces])
+      kept.set(JSON.stringify(own), own);
+  }
+  return { ...bind, replaces: [...kept.values()] };
 }
 
 /**
@@ -127,7 +168,10 @@ function overrideKey(bind) {
 export function fileOf(base, mapping, learned) {
   const about = `${mapping.about} With what you have taught it.`;
   const head = { name: mapping.name, about, base };
-  const tables = learned.map((bind) => `\n[[bind]]\n${lines(entriesOf(bind))}`);
+  const tables = learned.flatMap((bind) => [
+    `\n[[bind]]\n${lines(entriesOf(bind))}`,
+    ...bind.replaces.map((own) => `\n[[bind.replaces]]\n${lines(entriesOf(own))}`),
+  ]);
   return lines(head) + tables.join("");
 }
 
@@ -166,11 +210,24 @@ export function readLearned(kept) {
   /** @type {LearnedBind[]} */
   let learned = [];
   for (const one of kept) {
-    const { source, target, span, isSoft } = Object(one);
-    if (!isSource(source) || !FREE.some(({ address }) => address === target)) continue;
-    const bind = bindOf(target, source, isSoft === true);
-    const isSpan = Array.isArray(span) && span.length === 2 && isWithin(bind, span);
-    learned = withBind(learned, isSpan ? spanned(bind, span[0], span[1]) : bind);
+    const bind = readBind(one);
+    if (bind) learned = [...learned.filter((own) => !excludes(bind, own)), bind];
   }
   return learned;
+}
+
+/**
+ * @param {unknown} kept
+ * @returns {LearnedBind | null} null: it is none
+ */
+function readBind(kept) {
+  const { source, target, span, isSoft, replaces } = Object(kept);
+  if (!isSource(source) || !FREE.some(({ address }) => address === target)) return null;
+  const plain = bindOf(target, source, isSoft === true);
+  const isSpan = Array.isArray(span) && span.length === 2 && isWithin(plain, span);
+  const bind = isSpan ? spanned(plain, span[0], span[1]) : plain;
+  const others = Array.isArray(replaces)
+    ? replaces.map(readBind).filter((own) => own !== null)
+    : [];
+  return { ...bind, replaces: others.map((own) => ({ ...own, replaces: [] })) };
 }

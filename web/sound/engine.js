@@ -7,6 +7,8 @@ import { CHANNELS, Kernel, WISH } from "./kernel.js";
 
 const LOOKS_A_SECOND = 60;
 const CHUNK = 4096; // recorded frames that are told at a time
+const FAINT = 1e-3; // of full scale; what is fainter dies away within the time that follows
+const SLEEPS_AFTER_S = 4; // without a wish or a sound
 const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
 
 /**
@@ -18,6 +20,7 @@ const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
  *
  * @typedef {object} Told
  * @property {Float64Array} [seen] a look
+ * @property {boolean} [sleeps] whether it has just gone to sleep
  * @property {number} [load] share of the time that computing takes
  * @property {Float32Array} [recorded] samples, left and right in turn
  * @property {boolean} [isLast] of a recording
@@ -40,6 +43,8 @@ export class Engine {
     this.free = Array.from({ length: MOST_LOOKS }, () => new Float64Array(lookLength));
     this.nextLook = 0;
     this.frame = 0;
+    this.restless = 0; // frame until which something was asked for, or sounded
+    this.sleeps = true; // nobody has asked for anything
     this.busyMs = 0;
     this.measuredFrom = 0;
     /** @type {Float32Array | null} */
@@ -54,10 +59,13 @@ export class Engine {
   take({ wishes, record, keep, seen }) {
     if (seen) this.free.push(seen);
     if (wishes) {
+      this.sleeps = false;
+      this.restless = this.frame;
       for (let i = 0; i < wishes.length; i += WISH) {
         const isTaken = this.kernel.post(
           wishes[i], wishes[i + 1], wishes[i + 2], wishes[i + 3], wishes[i + 4],
         ); // prettier-ignore
+        this.restless = Math.max(this.restless, wishes[i]);
         if (isTaken && this.kept) {
           this.kept.push(Math.max(wishes[i], this.frame), ...wishes.subarray(i + 1, i + WISH));
         }
@@ -75,11 +83,16 @@ export class Engine {
   }
 
   /**
-   * Compute the next frames.
+   * Compute the next frames; none while it sleeps, for which its time stands still.
    * @param {Float32Array} left
    * @param {Float32Array} right as long
    */
   fill(left, right) {
+    if (this.sleeps && !this.chunk && !this.kept) {
+      left.fill(0);
+      right.fill(0);
+      return;
+    }
     const began = Date.now(); // worklets have no finer clock; its mean is right
     const frames = left.length;
     const { out } = this.kernel;
@@ -87,11 +100,20 @@ export class Engine {
     for (let n = 0; n < frames; n++) {
       left[n] = out[CHANNELS * n];
       right[n] = out[CHANNELS * n + 1];
+      if (Math.abs(left[n]) + Math.abs(right[n]) > FAINT) this.restless = this.frame;
     }
     this.frame += frames;
+    if (this.frame > this.restless + SLEEPS_AFTER_S * this.rate && !this.sleeps) this.#sleep();
     if (this.chunk) this.#record(frames);
     if (this.frame >= this.nextLook) this.#look();
     this.busyMs += Date.now() - began;
+  }
+
+  #sleep() {
+    this.sleeps = true;
+    this.busyMs = 0;
+    this.measuredFrom = this.frame;
+    this.tell({ sleeps: true }, []);
   }
 
   #look() {

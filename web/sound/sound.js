@@ -13,22 +13,21 @@ const USUAL_RATE = 48000;
 const WATCH_MS = 500;
 const LAG_S = 0.03; // by which sound falls behind the clock where samples were missing
 const FFT = 4096;
+const SUSPENDS_AFTER_MS = 10_000;
 const FADE_S = 0.01;
 
 export class Sound extends EventTarget {
   /**
-   * Open the sound, after a touch: else browsers keep silent.
+   * Open the sound, all but its first touch: browsers keep silent before it.
    * @param {Promise<ArrayBuffer>} module the instrument in WebAssembly
    * @returns {Promise<Sound>}
    */
   static async open(module) {
     const context = newContext();
-    const resumed = context.resume(); // while the touch counts
     try {
       const bytes = await module;
       const sound = new Sound(context);
       await sound.#connect(bytes);
-      await resumed;
       return sound;
     } catch (error) {
       await context.close();
@@ -45,6 +44,8 @@ export class Sound extends EventTarget {
     this.analyser = new AnalyserNode(context, { fftSize: FFT, smoothingTimeConstant: 0.6 });
     this.gain = new GainNode(context, { gain: 1 });
     this.loadPercent = 0;
+    this.isAsleep = false; // nothing sounds, and nothing is computed
+    this.suspending = 0; // timer
     this.dropouts = 0;
     /** @type {number[]} */
     this.wishes = [];
@@ -81,6 +82,8 @@ export class Sound extends EventTarget {
 
   /** All wishes of one turn of the page go together. */
   #send() {
+    clearTimeout(this.suspending);
+    if (this.isAsleep) this.resume();
     const wishes = Float64Array.from(this.wishes);
     this.wishes.length = 0;
     this.backend?.take({ wishes }, [wishes.buffer]);
@@ -100,13 +103,23 @@ export class Sound extends EventTarget {
       loadPercent: this.loadPercent,
       latencyMs: 1e3 * (baseLatency + outputLatency),
       dropouts: this.dropouts,
-      running: state === "running",
+      running: state === "running" || this.isAsleep,
     };
   }
 
   /** Go on after the browser has suspended it. */
   resume() {
+    this.isAsleep = false;
     return this.context.resume();
+  }
+
+  /** Nothing sounds: after a while the device may rest too, until something is asked for. */
+  #sleep() {
+    this.loadPercent = 0;
+    this.suspending = window.setTimeout(() => {
+      this.isAsleep = true;
+      this.context.suspend();
+    }, SUSPENDS_AFTER_MS);
   }
 
   close() {
@@ -120,7 +133,8 @@ export class Sound extends EventTarget {
   }
 
   /** @param {Told} told */
-  #hear({ seen, load, recorded, isLast, kept }) {
+  #hear({ seen, sleeps, load, recorded, isLast, kept }) {
+    if (sleeps) this.#sleep();
     if (kept) this.kept?.(kept);
     if (recorded && this.chunks) {
       this.chunks.push(recorded);
@@ -162,12 +176,15 @@ export class Sound extends EventTarget {
   /** Count the times when the sound fell behind the clock. */
   #watch() {
     let before = this.#lag();
+    let wasRunning = false;
     this.watching = setInterval(() => {
       const now = this.#lag();
-      if (this.context.state === "running" && !document.hidden && now - before > LAG_S) {
+      const isRunning = this.context.state === "running";
+      if (isRunning && wasRunning && !document.hidden && now - before > LAG_S) {
         this.dropouts += 1;
       }
       before = now;
+      wasRunning = isRunning;
     }, WATCH_MS);
   }
 

@@ -5,6 +5,10 @@
 import { make } from "../elements.js";
 import { translateOr } from "../i18n.js";
 
+const isServed = document.querySelector('meta[name="yehu-server"]') !== null;
+/** Presets that the page begins with; a server has a sound of its own. */
+export const AT_FIRST = isServed ? [] : ["vibrato", "courtyard"];
+
 /**
  * @param {Player} player
  * @param {{name: string, about: string, program: number | null}[]} presets
@@ -12,10 +16,14 @@ import { translateOr } from "../i18n.js";
  */
 export function makeCards(player, presets, name) {
   const cards = presets.sort(byProgram).map((preset) => {
-    const card = make("button", { type: "button", "aria-pressed": "false" }, [
-      make("span", {}, [() => translateOr(`preset.${preset.name}`, preset.name)]),
-      make("small", {}, [() => translateOr(`preset.${preset.name}.about`, preset.about)]),
-    ]);
+    const card = make(
+      "button",
+      { type: "button", "aria-pressed": String(AT_FIRST.includes(preset.name)) },
+      [
+        make("span", {}, [() => translateOr(`preset.${preset.name}`, preset.name)]),
+        make("small", {}, [() => translateOr(`preset.${preset.name}.about`, preset.about)]),
+      ],
+    );
     card.addEventListener("click", () => {
       player.applyPreset(preset.name);
       for (const one of cards) one.setAttribute("aria-pressed", String(one === card));

@@ -3,7 +3,7 @@
 /** @typedef {import('../main.js').Page} Page */
 
 import { find, make } from "../elements.js";
-import { NOTES } from "../hands/keys.js";
+import { NOTES, signOf } from "../hands/keys.js";
 import { isNatural, nameOf } from "../hands/scale.js";
 import { onLanguage, translate } from "../i18n.js";
 import { statusText } from "./header.js";
@@ -17,7 +17,6 @@ const ROWS = [
   ["KeyS", "KeyD", "KeyF", "KeyG", "KeyH", "KeyJ", "KeyK", "KeyL", "Semicolon"],
   ["KeyZ", "KeyX", "KeyC", "KeyV", "KeyB", "KeyN", "KeyM", "Comma", "Period", "Slash"],
 ];
-const SIGNS = { Comma: ",", Period: ".", Slash: "/", Semicolon: ";" };
 
 /** @param {Page} page */
 export function showConnections(page) {
@@ -106,9 +105,8 @@ function keyboard({ keys }) {
 function key(code) {
   const note = NOTES.get(code);
   if (note === undefined) return make("span", { class: "key none" });
-  const sign = SIGNS[/** @type {keyof typeof SIGNS} */ (code)] ?? code.replace(/Key|Digit/, "");
   return make("span", { class: isNatural(note) ? "key" : "key black" }, [
-    make("kbd", {}, [sign]),
+    make("kbd", {}, [signOf(code)]),
     nameOf(note),
   ]);
 }

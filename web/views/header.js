@@ -19,7 +19,6 @@ export function showHeader({ instrument, gallery }) {
   instrument.addEventListener("start", () => {
     start.dataset.text = "header.silence";
     start.textContent = translate("header.silence");
-    start.classList.remove("main");
   });
   showNotice(instrument);
   const tell = () => {

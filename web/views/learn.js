@@ -206,6 +206,6 @@ function movedBy({ source }) {
  * The name of a source, for people.
  * @param {string} source
  */
-function sourceName(source) {
+export function sourceName(source) {
   return translateOr(`source.${source}`, source.toUpperCase()); // cc 74, nrpn 300
 }

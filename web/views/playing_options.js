@@ -1,4 +1,4 @@
-/** How the instrument is played: assist, landing, direction, and the three most used sliders. */
+/** How the instrument is played: assist, landing, direction, loudness and vibrato. */
 
 /** @typedef {import('../main.js').Page} Page */
 
@@ -8,14 +8,13 @@ import { onLanguage, translate } from "../i18n.js";
 import { makeSlider } from "./slider.js";
 
 const SLIDERS = [
-  ["/playing/pressure", "ways.pressure"],
-  ["/playing/bow_position", "ways.position"],
+  ["/playing/volume", "ways.volume"],
   ["/playing/vibrato", "ways.vibrato"],
 ];
 const EVERY = 250; // ms
 
 /** @param {Page} page */
-export function showPlayingOptions({ instrument, hands, fingerboard }) {
+export function showPlayingOptions({ instrument, hands, fingerboard, surface }) {
   const assist = makeSwitch(
     () => translate("ways.assist"),
     settings.isAssisted,
@@ -37,7 +36,7 @@ export function showPlayingOptions({ instrument, hands, fingerboard }) {
     assist.title = translate("ways.assist.about");
     landing.title = translate("ways.landing.about");
   });
-  const switches = make("div", { class: "switches" }, [assist, landing, directions(fingerboard)]);
+  const switches = make("div", { class: "switches" }, [assist, landing]);
   const sliders = SLIDERS.map(([address, key]) =>
     makeSlider(instrument.player, address, () => translate(key)),
   );
@@ -45,43 +44,43 @@ export function showPlayingOptions({ instrument, hands, fingerboard }) {
   setInterval(() => {
     if (!document.hidden) for (const slider of sliders) slider.follow();
   }, EVERY);
+  find("bowing", HTMLElement).after(directions(surface));
   shiftBy(fingerboard);
 }
 
-/** @param {import('../hands/fingerboard.js').Fingerboard} fingerboard */
-function directions(fingerboard) {
-  const hands = find("hands", HTMLElement);
-  const choice = make("div", {
-    class: "choice",
-    role: "group",
-    "aria-label": () => translate("ways.direction"),
-  });
+/** @param {import('../hands/surface.js').Surface} surface */
+function directions(surface) {
   const buttons = /** @type {const} */ (["across", "down"]).map((direction) => {
     const button = make("button", { type: "button" }, [() => translate(`ways.${direction}`)]);
-    button.addEventListener("click", () => choose(direction));
-    choice.append(button);
+    button.addEventListener("click", () => {
+      // Chosen again, it lies as there is room.
+      const wished = surface.wished === direction ? "" : direction;
+      remember({ direction: wished });
+      surface.turn(wished);
+    });
     return { direction, button };
   });
-
-  /** @param {'across' | 'down'} chosen */
-  function choose(chosen) {
-    hands.classList.toggle("down", chosen === "down");
-    fingerboard.turn(chosen);
-    remember({ direction: chosen });
+  const show = () => {
     for (const { direction, button } of buttons) {
-      button.setAttribute("aria-pressed", String(direction === chosen));
+      button.setAttribute("aria-pressed", String(direction === surface.direction));
     }
-  }
-  choose(settings.direction === "down" ? "down" : "across");
-  return choice;
+  };
+  surface.addEventListener("change", show);
+  show();
+  return make(
+    "div",
+    { class: "choice", role: "group", "aria-label": () => translate("ways.direction") },
+    buttons.map(({ button }) => button),
+  );
 }
 
 /** @param {import('../hands/fingerboard.js').Fingerboard} fingerboard */
 function shiftBy(fingerboard) {
   const lower = find("lower", HTMLButtonElement);
   const higher = find("higher", HTMLButtonElement);
-  lower.addEventListener("click", () => fingerboard.shift(-12));
-  higher.addEventListener("click", () => fingerboard.shift(12));
+  const step = () => Math.min(fingerboard.scale.span - 1, 12); // no note is left out
+  lower.addEventListener("click", () => fingerboard.shift(-step()));
+  higher.addEventListener("click", () => fingerboard.shift(step()));
   const show = () => {
     lower.hidden = higher.hidden = !fingerboard.scale.isPart;
     lower.disabled = fingerboard.isLowest;

@@ -4,12 +4,13 @@
 /** @typedef {import('../instrument.js').Instrument} Instrument */
 
 import { allow, find, make, download } from "../elements.js";
-import { CaptureWriter, Replayer, readCapture } from "../capture.js";
+import { CaptureWriter, Replayer, fileOf, readCapture } from "../capture.js";
+import { linkOf, readLink } from "../link.js";
 import { onLanguage, translate } from "../i18n.js";
 
 /** @param {Page} page */
-export function showRecording({ instrument }) {
-  find("panel-keep", HTMLElement).append(recording(instrument), performances(instrument));
+export function showRecording(page) {
+  find("panel-keep", HTMLElement).append(performances(page), recording(page.instrument));
 }
 
 /**
@@ -75,13 +76,16 @@ function recording(instrument) {
   ]);
 }
 
-/** @param {Instrument} instrument */
-function performances(instrument) {
+/** @param {Page} page */
+function performances({ instrument, keys, fingerboard, bow }) {
   const keeper = new CaptureWriter(instrument);
   const word = make("p", { class: "soft", role: "status" });
+  const offer = make("div", { class: "row" });
   const keep = toggle("keep.begin", "keep.stop", async (isOn) => {
+    offer.replaceChildren();
+    word.textContent = "";
     if (isOn) keeper.start();
-    else download(await keeper.stop(), fileName("jsonl"));
+    else await tellKept(await keeper.stop());
   });
   const input = make("input", {
     type: "file",
@@ -96,27 +100,64 @@ function performances(instrument) {
     if (!isOn) replayer?.stop();
     else input.click();
   });
+
+  /** @param {import('../capture.js').Performance} performance */
+  function play(performance) {
+    replayer?.stop();
+    const one = new Replayer(instrument, performance);
+    replayer = one;
+    load.set(true);
+    one.addEventListener("end", () => {
+      if (replayer !== one) return;
+      replayer = null;
+      load.set(false);
+      word.textContent = "";
+    });
+  }
+
+  /**
+   * Offer what was kept: as a link, if it is short, and as a file.
+   * @param {import('../capture.js').Performance & {frames: number}} kept
+   */
+  async function tellKept(kept) {
+    const link = await linkOf(kept);
+    const copy = make("button", { type: "button", class: "main" }, [translate("keep.copy")]);
+    copy.addEventListener("click", async () => {
+      await navigator.clipboard?.writeText(link ?? "").catch(() => {});
+      word.textContent = translate("keep.copied");
+    });
+    const save = make("button", { type: "button" }, [translate("keep.save")]);
+    save.addEventListener("click", async () => download(await fileOf(kept), fileName("jsonl")));
+    const field = make("input", {
+      type: "text",
+      readonly: true,
+      value: link ?? "",
+      "aria-label": translate("keep.link"),
+    });
+    offer.replaceChildren(...(link ? [field, copy] : []), save);
+    word.textContent = link ? "" : translate("keep.long");
+  }
+
   input.addEventListener("change", async () => {
     const file = input.files?.[0];
     input.value = "";
     if (!file) return;
     try {
       const read = await readCapture(file);
-      replayer = new Replayer(instrument, read);
-      load.set(true);
+      play(read);
       const { players } = read;
       word.textContent =
         players > 1 ? translate("keep.one", { name: file.name, count: players }) : file.name;
-      replayer.addEventListener("end", () => {
-        replayer = null;
-        load.set(false);
-        word.textContent = "";
-      });
     } catch {
       word.textContent = translate("keep.wrong", { name: file.name });
     }
   });
   instrument.addEventListener("silence", () => replayer?.stop());
+  // Whoever plays while it plays goes on from there.
+  for (const hand of [keys, fingerboard, bow]) {
+    hand.addEventListener("play", () => replayer?.yield());
+  }
+  invite(instrument, play);
   const judge = () => {
     allow(keep.button, reason(instrument, keeper.isAble));
     allow(load.button, reason(instrument, true));
@@ -128,8 +169,37 @@ function performances(instrument) {
     make("h2", {}, [() => translate("keep.performance")]),
     make("p", { class: "soft" }, [() => translate("keep.performance.about")]),
     make("div", { class: "row" }, [keep.button, load.button, input]),
+    offer,
     word,
   ]);
+}
+
+/**
+ * Invite to listen to what the address of the page brings.
+ * @param {Instrument} instrument
+ * @param {(performance: import('../capture.js').Performance) => void} play
+ */
+async function invite(instrument, play) {
+  const words = find("invite", HTMLElement);
+  try {
+    const brought = await readLink(location.hash);
+    if (brought === null) return;
+    const { wishes, rate } = brought;
+    const seconds = Math.ceil((wishes.at(-1)?.frame ?? 0) / rate);
+    const button = make("button", { type: "button", class: "main", id: "listen" }, [
+      () => translate("keep.listen", { time: clock(seconds) }),
+    ]);
+    words.before(button);
+    words.hidden = true;
+    button.addEventListener("click", async () => {
+      button.remove();
+      await instrument.start();
+      if (instrument.sound) play(brought);
+    });
+    instrument.addEventListener("start", () => button.remove(), { once: true });
+  } catch {
+    words.textContent = translate("keep.broken");
+  }
 }
 
 /**

@@ -1,22 +1,25 @@
 /** The pictures beside the instrument: their words, and one of them large for all to see. */
 
 /** @typedef {import('../main.js').Page} Page */
-/** @typedef {import('../pictures/strings.js').View} View */
+/** @typedef {import('../pictures/yehu.js').View} View */
 
 import { find } from "../elements.js";
 import { nameOf } from "../hands/scale.js";
 import { regimeOf, soundingPitch } from "../pictures/regime.js";
 import { remember, settings } from "../settings.js";
 import { onLanguage, translate } from "../i18n.js";
+import { makeSlider } from "./slider.js";
 import { whileShown } from "./tabs.js";
 
 /** @type {View[]} */
 const VIEWS = ["slowed", "moving", "still"];
+/** How the player bows. */
+const SLIDERS = ["/playing/pressure", "/playing/bow_position"];
 const LINGERS = 2000; // ms after a note in which a finger on the diagram still places the bow
 const EVERY = 150; // ms: a word that changes faster is not read
 
 /** @param {Page} page */
-export function showSeeing({ instrument, strings }) {
+export function showSeeing({ instrument, yehu }) {
   const regime = find("regime", HTMLElement);
   const about = find("regime-about", HTMLElement);
   const tuner = find("tuner", HTMLCanvasElement);
@@ -54,18 +57,21 @@ export function showSeeing({ instrument, strings }) {
     },
     EVERY,
   );
-  chooseView(strings);
+  chooseView(yehu);
+  const sliders = SLIDERS.map((address) => makeSlider(instrument.player, address));
+  find("bowing", HTMLElement).append(...sliders.map(({ element }) => element));
+  whileShown(find("panel-see", HTMLElement), () => sliders.forEach((one) => one.follow()), 250);
   for (const button of document.querySelectorAll(".enlarge")) {
     if (button instanceof HTMLButtonElement) enlargeBy(button);
   }
 }
 
-/** @param {import('../pictures/strings.js').Strings} strings */
-function chooseView(strings) {
+/** @param {import('../pictures/yehu.js').Yehu} yehu */
+function chooseView(yehu) {
   const buttons = /** @type {const} */ (["slowed", "moving"]).map((view) => {
     const button = find(`view-${view}`, HTMLButtonElement);
     button.addEventListener("click", () => {
-      const next = strings.view === view ? "still" : view; // what moves can be stopped
+      const next = yehu.view === view ? "still" : view; // what moves can be stopped
       remember({ view: next });
       choose(next);
     });
@@ -74,8 +80,8 @@ function chooseView(strings) {
 
   /** @param {View} chosen */
   function choose(chosen) {
-    strings.view = chosen;
-    strings.isStale = true;
+    yehu.view = chosen;
+    yehu.isStale = true;
     for (const { view, button } of buttons) {
       button.setAttribute("aria-pressed", String(view === chosen));
     }

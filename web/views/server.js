@@ -143,7 +143,8 @@ function askForPin(line) {
   });
   line.addEventListener("refuse", () => {
     form.hidden = false;
-    find("tab-connect", HTMLElement).click(); // else nobody would see it
+    // Else nobody would see it; a click on the tab that is shown would close it.
+    if (find("panel-connect", HTMLElement).hidden) find("tab-connect", HTMLElement).click();
     pin.focus();
   });
   return form;

@@ -5,22 +5,27 @@
 import { find, make } from "../elements.js";
 import facts from "../facts.js";
 import { onLanguage, translate, translateOr } from "../i18n.js";
+import { MAPPINGS } from "../playing/learned.js";
 import { makeCards } from "./cards.js";
+import { sourceName } from "./learn.js";
 import { ROOMS, showRoom } from "./room.js";
+import { nameFor } from "./slider.js";
 
 /** @param {Page} page */
-export function showSounds({ instrument, tuned, board, taught }) {
+export function showSounds({ instrument, tuned, yehu, taught }) {
   const { player } = instrument;
   const panel = find("panel-sound", HTMLElement);
   panel.append(
     presets(player),
     showRoom(player, panel),
-    chooser("tuning", Object.keys(facts.tunings), "equal", (name) => {
+    chooser("tuning", Object.keys(facts.tunings), "equal", aboutTuning, (name) => {
       player.applyTuning(name);
       tuned.choose(name);
-      board.isStale = true;
+      yehu.isStale = true;
     }),
-    chooser("mapping", Object.keys(facts.mappings), taught.name, (name) => taught.choose(name)),
+    chooser("mapping", Object.keys(MAPPINGS), taught.name, aboutMapping, (name) =>
+      taught.choose(name),
+    ),
   );
 }
 
@@ -33,14 +38,34 @@ function presets(player) {
   ]);
 }
 
+/** @param {string} name */
+function aboutTuning(name) {
+  return translateOr(`tuning.${name}.about`, "");
+}
+
+/**
+ * What each control of a mapping moves.
+ * @param {string} name
+ */
+function aboutMapping(name) {
+  /** @type {Map<string, string[]>} */
+  const moved = new Map();
+  for (const { source, target } of MAPPINGS[name].binds) {
+    moved.set(source, [...(moved.get(source) ?? []), nameFor(target)]);
+  }
+  const told = [...moved].map(([source, names]) => `${sourceName(source)}: ${names.join(", ")}`);
+  return told.join(" · ");
+}
+
 /**
  * A choice from a list of names.
  * @param {'tuning' | 'mapping'} what
  * @param {string[]} names
  * @param {string} first
+ * @param {(name: string) => string} tellAbout
  * @param {(name: string) => void} apply
  */
-function chooser(what, names, first, apply) {
+function chooser(what, names, first, tellAbout, apply) {
   const select = make(
     "select",
     { "aria-label": () => translate(`sound.${what}`) },
@@ -51,7 +76,7 @@ function chooser(what, names, first, apply) {
   select.value = first;
   const about = make("p", { class: "soft" });
   const tell = () => {
-    about.textContent = translateOr(`${what}.${select.value}.about`, "");
+    about.textContent = tellAbout(select.value);
   };
   select.addEventListener("change", () => {
     apply(select.value);

@@ -8,11 +8,10 @@ import { translate } from "../i18n.js";
 
 const PANELS = ["see", "sound", "tunes", "keep", "connect", "all"];
 
-const FAR_DOWN = 0.8; // of the window's height
-
 /** @param {Page} page */
 export function showTabs({ gallery }) {
   const list = find("tabs", HTMLElement);
+  const more = find("more", HTMLElement);
   const tabs = PANELS.map((name) => {
     const tab = make(
       "button",
@@ -24,26 +23,23 @@ export function showTabs({ gallery }) {
       },
       [() => translate(`tab.${name}`)],
     );
-    tab.addEventListener("click", () => {
-      choose(name);
-      // On a phone what was chosen is below the instrument.
-      const { top } = list.getBoundingClientRect();
-      if (top > window.innerHeight * FAR_DOWN) list.scrollIntoView({ block: "start" });
-    });
+    tab.addEventListener("click", () => choose(settings.panel === name ? "" : name));
     find(`panel-${name}`, HTMLElement).setAttribute("aria-labelledby", tab.id);
     return tab;
   });
   list.append(...tabs);
 
-  /** @param {string} chosen */
+  /** @param {string} chosen '': none */
   function choose(chosen) {
     PANELS.forEach((name, i) => {
       const isChosen = name === chosen;
       tabs[i].setAttribute("aria-selected", String(isChosen));
-      tabs[i].tabIndex = isChosen ? 0 : -1; // the arrow keys go to the others
+      // The arrow keys go to the others.
+      tabs[i].tabIndex = isChosen || (chosen === "" && i === 0) ? 0 : -1;
       find(`panel-${name}`, HTMLElement).hidden = !isChosen;
     });
-    const tab = tabs[PANELS.indexOf(chosen)];
+    const tab = tabs[Math.max(PANELS.indexOf(chosen), 0)];
+    more.hidden = chosen === "";
     list.scrollLeft = Math.min(list.scrollLeft, tab.offsetLeft); // on a narrow screen they scroll
     list.scrollLeft = Math.max(
       list.scrollLeft,
@@ -64,7 +60,12 @@ export function showTabs({ gallery }) {
     tabs[next].focus();
     choose(PANELS[next]);
   });
-  choose(PANELS.includes(settings.panel) ? settings.panel : PANELS[0]);
+  find("close", HTMLButtonElement).addEventListener("click", () => {
+    const tab = tabs[PANELS.indexOf(settings.panel)];
+    choose("");
+    tab?.focus();
+  });
+  choose(PANELS.includes(settings.panel) ? settings.panel : "");
 }
 
 /**
@@ -75,6 +76,6 @@ export function showTabs({ gallery }) {
  */
 export function whileShown(panel, action, every) {
   setInterval(() => {
-    if (!panel.hidden && !document.hidden) action();
+    if (panel.checkVisibility() && !document.hidden) action();
   }, every);
 }

@@ -73,13 +73,13 @@ function row(page, tune) {
     bar.hidden = false;
     one.addEventListener("move", () => {
       bar.value = one.progress;
-      if (one instanceof TuneGuide) page.board.mark(one.next);
+      if (one instanceof TuneGuide) page.yehu.mark(one.next);
     });
     one.addEventListener("end", () => {
       button.setAttribute("aria-pressed", "false");
       tell(button, way);
       bar.hidden = true;
-      page.board.mark(null);
+      page.yehu.mark(null);
       if (present === one) present = null;
     });
     one.start();

@@ -13,7 +13,7 @@ import { resolve } from "node:path";
 const web = pathToFileURL(`${resolve(process.argv[2])}/`);
 const { default: facts } = await import(new URL("facts.js", web).href);
 const { Learner } = await import(new URL("playing/learner.js", web).href);
-const { bindOf, fileOf, merged, readLearned, withBind } = await import(
+const { bindOf, fileOf, merged, readLearned, withBind, withoutBind } = await import(
   new URL("playing/learned.js", web).href
 );
 const { rowOf } = await import(new URL("playing/tables.js", web).href);
@@ -37,7 +37,8 @@ for await (const line of createInterface({ input: process.stdin })) {
     const source = messages ? heard(messages) : null;
     sources.push(source);
     if (source !== null) learned = withBind(learned, bindOf(target, source, isSoft));
-    if (!messages) learned = learned.filter((bind) => bind.target !== target);
+    const own = learned.find((bind) => bind.target === target);
+    if (!messages && own) learned = withoutBind(learned, own);
   }
   learned = readLearned(JSON.parse(JSON.stringify(learned))); // as a browser keeps them
   const binds = merged(mapping, learned).binds.map((bind) => {

@@ -28,7 +28,7 @@ function keepTimes() {
   };
   const { clearRect } = CanvasRenderingContext2D.prototype;
   CanvasRenderingContext2D.prototype.clearRect = function (...box) {
-    if (this.canvas.id === "strings") globalThis.drawn.push(performance.now());
+    if (this.canvas.id === "yehu") globalThis.drawn.push(performance.now());
     return clearRect.apply(this, box);
   };
 }

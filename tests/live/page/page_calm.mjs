@@ -55,18 +55,18 @@ function shown(page) {
 }
 
 /** @param {import("playwright-core").Page} page */
-const pressed = (page) => page.locator(".upright [aria-pressed=true]").allTextContents();
+const pressed = (page) => page.locator(".views .choice [aria-pressed=true]").allTextContents();
 
 /**
- * Whether the frog of the bow is seen to move, which in a calm picture stands at 0.73 of the width.
+ * Whether the frog of the bow is seen to move, which is beside the strings.
  * @param {import("playwright-core").Page} page
  */
 async function bowMoves(page) {
   const look = () =>
-    page.locator("#bow").evaluate((canvas) => {
-      const [x, width] = [0.71, 0.1].map((share) => Math.round(share * canvas.width));
+    page.locator("#yehu").evaluate((canvas) => {
+      const [x, width] = [0.68, 0.08].map((share) => Math.round(share * canvas.width));
       const part = document.createElement("canvas");
-      Object.assign(part, { width, height: canvas.height });
+      Object.assign(part, { width, height: Math.round(0.12 * canvas.height) });
       part.getContext("2d").drawImage(canvas, -x, 0);
       return part.toDataURL();
     });
@@ -85,6 +85,7 @@ async function look(browser, url, reducedMotion) {
   await page.emulateMedia({ reducedMotion });
   await page.reload();
   await page.waitForSelector(READY);
+  if (await page.locator("#more").isHidden()) await page.click("#tab-see");
   const found = { pressed: await pressed(page), transition: await longestTransition(page) };
   const silent = new Map(await shown(page));
   await page.keyboard.down("KeyC");
@@ -115,6 +116,7 @@ async function drag(browser, url) {
   const found = { errors };
   await page.click("#start");
   await page.waitForFunction(() => globalThis.imitation);
+  if (await page.locator("#more").isHidden()) await page.click("#tab-see");
   await page.locator("#schelleng").scrollIntoViewIfNeeded();
   for (const name of ["silent", "sounding"]) {
     if (name === "sounding") await page.keyboard.down("KeyC");

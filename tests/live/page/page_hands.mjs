@@ -65,14 +65,16 @@ await run(async (browser, url) => {
   found.slid = await wishes(page);
 
   await touch("touchStart", [{ x: placeOf(72), y: middle, id: 0 }]);
-  await touch("touchMove", [{ x: placeOf(72), y: board.y + 4, id: 0 }]);
+  for (const share of [0.02, 0.98]) {
+    await touch("touchMove", [{ x: placeOf(72), y: board.y + share * board.height, id: 0 }]);
+  }
   await touch("touchEnd", []);
-  found.pressed = await wishes(page);
+  await page.waitForTimeout(800);
+  found.swelled = await wishes(page);
 
-  // The bow, drawn to the right and back while a finger stops the string.
-  const low = bow.y + bow.height * 0.3;
+  // The bow, drawn across the strings and back while a finger stops the string.
   /** @param {number} share */
-  const at = (share) => ({ x: bow.x + bow.width * share, y: low, id: 5 });
+  const at = (share) => ({ x: bow.x + bow.width * 0.3, y: bow.y + bow.height * share, id: 5 });
   const stopping = { x: placeOf(74), y: middle, id: 6 };
   await touch("touchStart", [at(0.2)]);
   await touch("touchStart", [at(0.2), stopping]);
@@ -80,12 +82,12 @@ await run(async (browser, url) => {
     await touch("touchMove", [at(0.2 + step * 0.03), stopping]);
     await page.waitForTimeout(20);
   }
-  found.drawnRight = await wishes(page);
+  found.drawnForth = await wishes(page);
   for (let step = 10; step >= 0; step--) {
     await touch("touchMove", [at(0.2 + step * 0.03), stopping]);
     await page.waitForTimeout(20);
   }
-  found.drawnLeft = await wishes(page);
+  found.drawnBack = await wishes(page);
   await page.waitForTimeout(250);
   found.rested = await wishes(page);
   await touch("touchEnd", [stopping]);
@@ -102,7 +104,7 @@ await run(async (browser, url) => {
     ["light", 0.1],
     ["firm", 0.9],
   ]) {
-    await page.mouse.move(bow.x + bow.width * 0.3, bow.y + bow.height * height);
+    await page.mouse.move(bow.x + bow.width * height, bow.y + bow.height * 0.3);
     await page.mouse.down();
     await page.mouse.up();
     found[name] = await wishes(page);

@@ -53,8 +53,7 @@ await run(async (browser, url) => {
   await here("at first");
   await here("there", "there");
   await here("again");
-  await page.reload(); // it remembers where
-  await page.click("#tab-connect");
+  await page.reload(); // it remembers where, and that the panel is open
   await page.waitForSelector("#way-here[aria-pressed=true]", { timeout: 120000 });
   await here("after a reload");
   found.errors = errors;

@@ -29,7 +29,7 @@ const drawings = (page) =>
     let count = 0;
     const { clearRect } = CanvasRenderingContext2D.prototype;
     CanvasRenderingContext2D.prototype.clearRect = function (...box) {
-      if (this.canvas.id === "strings") count += 1;
+      if (this.canvas.id === "yehu") count += 1;
       return clearRect.apply(this, box);
     };
     await new Promise((resolve) => setTimeout(resolve, 500));

@@ -54,7 +54,8 @@ async function playAndKeep(page) {
   await page.keyboard.up(KEY);
   await page.waitForTimeout(300);
   const pressed = page.locator("#panel-keep button[aria-pressed=true]");
-  await save(page, pressed.nth(1), "kept.jsonl");
+  await pressed.first().click();
+  await save(page, page.getByRole("button", { name: "Save as a file" }), "kept.jsonl");
   await save(page, pressed.first(), "recorded.wav");
   return status;
 }
@@ -63,7 +64,9 @@ await run(
   async (browser, url) => {
     await browser.addInitScript(keepAnalysers);
     let asked = 0;
-    browser.on("request", (request) => (asked += request.url().endsWith("yehu.wasm") ? 1 : 0));
+    browser.on("request", (request) => {
+      if (request.url().endsWith("yehu.wasm") && !request.serviceWorker()) asked += 1;
+    });
     const { page, errors } = await open(browser, url);
     const found = { seconds: (await start(page)) / 1e3, asked };
     await page.keyboard.up(KEY);

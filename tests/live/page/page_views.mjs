@@ -114,6 +114,7 @@ await run(async (browser, url) => {
   found.played = await wishes(page);
   const download = page.waitForEvent("download");
   await page.locator("#panel-keep button[aria-pressed=true]").click();
+  await page.getByRole("button", { name: "Save as a file" }).click();
   const file = await (await download).path();
   found.kept = (await import("node:fs")).readFileSync(file, "utf8").trim().split("\n").slice(1);
   await wishes(page);
@@ -126,7 +127,7 @@ await run(async (browser, url) => {
     buffer: Buffer.from('{"format":1}\n[1]'),
   });
   await page.waitForTimeout(200);
-  found.wrong = await page.textContent("#panel-keep section:nth-child(2) p[role=status]");
+  found.wrong = await page.textContent("#panel-keep section:nth-child(1) p[role=status]");
 
   // A keyboard that is plugged in, plays, and is pulled out while a key is down.
   await page.click("#tab-connect");

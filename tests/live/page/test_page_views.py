@@ -57,9 +57,9 @@ def test_fingerboard_and_bow_are_seen_without_scrolling(found, size: str) -> Non
 
 def test_the_tab_key_goes_from_the_header_over_the_hands_to_the_rest(found) -> None:
     ids = [each["id"] for each in found["focus"]]
-    way = ["language", "theme", "start", "fingerboard", "bow"]
+    way = ["help", "language", "theme", "start", "fingerboard", "bow"]
     assert [each for each in ids if each in way] == way
-    assert ids[:3] == way[:3]
+    assert ids[:4] == way[:4]
 
 
 def test_what_has_the_focus_is_seen_to_have_it(found) -> None:

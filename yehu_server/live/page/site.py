@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import hashlib
+import json
 import logging
 import shutil
 from collections.abc import Iterable, Iterator
@@ -23,12 +24,17 @@ from yehu_server.util.files import replacing, shipped_folder
 
 INDEX = "index.html"
 # This meta element tells the page that a yehu server serves it; the static page does not have it.
-MARK = ('<meta charset="utf-8">', '<meta charset="utf-8">\n<meta name="yehu-server" content="1">')
+HEAD = '<meta charset="utf-8">'
+MARK = (HEAD, f'{HEAD}\n<meta name="yehu-server" content="1">')
+# And this one, that the page may be kept by its service worker, which knows all of its files.
+WORKER = "sw.js"
+KEPT = (HEAD, f'{HEAD}\n<meta name="yehu-worker" content="{WORKER}">')
 TYPES = {
     ".css": "text/css; charset=utf-8",
     ".html": "text/html; charset=utf-8",
     ".json": "application/json",
     ".js": "text/javascript; charset=utf-8",
+    ".png": "image/png",
     ".svg": "image/svg+xml",
     ".wasm": "application/wasm",
     ".webmanifest": "application/manifest+json",
@@ -114,7 +120,7 @@ class Site:
 log = logging.getLogger(__name__)
 
 MODULE, CAPTURES = "yehu.wasm", "captures"
-SERVED = {".css", ".html", ".js", ".svg", ".webmanifest"}
+SERVED = {".css", ".html", ".js", ".png", ".svg", ".webmanifest"}
 FACTS = "facts.js"
 GENERATED = {FACTS, "examples.js"}
 
@@ -156,10 +162,23 @@ def write_page(folder: Path) -> list[Path]:
         _copy(module, folder / MODULE)
         write(folder)
         beginnings = write_capture_headers(folder / CAPTURES)
+        index = (folder / INDEX).read_text("utf-8").replace(*KEPT, 1)
+        (folder / INDEX).write_text(index, "utf-8")
+        files = [*written, *map(Path, sorted(GENERATED)), Path(MODULE)]
+        files += [path.relative_to(folder) for path in beginnings]
+        _write_worker(folder, [file for file in files if file != Path(WORKER)])
     except OSError as error:
         raise OutputError(f"{folder}: {error.strerror}") from error
-    written += [*map(Path, sorted(GENERATED)), Path(MODULE)]
-    return [*written, *(path.relative_to(folder) for path in beginnings)]
+    return files
+
+
+def _write_worker(folder: Path, files: list[Path]) -> None:
+    """Tell the service worker which files it keeps, and what tells this version from others."""
+    version = hashlib.sha256(b"".join((folder / file).read_bytes() for file in files))
+    names = json.dumps(["./", *(file.as_posix() for file in files)])
+    text = (folder / WORKER).read_text("utf-8")
+    text = text.replace('VERSION = ""', f'VERSION = "{version.hexdigest()[:16]}"')
+    (folder / WORKER).write_text(text.replace("FILES = []", f"FILES = {names}"), "utf-8")
 
 
 def _files_of(folder: Path) -> Iterator[Path]:
@@ -196,6 +215,7 @@ class _Handler(SimpleHTTPRequestHandler):
     extensions_map = {  # noqa: RUF012 - as the base class has it
         **SimpleHTTPRequestHandler.extensions_map,
         ".js": "text/javascript",
+        ".webmanifest": "application/manifest+json",
         ".wasm": "application/wasm",
     }
 

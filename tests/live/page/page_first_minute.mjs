@@ -1,0 +1,112 @@
+/** Plays the first minute: an invitation, three gestures; keeps a performance as a link, and opens it. */
+
+import { fingersOf, held, open, run, wishes } from "./browser.mjs";
+
+const SIZES = [
+  [1920, 1080],
+  [820, 1180],
+  [390, 844],
+  [320, 568],
+  [844, 390],
+];
+
+/** What is shown, but not whole on the screen; runs in the page. */
+function cut() {
+  const isCut = ({ left, top, right, bottom }) =>
+    left < -1 || top < -1 || right > innerWidth + 1 || bottom > innerHeight + 1;
+  return [...document.querySelectorAll("#page > *, #page header *, #play *")]
+    .filter((element) => element.checkVisibility() && !element.closest("svg"))
+    .filter((element) => element.getClientRects().length && isCut(element.getBoundingClientRect()))
+    .map((element) => element.outerHTML.slice(0, 100));
+}
+
+await run(async (browser, url) => {
+  const { page, errors } = await open(browser, url);
+  const found = { cut: {}, said: [] };
+  for (const [width, height] of SIZES) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(200);
+    found.cut[`${width}x${height}`] = await page.evaluate(cut);
+    found.upright ??= {};
+    found.upright[`${width}x${height}`] = await page.locator("#stage.down").count();
+  }
+  await page.setViewportSize({ width: 1440, height: 900 });
+  const touch = await fingersOf(page);
+  const words = () => page.locator("#guide:not([hidden]) p").allTextContents();
+  found.invited = await page.locator("#invite").isVisible();
+  const board = await page.locator("#fingerboard").boundingBox();
+  const bow = await page.locator("#bow").boundingBox();
+  const finger = (along, id = 1) => ({
+    x: board.x + board.width * along,
+    y: board.y + board.height * 0.4,
+    id,
+  });
+
+  await touch("touchStart", [finger(0.3)]);
+  await page.waitForFunction(() => globalThis.imitation);
+  found.invitedStill = await page.locator("#invite").isVisible();
+  found.said.push(await words());
+  for (let step = 1; step <= 10; step++) await touch("touchMove", [finger(0.3 + step * 0.01)]);
+  found.said.push(await words());
+  for (let step = 0; step < 40; step++) {
+    await touch("touchMove", [finger(0.4 + 0.006 * Math.sin((2 * Math.PI * step) / 8))]);
+    await page.waitForTimeout(20);
+  }
+  found.rocked = await wishes(page);
+  await touch("touchEnd", []);
+  found.said.push(await words());
+  for (const along of [0.5, 0.4, 0.6, 0.3]) {
+    // Firmer or lighter, until it is in the green.
+    const at = (share) => ({ x: bow.x + bow.width * along, y: bow.y + bow.height * share, id: 2 });
+    await touch("touchStart", [at(0.2)]);
+    for (let step = 0; step < 40; step++) {
+      await touch("touchMove", [at(0.2 + 0.015 * step)]);
+      await page.waitForTimeout(20);
+    }
+    await touch("touchEnd", []);
+  }
+  found.said.push(await words());
+  found.taught = await page.evaluate(() => JSON.parse(localStorage.yehu).isTaught);
+  await page.keyboard.press("?");
+  await page.keyboard.press("?");
+  found.helped = await words();
+  await page.keyboard.press("?");
+  found.put = await words();
+
+  await page.click("#tab-keep");
+  await page.getByRole("button", { name: "Keep", exact: true }).click();
+  await wishes(page);
+  await page.keyboard.press("KeyX", { delay: 200 });
+  await touch("touchStart", [finger(0.5)]);
+  for (let step = 1; step <= 10; step++) await touch("touchMove", [finger(0.5 + step * 0.01)]);
+  await touch("touchEnd", []);
+  await page.waitForTimeout(100);
+  found.played = await wishes(page);
+  await page.locator("#panel-keep button[aria-pressed=true]").click();
+  const link = await page.getByLabel("Link that plays it").inputValue();
+  found.link = link;
+  await page.close();
+
+  const { page: friend, errors: others } = await open(browser, link);
+  await friend.click("#listen");
+  await friend.waitForFunction(() => globalThis.imitation);
+  await friend.waitForTimeout(1500);
+  found.replayed = await wishes(friend);
+  found.heldAfter = await held(friend);
+  await friend.close();
+
+  // Somebody who touches the string while it plays goes on from there.
+  const { page: third } = await open(browser, link);
+  const hand = await fingersOf(third);
+  await third.click("#listen");
+  await third.waitForFunction(() => globalThis.imitation?.notes.length === 1);
+  const { x, y, width, height } = await third.locator("#fingerboard").boundingBox();
+  await hand("touchStart", [{ x: x + 0.8 * width, y: y + height / 2, id: 1 }]);
+  await third.waitForTimeout(1500);
+  found.taken = { held: await held(third), wishes: await wishes(third) };
+  await hand("touchEnd", []);
+  await third.waitForTimeout(100);
+  found.let = await held(third);
+  found.errors = [...errors, ...others];
+  return found;
+});

@@ -1,0 +1,185 @@
+/** A performance in the fragment of a link: packed, compressed, and read again. */
+
+/** @typedef {import('./capture.js').Performance} Performance */
+
+import facts from "./facts.js";
+import { TABLE, find } from "./playing/table.js";
+
+const MARK = "#play=";
+const VERSION = 1;
+const RATE = 1000; // frames of a link are ms
+const FINE = 1e4; // values are kept to the tenth of a thousandth
+const BASE = 128; // of numbers of many bytes
+const MOST = 24_000; // characters that browsers and letters pass on
+const MOST_BYTES = 4 << 20; // unpacked
+const NAMES = Object.keys(facts.kinds);
+const { WRITE, HOLD, EXPRESS, RAMP } = facts.kinds;
+const SLOTS = TABLE.filter(({ slot }) => slot !== null);
+const SILENCE = "silence"; // in place of an engine's parameter
+const OWN = TABLE.filter(({ owned }) => !owned);
+
+/**
+ * The link that plays a performance on this page; null where it is too long for one.
+ * @param {Performance} performance
+ */
+export async function linkOf(performance) {
+  const packed = await through(new CompressionStream("deflate-raw"), pack(performance));
+  const text = btoa(Array.from(packed, (byte) => String.fromCharCode(byte)).join(""));
+  const safe = text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+  const { origin, pathname, search } = location;
+  return safe.length > MOST ? null : origin + pathname + search + MARK + safe;
+}
+
+/**
+ * The performance that an address brings; null where it brings none. Throws an error where it is none of
+ * this instrument.
+ * @param {string} fragment
+ * @returns {Promise<Performance | null>}
+ */
+export async function readLink(fragment) {
+  if (!fragment.startsWith(MARK)) return null;
+  const text = fragment.slice(MARK.length).replaceAll("-", "+").replaceAll("_", "/");
+  const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  return unpack(await through(new DecompressionStream("deflate-raw"), packed));
+}
+
+/**
+ * @param {CompressionStream | DecompressionStream} stream
+ * @param {Uint8Array<ArrayBuffer>} bytes
+ */
+async function through(stream, bytes) {
+  const all = new Response(new Blob([bytes]).stream().pipeThrough(stream));
+  const found = new Uint8Array(await all.arrayBuffer());
+  if (found.length > MOST_BYTES) throw new RangeError("too large");
+  return found;
+}
+
+/**
+ * Numbers of rows and kinds differ between versions of this page: a head names those that are used.
+ * @param {Performance} performance
+ */
+function pack({ rate, values, wishes }) {
+  const kinds = [...new Set(wishes.map(({ kind }) => kind))];
+  const addresses = [...new Set(wishes.map(addressOf).filter((found) => found !== null))];
+  const changed = OWN.filter((one) => (values[one.address] ?? one.default) !== one.default);
+  const head = new TextEncoder().encode(
+    JSON.stringify({
+      v: VERSION,
+      kinds: kinds.map((kind) => NAMES[kind]),
+      addresses,
+      values: Object.fromEntries(changed.map(({ address }) => [address, values[address]])),
+    }),
+  );
+  /** @type {number[]} */
+  const bytes = [];
+  put(bytes, head.length);
+  bytes.push(...head);
+  const last = new Last();
+  let before = 0;
+  for (const wish of wishes) {
+    const time = Math.round((wish.frame / rate) * RATE);
+    const address = addressOf(wish);
+    put(bytes, time - before);
+    put(bytes, kinds.indexOf(wish.kind));
+    put(bytes, address === null ? wish.index : addresses.indexOf(address));
+    for (const name of /** @type {const} */ (["value", "other"])) {
+      const value = Math.round(wish[name] * FINE);
+      put(bytes, value - last.swap(wish, name, value));
+    }
+    before = time;
+  }
+  return Uint8Array.from(bytes);
+}
+
+/**
+ * @param {Uint8Array} bytes
+ * @returns {Performance}
+ */
+function unpack(bytes) {
+  let at = 0;
+  const take = () => {
+    let [number, weight] = [0, 1];
+    for (; ; weight *= BASE) {
+      if (at >= bytes.length) throw new RangeError("cut off");
+      const byte = bytes[at++];
+      number += (byte % BASE) * weight;
+      if (byte < BASE) return number % 2 ? -(number + 1) / 2 : number / 2;
+    }
+  };
+  const length = take();
+  const head = JSON.parse(new TextDecoder().decode(bytes.subarray(at, at + length)));
+  at += length;
+  if (head.v !== VERSION) throw new TypeError("another version");
+  const kinds = head.kinds.map((/** @type {keyof typeof facts.kinds} */ name) => facts.kinds[name]);
+  const last = new Last();
+  const wishes = [];
+  for (let frame = 0; at < bytes.length;) {
+    frame += take();
+    const wish = { frame, kind: kinds[take()], index: take(), value: 0, other: 0 };
+    if (wish.kind === undefined) throw new TypeError("another kind");
+    if (isOfTable(wish)) {
+      const address = head.addresses[wish.index];
+      const row = address === SILENCE ? -1 : find(address).row;
+      wish.index = wish.kind === RAMP ? slotOf(row) : row;
+    }
+    for (const name of /** @type {const} */ (["value", "other"])) {
+      const value = last.get(wish, name) + take();
+      last.swap(wish, name, value);
+      wish[name] = value / FINE;
+    }
+    wishes.push(wish);
+  }
+  const values = OWN.map((one) => [one.address, Number(head.values[one.address] ?? one.default)]);
+  return { rate: RATE, values: Object.fromEntries(values), wishes, players: 1 };
+}
+
+/** The last values by what they are of: most differ little from those before. */
+class Last {
+  /** @type {Map<string, number>} */
+  #known = new Map();
+
+  /** @param {{kind: number, index: number}} wish @param {string} name */
+  get({ kind, index }, name) {
+    return this.#known.get(`${kind} ${index} ${name}`) ?? 0;
+  }
+
+  /**
+   * Remember a value; return the one before.
+   * @param {{kind: number, index: number}} wish
+   * @param {string} name
+   * @param {number} value
+   */
+  swap(wish, name, value) {
+    const before = this.get(wish, name);
+    this.#known.set(`${wish.kind} ${wish.index} ${name}`, value);
+    return before;
+  }
+}
+
+/** @param {number} row -1: all silence */
+function slotOf(row) {
+  return row < 0 ? SLOTS.length : SLOTS.findIndex((one) => one.row === row);
+}
+
+/** @param {{kind: number}} wish whose index is that of a parameter */
+function isOfTable({ kind }) {
+  return [WRITE, HOLD, EXPRESS, RAMP].includes(kind);
+}
+
+/** @param {{kind: number, index: number}} wish */
+function addressOf(wish) {
+  if (!isOfTable(wish)) return null;
+  const param = wish.kind === RAMP ? SLOTS[wish.index] : TABLE[wish.index];
+  return param?.address ?? SILENCE;
+}
+
+/**
+ * Put a whole number behind others: the sign in the last bit, and seven bits a byte.
+ * @param {number[]} bytes
+ * @param {number} number
+ */
+function put(bytes, number) {
+  let rest = number < 0 ? -2 * number - 1 : 2 * number;
+  for (; rest >= BASE; rest = Math.floor(rest / BASE)) bytes.push((rest % BASE) + BASE);
+  bytes.push(rest);
+}

@@ -1,0 +1,247 @@
+/** What of the yehu stands still: neck, pegs, coconut, and the places of the notes. */
+
+/** @typedef {import("../hands/surface.js").Surface} Surface */
+/** @typedef {import("../hands/scale.js").Scale} Scale */
+/** @typedef {import("./picture.js").Colours} Colours */
+
+import { HIGHEST, LOWEST, OPEN, isDegree, jianpu, letterOf } from "../hands/scale.js";
+import { font } from "./picture.js";
+
+const NECK = 0.055; // half its width, of the breadth
+const MOST_NECK = 30; // px
+const APART = 0.55; // of the neck's half width: each string from the middle
+const LABELS = 66; // px at the soft side, with the names of notes
+const GRAINS = 5;
+const KEY = 22; // px, the side of a printed key
+
+/**
+ * Half the width of the neck, px.
+ * @param {Surface} surface
+ */
+export function neckOf({ breadth }) {
+  return Math.min(NECK * breadth, MOST_NECK);
+}
+
+/**
+ * Where across the instrument a string lies; the outer one is on the side of loud notes.
+ * @param {Surface} surface
+ * @param {number} string
+ */
+export function laneOf(surface, string) {
+  const side = (surface.isUpright ? 1 : -1) * (string === 1 ? 1 : -1);
+  return surface.breadth / 2 + side * APART * neckOf(surface);
+}
+
+export class Wood {
+  /**
+   * @param {CanvasRenderingContext2D} context along and across the strings, px
+   * @param {Surface} surface
+   * @param {Colours} colours
+   */
+  constructor(context, surface, colours) {
+    this.context = context;
+    this.surface = surface;
+    this.colours = colours;
+    this.neck = neckOf(surface);
+    this.middle = surface.breadth / 2;
+  }
+
+  /** The room of loud and soft notes beside the neck. */
+  drawField() {
+    const { context, surface, colours } = this;
+    const [from, to] = surface.board;
+    const field = context.createLinearGradient(0, surface.loudnessAt(0), 0, surface.loudnessAt(1));
+    field.addColorStop(0, `${colours.glow}00`);
+    field.addColorStop(1, colours.glow);
+    context.globalAlpha = 0.6;
+    context.fillStyle = field;
+    context.fillRect(from, 0, to - from, surface.breadth);
+    context.globalAlpha = 1;
+  }
+
+  /**
+   * A line where each note is.
+   * @param {Scale} scale
+   */
+  drawNotes(scale) {
+    const { context, surface, colours } = this;
+    const [from] = surface.board;
+    const soft = surface.isUpright ? LABELS : surface.breadth - LABELS;
+    for (const note of notesOf(scale)) {
+      const open = OPEN.indexOf(note);
+      context.globalAlpha = open >= 0 ? 0.9 : isDegree(note) ? 0.8 : 0.35;
+      context.strokeStyle = open < 0 ? colours.line : colours[open ? "outer" : "inner"];
+      context.lineWidth = open >= 0 ? 2 : isDegree(note) ? 1.5 : 1;
+      context.beginPath();
+      context.moveTo(from + scale.placeOf(note), soft);
+      context.lineTo(from + scale.placeOf(note), surface.loudnessAt(1));
+      context.stroke();
+    }
+    context.globalAlpha = 1;
+  }
+
+  drawNeck() {
+    const { context, surface, colours, neck, middle } = this;
+    const [from] = surface.board;
+    const wood = context.createLinearGradient(0, middle - neck, 0, middle + neck);
+    wood.addColorStop(0, colours.edge);
+    wood.addColorStop(0.35, colours.wood);
+    wood.addColorStop(1, colours.edge);
+    context.fillStyle = wood;
+    context.strokeStyle = colours.shell;
+    context.lineWidth = 1;
+    for (const peg of [0.34, 0.68]) this.#peg(peg * from);
+    context.fillStyle = wood;
+    context.beginPath();
+    context.roundRect(3, middle - neck, surface.centre, 2 * neck, [neck, 4, 4, neck]);
+    context.fill();
+    context.stroke();
+  }
+
+  /** @param {number} along */
+  #peg(along) {
+    const { context, colours, neck, middle } = this;
+    const long = 2.4 * neck;
+    context.fillStyle = colours.shell;
+    context.beginPath();
+    context.roundRect(along - 4, middle - long, 8, 2 * long, 3);
+    context.roundRect(along - 6.5, middle - long - 10, 13, neck + 10, 6);
+    context.fill();
+  }
+
+  /** The half coconut, seen on its lid of wood, with the bridge. */
+  drawCoconut() {
+    const { context, surface, colours, middle, neck } = this;
+    const { centre, round, bridge } = surface;
+    disc(context, centre, middle, round, colours.shell);
+    context.strokeStyle = colours.edge;
+    context.lineWidth = 1;
+    context.globalAlpha = 0.5;
+    for (let angle = 0; angle < 2 * Math.PI; angle += Math.PI / 24) {
+      context.beginPath(); // fibres of the shell
+      context.moveTo(
+        centre + 0.9 * round * Math.cos(angle),
+        middle + 0.9 * round * Math.sin(angle),
+      );
+      context.lineTo(
+        centre + 0.985 * round * Math.cos(angle + 0.06),
+        middle + 0.985 * round * Math.sin(angle + 0.06),
+      );
+      context.stroke();
+    }
+    context.globalAlpha = 1;
+    const lid = context.createRadialGradient(centre, middle, 0, centre, middle, 0.88 * round);
+    lid.addColorStop(0, colours.lid);
+    lid.addColorStop(1, colours.wood);
+    disc(context, centre, middle, 0.88 * round, lid);
+    context.save();
+    context.clip();
+    context.globalAlpha = 0.25;
+    for (let grain = -GRAINS; grain <= GRAINS; grain++) {
+      const across = middle + (grain / GRAINS) * 0.85 * round;
+      context.beginPath();
+      context.moveTo(centre - round, across);
+      context.bezierCurveTo(
+        centre - round / 3, across + 0.06 * round, centre + round / 3, across - 0.06 * round,
+        centre + round, across,
+      ); // prettier-ignore
+      context.stroke();
+    }
+    context.restore();
+    context.fillStyle = colours.shell;
+    context.beginPath();
+    context.roundRect(bridge - 4, middle - 1.5 * neck, 8, 3 * neck, 3);
+    context.fill();
+    disc(context, centre + 0.86 * round, middle, 0.05 * round + 2, colours.shell); // the tail pin
+  }
+
+  /** The loop that holds both strings to the neck. @param {Scale} scale */
+  drawLoop(scale) {
+    const { context, surface, colours, neck, middle } = this;
+    if (scale.first > LOWEST) return;
+    context.fillStyle = colours.shell;
+    context.fillRect(
+      surface.board[0] + scale.placeOf(LOWEST) - 3,
+      middle - neck - 2,
+      5,
+      2 * neck + 4,
+    );
+  }
+}
+
+/**
+ * Write the notes' names as jianpu and letters; and the computer's keys, once they are played.
+ * @param {(text: string, along: number, across: number) => void} write
+ * @param {CanvasRenderingContext2D} context
+ * @param {Surface} surface
+ * @param {Scale} scale
+ * @param {Colours} colours
+ * @param {Map<number, string>} keys by note
+ */
+export function writeNotes(write, context, surface, scale, colours, keys) {
+  const { board, breadth, isUpright } = surface;
+  const put = (/** @type {number} */ beside) => (isUpright ? beside : breadth - beside);
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  for (const note of notesOf(scale)) {
+    const along = board[0] + scale.placeOf(note);
+    const open = OPEN.indexOf(note);
+    context.fillStyle = open < 0 ? colours.ink : colours[open ? "outer" : "inner"];
+    if (isDegree(note)) {
+      const { digit, dots } = jianpu(note);
+      context.font = font(19, 650);
+      write(digit, along, put(isUpright ? 16 : 40));
+      for (let dot = 0; dot < dots; dot++) {
+        context.font = font(19, 700);
+        if (isUpright) write("·", along - 12 - 5 * dot, 16);
+        else write("·", along, put(40) - 14 - 5 * dot);
+      }
+      context.font = font(14);
+      context.fillStyle = open < 0 ? colours.soft : context.fillStyle;
+      write(letterOf(note), along, put(isUpright ? 42 : 16));
+    }
+    const key = keys.get(note);
+    if (key) {
+      const across = surface.loudnessAt(1) + (isUpright ? -18 : 18);
+      const [x, y] = isUpright ? [across, along] : [along, across];
+      context.globalAlpha = 0.85;
+      context.fillStyle = colours.surface;
+      context.strokeStyle = colours.faint;
+      context.beginPath();
+      context.roundRect(x - KEY / 2, y - KEY / 2, KEY, KEY, 5);
+      context.fill();
+      context.stroke();
+      context.globalAlpha = 1;
+      context.font = font(14, 600);
+      context.fillStyle = colours.ink;
+      write(key, along, across);
+    }
+  }
+  context.font = `italic 600 20px Georgia, "Times New Roman", serif`;
+  context.fillStyle = colours.soft;
+  for (const [mark, share] of /** @type {const} */ ([["f", 1], ["p", 0]])) {
+    const inside = (isUpright ? 1 : -1) * (share ? -18 : isUpright ? LABELS + 10 : LABELS + 10);
+    write(mark, board[0] - 16, surface.loudnessAt(share) + inside);
+  } // prettier-ignore
+}
+
+/** @param {Scale} scale */
+function notesOf(scale) {
+  const first = Math.max(Math.ceil(scale.pitchAt(0)), LOWEST);
+  const last = Math.min(Math.floor(scale.pitchAt(scale.length)), HIGHEST);
+  return Array.from({ length: last - first + 1 }, (_, step) => first + step);
+}
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {number} x
+ * @param {number} y
+ * @param {number} radius
+ * @param {string | CanvasGradient} fill
+ */
+export function disc(context, x, y, radius, fill) {
+  context.fillStyle = fill;
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.fill();
+}

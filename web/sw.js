@@ -1,0 +1,38 @@
+/**
+ * Keeps the whole page for times without a network. `yehu-server page` writes which files there are,
+ * and a name for all that they hold; a copy of the page that has none keeps nothing.
+ *
+ * Each version is kept whole, and served until no window shows it any more: versions never mix.
+ */
+
+const VERSION = "";
+/** @type {string[]} */
+const FILES = [];
+
+const worker = /** @type {any} */ (globalThis);
+const PREFIX = "yehu ";
+const OWN = PREFIX + VERSION;
+
+worker.addEventListener("install", (/** @type {any} */ event) => {
+  if (!VERSION) return;
+  const requests = FILES.map((file) => new Request(file, { cache: "no-cache" }));
+  event.waitUntil(caches.open(OWN).then((cache) => cache.addAll(requests)));
+});
+
+worker.addEventListener("activate", (/** @type {any} */ event) => {
+  const forget = async () => {
+    const old = (await caches.keys()).filter((key) => key.startsWith(PREFIX) && key !== OWN);
+    await Promise.all(old.map((key) => caches.delete(key)));
+  };
+  event.waitUntil(forget());
+});
+
+worker.addEventListener("fetch", (/** @type {any} */ event) => {
+  if (!VERSION || event.request.method !== "GET") return;
+  const find = async () => {
+    const cache = await caches.open(OWN);
+    const kept = await cache.match(event.request, { ignoreSearch: true });
+    return kept ?? fetch(event.request);
+  };
+  event.respondWith(find());
+});

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from wire import StillTime
 
 from yehu_server.cli.report import status_line
 from yehu_server.live import under_runs
@@ -14,16 +15,9 @@ STATUS = {
 }  # fmt: skip
 
 
-class Clock:
-    now = 1000.0
-
-    def monotonic(self) -> float:
-        return self.now
-
-
 @pytest.fixture
-def clock(monkeypatch) -> Clock:
-    clock = Clock()
+def clock(monkeypatch) -> StillTime:
+    clock = StillTime(1000.0)
     monkeypatch.setattr(under_runs, "time", clock)
     return clock
 

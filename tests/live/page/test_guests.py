@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from aiohttp import WSMsgType, web
 from aiohttp.test_utils import TestClient, TestServer
+from wire import StillTime
 
 from yehu_server import cli
 from yehu_server.cli import serve_options
@@ -84,16 +85,9 @@ def test_each_server_has_a_pin_of_its_own() -> None:
 # ---------------------------------------------------------------- the PIN
 
 
-class Clock:
-    now = 1000.0
-
-    def monotonic(self) -> float:
-        return self.now
-
-
 @pytest.fixture
-def clock(monkeypatch) -> Clock:
-    clock = Clock()
+def clock(monkeypatch) -> StillTime:
+    clock = StillTime(1000.0)
     monkeypatch.setattr(admitting, "time", clock)
     return clock
 

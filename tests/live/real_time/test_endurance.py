@@ -9,7 +9,6 @@ import contextlib
 import math
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -68,33 +67,15 @@ def idle_stream(blocksize: int) -> Iterator[Instrument]:
         output.end()
 
 
-@contextlib.contextmanager
-def busy_python() -> Iterator[None]:
-    """Keep a Python thread busy within the block."""
-    ending = threading.Event()
-
-    def work() -> None:
-        while not ending.is_set():
-            sum(number * number for number in range(1000))
-
-    thread = threading.Thread(target=work)
-    thread.start()
-    try:
-        yield
-    finally:
-        ending.set()
-        thread.join()
-
-
 def quantile(loads: np.ndarray, share: float) -> float:
     """The load that this share of callbacks stays below."""
     bin_ = int(np.searchsorted(np.cumsum(loads), share * loads.sum()))
     return (bin_ + 1) / BINS_PER_DEADLINE
 
 
-def test_under_load_the_callback_keeps_its_deadlines(jackd, until):
+def test_under_load_the_callback_keeps_its_deadlines(jackd, until, busy):
     jackd.start(128)
-    with idle_stream(128) as idle, server_of(128) as server, busy_python():
+    with idle_stream(128) as idle, server_of(128) as server, busy():
         load = subprocess.Popen(
             [sys.executable, LOAD, str(server.osc.port)],
             stdout=subprocess.DEVNULL,

@@ -55,7 +55,7 @@
      "numoutlets": 0,
      "patching_rect": [
       16.0,
-      1130,
+      1326,
       168,
       22
      ],
@@ -71,7 +71,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1160,
+      1356,
       70,
       22
      ],
@@ -89,7 +89,7 @@
      "numoutlets": 1,
      "patching_rect": [
       110.0,
-      1160,
+      1356,
       42,
       22
      ],
@@ -107,7 +107,7 @@
      "numoutlets": 1,
      "patching_rect": [
       176.0,
-      1160,
+      1356,
       91,
       22
      ],
@@ -125,7 +125,7 @@
      "numoutlets": 1,
      "patching_rect": [
       291.0,
-      1160,
+      1356,
       175,
       22
      ],
@@ -143,7 +143,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1190,
+      1386,
       84,
       22
      ],
@@ -161,7 +161,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1220,
+      1416,
       98,
       22
      ],
@@ -179,7 +179,7 @@
      "numoutlets": 2,
      "patching_rect": [
       16.0,
-      1250,
+      1446,
       49,
       22
      ],
@@ -198,7 +198,7 @@
      "numoutlets": 1,
      "patching_rect": [
       89.0,
-      1250,
+      1446,
       77,
       22
      ],
@@ -216,7 +216,7 @@
      "numoutlets": 2,
      "patching_rect": [
       190.0,
-      1250,
+      1446,
       49,
       22
      ],
@@ -235,7 +235,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1280,
+      1476,
       42,
       22
      ],
@@ -253,7 +253,7 @@
      "numoutlets": 1,
      "patching_rect": [
       82.0,
-      1280,
+      1476,
       70,
       22
      ],
@@ -271,7 +271,7 @@
      "numoutlets": 0,
      "patching_rect": [
       176.0,
-      1280,
+      1476,
       77,
       22
      ],
@@ -287,7 +287,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1310,
+      1506,
       42,
       22
      ],
@@ -305,7 +305,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1340,
+      1536,
       119,
       22
      ],
@@ -323,7 +323,7 @@
      "numoutlets": 0,
      "patching_rect": [
       16.0,
-      1370,
+      1566,
       84,
       22
      ],
@@ -391,7 +391,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1400,
+      1596,
       42,
       22
      ],
@@ -409,7 +409,7 @@
      "numoutlets": 1,
      "patching_rect": [
       82.0,
-      1400,
+      1596,
       147,
       22
      ],
@@ -427,7 +427,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1430,
+      1626,
       182,
       22
      ],
@@ -445,7 +445,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1460,
+      1656,
       42,
       22
      ],
@@ -463,7 +463,7 @@
      "numoutlets": 1,
      "patching_rect": [
       82.0,
-      1460,
+      1656,
       147,
       22
      ],
@@ -481,7 +481,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1490,
+      1686,
       168,
       22
      ],
@@ -551,7 +551,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1520,
+      1716,
       77,
       22
      ],
@@ -569,7 +569,7 @@
      "numoutlets": 1,
      "patching_rect": [
       117.0,
-      1520,
+      1716,
       133,
       22
      ],
@@ -587,7 +587,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1550,
+      1746,
       175,
       22
      ],
@@ -605,7 +605,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1580,
+      1776,
       168,
       22
      ],
@@ -652,7 +652,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1610,
+      1806,
       70,
       22
      ],
@@ -670,7 +670,7 @@
      "numoutlets": 1,
      "patching_rect": [
       110.0,
-      1610,
+      1806,
       140,
       22
      ],
@@ -848,7 +848,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1640,
+      1836,
       77,
       22
      ],
@@ -866,7 +866,7 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      1640,
+      1836,
       210,
       22
      ],
@@ -885,7 +885,7 @@
      "numoutlets": 1,
      "patching_rect": [
       351.0,
-      1640,
+      1836,
       91,
       22
      ],
@@ -903,7 +903,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1670,
+      1866,
       112,
       22
      ],
@@ -921,7 +921,7 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      1670,
+      1866,
       224,
       22
      ],
@@ -939,7 +939,7 @@
      "numoutlets": 0,
      "patching_rect": [
       400.0,
-      1670,
+      1866,
       98,
       22
      ],
@@ -1017,7 +1017,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1700,
+      1896,
       77,
       22
      ],
@@ -1035,7 +1035,7 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      1700,
+      1896,
       189,
       22
      ],
@@ -1054,7 +1054,7 @@
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      1700,
+      1896,
       91,
       22
      ],
@@ -1072,7 +1072,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1730,
+      1926,
       126,
       22
      ],
@@ -1090,7 +1090,7 @@
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      1730,
+      1926,
       203,
       22
      ],
@@ -1108,7 +1108,7 @@
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      1730,
+      1926,
       98,
       22
      ],
@@ -1186,7 +1186,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1760,
+      1956,
       77,
       22
      ],
@@ -1204,7 +1204,7 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      1760,
+      1956,
       210,
       22
      ],
@@ -1223,7 +1223,7 @@
      "numoutlets": 1,
      "patching_rect": [
       351.0,
-      1760,
+      1956,
       91,
       22
      ],
@@ -1241,7 +1241,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1790,
+      1986,
       133,
       22
      ],
@@ -1259,7 +1259,7 @@
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      1790,
+      1986,
       224,
       22
      ],
@@ -1277,7 +1277,7 @@
      "numoutlets": 0,
      "patching_rect": [
       421.0,
-      1790,
+      1986,
       98,
       22
      ],
@@ -1355,7 +1355,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1820,
+      2016,
       77,
       22
      ],
@@ -1373,7 +1373,7 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      1820,
+      2016,
       210,
       22
      ],
@@ -1392,7 +1392,7 @@
      "numoutlets": 1,
      "patching_rect": [
       351.0,
-      1820,
+      2016,
       91,
       22
      ],
@@ -1410,7 +1410,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1850,
+      2046,
       126,
       22
      ],
@@ -1428,7 +1428,7 @@
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      1850,
+      2046,
       224,
       22
      ],
@@ -1446,7 +1446,7 @@
      "numoutlets": 0,
      "patching_rect": [
       414.0,
-      1850,
+      2046,
       98,
       22
      ],
@@ -1524,7 +1524,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1880,
+      2076,
       77,
       22
      ],
@@ -1542,7 +1542,7 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      1880,
+      2076,
       224,
       22
      ],
@@ -1561,7 +1561,7 @@
      "numoutlets": 1,
      "patching_rect": [
       365.0,
-      1880,
+      2076,
       91,
       22
      ],
@@ -1579,7 +1579,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1910,
+      2106,
       112,
       22
      ],
@@ -1597,7 +1597,7 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      1910,
+      2106,
       238,
       22
      ],
@@ -1615,7 +1615,7 @@
      "numoutlets": 0,
      "patching_rect": [
       414.0,
-      1910,
+      2106,
       98,
       22
      ],
@@ -1693,7 +1693,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1940,
+      2136,
       77,
       22
      ],
@@ -1711,7 +1711,7 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      1940,
+      2136,
       238,
       22
      ],
@@ -1730,7 +1730,7 @@
      "numoutlets": 1,
      "patching_rect": [
       379.0,
-      1940,
+      2136,
       91,
       22
      ],
@@ -1748,7 +1748,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      1970,
+      2166,
       133,
       22
      ],
@@ -1766,7 +1766,7 @@
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      1970,
+      2166,
       252,
       22
      ],
@@ -1784,7 +1784,7 @@
      "numoutlets": 0,
      "patching_rect": [
       449.0,
-      1970,
+      2166,
       98,
       22
      ],
@@ -1862,7 +1862,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2000,
+      2196,
       77,
       22
      ],
@@ -1880,7 +1880,7 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2000,
+      2196,
       203,
       22
      ],
@@ -1899,7 +1899,7 @@
      "numoutlets": 1,
      "patching_rect": [
       344.0,
-      2000,
+      2196,
       91,
       22
      ],
@@ -1917,7 +1917,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2030,
+      2226,
       112,
       22
      ],
@@ -1935,7 +1935,7 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      2030,
+      2226,
       217,
       22
      ],
@@ -1953,7 +1953,7 @@
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      2030,
+      2226,
       98,
       22
      ],
@@ -2031,7 +2031,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2060,
+      2256,
       77,
       22
      ],
@@ -2049,7 +2049,7 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2060,
+      2256,
       217,
       22
      ],
@@ -2068,7 +2068,7 @@
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      2060,
+      2256,
       91,
       22
      ],
@@ -2086,7 +2086,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2090,
+      2286,
       112,
       22
      ],
@@ -2104,7 +2104,7 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      2090,
+      2286,
       231,
       22
      ],
@@ -2122,7 +2122,7 @@
      "numoutlets": 0,
      "patching_rect": [
       407.0,
-      2090,
+      2286,
       98,
       22
      ],
@@ -2153,14 +2153,14 @@
       104,
       48
      ],
-     "varname": "/playing/string",
+     "varname": "/playing/articulation",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/string",
-       "parameter_shortname": "string",
+       "parameter_longname": "/playing/articulation",
+       "parameter_shortname": "articulation",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 2.0,
+       "parameter_mmax": 127.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2180,7 +2180,7 @@
       104,
       22
      ],
-     "text": "0 to 2",
+     "text": "0 to 127",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -2200,7 +2200,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2120,
+      2316,
       77,
       22
      ],
@@ -2218,15 +2218,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2120,
-      196,
+      2316,
+      238,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/string"
+     "text": "route /yehu/playing/articulation"
     }
    },
    {
@@ -2236,8 +2236,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
-      2120,
+      379.0,
+      2316,
       91,
       22
      ],
@@ -2255,7 +2255,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2150,
+      2346,
       112,
       22
      ],
@@ -2273,14 +2273,14 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      2150,
-      210,
+      2346,
+      252,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/string"
+     "text": "prepend /yehu/playing/articulation"
     }
    },
    {
@@ -2290,8 +2290,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
-      2150,
+      428.0,
+      2346,
       98,
       22
      ],
@@ -2322,14 +2322,14 @@
       104,
       48
      ],
-     "varname": "/playing/direction",
+     "varname": "/playing/string",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/direction",
-       "parameter_shortname": "direction",
-       "parameter_mmin": -1.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/string",
+       "parameter_shortname": "string",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2349,7 +2349,7 @@
       104,
       22
      ],
-     "text": "-1 to 1",
+     "text": "0 to 2",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -2369,7 +2369,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2180,
+      2376,
       77,
       22
      ],
@@ -2387,15 +2387,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2180,
-      217,
+      2376,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/direction"
+     "text": "route /yehu/playing/string"
     }
    },
    {
@@ -2405,8 +2405,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
-      2180,
+      337.0,
+      2376,
       91,
       22
      ],
@@ -2424,7 +2424,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2210,
+      2406,
       112,
       22
      ],
@@ -2442,14 +2442,14 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      2210,
-      231,
+      2406,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/direction"
+     "text": "prepend /yehu/playing/string"
     }
    },
    {
@@ -2459,8 +2459,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
-      2210,
+      386.0,
+      2406,
       98,
       22
      ],
@@ -2491,17 +2491,17 @@
       104,
       48
      ],
-     "varname": "/playing/bow_length",
+     "varname": "/playing/direction",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bow_length",
-       "parameter_shortname": "bow length",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 2.0,
+       "parameter_longname": "/playing/direction",
+       "parameter_shortname": "direction",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f m"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -2518,7 +2518,7 @@
       104,
       22
      ],
-     "text": "0 to 2 m",
+     "text": "-1 to 1",
      "presentation": 1,
      "presentation_rect": [
       16,
@@ -2538,7 +2538,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2240,
+      2436,
       77,
       22
      ],
@@ -2556,15 +2556,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2240,
-      224,
+      2436,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bow_length"
+     "text": "route /yehu/playing/direction"
     }
    },
    {
@@ -2574,8 +2574,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
-      2240,
+      358.0,
+      2436,
       91,
       22
      ],
@@ -2593,14 +2593,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2270,
-      126,
+      2466,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.7"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2610,15 +2610,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
-      2270,
-      238,
+      152.0,
+      2466,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bow_length"
+     "text": "prepend /yehu/playing/direction"
     }
    },
    {
@@ -2628,8 +2628,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
-      2270,
+      407.0,
+      2466,
       98,
       22
      ],
@@ -2660,17 +2660,17 @@
       104,
       48
      ],
-     "varname": "/playing/note_length",
+     "varname": "/playing/bow_length",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/note_length",
-       "parameter_shortname": "note length",
+       "parameter_longname": "/playing/bow_length",
+       "parameter_shortname": "bow length",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 60.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f s"
+       "parameter_units": "%.3f m"
       }
      }
     }
@@ -2687,7 +2687,7 @@
       104,
       22
      ],
-     "text": "0 to 60 s",
+     "text": "0 to 2 m",
      "presentation": 1,
      "presentation_rect": [
       128,
@@ -2707,7 +2707,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2300,
+      2496,
       77,
       22
      ],
@@ -2725,15 +2725,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2300,
-      231,
+      2496,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/note_length"
+     "text": "route /yehu/playing/bow_length"
     }
    },
    {
@@ -2743,8 +2743,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      372.0,
-      2300,
+      365.0,
+      2496,
       91,
       22
      ],
@@ -2762,14 +2762,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2330,
-      112,
+      2526,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 0.7"
     }
    },
    {
@@ -2779,15 +2779,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
-      2330,
-      245,
+      166.0,
+      2526,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/note_length"
+     "text": "prepend /yehu/playing/bow_length"
     }
    },
    {
@@ -2797,8 +2797,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      421.0,
-      2330,
+      428.0,
+      2526,
       98,
       22
      ],
@@ -2829,17 +2829,17 @@
       104,
       48
      ],
-     "varname": "/playing/press",
+     "varname": "/playing/note_length",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.3,
-       "parameter_mmax": 6.0,
+       "parameter_longname": "/playing/note_length",
+       "parameter_shortname": "note length",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 60.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f N"
+       "parameter_units": "%.3f s"
       }
      }
     }
@@ -2856,7 +2856,7 @@
       104,
       22
      ],
-     "text": "0.3 to 6 N",
+     "text": "0 to 60 s",
      "presentation": 1,
      "presentation_rect": [
       240,
@@ -2876,7 +2876,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2360,
+      2556,
       77,
       22
      ],
@@ -2894,15 +2894,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2360,
-      189,
+      2556,
+      231,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/press"
+     "text": "route /yehu/playing/note_length"
     }
    },
    {
@@ -2912,8 +2912,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      330.0,
-      2360,
+      372.0,
+      2556,
       91,
       22
      ],
@@ -2931,14 +2931,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2390,
-      126,
+      2586,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2948,15 +2948,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
-      2390,
-      203,
+      152.0,
+      2586,
+      245,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/press"
+     "text": "prepend /yehu/playing/note_length"
     }
    },
    {
@@ -2966,8 +2966,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
-      2390,
+      421.0,
+      2586,
       98,
       22
      ],
@@ -2998,17 +2998,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato",
+     "varname": "/playing/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato",
-       "parameter_shortname": "vibrato",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 100.0,
+       "parameter_longname": "/playing/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.3,
+       "parameter_mmax": 6.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f cents"
+       "parameter_units": "%.3f N"
       }
      }
     }
@@ -3025,7 +3025,7 @@
       104,
       22
      ],
-     "text": "0 to 100 cents",
+     "text": "0.3 to 6 N",
      "presentation": 1,
      "presentation_rect": [
       352,
@@ -3045,7 +3045,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2420,
+      2616,
       77,
       22
      ],
@@ -3063,15 +3063,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2420,
-      203,
+      2616,
+      189,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato"
+     "text": "route /yehu/playing/press"
     }
    },
    {
@@ -3081,8 +3081,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
-      2420,
+      330.0,
+      2616,
       91,
       22
      ],
@@ -3100,14 +3100,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2450,
-      112,
+      2646,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1.5"
     }
    },
    {
@@ -3117,15 +3117,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
-      2450,
-      217,
+      166.0,
+      2646,
+      203,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato"
+     "text": "prepend /yehu/playing/press"
     }
    },
    {
@@ -3136,7 +3136,7 @@
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      2450,
+      2646,
       98,
       22
      ],
@@ -3167,17 +3167,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_press",
+     "varname": "/playing/vibrato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_press",
-       "parameter_shortname": "vibrato press",
+       "parameter_longname": "/playing/vibrato",
+       "parameter_shortname": "vibrato",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 100.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f cents"
       }
      }
     }
@@ -3194,7 +3194,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0 to 100 cents",
      "presentation": 1,
      "presentation_rect": [
       464,
@@ -3214,7 +3214,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2480,
+      2676,
       77,
       22
      ],
@@ -3232,15 +3232,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2480,
-      245,
+      2676,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_press"
+     "text": "route /yehu/playing/vibrato"
     }
    },
    {
@@ -3250,8 +3250,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      386.0,
-      2480,
+      344.0,
+      2676,
       91,
       22
      ],
@@ -3269,7 +3269,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2510,
+      2706,
       112,
       22
      ],
@@ -3287,14 +3287,14 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      2510,
-      259,
+      2706,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_press"
+     "text": "prepend /yehu/playing/vibrato"
     }
    },
    {
@@ -3304,8 +3304,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      435.0,
-      2510,
+      393.0,
+      2706,
       98,
       22
      ],
@@ -3336,17 +3336,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_rate",
+     "varname": "/playing/vibrato_press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_rate",
-       "parameter_shortname": "vibrato rate",
-       "parameter_mmin": 2.0,
-       "parameter_mmax": 10.0,
+       "parameter_longname": "/playing/vibrato_press",
+       "parameter_shortname": "vibrato press",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f Hz"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -3363,7 +3363,7 @@
       104,
       22
      ],
-     "text": "2 to 10 Hz",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       576,
@@ -3383,7 +3383,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2540,
+      2736,
       77,
       22
      ],
@@ -3401,15 +3401,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2540,
-      238,
+      2736,
+      245,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_rate"
+     "text": "route /yehu/playing/vibrato_press"
     }
    },
    {
@@ -3419,8 +3419,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      379.0,
-      2540,
+      386.0,
+      2736,
       91,
       22
      ],
@@ -3438,14 +3438,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2570,
-      126,
+      2766,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 5.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3455,15 +3455,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
-      2570,
-      252,
+      152.0,
+      2766,
+      259,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_rate"
+     "text": "prepend /yehu/playing/vibrato_press"
     }
    },
    {
@@ -3473,8 +3473,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      442.0,
-      2570,
+      435.0,
+      2766,
       98,
       22
      ],
@@ -3505,17 +3505,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_delay",
+     "varname": "/playing/vibrato_rate",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_delay",
-       "parameter_shortname": "vibrato delay",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 3000.0,
+       "parameter_longname": "/playing/vibrato_rate",
+       "parameter_shortname": "vibrato rate",
+       "parameter_mmin": 2.0,
+       "parameter_mmax": 10.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f Hz"
       }
      }
     }
@@ -3532,7 +3532,7 @@
       104,
       22
      ],
-     "text": "0 to 3000 ms",
+     "text": "2 to 10 Hz",
      "presentation": 1,
      "presentation_rect": [
       688,
@@ -3552,7 +3552,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2600,
+      2796,
       77,
       22
      ],
@@ -3570,15 +3570,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2600,
-      245,
+      2796,
+      238,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_delay"
+     "text": "route /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -3588,8 +3588,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      386.0,
-      2600,
+      379.0,
+      2796,
       91,
       22
      ],
@@ -3607,14 +3607,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2630,
+      2826,
       126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 500"
+     "text": "loadmess set 5.5"
     }
    },
    {
@@ -3625,14 +3625,14 @@
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      2630,
-      259,
+      2826,
+      252,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_delay"
+     "text": "prepend /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -3642,8 +3642,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      449.0,
-      2630,
+      442.0,
+      2826,
       98,
       22
      ],
@@ -3674,17 +3674,17 @@
       104,
       48
      ],
-     "varname": "/playing/bend",
+     "varname": "/playing/vibrato_delay",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend",
-       "parameter_shortname": "bend",
-       "parameter_mmin": -48.0,
-       "parameter_mmax": 48.0,
+       "parameter_longname": "/playing/vibrato_delay",
+       "parameter_shortname": "vibrato delay",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 3000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f semitones"
+       "parameter_units": "%.3f ms"
       }
      }
     }
@@ -3701,7 +3701,7 @@
       104,
       22
      ],
-     "text": "-48 to 48 semitones",
+     "text": "0 to 3000 ms",
      "presentation": 1,
      "presentation_rect": [
       800,
@@ -3721,7 +3721,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2660,
+      2856,
       77,
       22
      ],
@@ -3739,15 +3739,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2660,
-      182,
+      2856,
+      245,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend"
+     "text": "route /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -3757,8 +3757,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      323.0,
-      2660,
+      386.0,
+      2856,
       91,
       22
      ],
@@ -3776,14 +3776,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2690,
-      112,
+      2886,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 500"
     }
    },
    {
@@ -3793,15 +3793,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
-      2690,
-      196,
+      166.0,
+      2886,
+      259,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend"
+     "text": "prepend /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -3811,8 +3811,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      372.0,
-      2690,
+      449.0,
+      2886,
       98,
       22
      ],
@@ -3843,13 +3843,13 @@
       104,
       48
      ],
-     "varname": "/playing/bend_range",
+     "varname": "/playing/bend",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend_range",
-       "parameter_shortname": "bend range",
-       "parameter_mmin": 0.0,
+       "parameter_longname": "/playing/bend",
+       "parameter_shortname": "bend",
+       "parameter_mmin": -48.0,
        "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
@@ -3870,7 +3870,7 @@
       104,
       22
      ],
-     "text": "0 to 48 semitones",
+     "text": "-48 to 48 semitones",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -3890,7 +3890,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2720,
+      2916,
       77,
       22
      ],
@@ -3908,15 +3908,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2720,
-      224,
+      2916,
+      182,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend_range"
+     "text": "route /yehu/playing/bend"
     }
    },
    {
@@ -3926,8 +3926,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
-      2720,
+      323.0,
+      2916,
       91,
       22
      ],
@@ -3945,14 +3945,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2750,
+      2946,
       112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 2"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3963,14 +3963,14 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      2750,
-      238,
+      2946,
+      196,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend_range"
+     "text": "prepend /yehu/playing/bend"
     }
    },
    {
@@ -3980,8 +3980,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
-      2750,
+      372.0,
+      2946,
       98,
       22
      ],
@@ -4012,17 +4012,17 @@
       104,
       48
      ],
-     "varname": "/playing/volume",
+     "varname": "/playing/bend_range",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/volume",
-       "parameter_shortname": "volume",
+       "parameter_longname": "/playing/bend_range",
+       "parameter_shortname": "bend range",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f semitones"
       }
      }
     }
@@ -4039,7 +4039,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0 to 48 semitones",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -4059,7 +4059,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2780,
+      2976,
       77,
       22
      ],
@@ -4077,15 +4077,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2780,
-      196,
+      2976,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/volume"
+     "text": "route /yehu/playing/bend_range"
     }
    },
    {
@@ -4095,8 +4095,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
-      2780,
+      365.0,
+      2976,
       91,
       22
      ],
@@ -4114,14 +4114,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2810,
+      3006,
       112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 2"
     }
    },
    {
@@ -4132,14 +4132,14 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      2810,
-      210,
+      3006,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/volume"
+     "text": "prepend /yehu/playing/bend_range"
     }
    },
    {
@@ -4149,8 +4149,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
-      2810,
+      414.0,
+      3006,
       98,
       22
      ],
@@ -4181,12 +4181,12 @@
       104,
       48
      ],
-     "varname": "/playing/expression",
+     "varname": "/playing/volume",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/expression",
-       "parameter_shortname": "expression",
+       "parameter_longname": "/playing/volume",
+       "parameter_shortname": "volume",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4228,7 +4228,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2840,
+      3036,
       77,
       22
      ],
@@ -4246,15 +4246,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2840,
-      224,
+      3036,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/expression"
+     "text": "route /yehu/playing/volume"
     }
    },
    {
@@ -4264,8 +4264,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
-      2840,
+      337.0,
+      3036,
       91,
       22
      ],
@@ -4283,7 +4283,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2870,
+      3066,
       112,
       22
      ],
@@ -4301,14 +4301,14 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      2870,
-      238,
+      3066,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/expression"
+     "text": "prepend /yehu/playing/volume"
     }
    },
    {
@@ -4318,8 +4318,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
-      2870,
+      386.0,
+      3066,
       98,
       22
      ],
@@ -4350,12 +4350,12 @@
       104,
       48
      ],
-     "varname": "/playing/assist",
+     "varname": "/playing/expression",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/assist",
-       "parameter_shortname": "assist",
+       "parameter_longname": "/playing/expression",
+       "parameter_shortname": "expression",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4397,7 +4397,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2900,
+      3096,
       77,
       22
      ],
@@ -4415,15 +4415,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2900,
-      196,
+      3096,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/assist"
+     "text": "route /yehu/playing/expression"
     }
    },
    {
@@ -4433,8 +4433,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
-      2900,
+      365.0,
+      3096,
       91,
       22
      ],
@@ -4452,7 +4452,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2930,
+      3126,
       112,
       22
      ],
@@ -4470,14 +4470,14 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      2930,
-      210,
+      3126,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/assist"
+     "text": "prepend /yehu/playing/expression"
     }
    },
    {
@@ -4487,8 +4487,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
-      2930,
+      414.0,
+      3126,
       98,
       22
      ],
@@ -4519,12 +4519,12 @@
       104,
       48
      ],
-     "varname": "/playing/variation",
+     "varname": "/playing/assist",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/variation",
-       "parameter_shortname": "variation",
+       "parameter_longname": "/playing/assist",
+       "parameter_shortname": "assist",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4566,7 +4566,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2960,
+      3156,
       77,
       22
      ],
@@ -4584,15 +4584,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      2960,
-      217,
+      3156,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/variation"
+     "text": "route /yehu/playing/assist"
     }
    },
    {
@@ -4602,8 +4602,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
-      2960,
+      337.0,
+      3156,
       91,
       22
      ],
@@ -4621,14 +4621,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      2990,
-      133,
+      3186,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.25"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -4638,15 +4638,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      173.0,
-      2990,
-      231,
+      152.0,
+      3186,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/variation"
+     "text": "prepend /yehu/playing/assist"
     }
    },
    {
@@ -4656,8 +4656,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
-      2990,
+      386.0,
+      3186,
       98,
       22
      ],
@@ -4688,12 +4688,12 @@
       104,
       48
      ],
-     "varname": "/playing/listening",
+     "varname": "/playing/variation",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/listening",
-       "parameter_shortname": "listening",
+       "parameter_longname": "/playing/variation",
+       "parameter_shortname": "variation",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4735,7 +4735,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3020,
+      3216,
       77,
       22
      ],
@@ -4753,7 +4753,7 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3020,
+      3216,
       217,
       22
      ],
@@ -4761,7 +4761,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/listening"
+     "text": "route /yehu/playing/variation"
     }
    },
    {
@@ -4772,7 +4772,7 @@
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      3020,
+      3216,
       91,
       22
      ],
@@ -4790,14 +4790,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3050,
-      112,
+      3246,
+      133,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0.25"
     }
    },
    {
@@ -4807,15 +4807,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
-      3050,
+      173.0,
+      3246,
       231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/listening"
+     "text": "prepend /yehu/playing/variation"
     }
    },
    {
@@ -4825,8 +4825,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
-      3050,
+      428.0,
+      3246,
       98,
       22
      ],
@@ -4857,12 +4857,12 @@
       104,
       48
      ],
-     "varname": "/playing/phrasing",
+     "varname": "/playing/listening",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/phrasing",
-       "parameter_shortname": "phrasing",
+       "parameter_longname": "/playing/listening",
+       "parameter_shortname": "listening",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4904,7 +4904,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3080,
+      3276,
       77,
       22
      ],
@@ -4922,15 +4922,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3080,
-      210,
+      3276,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/phrasing"
+     "text": "route /yehu/playing/listening"
     }
    },
    {
@@ -4940,8 +4940,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      351.0,
-      3080,
+      358.0,
+      3276,
       91,
       22
      ],
@@ -4959,14 +4959,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3110,
+      3306,
       112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -4977,14 +4977,14 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      3110,
-      224,
+      3306,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/phrasing"
+     "text": "prepend /yehu/playing/listening"
     }
    },
    {
@@ -4994,8 +4994,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      400.0,
-      3110,
+      407.0,
+      3306,
       98,
       22
      ],
@@ -5026,14 +5026,14 @@
       104,
       48
      ],
-     "varname": "/playing/section",
+     "varname": "/playing/phrasing",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/section",
-       "parameter_shortname": "section",
-       "parameter_mmin": 1.0,
-       "parameter_mmax": 16.0,
+       "parameter_longname": "/playing/phrasing",
+       "parameter_shortname": "phrasing",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -5053,7 +5053,7 @@
       104,
       22
      ],
-     "text": "1 to 16",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       576,
@@ -5073,7 +5073,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3140,
+      3336,
       77,
       22
      ],
@@ -5091,15 +5091,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3140,
-      203,
+      3336,
+      210,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/section"
+     "text": "route /yehu/playing/phrasing"
     }
    },
    {
@@ -5109,8 +5109,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
-      3140,
+      351.0,
+      3336,
       91,
       22
      ],
@@ -5128,14 +5128,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3170,
+      3366,
       112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -5146,14 +5146,14 @@
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      3170,
-      217,
+      3366,
+      224,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/section"
+     "text": "prepend /yehu/playing/phrasing"
     }
    },
    {
@@ -5163,8 +5163,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
-      3170,
+      400.0,
+      3366,
       98,
       22
      ],
@@ -5195,17 +5195,17 @@
       104,
       48
      ],
-     "varname": "/playing/attack",
+     "varname": "/playing/section",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/attack",
-       "parameter_shortname": "attack",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 500.0,
+       "parameter_longname": "/playing/section",
+       "parameter_shortname": "section",
+       "parameter_mmin": 1.0,
+       "parameter_mmax": 16.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -5222,7 +5222,7 @@
       104,
       22
      ],
-     "text": "5 to 500 ms",
+     "text": "1 to 16",
      "presentation": 1,
      "presentation_rect": [
       688,
@@ -5242,7 +5242,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3200,
+      3396,
       77,
       22
      ],
@@ -5260,15 +5260,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3200,
-      196,
+      3396,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/attack"
+     "text": "route /yehu/playing/section"
     }
    },
    {
@@ -5278,8 +5278,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
-      3200,
+      344.0,
+      3396,
       91,
       22
      ],
@@ -5297,14 +5297,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3230,
-      119,
+      3426,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 40"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -5314,15 +5314,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      159.0,
-      3230,
-      210,
+      152.0,
+      3426,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/attack"
+     "text": "prepend /yehu/playing/section"
     }
    },
    {
@@ -5333,7 +5333,7 @@
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      3230,
+      3426,
       98,
       22
      ],
@@ -5364,14 +5364,14 @@
       104,
       48
      ],
-     "varname": "/playing/release",
+     "varname": "/playing/attack",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/release",
-       "parameter_shortname": "release",
+       "parameter_longname": "/playing/attack",
+       "parameter_shortname": "attack",
        "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_mmax": 500.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
@@ -5391,7 +5391,7 @@
       104,
       22
      ],
-     "text": "5 to 2000 ms",
+     "text": "5 to 500 ms",
      "presentation": 1,
      "presentation_rect": [
       800,
@@ -5411,7 +5411,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3260,
+      3456,
       77,
       22
      ],
@@ -5429,15 +5429,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3260,
-      203,
+      3456,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/release"
+     "text": "route /yehu/playing/attack"
     }
    },
    {
@@ -5447,8 +5447,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
-      3260,
+      337.0,
+      3456,
       91,
       22
      ],
@@ -5466,14 +5466,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3290,
+      3486,
       119,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 60"
+     "text": "loadmess set 40"
     }
    },
    {
@@ -5484,14 +5484,14 @@
      "numoutlets": 1,
      "patching_rect": [
       159.0,
-      3290,
-      217,
+      3486,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/release"
+     "text": "prepend /yehu/playing/attack"
     }
    },
    {
@@ -5501,8 +5501,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      400.0,
-      3290,
+      393.0,
+      3486,
       98,
       22
      ],
@@ -5533,17 +5533,17 @@
       104,
       48
      ],
-     "varname": "/playing/portamento",
+     "varname": "/playing/release",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento",
-       "parameter_shortname": "portamento",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/release",
+       "parameter_shortname": "release",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f ms"
       }
      }
     }
@@ -5560,7 +5560,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "5 to 2000 ms",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -5580,7 +5580,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3320,
+      3516,
       77,
       22
      ],
@@ -5598,15 +5598,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3320,
-      224,
+      3516,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento"
+     "text": "route /yehu/playing/release"
     }
    },
    {
@@ -5616,8 +5616,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
-      3320,
+      344.0,
+      3516,
       91,
       22
      ],
@@ -5635,14 +5635,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3350,
-      112,
+      3546,
+      119,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 60"
     }
    },
    {
@@ -5652,15 +5652,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
-      3350,
-      238,
+      159.0,
+      3546,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento"
+     "text": "prepend /yehu/playing/release"
     }
    },
    {
@@ -5670,8 +5670,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
-      3350,
+      400.0,
+      3546,
       98,
       22
      ],
@@ -5702,17 +5702,17 @@
       104,
       48
      ],
-     "varname": "/playing/portamento_time",
+     "varname": "/playing/portamento",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento_time",
-       "parameter_shortname": "portamento time",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_longname": "/playing/portamento",
+       "parameter_shortname": "portamento",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -5729,7 +5729,7 @@
       104,
       22
      ],
-     "text": "5 to 2000 ms",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -5749,7 +5749,7 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3380,
+      3576,
       77,
       22
      ],
@@ -5767,15 +5767,15 @@
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3380,
-      259,
+      3576,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento_time"
+     "text": "route /yehu/playing/portamento"
     }
    },
    {
@@ -5785,8 +5785,8 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      400.0,
-      3380,
+      365.0,
+      3576,
       91,
       22
      ],
@@ -5804,14 +5804,14 @@
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3410,
-      126,
+      3606,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 120"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -5821,15 +5821,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
-      3410,
-      273,
+      152.0,
+      3606,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento_time"
+     "text": "prepend /yehu/playing/portamento"
     }
    },
    {
@@ -5839,8 +5839,8 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      463.0,
-      3410,
+      414.0,
+      3606,
       98,
       22
      ],
@@ -5851,29 +5851,6 @@
    {
     "box": {
      "id": "obj-278",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      16,
-      624,
-      224,
-      22
-     ],
-     "text": "bow",
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      624,
-      224,
-      22
-     ],
-     "fontface": 1
-    }
-   },
-   {
-    "box": {
-     "id": "obj-279",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5891,6 +5868,198 @@
      "presentation_rect": [
       16,
       646,
+      104,
+      48
+     ],
+     "varname": "/playing/portamento_time",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento_time",
+       "parameter_shortname": "portamento time",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f ms"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-279",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      16,
+      696,
+      104,
+      22
+     ],
+     "text": "5 to 2000 ms",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-280",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3636,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-281",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      3636,
+      259,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-282",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      400.0,
+      3636,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-283",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3666,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 120"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-284",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      3666,
+      273,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-285",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      463.0,
+      3666,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-286",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      16,
+      722,
+      224,
+      22
+     ],
+     "text": "bow",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      722,
+      224,
+      22
+     ],
+     "fontface": 1
+    }
+   },
+   {
+    "box": {
+     "id": "obj-287",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      16,
+      744,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      744,
       104,
       48
      ],
@@ -5911,13 +6080,13 @@
    },
    {
     "box": {
-     "id": "obj-280",
+     "id": "obj-288",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      696,
+      794,
       104,
       22
      ],
@@ -5925,7 +6094,7 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      696,
+      794,
       104,
       22
      ],
@@ -5935,13 +6104,13 @@
    },
    {
     "box": {
-     "id": "obj-281",
+     "id": "obj-289",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3440,
+      3696,
       77,
       22
      ],
@@ -5953,13 +6122,13 @@
    },
    {
     "box": {
-     "id": "obj-282",
+     "id": "obj-290",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3440,
+      3696,
       161,
       22
      ],
@@ -5972,13 +6141,13 @@
    },
    {
     "box": {
-     "id": "obj-283",
+     "id": "obj-291",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      3440,
+      3696,
       91,
       22
      ],
@@ -5990,13 +6159,13 @@
    },
    {
     "box": {
-     "id": "obj-284",
+     "id": "obj-292",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3470,
+      3726,
       112,
       22
      ],
@@ -6008,13 +6177,13 @@
    },
    {
     "box": {
-     "id": "obj-285",
+     "id": "obj-293",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      3470,
+      3726,
       175,
       22
      ],
@@ -6026,13 +6195,13 @@
    },
    {
     "box": {
-     "id": "obj-286",
+     "id": "obj-294",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       351.0,
-      3470,
+      3726,
       98,
       22
      ],
@@ -6042,13 +6211,13 @@
    },
    {
     "box": {
-     "id": "obj-287",
+     "id": "obj-295",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       128,
-      646,
+      744,
       104,
       48
      ],
@@ -6059,7 +6228,7 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      646,
+      744,
       104,
       48
      ],
@@ -6080,13 +6249,13 @@
    },
    {
     "box": {
-     "id": "obj-288",
+     "id": "obj-296",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       128,
-      696,
+      794,
       104,
       22
      ],
@@ -6094,7 +6263,7 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      696,
+      794,
       104,
       22
      ],
@@ -6104,13 +6273,13 @@
    },
    {
     "box": {
-     "id": "obj-289",
+     "id": "obj-297",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3500,
+      3756,
       77,
       22
      ],
@@ -6122,13 +6291,13 @@
    },
    {
     "box": {
-     "id": "obj-290",
+     "id": "obj-298",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3500,
+      3756,
       154,
       22
      ],
@@ -6141,13 +6310,13 @@
    },
    {
     "box": {
-     "id": "obj-291",
+     "id": "obj-299",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       295.0,
-      3500,
+      3756,
       91,
       22
      ],
@@ -6159,13 +6328,13 @@
    },
    {
     "box": {
-     "id": "obj-292",
+     "id": "obj-300",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3530,
+      3786,
       112,
       22
      ],
@@ -6177,13 +6346,13 @@
    },
    {
     "box": {
-     "id": "obj-293",
+     "id": "obj-301",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      3530,
+      3786,
       168,
       22
      ],
@@ -6195,13 +6364,13 @@
    },
    {
     "box": {
-     "id": "obj-294",
+     "id": "obj-302",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       344.0,
-      3530,
+      3786,
       98,
       22
      ],
@@ -6211,13 +6380,13 @@
    },
    {
     "box": {
-     "id": "obj-295",
+     "id": "obj-303",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       240,
-      646,
+      744,
       104,
       48
      ],
@@ -6228,7 +6397,7 @@
      "presentation": 1,
      "presentation_rect": [
       240,
-      646,
+      744,
       104,
       48
      ],
@@ -6249,13 +6418,13 @@
    },
    {
     "box": {
-     "id": "obj-296",
+     "id": "obj-304",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       240,
-      696,
+      794,
       104,
       22
      ],
@@ -6263,7 +6432,7 @@
      "presentation": 1,
      "presentation_rect": [
       240,
-      696,
+      794,
       104,
       22
      ],
@@ -6273,13 +6442,13 @@
    },
    {
     "box": {
-     "id": "obj-297",
+     "id": "obj-305",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3560,
+      3816,
       77,
       22
      ],
@@ -6291,13 +6460,13 @@
    },
    {
     "box": {
-     "id": "obj-298",
+     "id": "obj-306",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3560,
+      3816,
       161,
       22
      ],
@@ -6310,13 +6479,13 @@
    },
    {
     "box": {
-     "id": "obj-299",
+     "id": "obj-307",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      3560,
+      3816,
       91,
       22
      ],
@@ -6328,13 +6497,13 @@
    },
    {
     "box": {
-     "id": "obj-300",
+     "id": "obj-308",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3590,
+      3846,
       126,
       22
      ],
@@ -6346,13 +6515,13 @@
    },
    {
     "box": {
-     "id": "obj-301",
+     "id": "obj-309",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      3590,
+      3846,
       175,
       22
      ],
@@ -6364,13 +6533,13 @@
    },
    {
     "box": {
-     "id": "obj-302",
+     "id": "obj-310",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      3590,
+      3846,
       98,
       22
      ],
@@ -6380,13 +6549,13 @@
    },
    {
     "box": {
-     "id": "obj-303",
+     "id": "obj-311",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       352,
-      646,
+      744,
       104,
       48
      ],
@@ -6397,7 +6566,7 @@
      "presentation": 1,
      "presentation_rect": [
       352,
-      646,
+      744,
       104,
       48
      ],
@@ -6418,13 +6587,13 @@
    },
    {
     "box": {
-     "id": "obj-304",
+     "id": "obj-312",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       352,
-      696,
+      794,
       104,
       22
      ],
@@ -6432,7 +6601,7 @@
      "presentation": 1,
      "presentation_rect": [
       352,
-      696,
+      794,
       104,
       22
      ],
@@ -6442,13 +6611,13 @@
    },
    {
     "box": {
-     "id": "obj-305",
+     "id": "obj-313",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3620,
+      3876,
       77,
       22
      ],
@@ -6460,13 +6629,13 @@
    },
    {
     "box": {
-     "id": "obj-306",
+     "id": "obj-314",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3620,
+      3876,
       182,
       22
      ],
@@ -6479,13 +6648,13 @@
    },
    {
     "box": {
-     "id": "obj-307",
+     "id": "obj-315",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      3620,
+      3876,
       91,
       22
      ],
@@ -6497,13 +6666,13 @@
    },
    {
     "box": {
-     "id": "obj-308",
+     "id": "obj-316",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3650,
+      3906,
       126,
       22
      ],
@@ -6515,13 +6684,13 @@
    },
    {
     "box": {
-     "id": "obj-309",
+     "id": "obj-317",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      3650,
+      3906,
       196,
       22
      ],
@@ -6533,13 +6702,13 @@
    },
    {
     "box": {
-     "id": "obj-310",
+     "id": "obj-318",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      3650,
+      3906,
       98,
       22
      ],
@@ -6549,13 +6718,13 @@
    },
    {
     "box": {
-     "id": "obj-311",
+     "id": "obj-319",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       464,
-      646,
+      744,
       104,
       48
      ],
@@ -6566,7 +6735,7 @@
      "presentation": 1,
      "presentation_rect": [
       464,
-      646,
+      744,
       104,
       48
      ],
@@ -6587,13 +6756,13 @@
    },
    {
     "box": {
-     "id": "obj-312",
+     "id": "obj-320",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       464,
-      696,
+      794,
       104,
       22
      ],
@@ -6601,7 +6770,7 @@
      "presentation": 1,
      "presentation_rect": [
       464,
-      696,
+      794,
       104,
       22
      ],
@@ -6611,13 +6780,13 @@
    },
    {
     "box": {
-     "id": "obj-313",
+     "id": "obj-321",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3680,
+      3936,
       77,
       22
      ],
@@ -6629,13 +6798,13 @@
    },
    {
     "box": {
-     "id": "obj-314",
+     "id": "obj-322",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3680,
+      3936,
       168,
       22
      ],
@@ -6648,13 +6817,13 @@
    },
    {
     "box": {
-     "id": "obj-315",
+     "id": "obj-323",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      3680,
+      3936,
       91,
       22
      ],
@@ -6666,13 +6835,13 @@
    },
    {
     "box": {
-     "id": "obj-316",
+     "id": "obj-324",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3710,
+      3966,
       112,
       22
      ],
@@ -6684,13 +6853,13 @@
    },
    {
     "box": {
-     "id": "obj-317",
+     "id": "obj-325",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      3710,
+      3966,
       182,
       22
      ],
@@ -6702,13 +6871,13 @@
    },
    {
     "box": {
-     "id": "obj-318",
+     "id": "obj-326",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       358.0,
-      3710,
+      3966,
       98,
       22
      ],
@@ -6718,13 +6887,13 @@
    },
    {
     "box": {
-     "id": "obj-319",
+     "id": "obj-327",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       576,
-      646,
+      744,
       104,
       48
      ],
@@ -6735,7 +6904,7 @@
      "presentation": 1,
      "presentation_rect": [
       576,
-      646,
+      744,
       104,
       48
      ],
@@ -6756,13 +6925,13 @@
    },
    {
     "box": {
-     "id": "obj-320",
+     "id": "obj-328",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       576,
-      696,
+      794,
       104,
       22
      ],
@@ -6770,7 +6939,7 @@
      "presentation": 1,
      "presentation_rect": [
       576,
-      696,
+      794,
       104,
       22
      ],
@@ -6780,13 +6949,13 @@
    },
    {
     "box": {
-     "id": "obj-321",
+     "id": "obj-329",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3740,
+      3996,
       77,
       22
      ],
@@ -6798,13 +6967,13 @@
    },
    {
     "box": {
-     "id": "obj-322",
+     "id": "obj-330",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3740,
+      3996,
       182,
       22
      ],
@@ -6817,13 +6986,13 @@
    },
    {
     "box": {
-     "id": "obj-323",
+     "id": "obj-331",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      3740,
+      3996,
       91,
       22
      ],
@@ -6835,13 +7004,13 @@
    },
    {
     "box": {
-     "id": "obj-324",
+     "id": "obj-332",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3770,
+      4026,
       133,
       22
      ],
@@ -6853,13 +7022,13 @@
    },
    {
     "box": {
-     "id": "obj-325",
+     "id": "obj-333",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      3770,
+      4026,
       196,
       22
      ],
@@ -6871,13 +7040,13 @@
    },
    {
     "box": {
-     "id": "obj-326",
+     "id": "obj-334",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      3770,
+      4026,
       98,
       22
      ],
@@ -6887,13 +7056,13 @@
    },
    {
     "box": {
-     "id": "obj-327",
+     "id": "obj-335",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       688,
-      646,
+      744,
       104,
       48
      ],
@@ -6904,7 +7073,7 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      646,
+      744,
       104,
       48
      ],
@@ -6925,13 +7094,13 @@
    },
    {
     "box": {
-     "id": "obj-328",
+     "id": "obj-336",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       688,
-      696,
+      794,
       104,
       22
      ],
@@ -6939,7 +7108,7 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      696,
+      794,
       104,
       22
      ],
@@ -6949,13 +7118,13 @@
    },
    {
     "box": {
-     "id": "obj-329",
+     "id": "obj-337",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3800,
+      4056,
       77,
       22
      ],
@@ -6967,13 +7136,13 @@
    },
    {
     "box": {
-     "id": "obj-330",
+     "id": "obj-338",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3800,
+      4056,
       175,
       22
      ],
@@ -6986,13 +7155,13 @@
    },
    {
     "box": {
-     "id": "obj-331",
+     "id": "obj-339",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      3800,
+      4056,
       91,
       22
      ],
@@ -7004,13 +7173,13 @@
    },
    {
     "box": {
-     "id": "obj-332",
+     "id": "obj-340",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3830,
+      4086,
       112,
       22
      ],
@@ -7022,13 +7191,13 @@
    },
    {
     "box": {
-     "id": "obj-333",
+     "id": "obj-341",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      3830,
+      4086,
       189,
       22
      ],
@@ -7040,13 +7209,13 @@
    },
    {
     "box": {
-     "id": "obj-334",
+     "id": "obj-342",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      3830,
+      4086,
       98,
       22
      ],
@@ -7056,13 +7225,13 @@
    },
    {
     "box": {
-     "id": "obj-335",
+     "id": "obj-343",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       800,
-      646,
+      744,
       104,
       48
      ],
@@ -7073,7 +7242,7 @@
      "presentation": 1,
      "presentation_rect": [
       800,
-      646,
+      744,
       104,
       48
      ],
@@ -7094,13 +7263,13 @@
    },
    {
     "box": {
-     "id": "obj-336",
+     "id": "obj-344",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       800,
-      696,
+      794,
       104,
       22
      ],
@@ -7108,7 +7277,7 @@
      "presentation": 1,
      "presentation_rect": [
       800,
-      696,
+      794,
       104,
       22
      ],
@@ -7118,13 +7287,13 @@
    },
    {
     "box": {
-     "id": "obj-337",
+     "id": "obj-345",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3860,
+      4116,
       77,
       22
      ],
@@ -7136,13 +7305,13 @@
    },
    {
     "box": {
-     "id": "obj-338",
+     "id": "obj-346",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3860,
+      4116,
       161,
       22
      ],
@@ -7155,13 +7324,13 @@
    },
    {
     "box": {
-     "id": "obj-339",
+     "id": "obj-347",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      3860,
+      4116,
       91,
       22
      ],
@@ -7173,13 +7342,13 @@
    },
    {
     "box": {
-     "id": "obj-340",
+     "id": "obj-348",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3890,
+      4146,
       140,
       22
      ],
@@ -7191,13 +7360,13 @@
    },
    {
     "box": {
-     "id": "obj-341",
+     "id": "obj-349",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       180.0,
-      3890,
+      4146,
       175,
       22
      ],
@@ -7209,13 +7378,13 @@
    },
    {
     "box": {
-     "id": "obj-342",
+     "id": "obj-350",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      3890,
+      4146,
       98,
       22
      ],
@@ -7225,13 +7394,13 @@
    },
    {
     "box": {
-     "id": "obj-343",
+     "id": "obj-351",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      722,
+      820,
       224,
       22
      ],
@@ -7239,7 +7408,7 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      722,
+      820,
       224,
       22
      ],
@@ -7248,13 +7417,13 @@
    },
    {
     "box": {
-     "id": "obj-344",
+     "id": "obj-352",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       16,
-      744,
+      842,
       104,
       48
      ],
@@ -7265,7 +7434,7 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      744,
+      842,
       104,
       48
      ],
@@ -7286,13 +7455,13 @@
    },
    {
     "box": {
-     "id": "obj-345",
+     "id": "obj-353",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      794,
+      892,
       104,
       22
      ],
@@ -7300,7 +7469,7 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      794,
+      892,
       104,
       22
      ],
@@ -7310,13 +7479,13 @@
    },
    {
     "box": {
-     "id": "obj-346",
+     "id": "obj-354",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3920,
+      4176,
       77,
       22
      ],
@@ -7328,13 +7497,13 @@
    },
    {
     "box": {
-     "id": "obj-347",
+     "id": "obj-355",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3920,
+      4176,
       217,
       22
      ],
@@ -7347,13 +7516,13 @@
    },
    {
     "box": {
-     "id": "obj-348",
+     "id": "obj-356",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      3920,
+      4176,
       91,
       22
      ],
@@ -7365,13 +7534,13 @@
    },
    {
     "box": {
-     "id": "obj-349",
+     "id": "obj-357",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3950,
+      4206,
       133,
       22
      ],
@@ -7383,13 +7552,13 @@
    },
    {
     "box": {
-     "id": "obj-350",
+     "id": "obj-358",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      3950,
+      4206,
       231,
       22
      ],
@@ -7401,13 +7570,13 @@
    },
    {
     "box": {
-     "id": "obj-351",
+     "id": "obj-359",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      3950,
+      4206,
       98,
       22
      ],
@@ -7417,13 +7586,13 @@
    },
    {
     "box": {
-     "id": "obj-352",
+     "id": "obj-360",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       128,
-      744,
+      842,
       104,
       48
      ],
@@ -7434,7 +7603,7 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      744,
+      842,
       104,
       48
      ],
@@ -7455,13 +7624,13 @@
    },
    {
     "box": {
-     "id": "obj-353",
+     "id": "obj-361",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       128,
-      794,
+      892,
       104,
       22
      ],
@@ -7469,7 +7638,7 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      794,
+      892,
       104,
       22
      ],
@@ -7479,13 +7648,13 @@
    },
    {
     "box": {
-     "id": "obj-354",
+     "id": "obj-362",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3980,
+      4236,
       77,
       22
      ],
@@ -7497,13 +7666,13 @@
    },
    {
     "box": {
-     "id": "obj-355",
+     "id": "obj-363",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3980,
+      4236,
       196,
       22
      ],
@@ -7516,13 +7685,13 @@
    },
    {
     "box": {
-     "id": "obj-356",
+     "id": "obj-364",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      3980,
+      4236,
       91,
       22
      ],
@@ -7534,13 +7703,13 @@
    },
    {
     "box": {
-     "id": "obj-357",
+     "id": "obj-365",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4010,
+      4266,
       112,
       22
      ],
@@ -7552,13 +7721,13 @@
    },
    {
     "box": {
-     "id": "obj-358",
+     "id": "obj-366",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4010,
+      4266,
       210,
       22
      ],
@@ -7570,13 +7739,13 @@
    },
    {
     "box": {
-     "id": "obj-359",
+     "id": "obj-367",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4010,
+      4266,
       98,
       22
      ],
@@ -7586,13 +7755,13 @@
    },
    {
     "box": {
-     "id": "obj-360",
+     "id": "obj-368",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       240,
-      744,
+      842,
       104,
       48
      ],
@@ -7603,7 +7772,7 @@
      "presentation": 1,
      "presentation_rect": [
       240,
-      744,
+      842,
       104,
       48
      ],
@@ -7624,13 +7793,13 @@
    },
    {
     "box": {
-     "id": "obj-361",
+     "id": "obj-369",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       240,
-      794,
+      892,
       104,
       22
      ],
@@ -7638,7 +7807,7 @@
      "presentation": 1,
      "presentation_rect": [
       240,
-      794,
+      892,
       104,
       22
      ],
@@ -7648,13 +7817,13 @@
    },
    {
     "box": {
-     "id": "obj-362",
+     "id": "obj-370",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4040,
+      4296,
       77,
       22
      ],
@@ -7666,13 +7835,13 @@
    },
    {
     "box": {
-     "id": "obj-363",
+     "id": "obj-371",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4040,
+      4296,
       217,
       22
      ],
@@ -7685,13 +7854,13 @@
    },
    {
     "box": {
-     "id": "obj-364",
+     "id": "obj-372",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4040,
+      4296,
       91,
       22
      ],
@@ -7703,13 +7872,13 @@
    },
    {
     "box": {
-     "id": "obj-365",
+     "id": "obj-373",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4070,
+      4326,
       133,
       22
      ],
@@ -7721,13 +7890,13 @@
    },
    {
     "box": {
-     "id": "obj-366",
+     "id": "obj-374",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4070,
+      4326,
       231,
       22
      ],
@@ -7739,13 +7908,13 @@
    },
    {
     "box": {
-     "id": "obj-367",
+     "id": "obj-375",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4070,
+      4326,
       98,
       22
      ],
@@ -7755,13 +7924,13 @@
    },
    {
     "box": {
-     "id": "obj-368",
+     "id": "obj-376",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       352,
-      744,
+      842,
       104,
       48
      ],
@@ -7772,7 +7941,7 @@
      "presentation": 1,
      "presentation_rect": [
       352,
-      744,
+      842,
       104,
       48
      ],
@@ -7793,13 +7962,13 @@
    },
    {
     "box": {
-     "id": "obj-369",
+     "id": "obj-377",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       352,
-      794,
+      892,
       104,
       22
      ],
@@ -7807,7 +7976,7 @@
      "presentation": 1,
      "presentation_rect": [
       352,
-      794,
+      892,
       104,
       22
      ],
@@ -7817,13 +7986,13 @@
    },
    {
     "box": {
-     "id": "obj-370",
+     "id": "obj-378",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4100,
+      4356,
       77,
       22
      ],
@@ -7835,13 +8004,13 @@
    },
    {
     "box": {
-     "id": "obj-371",
+     "id": "obj-379",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4100,
+      4356,
       196,
       22
      ],
@@ -7854,13 +8023,13 @@
    },
    {
     "box": {
-     "id": "obj-372",
+     "id": "obj-380",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4100,
+      4356,
       91,
       22
      ],
@@ -7872,13 +8041,13 @@
    },
    {
     "box": {
-     "id": "obj-373",
+     "id": "obj-381",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4130,
+      4386,
       112,
       22
      ],
@@ -7890,13 +8059,13 @@
    },
    {
     "box": {
-     "id": "obj-374",
+     "id": "obj-382",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4130,
+      4386,
       210,
       22
      ],
@@ -7908,13 +8077,13 @@
    },
    {
     "box": {
-     "id": "obj-375",
+     "id": "obj-383",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4130,
+      4386,
       98,
       22
      ],
@@ -7924,13 +8093,13 @@
    },
    {
     "box": {
-     "id": "obj-376",
+     "id": "obj-384",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       464,
-      744,
+      842,
       104,
       48
      ],
@@ -7941,7 +8110,7 @@
      "presentation": 1,
      "presentation_rect": [
       464,
-      744,
+      842,
       104,
       48
      ],
@@ -7962,13 +8131,13 @@
    },
    {
     "box": {
-     "id": "obj-377",
+     "id": "obj-385",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       464,
-      794,
+      892,
       104,
       22
      ],
@@ -7976,7 +8145,7 @@
      "presentation": 1,
      "presentation_rect": [
       464,
-      794,
+      892,
       104,
       22
      ],
@@ -7986,13 +8155,13 @@
    },
    {
     "box": {
-     "id": "obj-378",
+     "id": "obj-386",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4160,
+      4416,
       77,
       22
      ],
@@ -8004,13 +8173,13 @@
    },
    {
     "box": {
-     "id": "obj-379",
+     "id": "obj-387",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4160,
+      4416,
       217,
       22
      ],
@@ -8023,13 +8192,13 @@
    },
    {
     "box": {
-     "id": "obj-380",
+     "id": "obj-388",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4160,
+      4416,
       91,
       22
      ],
@@ -8041,13 +8210,13 @@
    },
    {
     "box": {
-     "id": "obj-381",
+     "id": "obj-389",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4190,
+      4446,
       133,
       22
      ],
@@ -8059,13 +8228,13 @@
    },
    {
     "box": {
-     "id": "obj-382",
+     "id": "obj-390",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4190,
+      4446,
       231,
       22
      ],
@@ -8077,13 +8246,13 @@
    },
    {
     "box": {
-     "id": "obj-383",
+     "id": "obj-391",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4190,
+      4446,
       98,
       22
      ],
@@ -8093,13 +8262,13 @@
    },
    {
     "box": {
-     "id": "obj-384",
+     "id": "obj-392",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       576,
-      744,
+      842,
       104,
       48
      ],
@@ -8110,7 +8279,7 @@
      "presentation": 1,
      "presentation_rect": [
       576,
-      744,
+      842,
       104,
       48
      ],
@@ -8131,13 +8300,13 @@
    },
    {
     "box": {
-     "id": "obj-385",
+     "id": "obj-393",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       576,
-      794,
+      892,
       104,
       22
      ],
@@ -8145,7 +8314,7 @@
      "presentation": 1,
      "presentation_rect": [
       576,
-      794,
+      892,
       104,
       22
      ],
@@ -8155,13 +8324,13 @@
    },
    {
     "box": {
-     "id": "obj-386",
+     "id": "obj-394",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4220,
+      4476,
       77,
       22
      ],
@@ -8173,13 +8342,13 @@
    },
    {
     "box": {
-     "id": "obj-387",
+     "id": "obj-395",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4220,
+      4476,
       196,
       22
      ],
@@ -8192,13 +8361,13 @@
    },
    {
     "box": {
-     "id": "obj-388",
+     "id": "obj-396",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4220,
+      4476,
       91,
       22
      ],
@@ -8210,13 +8379,13 @@
    },
    {
     "box": {
-     "id": "obj-389",
+     "id": "obj-397",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4250,
+      4506,
       112,
       22
      ],
@@ -8228,13 +8397,13 @@
    },
    {
     "box": {
-     "id": "obj-390",
+     "id": "obj-398",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4250,
+      4506,
       210,
       22
      ],
@@ -8246,13 +8415,13 @@
    },
    {
     "box": {
-     "id": "obj-391",
+     "id": "obj-399",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4250,
+      4506,
       98,
       22
      ],
@@ -8262,13 +8431,13 @@
    },
    {
     "box": {
-     "id": "obj-392",
+     "id": "obj-400",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       688,
-      744,
+      842,
       104,
       48
      ],
@@ -8279,7 +8448,7 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      744,
+      842,
       104,
       48
      ],
@@ -8300,13 +8469,13 @@
    },
    {
     "box": {
-     "id": "obj-393",
+     "id": "obj-401",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       688,
-      794,
+      892,
       104,
       22
      ],
@@ -8314,7 +8483,7 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      794,
+      892,
       104,
       22
      ],
@@ -8324,13 +8493,13 @@
    },
    {
     "box": {
-     "id": "obj-394",
+     "id": "obj-402",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4280,
+      4536,
       77,
       22
      ],
@@ -8342,13 +8511,13 @@
    },
    {
     "box": {
-     "id": "obj-395",
+     "id": "obj-403",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4280,
+      4536,
       217,
       22
      ],
@@ -8361,13 +8530,13 @@
    },
    {
     "box": {
-     "id": "obj-396",
+     "id": "obj-404",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4280,
+      4536,
       91,
       22
      ],
@@ -8379,13 +8548,13 @@
    },
    {
     "box": {
-     "id": "obj-397",
+     "id": "obj-405",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4310,
+      4566,
       133,
       22
      ],
@@ -8397,13 +8566,13 @@
    },
    {
     "box": {
-     "id": "obj-398",
+     "id": "obj-406",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4310,
+      4566,
       231,
       22
      ],
@@ -8415,13 +8584,13 @@
    },
    {
     "box": {
-     "id": "obj-399",
+     "id": "obj-407",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4310,
+      4566,
       98,
       22
      ],
@@ -8431,13 +8600,13 @@
    },
    {
     "box": {
-     "id": "obj-400",
+     "id": "obj-408",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       800,
-      744,
+      842,
       104,
       48
      ],
@@ -8448,7 +8617,7 @@
      "presentation": 1,
      "presentation_rect": [
       800,
-      744,
+      842,
       104,
       48
      ],
@@ -8469,13 +8638,13 @@
    },
    {
     "box": {
-     "id": "obj-401",
+     "id": "obj-409",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       800,
-      794,
+      892,
       104,
       22
      ],
@@ -8483,7 +8652,7 @@
      "presentation": 1,
      "presentation_rect": [
       800,
-      794,
+      892,
       104,
       22
      ],
@@ -8493,13 +8662,13 @@
    },
    {
     "box": {
-     "id": "obj-402",
+     "id": "obj-410",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4340,
+      4596,
       77,
       22
      ],
@@ -8511,13 +8680,13 @@
    },
    {
     "box": {
-     "id": "obj-403",
+     "id": "obj-411",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4340,
+      4596,
       196,
       22
      ],
@@ -8530,13 +8699,13 @@
    },
    {
     "box": {
-     "id": "obj-404",
+     "id": "obj-412",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4340,
+      4596,
       91,
       22
      ],
@@ -8548,13 +8717,13 @@
    },
    {
     "box": {
-     "id": "obj-405",
+     "id": "obj-413",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4370,
+      4626,
       112,
       22
      ],
@@ -8566,13 +8735,13 @@
    },
    {
     "box": {
-     "id": "obj-406",
+     "id": "obj-414",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4370,
+      4626,
       210,
       22
      ],
@@ -8584,13 +8753,13 @@
    },
    {
     "box": {
-     "id": "obj-407",
+     "id": "obj-415",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4370,
+      4626,
       98,
       22
      ],
@@ -8600,13 +8769,13 @@
    },
    {
     "box": {
-     "id": "obj-408",
+     "id": "obj-416",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      820,
+      918,
       224,
       22
      ],
@@ -8614,7 +8783,7 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      820,
+      918,
       224,
       22
      ],
@@ -8623,13 +8792,13 @@
    },
    {
     "box": {
-     "id": "obj-409",
+     "id": "obj-417",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       16,
-      842,
+      940,
       104,
       48
      ],
@@ -8640,7 +8809,7 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      842,
+      940,
       104,
       48
      ],
@@ -8661,13 +8830,13 @@
    },
    {
     "box": {
-     "id": "obj-410",
+     "id": "obj-418",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      892,
+      990,
       104,
       22
      ],
@@ -8675,7 +8844,7 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      892,
+      990,
       104,
       22
      ],
@@ -8685,13 +8854,13 @@
    },
    {
     "box": {
-     "id": "obj-411",
+     "id": "obj-419",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4400,
+      4656,
       77,
       22
      ],
@@ -8703,13 +8872,13 @@
    },
    {
     "box": {
-     "id": "obj-412",
+     "id": "obj-420",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4400,
+      4656,
       189,
       22
      ],
@@ -8722,13 +8891,13 @@
    },
    {
     "box": {
-     "id": "obj-413",
+     "id": "obj-421",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      4400,
+      4656,
       91,
       22
      ],
@@ -8740,13 +8909,13 @@
    },
    {
     "box": {
-     "id": "obj-414",
+     "id": "obj-422",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4430,
+      4686,
       112,
       22
      ],
@@ -8758,13 +8927,13 @@
    },
    {
     "box": {
-     "id": "obj-415",
+     "id": "obj-423",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4430,
+      4686,
       203,
       22
      ],
@@ -8776,13 +8945,13 @@
    },
    {
     "box": {
-     "id": "obj-416",
+     "id": "obj-424",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      4430,
+      4686,
       98,
       22
      ],
@@ -8792,13 +8961,13 @@
    },
    {
     "box": {
-     "id": "obj-417",
+     "id": "obj-425",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       128,
-      842,
+      940,
       104,
       48
      ],
@@ -8809,7 +8978,7 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      842,
+      940,
       104,
       48
      ],
@@ -8830,13 +8999,13 @@
    },
    {
     "box": {
-     "id": "obj-418",
+     "id": "obj-426",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       128,
-      892,
+      990,
       104,
       22
      ],
@@ -8844,7 +9013,7 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      892,
+      990,
       104,
       22
      ],
@@ -8854,13 +9023,13 @@
    },
    {
     "box": {
-     "id": "obj-419",
+     "id": "obj-427",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4460,
+      4716,
       77,
       22
      ],
@@ -8872,13 +9041,13 @@
    },
    {
     "box": {
-     "id": "obj-420",
+     "id": "obj-428",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4460,
+      4716,
       189,
       22
      ],
@@ -8891,13 +9060,13 @@
    },
    {
     "box": {
-     "id": "obj-421",
+     "id": "obj-429",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      4460,
+      4716,
       91,
       22
      ],
@@ -8909,13 +9078,13 @@
    },
    {
     "box": {
-     "id": "obj-422",
+     "id": "obj-430",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4490,
+      4746,
       112,
       22
      ],
@@ -8927,13 +9096,13 @@
    },
    {
     "box": {
-     "id": "obj-423",
+     "id": "obj-431",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4490,
+      4746,
       203,
       22
      ],
@@ -8945,13 +9114,13 @@
    },
    {
     "box": {
-     "id": "obj-424",
+     "id": "obj-432",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      4490,
+      4746,
       98,
       22
      ],
@@ -8961,13 +9130,13 @@
    },
    {
     "box": {
-     "id": "obj-425",
+     "id": "obj-433",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       240,
-      842,
+      940,
       104,
       48
      ],
@@ -8978,7 +9147,176 @@
      "presentation": 1,
      "presentation_rect": [
       240,
-      842,
+      940,
+      104,
+      48
+     ],
+     "varname": "/vibrato/upward",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/vibrato/upward",
+       "parameter_shortname": "upward",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-434",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      990,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-435",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4776,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-436",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4776,
+      196,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/vibrato/upward"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-437",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      337.0,
+      4776,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-438",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4806,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-439",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4806,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/vibrato/upward"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-440",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      4806,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-441",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      352,
+      940,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      940,
       104,
       48
      ],
@@ -8999,21 +9337,21 @@
    },
    {
     "box": {
-     "id": "obj-426",
+     "id": "obj-442",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      240,
-      892,
+      352,
+      990,
       104,
       22
      ],
      "text": "0.5 to 12 Hz",
      "presentation": 1,
      "presentation_rect": [
-      240,
-      892,
+      352,
+      990,
       104,
       22
      ],
@@ -9023,13 +9361,13 @@
    },
    {
     "box": {
-     "id": "obj-427",
+     "id": "obj-443",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4520,
+      4836,
       77,
       22
      ],
@@ -9041,13 +9379,13 @@
    },
    {
     "box": {
-     "id": "obj-428",
+     "id": "obj-444",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4520,
+      4836,
       182,
       22
      ],
@@ -9060,13 +9398,13 @@
    },
    {
     "box": {
-     "id": "obj-429",
+     "id": "obj-445",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      4520,
+      4836,
       91,
       22
      ],
@@ -9078,13 +9416,13 @@
    },
    {
     "box": {
-     "id": "obj-430",
+     "id": "obj-446",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4550,
+      4866,
       126,
       22
      ],
@@ -9096,13 +9434,13 @@
    },
    {
     "box": {
-     "id": "obj-431",
+     "id": "obj-447",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      4550,
+      4866,
       196,
       22
      ],
@@ -9114,13 +9452,13 @@
    },
    {
     "box": {
-     "id": "obj-432",
+     "id": "obj-448",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4550,
+      4866,
       98,
       22
      ],
@@ -9130,13 +9468,13 @@
    },
    {
     "box": {
-     "id": "obj-433",
+     "id": "obj-449",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      352,
-      842,
+      464,
+      940,
       104,
       48
      ],
@@ -9146,8 +9484,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      352,
-      842,
+      464,
+      940,
       104,
       48
      ],
@@ -9168,21 +9506,21 @@
    },
    {
     "box": {
-     "id": "obj-434",
+     "id": "obj-450",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      352,
-      892,
+      464,
+      990,
       104,
       22
      ],
      "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      352,
-      892,
+      464,
+      990,
       104,
       22
      ],
@@ -9192,13 +9530,13 @@
    },
    {
     "box": {
-     "id": "obj-435",
+     "id": "obj-451",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4580,
+      4896,
       77,
       22
      ],
@@ -9210,13 +9548,13 @@
    },
    {
     "box": {
-     "id": "obj-436",
+     "id": "obj-452",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4580,
+      4896,
       189,
       22
      ],
@@ -9229,13 +9567,13 @@
    },
    {
     "box": {
-     "id": "obj-437",
+     "id": "obj-453",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      4580,
+      4896,
       91,
       22
      ],
@@ -9247,13 +9585,13 @@
    },
    {
     "box": {
-     "id": "obj-438",
+     "id": "obj-454",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4610,
+      4926,
       112,
       22
      ],
@@ -9265,13 +9603,13 @@
    },
    {
     "box": {
-     "id": "obj-439",
+     "id": "obj-455",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4610,
+      4926,
       203,
       22
      ],
@@ -9283,13 +9621,13 @@
    },
    {
     "box": {
-     "id": "obj-440",
+     "id": "obj-456",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      4610,
+      4926,
       98,
       22
      ],
@@ -9299,21 +9637,21 @@
    },
    {
     "box": {
-     "id": "obj-441",
+     "id": "obj-457",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      464,
-      820,
+      576,
+      918,
       224,
       22
      ],
      "text": "pluck",
      "presentation": 1,
      "presentation_rect": [
-      464,
-      820,
+      576,
+      918,
       224,
       22
      ],
@@ -9322,13 +9660,13 @@
    },
    {
     "box": {
-     "id": "obj-442",
+     "id": "obj-458",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      464,
-      842,
+      576,
+      940,
       104,
       48
      ],
@@ -9338,8 +9676,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      464,
-      842,
+      576,
+      940,
       104,
       48
      ],
@@ -9360,21 +9698,21 @@
    },
    {
     "box": {
-     "id": "obj-443",
+     "id": "obj-459",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      464,
-      892,
+      576,
+      990,
       104,
       22
      ],
      "text": "-5 to 5 N",
      "presentation": 1,
      "presentation_rect": [
-      464,
-      892,
+      576,
+      990,
       104,
       22
      ],
@@ -9384,13 +9722,13 @@
    },
    {
     "box": {
-     "id": "obj-444",
+     "id": "obj-460",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4640,
+      4956,
       77,
       22
      ],
@@ -9402,13 +9740,13 @@
    },
    {
     "box": {
-     "id": "obj-445",
+     "id": "obj-461",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4640,
+      4956,
       175,
       22
      ],
@@ -9421,13 +9759,13 @@
    },
    {
     "box": {
-     "id": "obj-446",
+     "id": "obj-462",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      4640,
+      4956,
       91,
       22
      ],
@@ -9439,13 +9777,13 @@
    },
    {
     "box": {
-     "id": "obj-447",
+     "id": "obj-463",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4670,
+      4986,
       112,
       22
      ],
@@ -9457,13 +9795,13 @@
    },
    {
     "box": {
-     "id": "obj-448",
+     "id": "obj-464",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4670,
+      4986,
       189,
       22
      ],
@@ -9475,13 +9813,13 @@
    },
    {
     "box": {
-     "id": "obj-449",
+     "id": "obj-465",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      4670,
+      4986,
       98,
       22
      ],
@@ -9491,13 +9829,13 @@
    },
    {
     "box": {
-     "id": "obj-450",
+     "id": "obj-466",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      576,
-      842,
+      688,
+      940,
       104,
       48
      ],
@@ -9507,8 +9845,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      576,
-      842,
+      688,
+      940,
       104,
       48
      ],
@@ -9529,21 +9867,21 @@
    },
    {
     "box": {
-     "id": "obj-451",
+     "id": "obj-467",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      576,
-      892,
+      688,
+      990,
       104,
       22
      ],
      "text": "0.05 to 0.9",
      "presentation": 1,
      "presentation_rect": [
-      576,
-      892,
+      688,
+      990,
       104,
       22
      ],
@@ -9553,13 +9891,13 @@
    },
    {
     "box": {
-     "id": "obj-452",
+     "id": "obj-468",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4700,
+      5016,
       77,
       22
      ],
@@ -9571,13 +9909,13 @@
    },
    {
     "box": {
-     "id": "obj-453",
+     "id": "obj-469",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4700,
+      5016,
       196,
       22
      ],
@@ -9590,13 +9928,13 @@
    },
    {
     "box": {
-     "id": "obj-454",
+     "id": "obj-470",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4700,
+      5016,
       91,
       22
      ],
@@ -9608,13 +9946,13 @@
    },
    {
     "box": {
-     "id": "obj-455",
+     "id": "obj-471",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4730,
+      5046,
       126,
       22
      ],
@@ -9626,13 +9964,13 @@
    },
    {
     "box": {
-     "id": "obj-456",
+     "id": "obj-472",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      4730,
+      5046,
       210,
       22
      ],
@@ -9644,13 +9982,13 @@
    },
    {
     "box": {
-     "id": "obj-457",
+     "id": "obj-473",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       400.0,
-      4730,
+      5046,
       98,
       22
      ],
@@ -9660,21 +9998,21 @@
    },
    {
     "box": {
-     "id": "obj-458",
+     "id": "obj-474",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      688,
-      820,
+      16,
+      1016,
       224,
       22
      ],
      "text": "string",
      "presentation": 1,
      "presentation_rect": [
-      688,
-      820,
+      16,
+      1016,
       224,
       22
      ],
@@ -9683,13 +10021,13 @@
    },
    {
     "box": {
-     "id": "obj-459",
+     "id": "obj-475",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      688,
-      842,
+      16,
+      1038,
       104,
       48
      ],
@@ -9699,8 +10037,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      688,
-      842,
+      16,
+      1038,
       104,
       48
      ],
@@ -9721,21 +10059,21 @@
    },
    {
     "box": {
-     "id": "obj-460",
+     "id": "obj-476",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      688,
-      892,
+      16,
+      1088,
       104,
       22
      ],
      "text": "-200 to 40 cents",
      "presentation": 1,
      "presentation_rect": [
-      688,
-      892,
+      16,
+      1088,
       104,
       22
      ],
@@ -9745,13 +10083,13 @@
    },
    {
     "box": {
-     "id": "obj-461",
+     "id": "obj-477",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4760,
+      5076,
       77,
       22
      ],
@@ -9763,13 +10101,13 @@
    },
    {
     "box": {
-     "id": "obj-462",
+     "id": "obj-478",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4760,
+      5076,
       231,
       22
      ],
@@ -9782,13 +10120,13 @@
    },
    {
     "box": {
-     "id": "obj-463",
+     "id": "obj-479",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       372.0,
-      4760,
+      5076,
       91,
       22
      ],
@@ -9800,13 +10138,13 @@
    },
    {
     "box": {
-     "id": "obj-464",
+     "id": "obj-480",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4790,
+      5106,
       112,
       22
      ],
@@ -9818,13 +10156,13 @@
    },
    {
     "box": {
-     "id": "obj-465",
+     "id": "obj-481",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4790,
+      5106,
       245,
       22
      ],
@@ -9836,13 +10174,13 @@
    },
    {
     "box": {
-     "id": "obj-466",
+     "id": "obj-482",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       421.0,
-      4790,
+      5106,
       98,
       22
      ],
@@ -9852,13 +10190,13 @@
    },
    {
     "box": {
-     "id": "obj-467",
+     "id": "obj-483",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      800,
-      842,
+      128,
+      1038,
       104,
       48
      ],
@@ -9868,8 +10206,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      800,
-      842,
+      128,
+      1038,
       104,
       48
      ],
@@ -9890,21 +10228,21 @@
    },
    {
     "box": {
-     "id": "obj-468",
+     "id": "obj-484",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      800,
-      892,
+      128,
+      1088,
       104,
       22
      ],
      "text": "0.25 to 4",
      "presentation": 1,
      "presentation_rect": [
-      800,
-      892,
+      128,
+      1088,
       104,
       22
      ],
@@ -9914,13 +10252,13 @@
    },
    {
     "box": {
-     "id": "obj-469",
+     "id": "obj-485",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4820,
+      5136,
       77,
       22
      ],
@@ -9932,13 +10270,13 @@
    },
    {
     "box": {
-     "id": "obj-470",
+     "id": "obj-486",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4820,
+      5136,
       217,
       22
      ],
@@ -9951,13 +10289,13 @@
    },
    {
     "box": {
-     "id": "obj-471",
+     "id": "obj-487",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4820,
+      5136,
       91,
       22
      ],
@@ -9969,13 +10307,13 @@
    },
    {
     "box": {
-     "id": "obj-472",
+     "id": "obj-488",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4850,
+      5166,
       112,
       22
      ],
@@ -9987,13 +10325,13 @@
    },
    {
     "box": {
-     "id": "obj-473",
+     "id": "obj-489",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4850,
+      5166,
       231,
       22
      ],
@@ -10005,13 +10343,13 @@
    },
    {
     "box": {
-     "id": "obj-474",
+     "id": "obj-490",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       407.0,
-      4850,
+      5166,
       98,
       22
      ],
@@ -10021,13 +10359,13 @@
    },
    {
     "box": {
-     "id": "obj-475",
+     "id": "obj-491",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      912,
-      842,
+      240,
+      1038,
       104,
       48
      ],
@@ -10037,8 +10375,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      912,
-      842,
+      240,
+      1038,
       104,
       48
      ],
@@ -10059,21 +10397,21 @@
    },
    {
     "box": {
-     "id": "obj-476",
+     "id": "obj-492",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      912,
-      892,
+      240,
+      1088,
       104,
       22
      ],
      "text": "-200 to 40 cents",
      "presentation": 1,
      "presentation_rect": [
-      912,
-      892,
+      240,
+      1088,
       104,
       22
      ],
@@ -10083,13 +10421,13 @@
    },
    {
     "box": {
-     "id": "obj-477",
+     "id": "obj-493",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4880,
+      5196,
       77,
       22
      ],
@@ -10101,13 +10439,13 @@
    },
    {
     "box": {
-     "id": "obj-478",
+     "id": "obj-494",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4880,
+      5196,
       231,
       22
      ],
@@ -10120,13 +10458,13 @@
    },
    {
     "box": {
-     "id": "obj-479",
+     "id": "obj-495",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       372.0,
-      4880,
+      5196,
       91,
       22
      ],
@@ -10138,13 +10476,13 @@
    },
    {
     "box": {
-     "id": "obj-480",
+     "id": "obj-496",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4910,
+      5226,
       112,
       22
      ],
@@ -10156,13 +10494,13 @@
    },
    {
     "box": {
-     "id": "obj-481",
+     "id": "obj-497",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4910,
+      5226,
       245,
       22
      ],
@@ -10174,13 +10512,13 @@
    },
    {
     "box": {
-     "id": "obj-482",
+     "id": "obj-498",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       421.0,
-      4910,
+      5226,
       98,
       22
      ],
@@ -10190,13 +10528,13 @@
    },
    {
     "box": {
-     "id": "obj-483",
+     "id": "obj-499",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1024,
-      842,
+      352,
+      1038,
       104,
       48
      ],
@@ -10206,8 +10544,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      1024,
-      842,
+      352,
+      1038,
       104,
       48
      ],
@@ -10228,21 +10566,21 @@
    },
    {
     "box": {
-     "id": "obj-484",
+     "id": "obj-500",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1024,
-      892,
+      352,
+      1088,
       104,
       22
      ],
      "text": "0.25 to 4",
      "presentation": 1,
      "presentation_rect": [
-      1024,
-      892,
+      352,
+      1088,
       104,
       22
      ],
@@ -10252,13 +10590,13 @@
    },
    {
     "box": {
-     "id": "obj-485",
+     "id": "obj-501",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4940,
+      5256,
       77,
       22
      ],
@@ -10270,13 +10608,13 @@
    },
    {
     "box": {
-     "id": "obj-486",
+     "id": "obj-502",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4940,
+      5256,
       217,
       22
      ],
@@ -10289,13 +10627,13 @@
    },
    {
     "box": {
-     "id": "obj-487",
+     "id": "obj-503",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4940,
+      5256,
       91,
       22
      ],
@@ -10307,13 +10645,13 @@
    },
    {
     "box": {
-     "id": "obj-488",
+     "id": "obj-504",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4970,
+      5286,
       112,
       22
      ],
@@ -10325,13 +10663,13 @@
    },
    {
     "box": {
-     "id": "obj-489",
+     "id": "obj-505",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4970,
+      5286,
       231,
       22
      ],
@@ -10343,13 +10681,13 @@
    },
    {
     "box": {
-     "id": "obj-490",
+     "id": "obj-506",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       407.0,
-      4970,
+      5286,
       98,
       22
      ],
@@ -10359,21 +10697,21 @@
    },
    {
     "box": {
-     "id": "obj-491",
+     "id": "obj-507",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      16,
-      918,
+      464,
+      1016,
       224,
       22
      ],
      "text": "output",
      "presentation": 1,
      "presentation_rect": [
-      16,
-      918,
+      464,
+      1016,
       224,
       22
      ],
@@ -10382,13 +10720,13 @@
    },
    {
     "box": {
-     "id": "obj-492",
+     "id": "obj-508",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      16,
-      940,
+      464,
+      1038,
       104,
       48
      ],
@@ -10398,8 +10736,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      16,
-      940,
+      464,
+      1038,
       104,
       48
      ],
@@ -10420,21 +10758,21 @@
    },
    {
     "box": {
-     "id": "obj-493",
+     "id": "obj-509",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      16,
-      990,
+      464,
+      1088,
       104,
       22
      ],
      "text": "-60 to 24 dB",
      "presentation": 1,
      "presentation_rect": [
-      16,
-      990,
+      464,
+      1088,
       104,
       22
      ],
@@ -10444,13 +10782,13 @@
    },
    {
     "box": {
-     "id": "obj-494",
+     "id": "obj-510",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5000,
+      5316,
       77,
       22
      ],
@@ -10462,13 +10800,13 @@
    },
    {
     "box": {
-     "id": "obj-495",
+     "id": "obj-511",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5000,
+      5316,
       175,
       22
      ],
@@ -10481,13 +10819,13 @@
    },
    {
     "box": {
-     "id": "obj-496",
+     "id": "obj-512",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      5000,
+      5316,
       91,
       22
      ],
@@ -10499,13 +10837,13 @@
    },
    {
     "box": {
-     "id": "obj-497",
+     "id": "obj-513",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5030,
+      5346,
       112,
       22
      ],
@@ -10517,13 +10855,13 @@
    },
    {
     "box": {
-     "id": "obj-498",
+     "id": "obj-514",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5030,
+      5346,
       189,
       22
      ],
@@ -10535,13 +10873,13 @@
    },
    {
     "box": {
-     "id": "obj-499",
+     "id": "obj-515",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      5030,
+      5346,
       98,
       22
      ],
@@ -10551,13 +10889,13 @@
    },
    {
     "box": {
-     "id": "obj-500",
+     "id": "obj-516",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      128,
-      940,
+      576,
+      1038,
       104,
       48
      ],
@@ -10567,8 +10905,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      128,
-      940,
+      576,
+      1038,
       104,
       48
      ],
@@ -10589,21 +10927,21 @@
    },
    {
     "box": {
-     "id": "obj-501",
+     "id": "obj-517",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      128,
-      990,
+      576,
+      1088,
       104,
       22
      ],
      "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      128,
-      990,
+      576,
+      1088,
       104,
       22
      ],
@@ -10613,13 +10951,13 @@
    },
    {
     "box": {
-     "id": "obj-502",
+     "id": "obj-518",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5060,
+      5376,
       77,
       22
      ],
@@ -10631,13 +10969,13 @@
    },
    {
     "box": {
-     "id": "obj-503",
+     "id": "obj-519",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5060,
+      5376,
       182,
       22
      ],
@@ -10650,13 +10988,13 @@
    },
    {
     "box": {
-     "id": "obj-504",
+     "id": "obj-520",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      5060,
+      5376,
       91,
       22
      ],
@@ -10668,13 +11006,13 @@
    },
    {
     "box": {
-     "id": "obj-505",
+     "id": "obj-521",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5090,
+      5406,
       112,
       22
      ],
@@ -10686,13 +11024,13 @@
    },
    {
     "box": {
-     "id": "obj-506",
+     "id": "obj-522",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5090,
+      5406,
       196,
       22
      ],
@@ -10704,13 +11042,13 @@
    },
    {
     "box": {
-     "id": "obj-507",
+     "id": "obj-523",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       372.0,
-      5090,
+      5406,
       98,
       22
      ],
@@ -10720,13 +11058,13 @@
    },
    {
     "box": {
-     "id": "obj-508",
+     "id": "obj-524",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      240,
-      940,
+      688,
+      1038,
       104,
       48
      ],
@@ -10736,8 +11074,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      240,
-      940,
+      688,
+      1038,
       104,
       48
      ],
@@ -10758,21 +11096,21 @@
    },
    {
     "box": {
-     "id": "obj-509",
+     "id": "obj-525",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      240,
-      990,
+      688,
+      1088,
       104,
       22
      ],
      "text": "-36 to 36 dB",
      "presentation": 1,
      "presentation_rect": [
-      240,
-      990,
+      688,
+      1088,
       104,
       22
      ],
@@ -10782,13 +11120,13 @@
    },
    {
     "box": {
-     "id": "obj-510",
+     "id": "obj-526",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5120,
+      5436,
       77,
       22
      ],
@@ -10800,13 +11138,13 @@
    },
    {
     "box": {
-     "id": "obj-511",
+     "id": "obj-527",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5120,
+      5436,
       196,
       22
      ],
@@ -10819,13 +11157,13 @@
    },
    {
     "box": {
-     "id": "obj-512",
+     "id": "obj-528",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      5120,
+      5436,
       91,
       22
      ],
@@ -10837,13 +11175,13 @@
    },
    {
     "box": {
-     "id": "obj-513",
+     "id": "obj-529",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5150,
+      5466,
       112,
       22
      ],
@@ -10855,13 +11193,13 @@
    },
    {
     "box": {
-     "id": "obj-514",
+     "id": "obj-530",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5150,
+      5466,
       210,
       22
      ],
@@ -10873,13 +11211,13 @@
    },
    {
     "box": {
-     "id": "obj-515",
+     "id": "obj-531",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      5150,
+      5466,
       98,
       22
      ],
@@ -10889,13 +11227,13 @@
    },
    {
     "box": {
-     "id": "obj-516",
+     "id": "obj-532",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      352,
-      940,
+      800,
+      1038,
       104,
       48
      ],
@@ -10905,8 +11243,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      352,
-      940,
+      800,
+      1038,
       104,
       48
      ],
@@ -10927,21 +11265,21 @@
    },
    {
     "box": {
-     "id": "obj-517",
+     "id": "obj-533",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      352,
-      990,
+      800,
+      1088,
       104,
       22
      ],
      "text": "-24 to 0 dB",
      "presentation": 1,
      "presentation_rect": [
-      352,
-      990,
+      800,
+      1088,
       104,
       22
      ],
@@ -10951,13 +11289,13 @@
    },
    {
     "box": {
-     "id": "obj-518",
+     "id": "obj-534",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5180,
+      5496,
       77,
       22
      ],
@@ -10969,13 +11307,13 @@
    },
    {
     "box": {
-     "id": "obj-519",
+     "id": "obj-535",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5180,
+      5496,
       196,
       22
      ],
@@ -10988,13 +11326,13 @@
    },
    {
     "box": {
-     "id": "obj-520",
+     "id": "obj-536",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      5180,
+      5496,
       91,
       22
      ],
@@ -11006,13 +11344,13 @@
    },
    {
     "box": {
-     "id": "obj-521",
+     "id": "obj-537",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5210,
+      5526,
       119,
       22
      ],
@@ -11024,13 +11362,13 @@
    },
    {
     "box": {
-     "id": "obj-522",
+     "id": "obj-538",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       159.0,
-      5210,
+      5526,
       210,
       22
      ],
@@ -11042,13 +11380,13 @@
    },
    {
     "box": {
-     "id": "obj-523",
+     "id": "obj-539",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      5210,
+      5526,
       98,
       22
      ],
@@ -11058,21 +11396,21 @@
    },
    {
     "box": {
-     "id": "obj-524",
+     "id": "obj-540",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      464,
-      918,
+      16,
+      1114,
       224,
       22
      ],
      "text": "body",
      "presentation": 1,
      "presentation_rect": [
-      464,
-      918,
+      16,
+      1114,
       224,
       22
      ],
@@ -11081,13 +11419,13 @@
    },
    {
     "box": {
-     "id": "obj-525",
+     "id": "obj-541",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      464,
-      940,
+      16,
+      1136,
       104,
       48
      ],
@@ -11097,8 +11435,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      464,
-      940,
+      16,
+      1136,
       104,
       48
      ],
@@ -11119,21 +11457,21 @@
    },
    {
     "box": {
-     "id": "obj-526",
+     "id": "obj-542",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      464,
-      990,
+      16,
+      1186,
       104,
       22
      ],
      "text": "-24 to 24 dB",
      "presentation": 1,
      "presentation_rect": [
-      464,
-      990,
+      16,
+      1186,
       104,
       22
      ],
@@ -11143,13 +11481,13 @@
    },
    {
     "box": {
-     "id": "obj-527",
+     "id": "obj-543",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5240,
+      5556,
       77,
       22
      ],
@@ -11161,13 +11499,13 @@
    },
    {
     "box": {
-     "id": "obj-528",
+     "id": "obj-544",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5240,
+      5556,
       161,
       22
      ],
@@ -11180,13 +11518,13 @@
    },
    {
     "box": {
-     "id": "obj-529",
+     "id": "obj-545",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      5240,
+      5556,
       91,
       22
      ],
@@ -11198,13 +11536,13 @@
    },
    {
     "box": {
-     "id": "obj-530",
+     "id": "obj-546",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5270,
+      5586,
       112,
       22
      ],
@@ -11216,13 +11554,13 @@
    },
    {
     "box": {
-     "id": "obj-531",
+     "id": "obj-547",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5270,
+      5586,
       175,
       22
      ],
@@ -11234,13 +11572,13 @@
    },
    {
     "box": {
-     "id": "obj-532",
+     "id": "obj-548",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       351.0,
-      5270,
+      5586,
       98,
       22
      ],
@@ -11250,13 +11588,13 @@
    },
    {
     "box": {
-     "id": "obj-533",
+     "id": "obj-549",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      576,
-      940,
+      128,
+      1136,
       104,
       48
      ],
@@ -11266,8 +11604,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      576,
-      940,
+      128,
+      1136,
       104,
       48
      ],
@@ -11288,21 +11626,21 @@
    },
    {
     "box": {
-     "id": "obj-534",
+     "id": "obj-550",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      576,
-      990,
+      128,
+      1186,
       104,
       22
      ],
      "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      576,
-      990,
+      128,
+      1186,
       104,
       22
      ],
@@ -11312,13 +11650,13 @@
    },
    {
     "box": {
-     "id": "obj-535",
+     "id": "obj-551",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5300,
+      5616,
       77,
       22
      ],
@@ -11330,13 +11668,13 @@
    },
    {
     "box": {
-     "id": "obj-536",
+     "id": "obj-552",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5300,
+      5616,
       168,
       22
      ],
@@ -11349,13 +11687,13 @@
    },
    {
     "box": {
-     "id": "obj-537",
+     "id": "obj-553",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      5300,
+      5616,
       91,
       22
      ],
@@ -11367,13 +11705,13 @@
    },
    {
     "box": {
-     "id": "obj-538",
+     "id": "obj-554",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5330,
+      5646,
       112,
       22
      ],
@@ -11385,13 +11723,13 @@
    },
    {
     "box": {
-     "id": "obj-539",
+     "id": "obj-555",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5330,
+      5646,
       182,
       22
      ],
@@ -11403,13 +11741,13 @@
    },
    {
     "box": {
-     "id": "obj-540",
+     "id": "obj-556",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       358.0,
-      5330,
+      5646,
       98,
       22
      ],
@@ -11419,13 +11757,13 @@
    },
    {
     "box": {
-     "id": "obj-541",
+     "id": "obj-557",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      688,
-      940,
+      240,
+      1136,
       104,
       48
      ],
@@ -11435,8 +11773,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      688,
-      940,
+      240,
+      1136,
       104,
       48
      ],
@@ -11457,21 +11795,21 @@
    },
    {
     "box": {
-     "id": "obj-542",
+     "id": "obj-558",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      688,
-      990,
+      240,
+      1186,
       104,
       22
      ],
      "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      688,
-      990,
+      240,
+      1186,
       104,
       22
      ],
@@ -11481,13 +11819,13 @@
    },
    {
     "box": {
-     "id": "obj-543",
+     "id": "obj-559",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5360,
+      5676,
       77,
       22
      ],
@@ -11499,13 +11837,13 @@
    },
    {
     "box": {
-     "id": "obj-544",
+     "id": "obj-560",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5360,
+      5676,
       168,
       22
      ],
@@ -11518,13 +11856,13 @@
    },
    {
     "box": {
-     "id": "obj-545",
+     "id": "obj-561",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      5360,
+      5676,
       91,
       22
      ],
@@ -11536,13 +11874,13 @@
    },
    {
     "box": {
-     "id": "obj-546",
+     "id": "obj-562",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5390,
+      5706,
       126,
       22
      ],
@@ -11554,13 +11892,13 @@
    },
    {
     "box": {
-     "id": "obj-547",
+     "id": "obj-563",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      5390,
+      5706,
       182,
       22
      ],
@@ -11572,13 +11910,13 @@
    },
    {
     "box": {
-     "id": "obj-548",
+     "id": "obj-564",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       372.0,
-      5390,
+      5706,
       98,
       22
      ],
@@ -11588,13 +11926,13 @@
    },
    {
     "box": {
-     "id": "obj-549",
+     "id": "obj-565",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      800,
-      940,
+      352,
+      1136,
       104,
       48
      ],
@@ -11604,8 +11942,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      800,
-      940,
+      352,
+      1136,
       104,
       48
      ],
@@ -11626,21 +11964,21 @@
    },
    {
     "box": {
-     "id": "obj-550",
+     "id": "obj-566",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      800,
-      990,
+      352,
+      1186,
       104,
       22
      ],
      "text": "-24 to 24 dB",
      "presentation": 1,
      "presentation_rect": [
-      800,
-      990,
+      352,
+      1186,
       104,
       22
      ],
@@ -11650,13 +11988,13 @@
    },
    {
     "box": {
-     "id": "obj-551",
+     "id": "obj-567",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5420,
+      5736,
       77,
       22
      ],
@@ -11668,13 +12006,13 @@
    },
    {
     "box": {
-     "id": "obj-552",
+     "id": "obj-568",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5420,
+      5736,
       203,
       22
      ],
@@ -11687,13 +12025,13 @@
    },
    {
     "box": {
-     "id": "obj-553",
+     "id": "obj-569",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       344.0,
-      5420,
+      5736,
       91,
       22
      ],
@@ -11705,13 +12043,13 @@
    },
    {
     "box": {
-     "id": "obj-554",
+     "id": "obj-570",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5450,
+      5766,
       112,
       22
      ],
@@ -11723,13 +12061,13 @@
    },
    {
     "box": {
-     "id": "obj-555",
+     "id": "obj-571",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5450,
+      5766,
       217,
       22
      ],
@@ -11741,13 +12079,13 @@
    },
    {
     "box": {
-     "id": "obj-556",
+     "id": "obj-572",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      5450,
+      5766,
       98,
       22
      ],
@@ -11757,13 +12095,13 @@
    },
    {
     "box": {
-     "id": "obj-557",
+     "id": "obj-573",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      912,
-      940,
+      464,
+      1136,
       104,
       48
      ],
@@ -11773,8 +12111,8 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      912,
-      940,
+      464,
+      1136,
       104,
       48
      ],
@@ -11795,21 +12133,21 @@
    },
    {
     "box": {
-     "id": "obj-558",
+     "id": "obj-574",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      912,
-      990,
+      464,
+      1186,
       104,
       22
      ],
      "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      912,
-      990,
+      464,
+      1186,
       104,
       22
      ],
@@ -11819,13 +12157,13 @@
    },
    {
     "box": {
-     "id": "obj-559",
+     "id": "obj-575",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5480,
+      5796,
       77,
       22
      ],
@@ -11837,13 +12175,13 @@
    },
    {
     "box": {
-     "id": "obj-560",
+     "id": "obj-576",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5480,
+      5796,
       189,
       22
      ],
@@ -11856,13 +12194,13 @@
    },
    {
     "box": {
-     "id": "obj-561",
+     "id": "obj-577",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      5480,
+      5796,
       91,
       22
      ],
@@ -11874,13 +12212,13 @@
    },
    {
     "box": {
-     "id": "obj-562",
+     "id": "obj-578",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5510,
+      5826,
       126,
       22
      ],
@@ -11892,13 +12230,13 @@
    },
    {
     "box": {
-     "id": "obj-563",
+     "id": "obj-579",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      5510,
+      5826,
       203,
       22
      ],
@@ -11910,13 +12248,13 @@
    },
    {
     "box": {
-     "id": "obj-564",
+     "id": "obj-580",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      5510,
+      5826,
       98,
       22
      ],
@@ -11926,13 +12264,13 @@
    },
    {
     "box": {
-     "id": "obj-565",
+     "id": "obj-581",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      1016,
+      1212,
       224,
       22
      ],
@@ -11940,7 +12278,7 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      1016,
+      1212,
       224,
       22
      ],
@@ -11949,13 +12287,13 @@
    },
    {
     "box": {
-     "id": "obj-566",
+     "id": "obj-582",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       16,
-      1038,
+      1234,
       104,
       48
      ],
@@ -11966,7 +12304,7 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      1038,
+      1234,
       104,
       48
      ],
@@ -11987,13 +12325,13 @@
    },
    {
     "box": {
-     "id": "obj-567",
+     "id": "obj-583",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12001,7 +12339,7 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12011,13 +12349,13 @@
    },
    {
     "box": {
-     "id": "obj-568",
+     "id": "obj-584",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5540,
+      5856,
       77,
       22
      ],
@@ -12029,13 +12367,13 @@
    },
    {
     "box": {
-     "id": "obj-569",
+     "id": "obj-585",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5540,
+      5856,
       161,
       22
      ],
@@ -12048,13 +12386,13 @@
    },
    {
     "box": {
-     "id": "obj-570",
+     "id": "obj-586",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      5540,
+      5856,
       91,
       22
      ],
@@ -12066,13 +12404,13 @@
    },
    {
     "box": {
-     "id": "obj-571",
+     "id": "obj-587",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5570,
+      5886,
       112,
       22
      ],
@@ -12084,13 +12422,13 @@
    },
    {
     "box": {
-     "id": "obj-572",
+     "id": "obj-588",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5570,
+      5886,
       175,
       22
      ],
@@ -12102,13 +12440,13 @@
    },
    {
     "box": {
-     "id": "obj-573",
+     "id": "obj-589",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       351.0,
-      5570,
+      5886,
       98,
       22
      ],
@@ -12118,13 +12456,13 @@
    },
    {
     "box": {
-     "id": "obj-574",
+     "id": "obj-590",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       128,
-      1038,
+      1234,
       104,
       48
      ],
@@ -12135,7 +12473,7 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      1038,
+      1234,
       104,
       48
      ],
@@ -12156,13 +12494,13 @@
    },
    {
     "box": {
-     "id": "obj-575",
+     "id": "obj-591",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       128,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12170,7 +12508,7 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12180,13 +12518,13 @@
    },
    {
     "box": {
-     "id": "obj-576",
+     "id": "obj-592",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5600,
+      5916,
       77,
       22
      ],
@@ -12198,13 +12536,13 @@
    },
    {
     "box": {
-     "id": "obj-577",
+     "id": "obj-593",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5600,
+      5916,
       168,
       22
      ],
@@ -12217,13 +12555,13 @@
    },
    {
     "box": {
-     "id": "obj-578",
+     "id": "obj-594",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      5600,
+      5916,
       91,
       22
      ],
@@ -12235,13 +12573,13 @@
    },
    {
     "box": {
-     "id": "obj-579",
+     "id": "obj-595",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5630,
+      5946,
       126,
       22
      ],
@@ -12253,13 +12591,13 @@
    },
    {
     "box": {
-     "id": "obj-580",
+     "id": "obj-596",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      5630,
+      5946,
       182,
       22
      ],
@@ -12271,13 +12609,13 @@
    },
    {
     "box": {
-     "id": "obj-581",
+     "id": "obj-597",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       372.0,
-      5630,
+      5946,
       98,
       22
      ],
@@ -12287,13 +12625,13 @@
    },
    {
     "box": {
-     "id": "obj-582",
+     "id": "obj-598",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       240,
-      1038,
+      1234,
       104,
       48
      ],
@@ -12304,7 +12642,7 @@
      "presentation": 1,
      "presentation_rect": [
       240,
-      1038,
+      1234,
       104,
       48
      ],
@@ -12325,13 +12663,13 @@
    },
    {
     "box": {
-     "id": "obj-583",
+     "id": "obj-599",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       240,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12339,7 +12677,7 @@
      "presentation": 1,
      "presentation_rect": [
       240,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12349,13 +12687,13 @@
    },
    {
     "box": {
-     "id": "obj-584",
+     "id": "obj-600",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5660,
+      5976,
       77,
       22
      ],
@@ -12367,13 +12705,13 @@
    },
    {
     "box": {
-     "id": "obj-585",
+     "id": "obj-601",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5660,
+      5976,
       182,
       22
      ],
@@ -12386,13 +12724,13 @@
    },
    {
     "box": {
-     "id": "obj-586",
+     "id": "obj-602",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      5660,
+      5976,
       91,
       22
      ],
@@ -12404,13 +12742,13 @@
    },
    {
     "box": {
-     "id": "obj-587",
+     "id": "obj-603",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5690,
+      6006,
       126,
       22
      ],
@@ -12422,13 +12760,13 @@
    },
    {
     "box": {
-     "id": "obj-588",
+     "id": "obj-604",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      5690,
+      6006,
       196,
       22
      ],
@@ -12440,13 +12778,13 @@
    },
    {
     "box": {
-     "id": "obj-589",
+     "id": "obj-605",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      5690,
+      6006,
       98,
       22
      ],
@@ -12456,13 +12794,13 @@
    },
    {
     "box": {
-     "id": "obj-590",
+     "id": "obj-606",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       352,
-      1038,
+      1234,
       104,
       48
      ],
@@ -12473,7 +12811,7 @@
      "presentation": 1,
      "presentation_rect": [
       352,
-      1038,
+      1234,
       104,
       48
      ],
@@ -12494,13 +12832,13 @@
    },
    {
     "box": {
-     "id": "obj-591",
+     "id": "obj-607",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       352,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12508,7 +12846,7 @@
      "presentation": 1,
      "presentation_rect": [
       352,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12518,13 +12856,13 @@
    },
    {
     "box": {
-     "id": "obj-592",
+     "id": "obj-608",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5720,
+      6036,
       77,
       22
      ],
@@ -12536,13 +12874,13 @@
    },
    {
     "box": {
-     "id": "obj-593",
+     "id": "obj-609",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5720,
+      6036,
       168,
       22
      ],
@@ -12555,13 +12893,13 @@
    },
    {
     "box": {
-     "id": "obj-594",
+     "id": "obj-610",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      5720,
+      6036,
       91,
       22
      ],
@@ -12573,13 +12911,13 @@
    },
    {
     "box": {
-     "id": "obj-595",
+     "id": "obj-611",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5750,
+      6066,
       133,
       22
      ],
@@ -12591,13 +12929,13 @@
    },
    {
     "box": {
-     "id": "obj-596",
+     "id": "obj-612",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      5750,
+      6066,
       182,
       22
      ],
@@ -12609,13 +12947,13 @@
    },
    {
     "box": {
-     "id": "obj-597",
+     "id": "obj-613",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      5750,
+      6066,
       98,
       22
      ],
@@ -12625,13 +12963,13 @@
    },
    {
     "box": {
-     "id": "obj-598",
+     "id": "obj-614",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       464,
-      1038,
+      1234,
       104,
       48
      ],
@@ -12642,7 +12980,7 @@
      "presentation": 1,
      "presentation_rect": [
       464,
-      1038,
+      1234,
       104,
       48
      ],
@@ -12663,13 +13001,13 @@
    },
    {
     "box": {
-     "id": "obj-599",
+     "id": "obj-615",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       464,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12677,7 +13015,7 @@
      "presentation": 1,
      "presentation_rect": [
       464,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12687,13 +13025,13 @@
    },
    {
     "box": {
-     "id": "obj-600",
+     "id": "obj-616",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5780,
+      6096,
       77,
       22
      ],
@@ -12705,13 +13043,13 @@
    },
    {
     "box": {
-     "id": "obj-601",
+     "id": "obj-617",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5780,
+      6096,
       189,
       22
      ],
@@ -12724,13 +13062,13 @@
    },
    {
     "box": {
-     "id": "obj-602",
+     "id": "obj-618",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      5780,
+      6096,
       91,
       22
      ],
@@ -12742,13 +13080,13 @@
    },
    {
     "box": {
-     "id": "obj-603",
+     "id": "obj-619",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5810,
+      6126,
       112,
       22
      ],
@@ -12760,13 +13098,13 @@
    },
    {
     "box": {
-     "id": "obj-604",
+     "id": "obj-620",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5810,
+      6126,
       203,
       22
      ],
@@ -12778,13 +13116,13 @@
    },
    {
     "box": {
-     "id": "obj-605",
+     "id": "obj-621",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      5810,
+      6126,
       98,
       22
      ],
@@ -12794,13 +13132,13 @@
    },
    {
     "box": {
-     "id": "obj-606",
+     "id": "obj-622",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       576,
-      1038,
+      1234,
       104,
       48
      ],
@@ -12811,7 +13149,7 @@
      "presentation": 1,
      "presentation_rect": [
       576,
-      1038,
+      1234,
       104,
       48
      ],
@@ -12832,13 +13170,13 @@
    },
    {
     "box": {
-     "id": "obj-607",
+     "id": "obj-623",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       576,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12846,7 +13184,7 @@
      "presentation": 1,
      "presentation_rect": [
       576,
-      1088,
+      1284,
       104,
       22
      ],
@@ -12856,13 +13194,13 @@
    },
    {
     "box": {
-     "id": "obj-608",
+     "id": "obj-624",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5840,
+      6156,
       77,
       22
      ],
@@ -12874,13 +13212,13 @@
    },
    {
     "box": {
-     "id": "obj-609",
+     "id": "obj-625",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5840,
+      6156,
       154,
       22
      ],
@@ -12893,13 +13231,13 @@
    },
    {
     "box": {
-     "id": "obj-610",
+     "id": "obj-626",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       295.0,
-      5840,
+      6156,
       91,
       22
      ],
@@ -12911,13 +13249,13 @@
    },
    {
     "box": {
-     "id": "obj-611",
+     "id": "obj-627",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5870,
+      6186,
       112,
       22
      ],
@@ -12929,13 +13267,13 @@
    },
    {
     "box": {
-     "id": "obj-612",
+     "id": "obj-628",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5870,
+      6186,
       168,
       22
      ],
@@ -12947,13 +13285,13 @@
    },
    {
     "box": {
-     "id": "obj-613",
+     "id": "obj-629",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       344.0,
-      5870,
+      6186,
       98,
       22
      ],
@@ -12963,13 +13301,13 @@
    },
    {
     "box": {
-     "id": "obj-614",
+     "id": "obj-630",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       688,
-      1016,
+      1212,
       224,
       22
      ],
@@ -12977,7 +13315,7 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      1016,
+      1212,
       224,
       22
      ],
@@ -12986,13 +13324,13 @@
    },
    {
     "box": {
-     "id": "obj-615",
+     "id": "obj-631",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       688,
-      1038,
+      1234,
       104,
       48
      ],
@@ -13003,7 +13341,7 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      1038,
+      1234,
       104,
       48
      ],
@@ -13024,13 +13362,13 @@
    },
    {
     "box": {
-     "id": "obj-616",
+     "id": "obj-632",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       688,
-      1088,
+      1284,
       104,
       22
      ],
@@ -13038,7 +13376,7 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      1088,
+      1284,
       104,
       22
      ],
@@ -13048,13 +13386,13 @@
    },
    {
     "box": {
-     "id": "obj-617",
+     "id": "obj-633",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5900,
+      6216,
       77,
       22
      ],
@@ -13066,13 +13404,13 @@
    },
    {
     "box": {
-     "id": "obj-618",
+     "id": "obj-634",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5900,
+      6216,
       224,
       22
      ],
@@ -13085,13 +13423,13 @@
    },
    {
     "box": {
-     "id": "obj-619",
+     "id": "obj-635",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       365.0,
-      5900,
+      6216,
       91,
       22
      ],
@@ -13103,13 +13441,13 @@
    },
    {
     "box": {
-     "id": "obj-620",
+     "id": "obj-636",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5930,
+      6246,
       112,
       22
      ],
@@ -13121,13 +13459,13 @@
    },
    {
     "box": {
-     "id": "obj-621",
+     "id": "obj-637",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5930,
+      6246,
       238,
       22
      ],
@@ -13139,13 +13477,13 @@
    },
    {
     "box": {
-     "id": "obj-622",
+     "id": "obj-638",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       414.0,
-      5930,
+      6246,
       98,
       22
      ],
@@ -13155,13 +13493,13 @@
    },
    {
     "box": {
-     "id": "obj-623",
+     "id": "obj-639",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       800,
-      1038,
+      1234,
       104,
       48
      ],
@@ -13172,7 +13510,7 @@
      "presentation": 1,
      "presentation_rect": [
       800,
-      1038,
+      1234,
       104,
       48
      ],
@@ -13193,13 +13531,13 @@
    },
    {
     "box": {
-     "id": "obj-624",
+     "id": "obj-640",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       800,
-      1088,
+      1284,
       104,
       22
      ],
@@ -13207,7 +13545,7 @@
      "presentation": 1,
      "presentation_rect": [
       800,
-      1088,
+      1284,
       104,
       22
      ],
@@ -13217,13 +13555,13 @@
    },
    {
     "box": {
-     "id": "obj-625",
+     "id": "obj-641",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5960,
+      6276,
       77,
       22
      ],
@@ -13235,13 +13573,13 @@
    },
    {
     "box": {
-     "id": "obj-626",
+     "id": "obj-642",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5960,
+      6276,
       175,
       22
      ],
@@ -13254,13 +13592,13 @@
    },
    {
     "box": {
-     "id": "obj-627",
+     "id": "obj-643",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      5960,
+      6276,
       91,
       22
      ],
@@ -13272,13 +13610,13 @@
    },
    {
     "box": {
-     "id": "obj-628",
+     "id": "obj-644",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5990,
+      6306,
       112,
       22
      ],
@@ -13290,13 +13628,13 @@
    },
    {
     "box": {
-     "id": "obj-629",
+     "id": "obj-645",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5990,
+      6306,
       189,
       22
      ],
@@ -13308,13 +13646,13 @@
    },
    {
     "box": {
-     "id": "obj-630",
+     "id": "obj-646",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      5990,
+      6306,
       98,
       22
      ],
@@ -16148,6 +16486,19 @@
    {
     "patchline": {
      "source": [
+      "obj-280",
+      0
+     ],
+     "destination": [
+      "obj-281",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-281",
       0
      ],
@@ -16165,7 +16516,7 @@
       0
      ],
      "destination": [
-      "obj-283",
+      "obj-278",
       0
      ],
      "order": 0
@@ -16178,7 +16529,20 @@
       0
      ],
      "destination": [
-      "obj-279",
+      "obj-278",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-278",
+      0
+     ],
+     "destination": [
+      "obj-284",
       0
      ],
      "order": 0
@@ -16191,33 +16555,7 @@
       0
      ],
      "destination": [
-      "obj-279",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-279",
-      0
-     ],
-     "destination": [
       "obj-285",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-285",
-      0
-     ],
-     "destination": [
-      "obj-286",
       0
      ],
      "order": 0
@@ -16772,6 +17110,19 @@
    {
     "patchline": {
      "source": [
+      "obj-345",
+      0
+     ],
+     "destination": [
+      "obj-346",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-346",
       0
      ],
@@ -16789,7 +17140,7 @@
       0
      ],
      "destination": [
-      "obj-348",
+      "obj-343",
       0
      ],
      "order": 0
@@ -16802,7 +17153,20 @@
       0
      ],
      "destination": [
-      "obj-344",
+      "obj-343",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-343",
+      0
+     ],
+     "destination": [
+      "obj-349",
       0
      ],
      "order": 0
@@ -16815,33 +17179,7 @@
       0
      ],
      "destination": [
-      "obj-344",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-344",
-      0
-     ],
-     "destination": [
       "obj-350",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-350",
-      0
-     ],
-     "destination": [
-      "obj-351",
       0
      ],
      "order": 0
@@ -17396,6 +17734,19 @@
    {
     "patchline": {
      "source": [
+      "obj-410",
+      0
+     ],
+     "destination": [
+      "obj-411",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-411",
       0
      ],
@@ -17413,7 +17764,7 @@
       0
      ],
      "destination": [
-      "obj-413",
+      "obj-408",
       0
      ],
      "order": 0
@@ -17426,7 +17777,20 @@
       0
      ],
      "destination": [
-      "obj-409",
+      "obj-408",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-408",
+      0
+     ],
+     "destination": [
+      "obj-414",
       0
      ],
      "order": 0
@@ -17439,33 +17803,7 @@
       0
      ],
      "destination": [
-      "obj-409",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-409",
-      0
-     ],
-     "destination": [
       "obj-415",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-415",
-      0
-     ],
-     "destination": [
-      "obj-416",
       0
      ],
      "order": 0
@@ -17708,6 +18046,19 @@
    {
     "patchline": {
      "source": [
+      "obj-443",
+      0
+     ],
+     "destination": [
+      "obj-444",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-444",
       0
      ],
@@ -17725,7 +18076,7 @@
       0
      ],
      "destination": [
-      "obj-446",
+      "obj-441",
       0
      ],
      "order": 0
@@ -17738,7 +18089,20 @@
       0
      ],
      "destination": [
-      "obj-442",
+      "obj-441",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-441",
+      0
+     ],
+     "destination": [
+      "obj-447",
       0
      ],
      "order": 0
@@ -17751,19 +18115,6 @@
       0
      ],
      "destination": [
-      "obj-442",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-442",
-      0
-     ],
-     "destination": [
       "obj-448",
       0
      ],
@@ -17773,11 +18124,11 @@
    {
     "patchline": {
      "source": [
-      "obj-448",
+      "obj-451",
       0
      ],
      "destination": [
-      "obj-449",
+      "obj-452",
       0
      ],
      "order": 0
@@ -17803,7 +18154,7 @@
       0
      ],
      "destination": [
-      "obj-454",
+      "obj-449",
       0
      ],
      "order": 0
@@ -17816,7 +18167,20 @@
       0
      ],
      "destination": [
-      "obj-450",
+      "obj-449",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-449",
+      0
+     ],
+     "destination": [
+      "obj-455",
       0
      ],
      "order": 0
@@ -17829,19 +18193,6 @@
       0
      ],
      "destination": [
-      "obj-450",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-450",
-      0
-     ],
-     "destination": [
       "obj-456",
       0
      ],
@@ -17851,11 +18202,11 @@
    {
     "patchline": {
      "source": [
-      "obj-456",
+      "obj-460",
       0
      ],
      "destination": [
-      "obj-457",
+      "obj-461",
       0
      ],
      "order": 0
@@ -17881,7 +18232,7 @@
       0
      ],
      "destination": [
-      "obj-463",
+      "obj-458",
       0
      ],
      "order": 0
@@ -17894,7 +18245,20 @@
       0
      ],
      "destination": [
-      "obj-459",
+      "obj-458",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-458",
+      0
+     ],
+     "destination": [
+      "obj-464",
       0
      ],
      "order": 0
@@ -17907,19 +18271,6 @@
       0
      ],
      "destination": [
-      "obj-459",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-459",
-      0
-     ],
-     "destination": [
       "obj-465",
       0
      ],
@@ -17929,11 +18280,11 @@
    {
     "patchline": {
      "source": [
-      "obj-465",
+      "obj-468",
       0
      ],
      "destination": [
-      "obj-466",
+      "obj-469",
       0
      ],
      "order": 0
@@ -17959,7 +18310,7 @@
       0
      ],
      "destination": [
-      "obj-471",
+      "obj-466",
       0
      ],
      "order": 0
@@ -17972,7 +18323,20 @@
       0
      ],
      "destination": [
-      "obj-467",
+      "obj-466",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-466",
+      0
+     ],
+     "destination": [
+      "obj-472",
       0
      ],
      "order": 0
@@ -17985,33 +18349,7 @@
       0
      ],
      "destination": [
-      "obj-467",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-467",
-      0
-     ],
-     "destination": [
       "obj-473",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-473",
-      0
-     ],
-     "destination": [
-      "obj-474",
       0
      ],
      "order": 0
@@ -18176,6 +18514,19 @@
    {
     "patchline": {
      "source": [
+      "obj-493",
+      0
+     ],
+     "destination": [
+      "obj-494",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-494",
       0
      ],
@@ -18193,7 +18544,7 @@
       0
      ],
      "destination": [
-      "obj-496",
+      "obj-491",
       0
      ],
      "order": 0
@@ -18206,7 +18557,20 @@
       0
      ],
      "destination": [
-      "obj-492",
+      "obj-491",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-491",
+      0
+     ],
+     "destination": [
+      "obj-497",
       0
      ],
      "order": 0
@@ -18219,19 +18583,6 @@
       0
      ],
      "destination": [
-      "obj-492",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-492",
-      0
-     ],
-     "destination": [
       "obj-498",
       0
      ],
@@ -18241,11 +18592,11 @@
    {
     "patchline": {
      "source": [
-      "obj-498",
+      "obj-501",
       0
      ],
      "destination": [
-      "obj-499",
+      "obj-502",
       0
      ],
      "order": 0
@@ -18271,7 +18622,7 @@
       0
      ],
      "destination": [
-      "obj-504",
+      "obj-499",
       0
      ],
      "order": 0
@@ -18284,7 +18635,20 @@
       0
      ],
      "destination": [
-      "obj-500",
+      "obj-499",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-499",
+      0
+     ],
+     "destination": [
+      "obj-505",
       0
      ],
      "order": 0
@@ -18297,33 +18661,7 @@
       0
      ],
      "destination": [
-      "obj-500",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-500",
-      0
-     ],
-     "destination": [
       "obj-506",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-506",
-      0
-     ],
-     "destination": [
-      "obj-507",
       0
      ],
      "order": 0
@@ -18488,6 +18826,19 @@
    {
     "patchline": {
      "source": [
+      "obj-526",
+      0
+     ],
+     "destination": [
+      "obj-527",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-527",
       0
      ],
@@ -18505,7 +18856,7 @@
       0
      ],
      "destination": [
-      "obj-529",
+      "obj-524",
       0
      ],
      "order": 0
@@ -18518,7 +18869,20 @@
       0
      ],
      "destination": [
-      "obj-525",
+      "obj-524",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-524",
+      0
+     ],
+     "destination": [
+      "obj-530",
       0
      ],
      "order": 0
@@ -18531,19 +18895,6 @@
       0
      ],
      "destination": [
-      "obj-525",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-525",
-      0
-     ],
-     "destination": [
       "obj-531",
       0
      ],
@@ -18553,11 +18904,11 @@
    {
     "patchline": {
      "source": [
-      "obj-531",
+      "obj-534",
       0
      ],
      "destination": [
-      "obj-532",
+      "obj-535",
       0
      ],
      "order": 0
@@ -18583,7 +18934,7 @@
       0
      ],
      "destination": [
-      "obj-537",
+      "obj-532",
       0
      ],
      "order": 0
@@ -18596,7 +18947,20 @@
       0
      ],
      "destination": [
-      "obj-533",
+      "obj-532",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-532",
+      0
+     ],
+     "destination": [
+      "obj-538",
       0
      ],
      "order": 0
@@ -18609,33 +18973,7 @@
       0
      ],
      "destination": [
-      "obj-533",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-533",
-      0
-     ],
-     "destination": [
       "obj-539",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-539",
-      0
-     ],
-     "destination": [
-      "obj-540",
       0
      ],
      "order": 0
@@ -18878,6 +19216,19 @@
    {
     "patchline": {
      "source": [
+      "obj-567",
+      0
+     ],
+     "destination": [
+      "obj-568",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-568",
       0
      ],
@@ -18895,7 +19246,7 @@
       0
      ],
      "destination": [
-      "obj-570",
+      "obj-565",
       0
      ],
      "order": 0
@@ -18908,7 +19259,20 @@
       0
      ],
      "destination": [
-      "obj-566",
+      "obj-565",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-565",
+      0
+     ],
+     "destination": [
+      "obj-571",
       0
      ],
      "order": 0
@@ -18921,19 +19285,6 @@
       0
      ],
      "destination": [
-      "obj-566",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-566",
-      0
-     ],
-     "destination": [
       "obj-572",
       0
      ],
@@ -18943,11 +19294,11 @@
    {
     "patchline": {
      "source": [
-      "obj-572",
+      "obj-575",
       0
      ],
      "destination": [
-      "obj-573",
+      "obj-576",
       0
      ],
      "order": 0
@@ -18973,7 +19324,7 @@
       0
      ],
      "destination": [
-      "obj-578",
+      "obj-573",
       0
      ],
      "order": 0
@@ -18986,7 +19337,20 @@
       0
      ],
      "destination": [
-      "obj-574",
+      "obj-573",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-573",
+      0
+     ],
+     "destination": [
+      "obj-579",
       0
      ],
      "order": 0
@@ -18999,33 +19363,7 @@
       0
      ],
      "destination": [
-      "obj-574",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-574",
-      0
-     ],
-     "destination": [
       "obj-580",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-580",
-      0
-     ],
-     "destination": [
-      "obj-581",
       0
      ],
      "order": 0
@@ -19346,6 +19684,19 @@
    {
     "patchline": {
      "source": [
+      "obj-616",
+      0
+     ],
+     "destination": [
+      "obj-617",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-617",
       0
      ],
@@ -19363,7 +19714,7 @@
       0
      ],
      "destination": [
-      "obj-619",
+      "obj-614",
       0
      ],
      "order": 0
@@ -19376,7 +19727,20 @@
       0
      ],
      "destination": [
-      "obj-615",
+      "obj-614",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-614",
+      0
+     ],
+     "destination": [
+      "obj-620",
       0
      ],
      "order": 0
@@ -19389,19 +19753,6 @@
       0
      ],
      "destination": [
-      "obj-615",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-615",
-      0
-     ],
-     "destination": [
       "obj-621",
       0
      ],
@@ -19411,11 +19762,11 @@
    {
     "patchline": {
      "source": [
-      "obj-621",
+      "obj-624",
       0
      ],
      "destination": [
-      "obj-622",
+      "obj-625",
       0
      ],
      "order": 0
@@ -19441,7 +19792,7 @@
       0
      ],
      "destination": [
-      "obj-627",
+      "obj-622",
       0
      ],
      "order": 0
@@ -19454,7 +19805,20 @@
       0
      ],
      "destination": [
-      "obj-623",
+      "obj-622",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-622",
+      0
+     ],
+     "destination": [
+      "obj-628",
       0
      ],
      "order": 0
@@ -19467,19 +19831,6 @@
       0
      ],
      "destination": [
-      "obj-623",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-623",
-      0
-     ],
-     "destination": [
       "obj-629",
       0
      ],
@@ -19489,11 +19840,154 @@
    {
     "patchline": {
      "source": [
-      "obj-629",
+      "obj-633",
       0
      ],
      "destination": [
-      "obj-630",
+      "obj-634",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-634",
+      0
+     ],
+     "destination": [
+      "obj-635",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-635",
+      0
+     ],
+     "destination": [
+      "obj-631",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-636",
+      0
+     ],
+     "destination": [
+      "obj-631",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-631",
+      0
+     ],
+     "destination": [
+      "obj-637",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-637",
+      0
+     ],
+     "destination": [
+      "obj-638",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-641",
+      0
+     ],
+     "destination": [
+      "obj-642",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-642",
+      0
+     ],
+     "destination": [
+      "obj-643",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-643",
+      0
+     ],
+     "destination": [
+      "obj-639",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-644",
+      0
+     ],
+     "destination": [
+      "obj-639",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-639",
+      0
+     ],
+     "destination": [
+      "obj-645",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-645",
+      0
+     ],
+     "destination": [
+      "obj-646",
       0
      ],
      "order": 0

@@ -23,8 +23,10 @@ import numpy as np
 from yehu_server.core.physics import layout
 from yehu_server.core.physics.power import TABLES as POWER_TABLES
 from yehu_server.live.osc.status import PART_STATUS, STATUS
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE
+from yehu_server.playing.mapping import load
 from yehu_server.scores.gesture import CONTROLS
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -75,6 +77,30 @@ def parameters(place: Place) -> str:
             if row.place is place
         ),
     )
+
+
+def articulations() -> str:
+    """The table of articulations, with the keys of the mapping that has key switches."""
+    first = load("keyboard-articulations").key_switches or 0
+    return table(
+        "number, key, name, 中文, what both hands do, from",
+        (
+            [
+                str(number),
+                name_of(first + number),
+                f"`{row.name}`",
+                row.chinese,
+                row.about,
+                row.source,
+            ]
+            for number, row in enumerate(ARTICULATIONS)
+        ),
+    )
+
+
+def name_of(key: int) -> str:
+    """The name of a key (MIDI note); 60 is C4."""
+    return f"{['C', 'C♯', 'D', 'D♯', 'E', 'F', 'F♯', 'G', 'G♯', 'A', 'A♯', 'B'][key % 12]}{key // 12 - 1}"
 
 
 def measured(name: str) -> dict[str, Any]:
@@ -136,6 +162,7 @@ MADE: dict[str, Callable[[], str]] = {
     "status-of-a-part": lambda: table(
         "of a part, what", ([f"`{row.name}`", row.doc] for row in PART_STATUS)
     ),
+    "articulations": articulations,
     "ratios": ratios,
     "kernels": kernels,
     "budget": budget,

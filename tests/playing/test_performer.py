@@ -175,15 +175,12 @@ def test_a_finger_lands_before_the_one_before_it_leaves(player, listener):
     assert landing.ramp_ms < lifting.ramp_ms
 
 
-def test_with_portamento_the_finger_slides_in_its_time(player, listener):
+def test_a_portamento_begins_where_the_finger_is(player, listener):
     player.write("/playing/portamento", 1.0)
-    player.write("/playing/portamento_time", 70.0)
     player.note_on(key(66))
     player.note_on(key(68))
-    first, second = listener.of("/finger/1/position")
-    assert first.ramp_ms == 0.0
-    assert second.ramp_ms == 70.0
-    assert listener.where() == ("F", 3)
+    assert listener.finger == 1
+    assert listener.where() == ("F", 1)
 
 
 def test_the_same_place_on_the_other_string_takes_the_same_finger(player, listener):

@@ -54,6 +54,7 @@ FIELDS = {
     "same": (ANY, -1e307, 1e307),
     "x": (ANY, 0, 1),
     "y": (ANY, 0, 1),
+    "first_switch": (WHOLE_OR_NONE, 0, KEYS - 1),
     "starts": (WHOLE, 0, ROWS),
     "start_row": (WHOLE, 0, ROWS - 1),
     "start_value": (ANY, -MOST, MOST),

@@ -202,6 +202,7 @@ def _fields(mapping: Mapping) -> dict[str, Any]:
         "name": mapping.name,
         "about": mapping.about,
         "mpe": mapping.mpe,
+        **({} if mapping.key_switches is None else {"key_switches": mapping.key_switches}),
         "start": dict(mapping.start),
         "bind": [_bind_fields(bind) for bind in mapping.binds],
     }

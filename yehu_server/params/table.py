@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from yehu_server.errors import ParameterError, did_you_mean
+from yehu_server.params.articulations import LAST
 from yehu_server.params.spec import Curve, Param, Place
 
 PREFIX = "/yehu"  # before every address, in OSC and OSCQuery
@@ -62,6 +63,9 @@ TABLE: tuple[Param, ...] = (
         "Depth of the vibrato to either side, of all fingers that are down.", smooth_ms=20.0),
     _owned("/vibrato/press", "", "1", 0.0, 1.0, 0.0,
         "Variation of the finger force with the vibrato, as a fraction of it.", smooth_ms=20.0),
+    _owned("/vibrato/upward", "", "1", 0.0, 1.0, 0.0,
+        "0: the vibrato goes to both sides of the pitch; 1: only up from it, twice as far.",
+        smooth_ms=20.0),
     _owned("/vibrato/rate", "", "Hz", 0.5, 12.0, 5.5,
         "Rate of the vibrato.", smooth_ms=20.0),
     _owned("/vibrato/onset", "", "1", 0.0, 1.0, 1.0,
@@ -131,6 +135,9 @@ TABLE: tuple[Param, ...] = (
         "Tremolo: strokes a second, back and forth; 0: one stroke a note."),
     Param("/playing/pizzicato", "", "1", 0.0, 1.0, 0.0,
         "From 0.5 up notes are plucked, harder with more /playing/pressure.", is_choice=True),
+    Param("/playing/articulation", "", "1", 0.0, float(LAST), 0.0,
+        "What both hands do in the notes that begin, such as spiccato, a slide or a trill: a "
+        "number of docs/articulations.md; 0: ordinary.", is_choice=True),
     Param("/playing/string", "", "1", 0.0, 2.0, 0.0,
         "String on which notes are played: 0 either, 1 the inner (F4), 2 the outer (C5).",
         is_choice=True),

@@ -46,6 +46,8 @@ class Mapping:
         Values that parameters start with.
     mpe : bool
         Whether every port starts as an MPE zone.
+    key_switches : int, optional
+        The lowest of the keys that choose an articulation (MIDI note).
     about : str
         What it is for, in a line.
     files : tuple of Path
@@ -56,6 +58,7 @@ class Mapping:
     binds: tuple[Bind, ...]
     start: tuple[tuple[str, float], ...] = ()
     mpe: bool = False
+    key_switches: int | None = None
     about: str = ""
     files: tuple[Path, ...] = field(default=(), compare=False)
 
@@ -189,6 +192,7 @@ def _merged(below: Mapping, layer: MappingFile) -> Mapping:
         (*remaining, *layer.binds),
         tuple((dict(below.start) | dict(layer.start)).items()),
         below.mpe if layer.mpe is None else layer.mpe,
+        below.key_switches if layer.key_switches is None else layer.key_switches,
         below.about,
         below.files,
     )

@@ -10,13 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from yehu_server.core.player.fingering import LOWEST_NOTE
 from yehu_server.errors import MappingError
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.spec import Curve, Param
 from yehu_server.playing import mapping_values as entries
 from yehu_server.playing import sources
 from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.util.documents import MOST_ERRORS, Document, Fields
-from yehu_server.util.values import flag, line, number
+from yehu_server.util.values import flag, line, number, whole
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,7 @@ class MappingFile:
     start: tuple[tuple[str, float], ...] = ()
     base: str | None = None
     mpe: bool | None = None
+    key_switches: int | None = None
     about: str = ""
 
 
@@ -109,12 +112,18 @@ def mapping_file_from(table: Fields) -> MappingFile:
         about=table.read("about", line, ""),
         base=table.read("base", line, None),
         mpe=table.read("mpe", flag, None),
+        key_switches=table.read("key_switches", _switches, None),
         start=entries.settings(table.table("start")),
         binds=tuple(filter(None, map(_bind, table.tables("bind")))),
     )
     table.only()
     table.document.finish()
     return mapping_file
+
+
+def _switches(value: Any) -> int:
+    """The lowest key switch: all of them lie below the notes that are played as they are."""
+    return whole(value, 0, LOWEST_NOTE - len(ARTICULATIONS))
 
 
 def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:

@@ -47,6 +47,8 @@ def as_toml(contents: MappingFile) -> str:
             document[name] = value
     if has_mpe:
         document["mpe"] = contents.mpe
+    if contents.key_switches is not None:
+        document["key_switches"] = contents.key_switches
     if contents.start:
         document.add(tomlkit.nl())
         document["start"] = {address: _number(value) for address, value in contents.start}

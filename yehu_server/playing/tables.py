@@ -77,6 +77,7 @@ def make_tables(
     t = made[0]
     _write_binds(t, mapping, controls)
     t["mpe"] = float(mapping.mpe)
+    t["first_switch"] = math.nan if mapping.key_switches is None else mapping.key_switches
     for address, value in mapping.start:
         t["usual"][ROW[address]] = value
     starts = dict(mapping.start) | dict(start)

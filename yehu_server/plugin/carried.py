@@ -24,6 +24,7 @@ NO_PRESET = "none"
 # Hosts keep the number of a choice: new ones come last. (Presets have numbers: their programs.)
 MAPPINGS = (
     DEFAULT, "keyboard-expressive", "mpe", "sustain-pedal-tremolo", "wind", "keyboard-bow-speed",
+    "keyboard-articulations",
 )  # fmt: skip
 
 

@@ -18,8 +18,8 @@ def test_a_long_note_gets_a_vibrato_that_comes_late():
     playing = Playing(phrasing=0.5)
     playing.on(74)
     depth, onset = vibrato(playing, 2.0)
-    assert depth[-1] == 18.0
-    assert onset[60] < 0.4 < onset[120]  # none after 0.3 s, some after 0.6 s
+    assert depth[-1] == 30.0
+    assert onset[40] < 0.4 < onset[80]  # none after 0.2 s, some after 0.4 s
     assert onset[-1] == 1.0
 
 

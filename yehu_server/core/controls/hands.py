@@ -25,6 +25,7 @@ from yehu_server.core.controls.slots import (
     SIDE,
     SPEED,
     TREMOLO,
+    UPWARD,
     VIBRATO_PRESS,
 )
 from yehu_server.core.physics.layout import (
@@ -58,11 +59,15 @@ ARRIVED = 1e-6  # m; as near as this to where the sounding length ends, the bow'
 
 @compiled
 def vibrato_at(c: Any, phase: float) -> float:
-    """The value of the vibrato at a phase (turns), -1 to 1, faded in by /vibrato/onset."""
+    """The value of the vibrato at a phase (turns), faded in by /vibrato/onset.
+
+    It is from -1 to 1, or from 0 to 2 where it goes upward.
+    """
     if c.value[ONSET] <= ONSET_FROM:
         return 0.0
     come = (c.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM)
-    return float(come * come * (3.0 - 2.0 * come) * math.sin(2.0 * math.pi * phase))
+    value = math.sin(2.0 * math.pi * phase) + c.value[UPWARD]
+    return float(come * come * (3.0 - 2.0 * come) * value)
 
 
 @compiled

@@ -13,6 +13,7 @@ FINGER_POSITION = np.array([SLOT[f"/finger/{number}/position"] for number in FIN
 FINGER_PRESS = np.array([SLOT[f"/finger/{number}/press"] for number in FINGERS])
 DEPTH, VIBRATO_PRESS = SLOT["/vibrato/depth"], SLOT["/vibrato/press"]
 RATE, ONSET = SLOT["/vibrato/rate"], SLOT["/vibrato/onset"]
+UPWARD = SLOT["/vibrato/upward"]
 PLUCK, PLUCK_POSITION = SLOT["/pluck/force"], SLOT["/pluck/position"]
 GAIN, LEVEL = SLOT["/output/gain"], SLOT["/output/level"]
 BALANCE, BLEND = SLOT["/output/balance"], SLOT["/body/blend"]

@@ -10,6 +10,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.channels import forget_channel, is_midi
+from yehu_server.core.midi.controllers import set_directly
 from yehu_server.core.midi.emit_wishes import (
     begin_key,
     begin_key_native,
@@ -24,6 +25,8 @@ from yehu_server.core.midi.values import (
     keep_targets_of,
 )
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
+from yehu_server.core.player.rows import ARTICULATION
+from yehu_server.params.articulations import ARTICULATIONS
 
 # -- pitches --------------------------------------------------------------------------------------
 
@@ -66,7 +69,17 @@ def fitted(policy: int, note: float) -> float:
     return note - 12.0 * math.ceil((note - HIGHEST_NOTE) / 12.0)
 
 
+SWITCHES = len(ARTICULATIONS)  # keys that choose an articulation, where a mapping has them
+
+
 # -- keys -----------------------------------------------------------------------------------------
+
+
+@compiled_exactly
+def is_switch(t: Any, channel: int, key: float) -> bool:
+    """Whether a key chooses an articulation and plays no note."""
+    place = key - t.first_switch  # NaN where there are no such keys
+    return bool(is_midi(channel) and 0.0 <= place < SWITCHES)
 
 
 @native(
@@ -85,6 +98,9 @@ def note_on_native(
     """See `note_on`."""
     m = carray(midi_at, (1,), MIDI)[0]
     t = carray(tables_at, (1,), TABLES)[0]
+    if is_switch(t, channel, key):
+        set_directly(m, frame, ARTICULATION, key - t.first_switch, 0.0)
+        return
     n = find_key(m, channel, key)
     if n != NONE:
         if m.held_by[n] == NONE:

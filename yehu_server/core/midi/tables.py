@@ -50,6 +50,7 @@ TABLES = np.dtype(
         ("x", np.float64, MOST_POINTS),  # of curves by points
         ("y", np.float64, MOST_POINTS),
         ("mpe", np.float64),  # 1: every port starts as an MPE zone
+        ("first_switch", np.float64),  # lowest of the keys that choose an articulation; NaN: none
         # Start values, in order; and by row what the mapping starts with, or the default.
         ("starts", np.float64),
         ("start_row", np.float64, ROWS),
@@ -75,5 +76,5 @@ def plain_tables() -> Any:
     made = np.zeros(1, TABLES)
     made["usual"] = [param.default for param in TABLE]
     made["is_equal"], made["received"] = 1.0, -1.0
-    made["program_row"] = np.nan
+    made["program_row"] = made["first_switch"] = np.nan
     return made

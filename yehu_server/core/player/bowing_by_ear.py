@@ -13,8 +13,9 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.bowing import FIRM, FLAUTANDO, SCRATCHY
 from yehu_server.core.player.ear import SURE, learning_bin
+from yehu_server.core.player.gestures import tremolo_of
 from yehu_server.core.player.right_hand import set_bow_pressure
-from yehu_server.core.player.rows import LISTENING, PRESSURE, TREMOLO
+from yehu_server.core.player.rows import LISTENING, PRESSURE
 
 FEW, MANY = 0.6, 1.5  # slips in a period: between them the string speaks
 ROUGH = 0.8  # certainty below which it has no period
@@ -43,7 +44,7 @@ def begin_pressure_correction(p: Any, pitch: float) -> None:
 def may_correct_pressure(p: Any) -> bool:
     """Whether the hand may help: not where it is to scratch or to tremble."""
     listens = p.value[LISTENING] > 0.0 and p.corrects_pressure != 0
-    return bool(listens and p.value[PRESSURE] < SCRATCHY and p.value[TREMOLO] == 0.0)
+    return bool(listens and p.value[PRESSURE] < SCRATCHY and tremolo_of(p) == 0.0)
 
 
 @compiled_exactly

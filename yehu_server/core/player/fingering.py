@@ -99,6 +99,20 @@ def stay(p: Any, pitch: float, speed: float) -> tuple[int, float]:
 
 
 @compiled_exactly
+def stay_for_slide(p: Any, pitch: float, aim: float, speed: float) -> tuple[int, float]:
+    """The fingering of a pitch from which the finger slides to another, on one string if it can.
+
+    Returns as `choose` does.
+    """
+    low, high = min(pitch, aim), max(pitch, aim)
+    if low < SECOND_OPEN + OPEN_WITHIN and high <= HIGHEST_ON_F and wished_string(p) != 1:
+        return 0, OPEN if pitch < FIRST_OPEN + OPEN_WITHIN else learnt_position(p, 0, pitch, speed)
+    if low > SECOND_OPEN and pitch > SECOND_OPEN + OPEN_WITHIN and wished_string(p) != 0:
+        return 1, learnt_position(p, 1, pitch, speed)
+    return stay(p, pitch, speed)
+
+
+@compiled_exactly
 def learnt_position(p: Any, string: int, pitch: float, speed: float) -> float:
     """Finger position (m) for a pitch, with what the ear has learnt of it."""
     return position_of(p, string, pitch, speed, learnt_cents(p, string, pitch))

@@ -10,19 +10,27 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.fingering import OPEN
+from yehu_server.core.player.gestures import (
+    CENTS,
+    DELAY_MS,
+    VIBRATOS,
+    has_vibrato,
+    vibrato_press,
+    vibrato_rate,
+    vibrato_upward,
+)
 from yehu_server.core.player.ownership import USUAL_MS, move, take_back
 from yehu_server.core.player.phrasing import varied_landing, vibrato_cents, vibrato_delay_ms
 from yehu_server.core.player.rows import (
     FINGER_COUNT,
     FINGER_POSITION,
     FINGER_PRESS,
-    PLAYING_VIBRATO_PRESS,
-    PLAYING_VIBRATO_RATE,
     PRESS,
     VIBRATO_DEPTH,
     VIBRATO_ONSET,
     VIBRATO_PRESS,
     VIBRATO_RATE,
+    VIBRATO_UPWARD,
 )
 
 # Ramps of finger force. Chosen by trying landings of 1 to 5 ms and lifts of 3 to 25 ms on 24 steps
@@ -98,15 +106,17 @@ def lift_all(p: Any, c: Any) -> None:
 @compiled_exactly
 def set_vibrato(p: Any, c: Any) -> None:
     """Set depth and rate of the vibrato as wished."""
-    move(p, c, VIBRATO_DEPTH, vibrato_cents(p), USUAL_MS)
-    move(p, c, VIBRATO_PRESS, p.value[PLAYING_VIBRATO_PRESS], USUAL_MS)
-    move(p, c, VIBRATO_RATE, p.value[PLAYING_VIBRATO_RATE], USUAL_MS)
+    depth = VIBRATOS[p.gesture.row, CENTS] if has_vibrato(p) else vibrato_cents(p)
+    move(p, c, VIBRATO_DEPTH, depth, USUAL_MS)
+    move(p, c, VIBRATO_PRESS, vibrato_press(p), USUAL_MS)
+    move(p, c, VIBRATO_UPWARD, vibrato_upward(p), USUAL_MS)
+    move(p, c, VIBRATO_RATE, vibrato_rate(p), USUAL_MS)
 
 
 @compiled_exactly
 def begin_vibrato(p: Any, c: Any) -> None:
     """Fade in the vibrato of a new note."""
-    delay_ms = vibrato_delay_ms(p)
+    delay_ms = VIBRATOS[p.gesture.row, DELAY_MS] if has_vibrato(p) else vibrato_delay_ms(p)
     move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
     if delay_ms > 0.0:
         move(p, c, VIBRATO_ONSET, 1.0, delay_ms)

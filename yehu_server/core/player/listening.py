@@ -1,4 +1,4 @@
-"""The player's work of each 5 ms: drift, the bow's end, the ear, corrections. Compiled."""
+"""The player's work of each 5 ms: drift, gestures, the bow's end, ear, corrections. Compiled."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from yehu_server.compile.memory import carray
 from yehu_server.core.controls.hands import vibrato_at
 from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
+from yehu_server.core.player.articulating import articulate
 from yehu_server.core.player.bowing_by_ear import correct_pressure
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
 from yehu_server.core.player.ear import BEHIND, EAR_SAMPLES, hear
@@ -71,5 +72,6 @@ def attend(player: Any, controls: Any, sound: Any) -> None:
     p.ear.next += p.ear.hop
     advance_drift(p, c)
     vary_vibrato(p, c)
+    articulate(p, c)
     reverse_bow_at_end(p, c)
     listen(p, c, carray(sound, (2 * EAR_SAMPLES,), np.float64))

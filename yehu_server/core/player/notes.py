@@ -14,7 +14,15 @@ from yehu_server.core.controls.slots import SILENCE, SPEED
 from yehu_server.core.player import brilliance, left_hand, right_hand, velocity
 from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
-from yehu_server.core.player.fingering import FIRST_OPEN, choose, stay
+from yehu_server.core.player.fingering import FIRST_OPEN, choose, stay, stay_for_slide
+from yehu_server.core.player.gestures import (
+    IS_PLUCKED,
+    SHAPES,
+    attack_of,
+    begin_gesture,
+    begin_slide,
+    tremolo_of,
+)
 from yehu_server.core.player.held_keys import NOT_HELD, add_key, find_key, remove_key
 from yehu_server.core.player.left_hand import LIFTING_MS, side_of
 from yehu_server.core.player.ownership import (
@@ -45,7 +53,6 @@ from yehu_server.core.player.rows import (
     POSITION,
     PRESSURE,
     RELEASE,
-    TREMOLO,
     VOLUME,
 )
 from yehu_server.core.player.stroke import CHANGE_MS, is_at_its_end, plan_stroke
@@ -127,6 +134,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     vary_next_note(p)
     is_slur = is_legato and not at_once
     p.pace = 1.0
+    begin_gesture(p, is_slur)
     turns = plan_stroke(p, c, wished_speed(p), is_legato)
     if at_once:
         slide_ms = 0.0
@@ -135,13 +143,19 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     else:
         slide_ms = slide_of_leap_ms(p, c, note_pitch(p) - p.finger_pitch)
     p.note_began = c.frame
-    pitch = p.finger_pitch = note_pitch(p)
-    string, position = choose(p, pitch, wished_speed(p))
+    if slide_ms > 0.0 and p.string >= 0:
+        string, position = begin_from_last(p, slide_ms)
+        pitch = p.finger_pitch = note_pitch(p)
+    else:
+        pitch = p.finger_pitch = note_pitch(p)
+        string, position = choose(p, pitch, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
     begin_pressure_correction(p, pitch)
     pause_listening(
-        p, c, max(slide_ms, SLURRED_MS if is_slur else p.value[ATTACK] * struck_attack(p))
+        p,
+        c,
+        max(slide_ms, SLURRED_MS if is_slur else p.value[ATTACK] * struck_attack(p) * attack_of(p)),
     )
     left_hand.set_vibrato(p, c)
     left_hand.begin_vibrato(p, c)
@@ -151,7 +165,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     set_bow_pressure(p, c)
     if not is_legato:
         right_hand.bite(p, c)
-    if is_on(p, PIZZICATO):
+    if is_plucked(p):
         right_hand.pluck(p, c, side_of(p))
     else:
         ramp_ms = CHANGE_MS if turns else SLURRED_MS
@@ -159,9 +173,20 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
 
 
 @compiled_exactly
+def begin_from_last(p: Any, slide_ms: float) -> tuple[int, float]:
+    """Begin a slide where the finger is, to the pitch of the note; the fingering there.
+
+    A slide between C5 and HIGHEST_ON_F at one end and the F string at the other stays on that.
+    """
+    wished = note_pitch(p)
+    begin_slide(p, p.finger_pitch - wished, p.gesture.bend, 0.0, 1e-3 * slide_ms)
+    return stay_for_slide(p, note_pitch(p), wished, wished_speed(p))
+
+
+@compiled_exactly
 def reverse_bow_at_end(p: Any, c: Any) -> None:
     """Turn a bow that comes to its end."""
-    if p.sounding < 0 or p.value[TREMOLO] != 0.0:
+    if p.sounding < 0 or tremolo_of(p) != 0.0:
         return
     if is_at_its_end(p, c, abs(c.value[SPEED])):
         p.direction = -p.direction
@@ -180,7 +205,8 @@ def note_pitch(p: Any) -> float:
     """Pitch (fractional MIDI note) of the sounding key, with its bend; 0 in silence."""
     if p.sounding < 0:
         return 0.0
-    return float(p.held_pitch[p.sounding] + p.value[BEND] + varied_semitones(p))
+    bend = p.value[BEND] + p.gesture.bend
+    return float(p.held_pitch[p.sounding] + bend + varied_semitones(p))
 
 
 @compiled_exactly
@@ -195,6 +221,12 @@ def sounding_pitch(p: Any) -> float:
 def is_on(p: Any, row: int) -> bool:
     """Whether a switch is on."""
     return bool(p.value[row] >= TURNED_ON)
+
+
+@compiled_exactly
+def is_plucked(p: Any) -> bool:
+    """Whether the note is plucked."""
+    return is_on(p, PIZZICATO) or bool(SHAPES[p.gesture.row, IS_PLUCKED])
 
 
 # -- by hand ------------------------------------------------------------------------------------
@@ -266,7 +298,7 @@ def set_level(p: Any, c: Any) -> None:
 @compiled_exactly
 def draw(p: Any, c: Any, ramp_ms: float) -> None:
     """Draw the bow at the speed of the sounding note."""
-    if p.sounding >= 0 and not is_on(p, PIZZICATO):
+    if p.sounding >= 0 and not is_plucked(p) and p.gesture.is_off == 0:
         right_hand.draw(p, c, note_pitch(p), side_of(p), ramp_ms)
 
 
@@ -314,13 +346,19 @@ def reset_corrections(p: Any, c: Any) -> None:
 
 @compiled_exactly
 def follow_bend(p: Any, c: Any) -> None:
-    """Move the finger to the pitch of the sounding note, and bow it as that pitch wants."""
+    """Slide the finger to the pitch of the sounding note, and bow it as that pitch wants."""
+    follow_pitch(p, c, BEND_RAMP_MS)
+
+
+@compiled_exactly
+def follow_pitch(p: Any, c: Any, slide_ms: float) -> None:
+    """The same, in a time (ms); `phrasing.STEP_MS` puts the next finger down."""
     if p.sounding < 0 or p.string < 0:
         return
     pitch, before, was = note_pitch(p), p.string, p.finger_pitch
     p.finger_pitch = pitch
     string, position = stay(p, pitch, wished_speed(p))
-    left_hand.stop(p, c, string, position, least_press(p, string), BEND_RAMP_MS)
+    left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     if string != before:
         begin_tuning(p, pitch)
     if string != before or not right_hand.has_same_recipe(p, pitch):
@@ -328,5 +366,5 @@ def follow_bend(p: Any, c: Any) -> None:
         draw(p, c, USUAL_MS)
     if pitch != was:
         p.first_error, p.jumps = math.nan, 0
-        pause_listening(p, c, BEND_RAMP_MS)
+        pause_listening(p, c, max(slide_ms, 0.0))
     even_out(p, c)

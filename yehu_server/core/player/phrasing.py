@@ -70,7 +70,7 @@ def varied_landing(p: Any, landing_ms: float) -> float:
 
 
 # At full phrasing; by ear.
-VIBRATO_CENTS, LATE_MS = 36.0, 1100.0
+VIBRATO_CENTS, LATE_MS = 60.0, 750.0
 SLIDE_MS, SHORTEST_SLIDE_MS = 130.0, 45.0
 STEP_MS = -1.0  # in place of the time of a slide
 # A leap asks for a slide where it is so wide (semitones), from a note and to a note so long.

@@ -15,6 +15,7 @@ from yehu_server.core.player.bowing import (
     recipe_value,
     share,
 )
+from yehu_server.core.player.gestures import attack_of, tremolo_of
 from yehu_server.core.player.ownership import USUAL_MS, forget, move
 from yehu_server.core.player.rows import (
     ATTACK,
@@ -29,7 +30,6 @@ from yehu_server.core.player.rows import (
     PRESSURE,
     RELEASE,
     SPEED,
-    TREMOLO,
 )
 from yehu_server.core.player.velocity import BITE_MS, struck_attack, struck_bite, struck_speed
 from yehu_server.params.table import find
@@ -61,8 +61,8 @@ def recipe_of(p: Any, pitch: float, column: int) -> float:
 
 @compiled_exactly
 def speed_at(p: Any, pitch: float) -> float:
-    """Bow speed (m/s) for a pitch: as wished, up to the highest at which it speaks."""
-    return min(wished_speed(p), recipe_of(p, pitch, TOP_SPEED))
+    """Bow speed (m/s) for a pitch: as wished and moved, up to the highest at which it speaks."""
+    return float(min(wished_speed(p) * p.gesture.speed, recipe_of(p, pitch, TOP_SPEED)))
 
 
 @compiled_exactly
@@ -77,7 +77,7 @@ def has_same_recipe(p: Any, pitch: float) -> bool:
 @compiled_exactly
 def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
     """Set bow pressure and position, as wished and adapted to the sounding pitch, if any."""
-    pressure = p.value[PRESSURE] * p.weight
+    pressure = p.value[PRESSURE] * p.weight * p.gesture.weight
     if is_sounding:
         for column in range(RECIPE):
             p.recipe[column] = recipe_of(p, pitch, column)
@@ -109,13 +109,13 @@ def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
         if p.side != 0.0:
             lift(p, c, p.value[RELEASE])
         return
-    attack_ms = p.value[ATTACK] * struck_attack(p)
+    attack_ms = p.value[ATTACK] * struck_attack(p) * attack_of(p)
     crossing_ms = CROSSING_MS
     if p.side == 0.0:
         ramp_ms, crossing_ms = attack_ms, attack_ms / 4.0
     p.side = side
     move(p, c, BOW_SIDE, side, crossing_ms)
-    move(p, c, BOW_TREMOLO, p.value[TREMOLO], USUAL_MS)
+    move(p, c, BOW_TREMOLO, tremolo_of(p), USUAL_MS)
     move(p, c, BOW_SPEED, p.direction * speed_at(p, pitch), ramp_ms)
 
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from yehu_server.live.part_addresses import FIRST, group
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
@@ -54,6 +55,9 @@ def _of(address: str, name: str) -> Argument:
 NOTE = Argument("note", lo=0.0, hi=127.0, unit="MIDI note")
 SECONDS = Argument("seconds", lo=0.0, hi=LONGEST_SUBSCRIPTION_S, unit="s")
 VELOCITY = Argument("velocity", lo=0.0, hi=127.0)
+ARTICULATION = Argument(
+    "articulation", "s", choices=tuple(articulation.name for articulation in ARTICULATIONS)
+)
 ADDRESS, NAME = Argument("address", "s"), Argument("name", "s")
 FROM, TO = Argument("from", "s"), Argument("to", "s")
 AMOUNT = Argument("amount", lo=0.0, hi=1.0)
@@ -64,6 +68,7 @@ CALLS: tuple[Call, ...] = (
     Call("/pitch", "Slides the finger to a pitch: the sounding note's, or the next.", (NOTE,)),
     Call("/bend", "Slides the finger away from the note.", (_of("/playing/bend", "semitones"),)),
     Call("/press", "How hard the finger presses the string.", (_of("/playing/press", "newtons"),)),
+    Call("/articulation", "Chooses what both hands do in the next notes.", (ARTICULATION,)),
     Call(
         "/bow",
         "Draws the bow by hand; no speed and no force lifts it.",

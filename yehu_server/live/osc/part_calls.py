@@ -14,11 +14,13 @@ from yehu_server.live.osc.preset_calls import PresetCalls
 from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import PART_PARAMS, part_of
+from yehu_server.params.articulations import number_of
 from yehu_server.params.spec import Param
 from yehu_server.params.table import TABLE, UNIT
 from yehu_server.playing.live_player import LivePlayer
 
 SUBSCRIBED_S = 60.0
+ARTICULATION = "/playing/articulation"
 
 
 class PartCalls(PlayerCalls):
@@ -33,6 +35,7 @@ class PartCalls(PlayerCalls):
             "/pitch": self._pitch,
             "/bend": partial(self._set, address="/playing/bend"),
             "/press": partial(self._set, address="/playing/press"),
+            "/articulation": self._articulation,
             "/bow": self._bow,
             "/release": self._release,
             "/panic": self._panic,
@@ -95,6 +98,11 @@ class PartCalls(PlayerCalls):
         speed, force = call.numbers(2)
         self._player.draw(speed, force, frame=call.frame)
         self._echo(call.peer, ["/bow/speed", "/bow/force"])
+
+    def _articulation(self, call: Request) -> None:
+        number = number_of(call.word())
+        self._player.write(ARTICULATION, number, frame=call.frame)
+        self._clients.echo(call.peer, [self._addressed + ARTICULATION])
 
     def _release(self, call: Request) -> None:
         self._player.release(frame=call.frame)

@@ -1,0 +1,134 @@
+"""Articulations: what the hands do at which time of a note."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from held_notes import HOP, RATE, Playing
+
+from yehu_server.core.controls.slots import DEPTH, SIDE, SPEED, TREMOLO, UPWARD
+from yehu_server.errors import ParameterError
+from yehu_server.params.articulations import ARTICULATIONS, NUMBER, number_of
+
+
+def played(name: str, note: float = 74, seconds: float = 1.0, **values: float) -> np.ndarray:
+    """The values of the controls while a note of an articulation is held."""
+    playing = Playing(articulation=NUMBER[name], variation=0.0, listening=0.0, **values)
+    playing.on(note)
+    return playing.play(seconds, "value")[0]
+
+
+def bends(name: str, seconds: float = 1.0, note: float = 74, **values: float) -> np.ndarray:
+    """Where the finger is from the pitch of the note (semitones), every 5 ms."""
+    playing = Playing(articulation=NUMBER[name], variation=0.0, listening=0.0, **values)
+    playing.on(note)
+    found = []
+    for _ in range(round(seconds / 0.005)):
+        playing.play(0.005)
+        found.append(float(playing.player["gesture"]["bend"]))
+    return np.array(found)
+
+
+def at(seconds: float) -> int:
+    return round(seconds * RATE / HOP)
+
+
+def test_every_articulation_plays_finite_sound_and_ends():
+    wrong = []
+    for articulation in ARTICULATIONS:
+        for length in (0.0, 0.08, 1.0):
+            playing = Playing(articulation=NUMBER[articulation.name], note_length=length)
+            for note in (65, 72, 76, 89):
+                playing.on(note)
+                values = playing.play(0.15, "value")[0]
+                playing.off(note)
+                after = playing.play(0.2, "value")[0]
+                if not np.isfinite(values).all() or after[-1, SIDE] != 0.0:
+                    wrong.append((articulation.name, length, note))
+    assert wrong == []
+
+
+def test_a_sprung_bow_leaves_the_string_and_a_stopped_one_stands_on_it():
+    sprung, stopped = played("spiccato"), played("staccato")
+    assert abs(sprung[at(0.04), SIDE]) > 0.9
+    assert sprung[at(0.15), SIDE] == sprung[at(0.9), SIDE] == 0.0
+    assert abs(stopped[at(0.9), SIDE]) == 1.0
+    assert stopped[at(0.9), SPEED] == 0.0
+
+
+def test_a_thrown_bow_bounces_five_times_and_ever_sooner():
+    side = np.abs(played("ricochet", seconds=1.2)[:, SIDE]) > 0.5
+    begins = np.flatnonzero(side[1:] & ~side[:-1]) * HOP / RATE
+    gaps = np.diff(begins)
+    assert len(begins) in (4, 5)  # the first may lie before the first that is seen
+    assert (np.diff(gaps) < 0.003).all()
+    assert gaps[-1] < 0.8 * gaps[0]
+
+
+def test_slides_begin_away_and_end_on_the_pitch():
+    wrong = []
+    for name, begins in (("slide-up", -2.0), ("large-slide-up", -4.0), ("slide-down", 2.0)):
+        bend = bends(name)
+        steps = np.diff(bend) * np.sign(-begins)
+        if bend[1] != begins or bend[-1] != 0.0 or (steps < 0.0).any() or steps.max() > 0.4:
+            wrong.append((name, bend))
+    assert wrong == []
+
+
+def test_a_trill_beats_a_second_above_some_seven_times_a_second():
+    bend = bends("trill", 2.0)
+    assert set(np.round(bend, 6)) == {0.0, 2.0}
+    beats = np.count_nonzero((bend[1:] == 2.0) & (bend[:-1] == 0.0))
+    assert 13 <= beats <= 22
+
+
+def test_a_mordent_beats_once_and_a_turning_slide_comes_back():
+    mordent, turning = bends("mordent"), bends("turning-slide")
+    assert np.count_nonzero(np.diff(mordent) != 0.0) == 2
+    assert turning[0] == turning[-1] == 0.0
+    assert turning.max() == pytest.approx(2.0, abs=0.02)
+
+
+def test_vibratos_of_their_own_go_before_what_is_wished():
+    pressing, straight = played("pressing-vibrato"), played("straight", vibrato=40.0)
+    assert pressing[-1, UPWARD] == 1.0
+    assert pressing[-1, DEPTH] > 20.0
+    assert straight[-1, DEPTH] == 0.0
+
+
+def test_a_tremolo_grows():
+    values = played("tremolo", seconds=1.4)
+    assert values[at(0.5), TREMOLO] == pytest.approx(13.0)
+    assert abs(values[at(1.3), SPEED]) > 1.3 * abs(values[at(0.2), SPEED])
+
+
+def test_an_ordinary_note_is_shaped_as_far_as_phrasing_says():
+    level = [
+        np.abs(played("ordinary", phrasing=phrasing, note_length=1.0)[at(0.25) :, SPEED])
+        for phrasing in (0.0, 0.5)
+    ]
+    assert np.ptp(level[0]) < 1e-9
+    assert 1.1 < level[1].max() / level[1][-1] < 1.6
+
+
+def test_a_portamento_is_a_smooth_curve_that_lasts_its_time():
+    playing = Playing(portamento=1.0, portamento_time=200.0, variation=0.0, listening=0.0)
+    playing.on(69)
+    playing.play(0.3)
+    playing.on(76)  # over C5: all on the F string
+    playing.play(0.005)
+    assert float(playing.player["gesture"]["bend"]) == pytest.approx(-7.0, abs=0.2)
+    strings = set()
+    for _ in range(37):
+        playing.play(0.005)
+        strings.add(int(playing.player["string"]))
+    assert float(playing.player["gesture"]["bend"]) != 0.0
+    playing.play(0.02)
+    assert float(playing.player["gesture"]["bend"]) == 0.0
+    assert strings == {0}
+
+
+def test_names_are_found_in_both_languages():
+    assert number_of("spiccato") == number_of("跳弓") == NUMBER["spiccato"]
+    with pytest.raises(ParameterError, match="did you mean spiccato"):
+        number_of("spicato")

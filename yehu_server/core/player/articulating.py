@@ -1,0 +1,116 @@
+"""Carries out the steps of a note's gesture as they are due. Compiled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.player import notes, right_hand
+from yehu_server.core.player.gestures import (
+    AGAIN,
+    AT,
+    AT_SHARE,
+    BOW_COUNT,
+    BOW_STEPS,
+    FINGER_COUNT,
+    FINGER_STEPS,
+    GLIDE,
+    IS_ON,
+    RAMP,
+    RAMP_SHARE,
+    SEMITONES,
+    SHAPES,
+    SOONER,
+    SPEED,
+    TIMES,
+    TURNS,
+    WEIGHT,
+    begin_slide,
+    note_length,
+    scaled,
+    slid,
+)
+from yehu_server.core.player.notes import BEND_RAMP_MS
+from yehu_server.core.player.phrasing import STEP_MS
+
+SOONEST = 0.55  # of the time between rounds, at least: as quick as hands go
+
+
+@compiled_exactly
+def articulate(p: Any, c: Any) -> None:
+    """Do what of the sounding note's gesture is due."""
+    if p.sounding < 0:
+        return
+    g = p.gesture
+    now = (c.frame - p.note_began) / p.rate
+    length = note_length(p, g.row)
+    move_bow(p, c, now, length)
+    move_finger(p, c, now, length)
+
+
+@compiled_exactly
+def time_of(step: Any, length: float) -> float:
+    """When a step is due (s after its round began)."""
+    return float(1e-3 * step[AT] + step[AT_SHARE] * length)
+
+
+@compiled_exactly
+def until_again(row: int, times: int) -> float:
+    """Time from a round to the next (s), or 0 where none comes."""
+    if SHAPES[row, AGAIN] == 0.0 or times + 1 >= SHAPES[row, TIMES]:
+        return 0.0
+    return float(1e-3 * SHAPES[row, AGAIN] * max(1.0 - SHAPES[row, SOONER] * times, SOONEST))
+
+
+@compiled_exactly
+def move_bow(p: Any, c: Any, now: float, length: float) -> None:
+    """Carry out the bow's steps that are due."""
+    g = p.gesture
+    count = BOW_COUNT[g.row]
+    if g.bow_step >= count > 0 and FINGER_COUNT[g.row] == 0:
+        again = until_again(g.row, g.bow_round)
+        if again > 0.0 and now >= g.bow_from + again:
+            g.bow_step, g.bow_from = 0, g.bow_from + again
+            g.bow_round += 1
+    while g.bow_step < count:
+        step = BOW_STEPS[g.row, g.bow_step]
+        if now < g.bow_from + time_of(step, length):
+            return
+        g.bow_step += 1
+        ramp_ms = step[RAMP] + 1e3 * step[RAMP_SHARE] * length
+        g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
+        g.is_off = 0 if step[IS_ON] != 0.0 else 1
+        if step[TURNS] != 0.0:
+            p.direction = -p.direction
+        if g.is_off != 0:
+            right_hand.lift(p, c, ramp_ms)
+        else:
+            notes.set_bow_pressure(p, c)
+            notes.draw(p, c, ramp_ms)
+
+
+@compiled_exactly
+def move_finger(p: Any, c: Any, now: float, length: float) -> None:
+    """Carry out the finger's steps that are due, and go on with its slide."""
+    g = p.gesture
+    count = FINGER_COUNT[g.row]
+    if g.finger_step >= count > 0:
+        again = until_again(g.row, g.finger_round)
+        if again > 0.0 and now >= g.finger_from + again:
+            g.finger_step, g.finger_from = 0, g.finger_from + again
+            g.finger_round += 1
+    while g.finger_step < count:
+        step = FINGER_STEPS[g.row, g.finger_step]
+        if now < g.finger_from + time_of(step, length):
+            break
+        g.finger_step += 1
+        if step[GLIDE] > 0.0 or (g.finger_round > 0 and time_of(step, length) == 0.0):
+            begin_slide(p, g.bend, step[SEMITONES], now, 1e-3 * max(step[GLIDE], 60.0))
+        else:
+            g.bend, g.slide_s = step[SEMITONES], 0.0
+            notes.follow_pitch(p, c, STEP_MS)
+    if g.slide_s > 0.0:
+        g.bend = slid(g, now)
+        if now >= g.slide_at + g.slide_s:
+            g.slide_s = 0.0
+        notes.follow_pitch(p, c, BEND_RAMP_MS)

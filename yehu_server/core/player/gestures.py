@@ -1,0 +1,245 @@
+"""The gesture of a note: the steps of both hands that its articulation asks for. Compiled.
+
+The steps are those of ``params.articulations``. A note's gesture begins with it; each 5 ms
+``articulating`` looks which steps are due. An ordinary note is shaped too, as far as phrasing says.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.player.phrasing import deviate
+from yehu_server.core.player.rows import (
+    ARTICULATION,
+    NOTE_LENGTH,
+    PHRASING,
+    PLAYING_VIBRATO_PRESS,
+    PLAYING_VIBRATO_RATE,
+    TREMOLO,
+    VARIATION,
+)
+from yehu_server.params.articulations import ARTICULATIONS, Articulation, BowStep
+
+ORDINARY = 0
+# An ordinary note of a phrase, at phrasing SHAPED_AT: the bow comes to it, swells and eases off.
+SHAPED = Articulation(
+    "shaped", "", "a note that swells a little and eases off",
+    bow=(
+        BowStep(speed=0.86),
+        BowStep(speed=1.1, ramp_share=0.35),
+        BowStep(at_share=0.5, speed=0.8, ramp_share=0.48),
+    ),
+    length_s=1.2,
+)  # fmt: skip
+SHAPED_AT, LEAST_SHAPED_S = 0.5, 0.35
+# Of the attack of a shaped note: its factor for a short note and for a long one (s). By ear; in
+# recordings of an erhu and a violin a tenth of the notes rise within 30 ms and half in 120 to 250.
+SHORT_ATTACK, LONG_ATTACK, LONG_S, UNEVEN_ATTACK = 0.8, 3.4, 1.2, 0.3
+
+_ROWS: tuple[Articulation, ...] = (*ARTICULATIONS, SHAPED)
+SHAPED_ROW = len(ARTICULATIONS)
+
+AT, AT_SHARE, RAMP, RAMP_SHARE, SPEED, WEIGHT, IS_ON, TURNS = range(8)  # of a bow's step
+SEMITONES, GLIDE = 2, 3  # of a finger's, after AT and AT_SHARE
+ATTACK, LENGTH, AGAIN, SOONER, TIMES, STROKES, IS_PLUCKED = range(7)
+CENTS, HERTZ, PRESS, UPWARD, DELAY_MS = range(5)  # of a vibrato
+
+
+def _padded(rows: Sequence[Sequence[Sequence[float]]], columns: int) -> Any:
+    most = max(len(steps) for steps in rows)
+    table = np.zeros((len(rows), max(most, 1), columns))
+    for number, steps in enumerate(rows):
+        for at, step in enumerate(steps):
+            table[number, at] = step
+    return table
+
+
+BOW_COUNT = np.array([len(row.bow) for row in _ROWS])
+FINGER_COUNT = np.array([len(row.fingers) for row in _ROWS])
+BOW_STEPS = _padded([
+    [
+        (step.at_ms, step.at_share, step.ramp_ms, step.ramp_share, step.speed, step.weight,
+         step.is_on, step.turns)
+        for step in row.bow
+    ]
+    for row in _ROWS
+], 8)  # fmt: skip
+FINGER_STEPS = _padded(
+    [
+        [(step.at_ms, step.at_share, step.semitones, step.glide_ms) for step in row.fingers]
+        for row in _ROWS
+    ],
+    4,
+)
+SHAPES = np.array([
+    (row.attack, row.length_s, row.again_ms, row.sooner, row.times or math.inf, row.tremolo,
+     row.is_plucked)
+    for row in _ROWS
+])  # fmt: skip
+HAS_VIBRATO = np.array([row.vibrato is not None for row in _ROWS])
+VIBRATOS = np.array([
+    (row.vibrato.cents, row.vibrato.hertz, row.vibrato.press, row.vibrato.upward,
+     row.vibrato.delay_ms)
+    if row.vibrato else (0.0,) * 5
+    for row in _ROWS
+])  # fmt: skip
+
+GESTURE = np.dtype(
+    [
+        ("row", np.int64),  # of the tables above
+        ("scale", np.float64),  # of what the bow's factors differ from 1
+        ("attack", np.float64),  # factor
+        # The bow: its next step, how often its steps came, the time after the note's beginning
+        # from which they count (s).
+        ("bow_step", np.int64),
+        ("bow_round", np.int64),
+        ("bow_from", np.float64),
+        ("speed", np.float64),  # factors
+        ("weight", np.float64),
+        ("is_off", np.int64),  # whether the hair is lifted
+        # The finger: the same, and where it is from the note's pitch (semitones).
+        ("finger_step", np.int64),
+        ("finger_round", np.int64),
+        ("finger_from", np.float64),
+        ("bend", np.float64),
+        # The slide it is in: ends (semitones), time after the note's beginning, duration (s).
+        ("slide_from", np.float64),
+        ("slide_to", np.float64),
+        ("slide_at", np.float64),
+        ("slide_s", np.float64),  # 0: none
+    ],
+    align=True,
+)
+
+
+@compiled_exactly
+def rest(g: Any) -> None:
+    """Do nothing: a steady bow, the finger on the note's pitch."""
+    g["row"], g["scale"], g["attack"] = ORDINARY, 1.0, 1.0
+    g["bow_step"] = g["bow_round"] = g["finger_step"] = g["finger_round"] = 0
+    g["bow_from"] = g["finger_from"] = 0.0
+    g["speed"] = g["weight"] = 1.0
+    g["is_off"], g["bend"], g["slide_s"] = 0, 0.0, 0.0
+
+
+@compiled_exactly
+def begin_gesture(p: Any, is_slur: bool) -> None:
+    """Begin the gesture of a note; on a slur the bow goes on as it is."""
+    g = p.gesture
+    rest(g)
+    number = int(np.rint(p.value[ARTICULATION]))
+    g.row = number if 0 <= number < SHAPED_ROW else ORDINARY
+    if g.row == ORDINARY and p.value[PHRASING] > 0.0:
+        shape(p)
+    g.attack *= SHAPES[g.row, ATTACK]
+    if is_slur and SHAPES[g.row, STROKES] == 0.0:
+        g.bow_step = BOW_COUNT[g.row]
+    while g.bow_step < BOW_COUNT[g.row] and is_immediate(BOW_STEPS[g.row, g.bow_step]):
+        step = BOW_STEPS[g.row, g.bow_step]
+        g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
+        g.bow_step += 1
+    if FINGER_COUNT[g.row] > 0:
+        first = FINGER_STEPS[g.row, 0]
+        if first[AT] == first[AT_SHARE] == first[GLIDE] == 0.0:
+            g.bend = first[SEMITONES]
+            g.finger_step = 1
+
+
+@compiled_exactly
+def shape(p: Any) -> None:
+    """Shape an ordinary note as far as phrasing says: its attack, and its swell if it is long."""
+    g = p.gesture
+    amount = min(p.value[PHRASING] / SHAPED_AT, 1.5)
+    length = note_length(p, SHAPED_ROW)
+    uneven = 1.0 + UNEVEN_ATTACK * deviate(p) * min(4.0 * p.value[VARIATION], 1.0)
+    longer = min(length / LONG_S, 1.0)
+    factor = (SHORT_ATTACK + (LONG_ATTACK - SHORT_ATTACK) * longer) * max(uneven, 0.4)
+    g.attack = max(1.0 + amount * (factor - 1.0), 0.4)
+    if length >= LEAST_SHAPED_S:
+        g.row, g.scale = SHAPED_ROW, amount * max(1.0 + 0.4 * deviate(p), 0.0)
+
+
+@compiled_exactly
+def note_length(p: Any, row: int) -> float:
+    """The length of the note (s), or what is assumed of it."""
+    known = p.value[NOTE_LENGTH]
+    return float(known if known > 0.0 else SHAPES[row, LENGTH])
+
+
+@compiled_exactly
+def is_immediate(step: Any) -> bool:
+    """Whether a step of the bow is the state that a note begins in."""
+    return bool(step[AT] == step[AT_SHARE] == step[RAMP] == step[RAMP_SHARE] == 0.0)
+
+
+@compiled_exactly
+def scaled(g: Any, factor: float) -> float:
+    """A factor of the bow, as far as the gesture goes."""
+    return float(1.0 + g.scale * (factor - 1.0))
+
+
+@compiled_exactly
+def attack_of(p: Any) -> float:
+    """Factor on the time of the attack."""
+    return float(p.gesture.attack)
+
+
+@compiled_exactly
+def tremolo_of(p: Any) -> float:
+    """Strokes a second: as wished, else the gesture's."""
+    wished = p.value[TREMOLO]
+    return float(wished if wished > 0.0 else SHAPES[p.gesture.row, STROKES])
+
+
+@compiled_exactly
+def has_vibrato(p: Any) -> bool:
+    """Whether the gesture has a vibrato of its own."""
+    return bool(HAS_VIBRATO[p.gesture.row])
+
+
+@compiled_exactly
+def vibrato_rate(p: Any) -> float:
+    """Rate of the vibrato (Hz)."""
+    if has_vibrato(p):
+        return float(VIBRATOS[p.gesture.row, HERTZ])
+    return float(p.value[PLAYING_VIBRATO_RATE])
+
+
+@compiled_exactly
+def vibrato_press(p: Any) -> float:
+    """Share of the finger's force that varies with the vibrato."""
+    if has_vibrato(p):
+        return float(VIBRATOS[p.gesture.row, PRESS])
+    return float(p.value[PLAYING_VIBRATO_PRESS])
+
+
+@compiled_exactly
+def vibrato_upward(p: Any) -> float:
+    """1 where the vibrato only goes up from the pitch."""
+    return float(VIBRATOS[p.gesture.row, UPWARD] if has_vibrato(p) else 0.0)
+
+
+@compiled_exactly
+def begin_slide(p: Any, from_semitones: float, to_semitones: float, at_s: float, s: float) -> None:
+    """Begin to slide the finger; times in seconds after the note's beginning."""
+    g = p.gesture
+    g.slide_from, g.slide_to, g.slide_at, g.slide_s = from_semitones, to_semitones, at_s, s
+    g.bend = from_semitones
+
+
+STEEP = 3.0  # of the logistic curve that slides follow
+
+
+@compiled_exactly
+def slid(g: Any, at_s: float) -> float:
+    """Where a slide is (semitones) at a time; logistic in time, as huqin players' are [Yang]."""
+    part = min(max((at_s - g.slide_at) / g.slide_s, 0.0), 1.0)
+    end = 1.0 / (1.0 + math.exp(-STEEP))
+    come = 1.0 / (1.0 + math.exp(-STEEP * (2.0 * part - 1.0)))
+    come = 0.5 + (come - 0.5) * 0.5 / (end - 0.5)
+    return float(g.slide_from + (g.slide_to - g.slide_from) * come)

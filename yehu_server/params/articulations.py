@@ -1,0 +1,268 @@
+"""The articulations: what both hands do in a note, as a table. Docs, mappings and pages derive.
+
+An articulation is a value of `/playing/articulation`: its place in `ARTICULATIONS`. The numbers
+stay for ever; new ones come last. What a step means in sound, `core.player.gestures` does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from yehu_server.errors import ParameterError, did_you_mean
+
+
+@dataclass(frozen=True)
+class BowStep:
+    """What the bow does from a time on in a note: `at_ms` and a share of the note's length.
+
+    Attributes
+    ----------
+    speed, weight : float
+        Factors on the bow's speed and on its pressure.
+    ramp_ms, ramp_share : float
+        Time in which it comes to that: ms, and a share of the note's length.
+    is_on : bool
+        Whether the hair lies on the string.
+    turns : bool
+        Whether the bow changes its direction.
+    """
+
+    at_ms: float = 0.0
+    at_share: float = 0.0
+    speed: float = 1.0
+    weight: float = 1.0
+    ramp_ms: float = 0.0
+    ramp_share: float = 0.0
+    is_on: bool = True
+    turns: bool = False
+
+
+@dataclass(frozen=True)
+class FingerStep:
+    """Where a finger goes at a time of a note: semitones from the note's pitch.
+
+    Attributes
+    ----------
+    glide_ms : float
+        The time in which it slides there; 0: the next finger is put down there.
+    """
+
+    semitones: float
+    at_ms: float = 0.0
+    at_share: float = 0.0
+    glide_ms: float = 0.0
+
+
+@dataclass(frozen=True)
+class Vibrato:
+    """A vibrato of an articulation's own.
+
+    Attributes
+    ----------
+    cents : float
+        To either side, or where it goes `upward` from the pitch to twice as much.
+    press : float
+        Share of the finger's force that varies with it.
+    delay_ms : float
+        As `/playing/vibrato_delay`.
+    """
+
+    cents: float
+    hertz: float = 5.5
+    press: float = 0.0
+    upward: bool = False
+    delay_ms: float = 400.0
+
+
+@dataclass(frozen=True)
+class Articulation:
+    """One articulation.
+
+    Attributes
+    ----------
+    name, chinese, about : str
+        As players call it, and what the hands do.
+    source : str
+        Where its figures are from.
+    attack : float
+        Factor on the time of the bow's attack.
+    length_s : float
+        The length assumed of a note whose length is not known.
+    again_ms, sooner : float
+        The finger's steps, or the bow's where the fingers have none, come again so long after they
+        began, and each time sooner by this share of it; at 0 ms they do not.
+    times : int
+        How often they come; 0: while the note sounds.
+    tremolo : float
+        Strokes a second.
+    is_plucked : bool
+    """
+
+    name: str
+    chinese: str
+    about: str
+    source: str = "by ear"
+    bow: tuple[BowStep, ...] = ()
+    fingers: tuple[FingerStep, ...] = ()
+    vibrato: Vibrato | None = None
+    attack: float = 1.0
+    length_s: float = 0.5
+    again_ms: float = 0.0
+    sooner: float = 0.0
+    times: int = 0
+    tremolo: float = 0.0
+    is_plucked: bool = False
+
+
+ARTICULATIONS: tuple[Articulation, ...] = (
+    Articulation("ordinary", "普通", "a stroke for each separate note, one for slurred notes"),
+    Articulation(
+        "short", "短分弓", "a stroke over half of the note, that lets the string ring",
+        bow=(BowStep(), BowStep(at_share=0.5, ramp_ms=60.0, is_on=False)),
+        attack=0.8, length_s=0.3,
+    ),
+    Articulation(
+        "staccato", "顿弓", "a stroke that stops on the string",
+        bow=(
+            BowStep(),
+            BowStep(at_share=0.4, speed=0.0, ramp_ms=20.0),
+        ),
+        attack=0.7, length_s=0.3,
+    ),
+    Articulation(
+        "spiccato", "跳弓", "a short stroke from the air and back into it",
+        bow=(BowStep(speed=1.15, weight=1.1), BowStep(at_ms=55.0, ramp_ms=35.0, is_on=False)),
+        attack=0.4,
+    ),
+    Articulation(
+        "ricochet", "抛弓", "the bow is thrown and bounces, up to five times, ever sooner",
+        source="[Guettler and Askenfelt]: bounces of 8 to 15 a second; the rest by ear",
+        bow=(
+            BowStep(speed=1.15, weight=1.1),
+            BowStep(at_ms=50.0, ramp_ms=25.0, is_on=False),
+        ),
+        attack=0.3, again_ms=125.0, sooner=0.1, times=5,
+    ),
+    Articulation(
+        "tremolo", "颤弓", "many short strokes, growing",
+        source="12 to 15 strokes a second in recordings of an erhu; the growth by ear",
+        bow=(BowStep(speed=0.7), BowStep(speed=1.1, ramp_share=0.9)),
+        tremolo=13.0, length_s=1.5,
+    ),
+    Articulation(
+        "padded", "垫弓", "a light stroke the other way before the note ends",
+        bow=(
+            BowStep(),
+            BowStep(at_share=0.75, speed=0.6, ramp_ms=28.0, turns=True),
+        ),
+    ),
+    Articulation(
+        "sforzando", "突强", "a hard beginning that is soon soft",
+        bow=(
+            BowStep(speed=1.3, weight=1.4),
+            BowStep(at_ms=90.0, speed=0.65, weight=0.9, ramp_ms=180.0),
+        ),
+        attack=0.6, length_s=1.0,
+    ),
+    Articulation(
+        "swell", "渐强渐弱", "from soft to loud and back in one note",
+        bow=(
+            BowStep(speed=0.45, weight=0.9),
+            BowStep(speed=1.35, weight=1.1, ramp_share=0.45),
+            BowStep(at_share=0.5, speed=0.4, weight=0.9, ramp_share=0.5),
+        ),
+        attack=2.0, length_s=2.0,
+    ),
+    Articulation("pizzicato", "拨弦", "the right hand plucks", is_plucked=True),
+    Articulation(
+        "straight", "直音", "no vibrato, whatever else says so", vibrato=Vibrato(0.0),
+    ),
+    Articulation(
+        "rolling-vibrato", "滚揉", "the finger rolls to both sides of the pitch",
+        source="39 to 105 cents from peak to peak in recordings of an erhu, a violin and a cello",
+        vibrato=Vibrato(32.0, 5.8, 0.15, delay_ms=350.0),
+    ),
+    Articulation(
+        "pressing-vibrato", "压揉", "the finger presses the string in and only raises its pitch",
+        vibrato=Vibrato(28.0, 5.2, 0.6, upward=True, delay_ms=300.0),
+    ),
+    Articulation(
+        "sliding-vibrato", "滑揉", "the finger slides to and fro, wide and slow",
+        vibrato=Vibrato(65.0, 4.2, delay_ms=300.0),
+    ),
+    Articulation(
+        "slide-up", "上滑音", "a slide to the pitch from a second below",
+        fingers=(FingerStep(-2.0), FingerStep(0.0, at_ms=35.0, glide_ms=120.0)),
+    ),
+    Articulation(
+        "large-slide-up", "大上滑音", "a slide to the pitch from a major third below",
+        fingers=(FingerStep(-4.0), FingerStep(0.0, at_ms=50.0, glide_ms=230.0)),
+    ),
+    Articulation(
+        "slide-down", "下滑音", "a slide to the pitch from a second above",
+        fingers=(FingerStep(2.0), FingerStep(0.0, at_ms=35.0, glide_ms=130.0)),
+    ),
+    Articulation(
+        "turning-slide", "回滑音", "a slide to a second above and back",
+        fingers=(
+            FingerStep(2.0, at_share=0.3, glide_ms=130.0),
+            FingerStep(0.0, at_ms=140.0, at_share=0.3, glide_ms=150.0),
+        ),
+        length_s=0.7,
+    ),
+    Articulation(
+        "fall", "甩音", "a slide down by a minor third as the note ends",
+        fingers=(FingerStep(-3.0, at_share=0.72, glide_ms=170.0),),
+    ),
+    Articulation(
+        "mordent", "打音", "another finger beats a second above, once",
+        fingers=(FingerStep(2.0, at_ms=70.0), FingerStep(0.0, at_ms=130.0)),
+    ),
+    Articulation(
+        "trill", "颤音", "another finger beats a second above, ever sooner",
+        fingers=(FingerStep(2.0, at_ms=90.0), FingerStep(0.0, at_ms=160.0)),
+        again_ms=150.0, sooner=0.03,
+    ),
+    Articulation(
+        "wide-trill", "大颤音", "another finger beats a minor third above, ever sooner",
+        fingers=(FingerStep(3.0, at_ms=90.0), FingerStep(0.0, at_ms=160.0)),
+        again_ms=150.0, sooner=0.03,
+    ),
+    Articulation(
+        "passed-slide", "垫指滑音",
+        "a slide from a minor third below, which the next finger takes over",
+        fingers=(
+            FingerStep(-3.0),
+            FingerStep(-1.6, at_ms=30.0, glide_ms=80.0),
+            FingerStep(-1.0, at_ms=115.0),
+            FingerStep(0.0, at_ms=125.0, glide_ms=80.0),
+        ),
+    ),
+    Articulation(
+        "wavering", "活五", "a pitch that never rests, as the second degree of the Chaozhou scale "
+        "huo wu: over it, and slowly about it",
+        fingers=(
+            FingerStep(-0.4),
+            FingerStep(0.6, at_ms=40.0, glide_ms=170.0),
+            FingerStep(-0.2, at_ms=230.0, glide_ms=170.0),
+        ),
+        again_ms=380.0,
+    ),
+)  # fmt: skip
+
+NUMBER = {articulation.name: number for number, articulation in enumerate(ARTICULATIONS)}
+LAST = 127  # the range has room for what is yet to come, and is a controller's
+
+
+def number_of(name: str) -> int:
+    """The value of `/playing/articulation` for a name, English or Chinese.
+
+    Raises
+    ------
+    ParameterError
+        Where there is none; with a similar name if there is one.
+    """
+    for number, articulation in enumerate(ARTICULATIONS):
+        if name in (articulation.name, articulation.chinese):
+            return number
+    raise ParameterError(f"unknown articulation {name!r}{did_you_mean(name, NUMBER)}")

@@ -39,7 +39,8 @@ export class Challenge {
     this.gone += lasted;
     if (kind === "scratch" && this.found === null) this.#scratched = this.gone;
     if (kind === "tone") {
-      if (this.found === null && !Number.isNaN(this.#scratched)) this.found = this.gone - this.#scratched;
+      const isFound = this.found === null && !Number.isNaN(this.#scratched);
+      if (isFound) this.found = this.gone - lasted - this.#scratched;
       this.tone += lasted;
       this.#run += lasted;
       this.longest = Math.max(this.longest, this.#run);

@@ -30,7 +30,7 @@ const PERCUSSION = 9;
 const RIGHT_WITHIN = 0.5; // semitones
 const IN_TIME = 0.4; // s before or after its time
 const COUNT_IN = 2; // s before the first note
-const JOINED = 0.02; // s between notes of one bow, at most
+const OVERLAP = 0.001; // s; notes that overlap by more are in one bow
 
 /** A tune that is on: tells by events 'move' as it goes on, and 'end'. */
 class Course extends EventTarget {
@@ -194,7 +194,9 @@ export class TuneGuide extends Course {
 
   /** How many notes of the same pitch come now. */
   get repeats() {
-    const same = this.notes.slice(this.at).findIndex(({ pitch }) => pitch !== this.notes[this.at].pitch);
+    const same = this.notes
+      .slice(this.at)
+      .findIndex(({ pitch }) => pitch !== this.notes[this.at].pitch);
     return same < 0 ? this.notes.length - this.at : same;
   }
 
@@ -231,7 +233,8 @@ export class TuneGuide extends Course {
 
   /** @param {boolean} isRight */
   #pass(isRight) {
-    if (!isRight) this.#wrongs.set(this.at, (this.#wrongs.get(this.at) ?? 0) + Math.max(this.#tries, 1));
+    if (!isRight)
+      this.#wrongs.set(this.at, (this.#wrongs.get(this.at) ?? 0) + Math.max(this.#tries, 1));
     this.marks[this.at] = isRight;
     this.at += 1;
     this.#tries = 0;
@@ -287,7 +290,7 @@ export function notesOf(tune) {
   }
   notes.forEach((note, i) => {
     const next = notes[i + 1];
-    note.isTied = next !== undefined && note.until > next.at - JOINED && next.pitch !== note.pitch;
+    note.isTied = next !== undefined && note.until > next.at + OVERLAP && next.pitch !== note.pitch;
     if (next) note.until = Math.min(note.until, next.at);
   });
   return notes;

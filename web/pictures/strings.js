@@ -117,6 +117,7 @@ export class Strings {
       for (let i = 0; i < POINTS; i++) context.lineTo(along[i], across(shape[i]));
       context.stroke();
     };
+    /** @type {Float32Array} */
     let shape = STILL;
     if (isHeard && view === "slowed" && slow.known > 0) shape = slow.at(this.phase);
     else if (isHeard && view === "moving" && trail.length) shape = trail[trail.length - 1];

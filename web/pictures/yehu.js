@@ -123,10 +123,7 @@ export class Yehu extends Picture {
     drawBow(context, surface, bow, colours, state, isCalm);
     const placeOf = (/** @type {number} */ pitch) => this.#placeOf(pitch);
     const middle = surface.breadth / 2;
-    if (
-      this.targets &&
-      drawTargets(context, middle, placeOf, this.targets, colours, now, isCalm)
-    ) {
+    if (this.targets && drawTargets(context, middle, placeOf, this.targets, colours, now, isCalm)) {
       this.wake();
     }
     const pitch = state ? soundingPitch(state) : NaN;

@@ -173,7 +173,8 @@ export default {
   "tune.ode_to_joy": "Ode to Joy",
   "tune.ode_to_joy.about": "Beethoven, 1824.",
   "tune.song_bie": "Song Bie (Farewell)",
-  "tune.song_bie.about": "John P. Ordway’s “Dreaming of Home and Mother”, sung in China since 1915.",
+  "tune.song_bie.about":
+    "John P. Ordway’s “Dreaming of Home and Mother”, sung in China since 1915.",
   "tune.amazing_grace": "Amazing Grace",
   "tune.amazing_grace.about": "New Britain: United States, printed in 1829.",
   "tune.auld_lang_syne": "Auld Lang Syne",
@@ -260,7 +261,8 @@ export default {
   "connect.octave": "Octave: {octave}",
   "connect.sound": "Sound",
   "connect.dropouts": "Drop-outs in the last minute: {count}.",
-  "connect.dropouts.here": "Other pages and programs take the time that the instrument needs: close some. A larger buffer helps too.",
+  "connect.dropouts.here":
+    "Other pages and programs take the time that the instrument needs: close some. A larger buffer helps too.",
   "connect.buffer": "Larger buffer: fewer drop-outs, more latency",
   "connect.dropouts.server": "They are the server’s, or of the way to it: its terminal tells more.",
 

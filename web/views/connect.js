@@ -26,12 +26,16 @@ export function showConnections(page) {
   const panel = find("panel-connect", HTMLElement);
   const status = make("p", { class: "soft" });
   const gaps = make("p", { class: "soft", role: "status", hidden: true });
-  const buffer = makeSwitch(() => translate("connect.buffer"), settings.isBuffered, (isBuffered) => {
-    remember({ isBuffered });
-    const { instrument } = page;
-    instrument.change(instrument.way);
-    instrument.start();
-  });
+  const buffer = makeSwitch(
+    () => translate("connect.buffer"),
+    settings.isBuffered,
+    (isBuffered) => {
+      remember({ isBuffered });
+      const { instrument } = page;
+      instrument.change(instrument.way);
+      instrument.start();
+    },
+  );
   const recent = dropoutsOf(page.instrument);
   const tell = () => {
     const known = page.instrument.sound?.status ?? null;
@@ -76,7 +80,9 @@ function dropoutsOf(instrument) {
     const { sound } = instrument;
     if (sound !== known) [known, before] = [sound, sound?.status.dropouts ?? 0];
     const all = sound?.status.dropouts ?? 0;
-    times.push(...Array.from({ length: Math.max(Math.min(all - before, MOST_COUNTED), 0) }, () => now));
+    times.push(
+      ...Array.from({ length: Math.max(Math.min(all - before, MOST_COUNTED), 0) }, () => now),
+    );
     before = all;
     times = times.filter((time) => now - time < MINUTE).slice(-MOST_COUNTED);
     return times.length;

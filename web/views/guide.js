@@ -32,14 +32,27 @@ export function showGuide({ instrument, hands, bow, fingerboard, keys, yehu }, l
   const live = make("p", { class: "live", "aria-hidden": "true" });
   const dots = STEPS.slice(1).map(() => make("i"));
   const again = make("button", { type: "button" }, [() => translate("guide.again")]);
-  const easy = make("button", { type: "button", class: "main", id: "easy" }, [() => translate("guide.easy")]);
+  const easy = make("button", { type: "button", class: "main", id: "easy" }, [
+    () => translate("guide.easy"),
+  ]);
   const skip = make("button", { type: "button", class: "quiet", id: "skip" });
-  guide.append(make("span", { class: "steps", "aria-hidden": "true" }, dots), words, live, again, easy, skip);
+  guide.append(
+    make("span", { class: "steps", "aria-hidden": "true" }, dots),
+    words,
+    live,
+    again,
+    easy,
+    skip,
+  );
 
   const result = () => {
     const { tone, longest, found } = challenge;
     if (challenge.gone === 0) return ["guide.done", translate("guide.done.about")];
-    const values = { tone: tone.toFixed(1), longest: longest.toFixed(1), best: settings.bestTone.toFixed(1) };
+    const values = {
+      tone: tone.toFixed(1),
+      longest: longest.toFixed(1),
+      best: settings.bestTone.toFixed(1),
+    };
     const came = found === null ? "" : translate("guide.found", { found: found.toFixed(1) });
     return ["guide.result", `${came} ${translate("guide.result.about", values)}`, values];
   };

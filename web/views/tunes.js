@@ -22,8 +22,10 @@ const SHOWN = 3; // notes that come next, on the fingerboard
  */
 export function showTunes(page, clear) {
   const lesson = new Lesson(page, clear);
-  const slowly = makeSwitch(() => translate("tunes.slowly"), settings.isSlow, (isSlow) =>
-    remember({ isSlow }),
+  const slowly = makeSwitch(
+    () => translate("tunes.slowly"),
+    settings.isSlow,
+    (isSlow) => remember({ isSlow }),
   );
   const list = make("div", { class: "group" });
   find("panel-tunes", HTMLElement).append(
@@ -71,7 +73,9 @@ function row(lesson, tune) {
     bar.hidden = lesson.tune !== tune || !lesson.course;
     bar.value = lesson.course?.progress ?? 0;
   });
-  const easy = tune.isEasy ? [make("span", { class: "easy" }, [() => translate("tunes.easy")])] : [];
+  const easy = tune.isEasy
+    ? [make("span", { class: "easy" }, [() => translate("tunes.easy")])]
+    : [];
   return make("article", { class: "tune" }, [
     make("h2", {}, [name, " ", make("span", { class: "soft" }, [clock(tune.seconds)]), ...easy]),
     make("p", { class: "soft" }, [() => translateOr(`tune.${tune.name}.about`, "")]),
@@ -109,7 +113,9 @@ export class Lesson extends EventTarget {
     this.again = find("again", HTMLButtonElement);
     this.stopper = find("stop", HTMLButtonElement);
     page.instrument.addEventListener("silence", () => this.course?.stop());
-    this.stopper.addEventListener("click", () => (this.course ? this.course.stop() : this.#leave()));
+    this.stopper.addEventListener("click", () =>
+      this.course ? this.course.stop() : this.#leave(),
+    );
     onLanguage(() => this.#tell());
     this.again.addEventListener("click", () => this.last && this.toggle(...this.last));
   }

@@ -64,7 +64,12 @@ for (const act of [
   act();
   way.push(waiting.guide.at);
 }
-found.waiting = { way, wrong: waiting.wrong, result: waiting.guide.result, isOn: waiting.guide.isOn };
+found.waiting = {
+  way,
+  wrong: waiting.wrong,
+  result: waiting.guide.result,
+  isOn: waiting.guide.isOn,
+};
 
 const bowed = follow([65, 65, 67], false);
 bowed.slide(65);
@@ -94,8 +99,14 @@ found.tunes = Object.values(examples).map((tune) => {
   return {
     name: tune.name,
     isEasy: tune.isEasy,
-    jianpu: notes.slice(0, 7).map(({ pitch }) => jianpuText(pitch)).join(" "),
-    range: [Math.min(...notes.map(({ pitch }) => pitch)), Math.max(...notes.map(({ pitch }) => pitch))],
+    jianpu: notes
+      .slice(0, 7)
+      .map(({ pitch }) => jianpuText(pitch))
+      .join(" "),
+    range: [
+      Math.min(...notes.map(({ pitch }) => pitch)),
+      Math.max(...notes.map(({ pitch }) => pitch)),
+    ],
     tied: notes.filter(({ isTied }) => isTied).length,
     count: notes.length,
     isInOrder: notes.every(({ at, until }, i) => at < until && at >= (notes[i - 1]?.at ?? 0)),

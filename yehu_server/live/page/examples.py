@@ -48,7 +48,15 @@ MAPPING = {
 }
 EASY = ("twinkle", "frere_jacques", "au_clair_de_la_lune")
 # As one learns them; the others follow.
-ORDER = (*EASY, "ode_to_joy", "song_bie", "amazing_grace", "auld_lang_syne", "silent_night", "arirang")
+ORDER = (
+    *EASY,
+    "ode_to_joy",
+    "song_bie",
+    "amazing_grace",
+    "auld_lang_syne",
+    "silent_night",
+    "arirang",
+)
 KEYS = {"mo_li_hua": "Bb"}  # of MIDI files that are not in F
 _KEY = re.compile(r"^1=([A-G][#b]?)", re.MULTILINE)
 _STEPS = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11, "#": 1, "b": -1}

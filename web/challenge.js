@@ -2,6 +2,8 @@
 
 export const LASTS = 20; // s
 const SLOWEST = 0.04; // m/s that is a stroke
+const BLINK = 0.15; // s that a turning bow may be in another way
+const HELD = 0.3; // s after which a tone is found
 
 /**
  * What a hand makes of the string: by the bow force, between Schelleng's limits.
@@ -21,8 +23,10 @@ export class Challenge {
   longest = 0; // s, of it at once
   /** When the tone came after a scratch, s after it. @type {number | null} */
   found = null;
-  #run = 0;
-  #scratched = NaN;
+  #run = 0; // s of tone until now
+  #other = 0; // s of anything else until now
+  #scratch = 0;
+  #scratched = NaN; // when it last did
 
   get isOver() {
     return this.gone >= LASTS;
@@ -37,13 +41,21 @@ export class Challenge {
     if (this.isOver || (this.gone === 0 && kind === "none")) return;
     const lasted = Math.min(seconds, LASTS - this.gone);
     this.gone += lasted;
-    if (kind === "scratch" && this.found === null) this.#scratched = this.gone;
+    if (kind === "none") return; // a bow that turns stands for a moment
     if (kind === "tone") {
-      const isFound = this.found === null && !Number.isNaN(this.#scratched);
-      if (isFound) this.found = this.gone - lasted - this.#scratched;
       this.tone += lasted;
       this.#run += lasted;
+      this.#other = this.#scratch = 0;
       this.longest = Math.max(this.longest, this.#run);
-    } else if (kind !== "none") this.#run = 0; // a bow that turns stands for a moment
+      if (this.found === null && this.#run >= HELD) {
+        this.found = Number.isNaN(this.#scratched) ? null : this.gone - this.#run - this.#scratched;
+      }
+      return;
+    }
+    this.#other += lasted;
+    if (this.#other > BLINK) this.#run = 0;
+    if (kind !== "scratch") return;
+    this.#scratch += lasted;
+    if (this.#scratch > BLINK && this.found === null) this.#scratched = this.gone;
   }
 }

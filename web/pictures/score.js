@@ -78,7 +78,7 @@ export class Score extends Picture {
     if (state && state.bow.string >= 0 && state.bow.speed !== 0) this.#stroke(now, state.bow.speed);
     if (performance.now() - this.#saidAt < SAID_MS) {
       this.wake();
-      this.#say(now + 44);
+      this.#say();
     }
   }
 
@@ -112,13 +112,13 @@ export class Score extends Picture {
     context.globalAlpha = 1;
   }
 
-  /** @param {number} left px */
-  #say(left) {
-    const { context, colours, height } = this;
+  #say() {
+    const { context, colours, width, height } = this;
     context.font = font(16, 600);
     context.textAlign = "left";
     context.fillStyle = colours.bad;
     const room = context.measureText(this.#word).width + 24;
+    const left = width - room; // what is played now stays in sight
     context.beginPath();
     context.roundRect(left, 0.16 * height, room, 0.44 * height, 8);
     context.fill();
@@ -144,7 +144,9 @@ export class Score extends Picture {
    */
   #stroke(now, speed) {
     const { context, colours, height } = this;
-    const [left, top] = [now - 26, 0.3 * height];
+    const [left, top] = [now - 24, 0.3 * height];
+    context.fillStyle = colours.surface;
+    context.fillRect(left - 4, 0.1 * height, 22, 0.48 * height);
     context.strokeStyle = colours.ink;
     context.lineWidth = 2.5;
     context.beginPath();

@@ -16,6 +16,7 @@ import { Wood, disc, laneOf, writeNotes } from "./wood.js";
 
 const FINGER = 15; // px
 const SAME = 0.01; // semitones
+const LEAST_FOR_NUMBERS = 420; // px; lower, they would lie over the coconut
 
 export class Yehu extends Picture {
   /**
@@ -131,7 +132,7 @@ export class Yehu extends Picture {
     if (isSounding) this.#sounding(pitch);
     context.restore();
     this.#words(state);
-    if (bow.hands.isBowing) this.#numbers();
+    if (bow.hands.isBowing && this.height > LEAST_FOR_NUMBERS) this.#numbers();
   }
 
   /**
@@ -232,7 +233,7 @@ export class Yehu extends Picture {
     }
     if (!targets || targets.repeats < 2) return;
     context.fillStyle = colours.accent;
-    const beside = surface.breadth / 2 + (surface.isUpright ? -44 : 44);
+    const beside = surface.breadth / 2 - 46;
     this.#write(`×${targets.repeats}`, this.#placeOf(targets.pitches[0]), beside);
   }
 

@@ -12,7 +12,8 @@ const MARGIN = 0.6;
 const ROOM = 22;
 const LEAST_SHOWN = 8;
 
-const FLAT = 10; // in F, the scale of the open strings, it is no A sharp
+/** In F, the scale of the open strings, and in B flat these are no sharps. @type {Record<number, string>} */
+const FLAT_NAMES = { 3: "E♭", 10: "B♭" };
 
 const NAMES = facts.notes.NAMES.map((name) => name.replace("#", "♯"));
 
@@ -85,7 +86,7 @@ export function fingerOf(note) {
 /** @param {number} note */
 export function letterOf(note) {
   const step = note % 12;
-  return step === FLAT ? "B♭" : NAMES[step];
+  return FLAT_NAMES[step] ?? NAMES[step];
 }
 
 /** @param {number} note */

@@ -140,6 +140,7 @@ export class Lesson extends EventTarget {
     Object.assign(this, { course, tune, way, last: [tune, way], asked: undefined });
     this.page.setTonic(tune.tonic);
     this.bar.hidden = this.canvas.hidden = false;
+    find("invite", HTMLElement).hidden = true;
     this.again.hidden = true;
     this.said.textContent = "";
     this.said.className = "unseen";

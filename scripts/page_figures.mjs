@@ -10,6 +10,7 @@ const PICTURES = [
   { name: "desk", size: SIZES.desk, colorScheme: "light", view: "see", key: "KeyR" },
   { name: "tablet", size: SIZES.tablet, colorScheme: "dark", view: "sound", key: "KeyW" },
   { name: "phone", size: SIZES.phone, colorScheme: "light", view: null, key: "KeyC" },
+  { name: "tune", size: SIZES.desk, colorScheme: "light", view: "tunes", key: null },
 ];
 const SETTLED_MS = 4000;
 
@@ -24,14 +25,15 @@ await run(
       await page.waitForSelector(READY);
       if (view) await page.click(`#tab-${view}`);
       await page.click("#start");
-      await page.keyboard.down(key);
+      if (key) await page.keyboard.down(key);
+      else await page.locator(".tune", { hasText: "Song Bie" }).locator("button").first().click();
       await page.waitForTimeout(SETTLED_MS);
       await page.evaluate(() => {
         document.activeElement.blur();
         scrollTo(0, 0);
       });
       await page.screenshot({ path: `${folder}/page_${name}.png` });
-      await page.keyboard.up(key);
+      if (key) await page.keyboard.up(key);
       await page.close();
     }
   },

@@ -19,7 +19,7 @@ const AHEAD_HIDDEN_S = 1.5;
 /**
  * Tells by events: 'prepare' while a server prepares what the page plays by, 'ready' once it can be
  * played, 'lack' when it cannot (with the error as `error`); 'start' when it sounds, 'fail' when it
- * cannot; 'silence' when all has to end, and 'wish' of each wish (a `CustomEvent<Wish>`).
+ * cannot; 'state' of each new snapshot; 'silence' when all has to end, and 'wish' of each wish (a `CustomEvent<Wish>`).
  *
  * @typedef {object} Wish
  * @property {number} frame
@@ -176,7 +176,11 @@ export class Instrument extends EventTarget {
         sound.close(); // another way was chosen meanwhile
         return;
       }
-      sound.addEventListener("state", () => (this.isSeen = true), { once: true });
+      sound.addEventListener("state", () => {
+        if (this.sound !== sound) return;
+        this.isSeen = true;
+        this.dispatchEvent(new Event("state"));
+      });
       this.sound = sound;
       sound.resume?.();
       for (const wish of this.waiting.splice(0)) sound.post(...wish);

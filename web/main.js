@@ -4,6 +4,7 @@ import { find } from "./elements.js";
 import { Bow } from "./hands/bow.js";
 import { Diagram } from "./hands/schelleng.js";
 import { Fingerboard } from "./hands/fingerboard.js";
+import { setTonic } from "./hands/scale.js";
 import { Surface } from "./hands/surface.js";
 import { Hands } from "./hands/hands.js";
 import { Keys } from "./hands/keys.js";
@@ -12,6 +13,7 @@ import { Instrument } from "./instrument.js";
 import { Midi } from "./midi.js";
 import { Level } from "./pictures/level.js";
 import { Gallery } from "./pictures/picture.js";
+import { Score } from "./pictures/score.js";
 import { Schelleng } from "./pictures/schelleng.js";
 import { Spectrum } from "./pictures/spectrum.js";
 import { Tuner } from "./pictures/tuner.js";
@@ -47,6 +49,8 @@ const FIRST_VELOCITY = 0.63;
  * @property {Bow} bow
  * @property {Surface} surface
  * @property {Yehu} yehu
+ * @property {Score} score
+ * @property {(note: number | null) => void} setTonic which note is do; null: the inner string
  * @property {Gallery} gallery
  * @property {MidiLearn} taught
  * @property {Midi} midi
@@ -70,6 +74,8 @@ function assemble() {
   const yehu = new Yehu(find("yehu", HTMLCanvasElement), fingerboard, bow);
   const gallery = new Gallery(() => instrument.state);
   gallery.add(yehu);
+  const score = new Score(find("score", HTMLCanvasElement));
+  gallery.add(score);
   gallery.add(new Tuner(find("tuner", HTMLCanvasElement)));
   gallery.add(new Level(find("level", HTMLCanvasElement)));
   const schelleng = new Schelleng(find("schelleng", HTMLCanvasElement));
@@ -87,9 +93,14 @@ function assemble() {
     bow,
     surface,
     yehu,
+    score,
     gallery,
     taught,
     midi,
+    setTonic: (note) => {
+      setTonic(note);
+      yehu.isStale = true;
+    },
   };
 }
 
@@ -119,11 +130,9 @@ function connect({ instrument, hands, keys, fingerboard, bow, gallery }) {
   }
   keys.addEventListener("silence", () => instrument.silence());
   instrument.addEventListener("silence", () => hands.rest());
-  instrument.addEventListener("start", () => {
-    instrument.sound?.addEventListener("state", () => {
-      if (instrument.state) bow.follow(instrument.state);
-      gallery.wake();
-    });
+  instrument.addEventListener("state", () => {
+    if (instrument.state) bow.follow(instrument.state);
+    gallery.wake();
   });
 }
 
@@ -135,14 +144,14 @@ async function main() {
   connect(page);
   showHeader(page);
   showPlayingOptions(page);
-  showTabs(page);
+  const clear = showTabs(page);
   showSeeing(page);
   showSounds(page);
-  showTunes(page);
+  const lesson = showTunes(page, clear);
   showRecording(page);
   showConnections(page);
   showParameters(page);
-  showGuide(page);
+  showGuide(page, lesson);
 }
 
 const worker = document.querySelector('meta[name="yehu-worker"]')?.getAttribute("content");

@@ -12,6 +12,9 @@ const FIRST = {
   view: "slowed",
   panel: "", // '': none
   isTaught: false, // has seen, or skipped, the first gestures
+  bestTone: 0, // s of full tone in the challenge
+  isSlow: false, // tunes go at two thirds of their pace
+  isBuffered: false, // later sound, but fewer drop-outs
   mapping: "", // '': the default one
   /** Binds that were learned, by the mapping that they lie over. @type {Record<string, unknown>} */
   learned: {},

@@ -1,4 +1,4 @@
-/** Plays a tune's MIDI messages in time, or waits for somebody who plays its notes. */
+/** Plays a tune's MIDI messages in time; or follows somebody who plays its notes, and waits or keeps time. */
 
 /** @typedef {import('./instrument.js').Instrument} Instrument */
 
@@ -10,46 +10,88 @@ import { transposed } from "./playing/range.js";
  * @typedef {object} Tune As `examples.js` has it.
  * @property {string} name
  * @property {string} mapping
+ * @property {boolean} isEasy
  * @property {number} seconds
+ * @property {number} tonic the note that is do
  * @property {[number, number[]][]} events seconds, and the bytes of a message
+ *
+ * @typedef {object} Note
+ * @property {number} at s
+ * @property {number} until s
+ * @property {number} pitch
+ * @property {boolean} isTied in one bow with the next
  */
 
 const PORT = 15; // away from the keyboards' ports
 const EVERY = 60; // ms
 const NOTE_ON = 0x90;
+const NOTE_OFF = 0x80;
 const PERCUSSION = 9;
 const RIGHT_WITHIN = 0.5; // semitones
+const IN_TIME = 0.4; // s before or after its time
+const COUNT_IN = 2; // s before the first note
+const OVERLAP = 0.001; // s; notes that overlap by more are in one bow
 
-/** Tells by events: 'move' as it goes on, and 'end'. */
-export class TunePlayer extends EventTarget {
+/** A tune that is on: tells by events 'move' as it goes on, and 'end'. */
+class Course extends EventTarget {
   /**
    * @param {Instrument} instrument
    * @param {Tune} tune
+   * @param {number} pace 1: as it was written
    */
-  constructor(instrument, tune) {
+  constructor(instrument, tune, pace) {
     super();
     this.instrument = instrument;
     this.tune = tune;
-    this.next = 0;
-    this.begun = 0; // frame
-    this.latest = 0; // frame of the last message that was given to the player
+    this.pace = pace;
+    this.notes = notesOf(tune);
+    this.at = 0; // the next note
+    /** Whether notes were right at once; of one that listens there is nothing. @type {boolean[]} */
+    this.marks = [];
+    this.isTimed = true; // it goes on by itself
     this.timer = 0;
   }
 
-  /** Share of the tune that was played. */
+  get isOn() {
+    return this.timer !== 0;
+  }
+
+  /** Seconds of the tune that have gone. */
+  get now() {
+    return 0;
+  }
+
+  /** Share of the tune that has gone. */
   get progress() {
-    const rate = this.instrument.sound?.status.rate ?? 1;
-    return Math.min(
-      Math.max((this.instrument.frame - this.begun) / rate / this.tune.seconds, 0),
-      1,
-    );
+    return Math.min(Math.max(this.now / this.tune.seconds, 0), 1);
+  }
+
+  move() {
+    this.dispatchEvent(new Event("move"));
+  }
+
+  end() {
+    clearInterval(this.timer);
+    this.timer = 0;
+    this.dispatchEvent(new Event("end"));
+  }
+}
+
+export class TunePlayer extends Course {
+  #next = 0;
+  #begun = 0; // frame
+  #latest = 0; // frame of the last message that was given to the player
+
+  get now() {
+    return ((this.instrument.frame - this.#begun) / this.#rate) * this.pace;
   }
 
   /** Begin; the sound has to be open. */
   start() {
     this.instrument.player.remap(MAPPINGS[this.tune.mapping]);
-    this.begun = this.instrument.horizon;
+    this.#begun = this.instrument.horizon;
     this.timer = window.setInterval(() => this.#play(), EVERY);
+    this.move();
   }
 
   get #rate() {
@@ -58,84 +100,198 @@ export class TunePlayer extends EventTarget {
 
   #play() {
     const { events } = this.tune;
-    for (; this.next < events.length; this.next++) {
-      const [seconds, bytes] = events[this.next];
-      const frame = Math.round(this.begun + seconds * this.#rate);
+    for (; this.#next < events.length; this.#next++) {
+      const [seconds, bytes] = events[this.#next];
+      const frame = Math.round(this.#begun + (seconds / this.pace) * this.#rate);
       if (frame > this.instrument.horizon) break;
       this.instrument.player.midi(bytes, frame, PORT);
-      this.latest = frame;
+      this.#latest = frame;
     }
-    this.dispatchEvent(new Event("move"));
+    while (this.at < this.notes.length && this.notes[this.at].at <= this.now) this.at++;
+    this.move();
     if (this.progress >= 1) this.stop();
   }
 
   stop() {
-    if (!this.timer) return;
-    clearInterval(this.timer);
-    this.timer = 0;
+    if (!this.isOn) return;
     // What the player has already is played; it ends after that.
-    const { player, frame } = this.instrument;
-    player.endPortNotes(PORT, Math.max(this.latest, frame));
-    player.remap(this.instrument.mapping, Math.max(this.latest, frame));
-    this.dispatchEvent(new Event("end"));
+    const { player, frame, mapping } = this.instrument;
+    const last = Math.max(this.#latest, frame);
+    player.endPortNotes(PORT, last);
+    player.remap(mapping, last);
+    this.end();
   }
 }
 
-/** Shows a tune's notes one by one, and goes on when each was played. */
-export class TuneGuide extends EventTarget {
+/** Follows whoever plays a tune: tells by events also 'wrong' of a note that is another (as `pitch`). */
+export class TuneGuide extends Course {
+  #begun = 0; // ms
+  #tries = 0; // wrong ones of the next note
+  #wrongs = new Map(); // how often each note was missed
+  #offsets = /** @type {number[]} */ ([]); // s, of notes that were in time
+  #sounding = NaN;
+  #direction = 0;
+  /** What was played last and was wrong. */
+  pitch = NaN;
+
   /**
    * @param {Instrument} instrument
    * @param {Tune} tune
+   * @param {number} pace
+   * @param {boolean} isTimed it keeps time, else it waits for each note
    */
-  constructor(instrument, tune) {
-    super();
-    this.instrument = instrument;
-    this.notes = notesOf(tune);
-    this.at = 0;
-    this.hear = (/** @type {Event} */ event) => {
-      const { kind, value, other } = /** @type {CustomEvent} */ (event).detail;
-      if (kind === facts.kinds.BEGIN) this.#played(other);
-      else if (kind === facts.kinds.SLIDE) this.#played(value);
-    };
+  constructor(instrument, tune, pace, isTimed) {
+    super(instrument, tune, pace);
+    this.isTimed = isTimed;
   }
 
-  get progress() {
-    return this.at / this.notes.length;
-  }
-
-  /** The note to be played next; null at the end. */
-  get next() {
-    return this.notes[this.at] ?? null;
+  get now() {
+    if (!this.isTimed) return (this.notes[this.at] ?? { at: this.tune.seconds }).at;
+    const seconds = (performance.now() - this.#begun) / 1000;
+    return this.#begun ? (seconds - COUNT_IN) * this.pace : -COUNT_IN;
   }
 
   start() {
-    this.instrument.addEventListener("wish", this.hear);
-    this.dispatchEvent(new Event("move"));
-  }
-
-  /** @param {number} pitch */
-  #played(pitch) {
-    if (this.next === null || Math.abs(pitch - this.next) > RIGHT_WITHIN) return;
-    this.at++;
-    this.dispatchEvent(new Event("move"));
-    if (this.next === null) this.stop();
+    this.#begun = performance.now();
+    this.instrument.addEventListener("wish", this.#hear);
+    this.timer = window.setInterval(() => this.#tick(), EVERY);
+    this.move();
   }
 
   stop() {
-    this.instrument.removeEventListener("wish", this.hear);
-    this.dispatchEvent(new Event("end"));
+    if (!this.isOn) return;
+    this.instrument.removeEventListener("wish", this.#hear);
+    this.end();
+  }
+
+  #tick() {
+    if (!this.isTimed) return;
+    const gone = this.now - IN_TIME * this.pace;
+    while (this.at < this.notes.length && this.notes[this.at].at < gone) this.#pass(false);
+    this.move();
+    this.#stopAtEnd();
+  }
+
+  #hear = (/** @type {Event} */ event) => {
+    const { kind, value, other } = /** @type {CustomEvent} */ (event).detail;
+    if (kind === facts.kinds.BEGIN) {
+      this.#sounding = other;
+      if (!this.#play(other)) this.#miss(other);
+    } else if (kind === facts.kinds.SLIDE) {
+      this.#sounding = value;
+      if (!this.#isRepeated) this.#play(value);
+    } else if (kind === facts.kinds.DRAW && value !== 0) {
+      const isTurned = Math.sign(value) === -this.#direction;
+      this.#direction = Math.sign(value);
+      if (isTurned && this.#isRepeated) this.#play(this.#sounding); // by another stroke of the hand
+    }
+  };
+
+  /** Whether the next note is the one before once more: it has to be begun again. */
+  get #isRepeated() {
+    return this.notes[this.at]?.pitch === this.notes[this.at - 1]?.pitch;
+  }
+
+  /** How many notes of the same pitch come now. */
+  get repeats() {
+    const same = this.notes
+      .slice(this.at)
+      .findIndex(({ pitch }) => pitch !== this.notes[this.at].pitch);
+    return same < 0 ? this.notes.length - this.at : same;
+  }
+
+  /**
+   * Take a note for the one that is asked for.
+   * @param {number} pitch
+   * @returns {boolean} whether it is
+   */
+  #play(pitch) {
+    const reach = this.isTimed ? IN_TIME * this.pace : 0;
+    const found = this.notes.findIndex(
+      (note, i) =>
+        i >= this.at &&
+        Math.abs(note.at - this.now) <= reach &&
+        Math.abs(note.pitch - pitch) <= RIGHT_WITHIN,
+    );
+    if (found < 0) return false;
+    while (this.at < found) this.#pass(false);
+    this.#offsets.push((this.now - this.notes[found].at) / this.pace);
+    this.#pass(this.isTimed || this.#tries === 0);
+    this.move();
+    if (!this.isTimed) this.#stopAtEnd();
+    return true;
+  }
+
+  /** @param {number} pitch */
+  #miss(pitch) {
+    const next = this.notes[this.at];
+    if (!next || (this.isTimed && this.now < -IN_TIME)) return;
+    this.#tries += 1;
+    this.pitch = pitch;
+    this.dispatchEvent(new Event("wrong"));
+  }
+
+  /** @param {boolean} isRight */
+  #pass(isRight) {
+    if (!isRight)
+      this.#wrongs.set(this.at, (this.#wrongs.get(this.at) ?? 0) + Math.max(this.#tries, 1));
+    this.marks[this.at] = isRight;
+    this.at += 1;
+    this.#tries = 0;
+  }
+
+  #stopAtEnd() {
+    if (this.at >= this.notes.length && this.progress >= 1) this.stop();
+  }
+
+  /**
+   * What came of it: null where it was left early.
+   * @returns {{right: number, count: number, run: number, late: number, hardest: Note[] | null} | null}
+   */
+  get result() {
+    const count = this.notes.length;
+    if (this.at < count) return null;
+    let [run, longest] = [0, 0];
+    for (const isRight of this.marks) longest = Math.max(longest, (run = isRight ? run + 1 : 0));
+    const [[hardest] = [-1]] = [...this.#wrongs].sort(([, one], [, other]) => other - one);
+    const sum = this.#offsets.reduce((all, one) => all + one, 0);
+    return {
+      right: this.marks.filter(Boolean).length,
+      count,
+      run: longest,
+      late: this.#offsets.length ? sum / this.#offsets.length : 0,
+      hardest: hardest > 0 ? [this.notes[hardest - 1], this.notes[hardest]] : null,
+    };
   }
 }
 
 /**
- * The pitches of a tune's notes, in order, within the instrument's range.
+ * A tune's notes, in order, within the instrument's range.
  * @param {Tune} tune
+ * @returns {Note[]}
  */
-function notesOf(tune) {
+export function notesOf(tune) {
+  /** @type {Note[]} */
   const notes = [];
-  for (const [, [status, key, velocity]] of tune.events) {
-    const isNote = (status & 0xf0) === NOTE_ON && velocity > 0 && (status & 0x0f) !== PERCUSSION;
-    if (isNote) notes.push(transposed(key));
+  /** @type {Map<string, Note>} */
+  const open = new Map();
+  for (const [at, [status, key, velocity]] of tune.events) {
+    const kind = status & 0xf0;
+    const channel = status & 0x0f;
+    if (channel === PERCUSSION || (kind !== NOTE_ON && kind !== NOTE_OFF)) continue;
+    const name = `${channel} ${key}`;
+    const held = open.get(name);
+    if (held) held.until = at;
+    open.delete(name);
+    if (kind !== NOTE_ON || velocity === 0) continue;
+    const note = { at, until: tune.seconds, pitch: transposed(key), isTied: false };
+    open.set(name, note);
+    notes.push(note);
   }
+  notes.forEach((note, i) => {
+    const next = notes[i + 1];
+    note.isTied = next !== undefined && note.until > next.at + OVERLAP && next.pitch !== note.pitch;
+    if (next) note.until = Math.min(note.until, next.at);
+  });
   return notes;
 }

@@ -5,40 +5,13 @@
 import { HIGHEST, LOWEST } from "./scale.js";
 
 /** Keys by their places, so that any national layout is the same piano. */
-const LOWER = [
-  "KeyZ",
-  "KeyS",
-  "KeyX",
-  "KeyD",
-  "KeyC",
-  "KeyF",
-  "KeyV",
-  "KeyB",
-  "KeyH",
-  "KeyN",
-  "KeyJ",
-  "KeyM",
-  "Comma",
-  "KeyL",
-  "Period",
-  "Semicolon",
-  "Slash",
-];
-const UPPER = [
-  "KeyQ",
-  "Digit2",
-  "KeyW",
-  "Digit3",
-  "KeyE",
-  "Digit4",
-  "KeyR",
-  "KeyT",
-  "Digit6",
-  "KeyY",
-  "Digit7",
-  "KeyU",
-  "KeyI",
-];
+const LOWER =
+  "KeyZ KeyS KeyX KeyD KeyC KeyF KeyV KeyB KeyH KeyN KeyJ KeyM Comma KeyL Period Semicolon Slash".split(
+    " ",
+  );
+const UPPER = "KeyQ Digit2 KeyW Digit3 KeyE Digit4 KeyR KeyT Digit6 KeyY Digit7 KeyU KeyI".split(
+  " ",
+);
 const FIRST_LOWER = 65;
 const FIRST_UPPER = 77;
 const OCTAVE = { Minus: -12, Equal: 12 };

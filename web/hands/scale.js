@@ -12,7 +12,8 @@ const MARGIN = 0.6;
 const ROOM = 22;
 const LEAST_SHOWN = 8;
 
-const FLAT = 10; // in F, the scale of the open strings, it is no A sharp
+/** In F, the scale of the open strings, and in B flat these are no sharps. @type {Record<number, string>} */
+const FLAT_NAMES = { 3: "E♭", 10: "B♭" };
 
 const NAMES = facts.notes.NAMES.map((name) => name.replace("#", "♯"));
 
@@ -22,30 +23,70 @@ export function nameOf(pitch) {
   return `${NAMES[((note % 12) + 12) % 12]}${Math.floor(note / 12) - 1}`;
 }
 
-/** Steps above the inner string, which is do, and how jianpu writes them. */
-const DEGREES = new Map([0, 2, 4, 5, 7, 9, 11].map((step, at) => [step, String(at + 1)]));
+const MAJOR = [0, 2, 4, 5, 7, 9, 11];
+const FLATS = [3, 10]; // steps that are lowered ones, not raised
+
+/** The note that is do: at first the inner string. */
+let tonic = OPEN[0];
+
+/** @param {number | null} note that is do from now on; null: the inner string */
+export function setTonic(note) {
+  tonic = note ?? OPEN[0];
+}
+
+/** @param {number} note */
+const stepOf = (note) => (((note - tonic) % 12) + 12) % 12;
 
 /**
- * Whether a note is one of the major scale on the inner string.
+ * Whether a note is one of the major scale on do.
  * @param {number} note
  */
 export function isDegree(note) {
-  return DEGREES.has((note - OPEN[0]) % 12);
+  return MAJOR.includes(stepOf(note));
 }
 
 /**
- * A degree as jianpu writes it: a digit, with a dot above for each octave.
+ * A note as jianpu writes it: a digit with its sign, and the octaves above the first do, below it negative.
  * @param {number} note
  */
 export function jianpu(note) {
-  const above = note - OPEN[0];
-  return { digit: DEGREES.get(above % 12) ?? "", dots: Math.floor(above / 12) };
+  const step = stepOf(note);
+  const isFlat = FLATS.includes(step);
+  const degree = MAJOR.filter((one) => one <= step + Number(isFlat)).length;
+  const sign = isDegree(note) ? "" : isFlat ? "♭" : "♯";
+  return { digit: sign + degree, dots: Math.floor((note - tonic) / 12) };
+}
+
+/**
+ * The same in words, with dots above or below.
+ * @param {number} note
+ */
+export function jianpuText(note) {
+  const { digit, dots } = jianpu(note);
+  return digit + (dots < 0 ? "\u0323" : "\u0307").repeat(Math.abs(dots));
+}
+
+/** The string that a note is on, as it lies at hand. @param {number} note */
+export function stringOf(note) {
+  return note >= OPEN[1] ? 1 : 0;
+}
+
+/** Fingers by semitones above the open string, in the first position, and in those that follow. */
+const FINGERS = [0, 1, 1, 2, 2, 3, 4, 4];
+
+/**
+ * A finger that a note is at hand for: 0 is the open string.
+ * @param {number} note
+ */
+export function fingerOf(note) {
+  const above = Math.round(note) - OPEN[stringOf(note)];
+  return FINGERS[above] ?? FINGERS[1 + ((above - FINGERS.length) % (FINGERS.length - 1))];
 }
 
 /** @param {number} note */
 export function letterOf(note) {
   const step = note % 12;
-  return step === FLAT ? "B♭" : NAMES[step];
+  return FLAT_NAMES[step] ?? NAMES[step];
 }
 
 /** @param {number} note */

@@ -17,25 +17,11 @@
  */
 
 /** Custom properties of the style sheet. */
-const COLOURS = /** @type {Colour[]} */ ([
-  "ink",
-  "soft",
-  "faint",
-  "line",
-  "paper",
-  "surface",
-  "inner",
-  "outer",
-  "accent",
-  "good",
-  "bad",
-  "glow",
-  "wood",
-  "edge",
-  "shell",
-  "lid",
-  "hair",
-]);
+const COLOURS = /** @type {Colour[]} */ (
+  "ink soft faint line paper surface inner outer accent good bad glow wood edge shell lid hair".split(
+    " ",
+  )
+);
 /** Whoever wants little motion sees a picture anew so often only, s; and at once what a hand has changed. */
 const CALM = 0.4;
 const RESTS_AFTER = 300; // ms without news

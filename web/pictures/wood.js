@@ -191,10 +191,11 @@ export function writeNotes(write, context, surface, scale, colours, keys) {
       const { digit, dots } = jianpu(note);
       context.font = font(19, 650);
       write(digit, along, put(isUpright ? 16 : 40));
-      for (let dot = 0; dot < dots; dot++) {
-        context.font = font(19, 700);
-        if (isUpright) write("·", along - 12 - 5 * dot, 16);
-        else write("·", along, put(40) - 14 - 5 * dot);
+      context.font = font(19, 700);
+      for (let dot = 0; dot < Math.abs(dots); dot++) {
+        const away = dots > 0 ? -12 - 5 * dot : 13 + 5 * dot;
+        if (isUpright) write("·", along + away, 16);
+        else write("·", along, put(40) + away);
       }
       context.font = font(14);
       context.fillStyle = open < 0 ? colours.soft : context.fillStyle;

@@ -4,6 +4,7 @@ import facts from "../facts.js";
 import { openBackend } from "./backends.js";
 import { CHANNELS, NOW } from "./kernel.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
+import { settings } from "../settings.js";
 import { wav } from "./wav.js";
 
 /** @typedef {import('../interfaces.js').Status} Status */
@@ -194,8 +195,9 @@ export class Sound extends EventTarget {
 }
 
 function newContext() {
-  const context = new AudioContext({ latencyHint: "interactive" });
+  const latencyHint = settings.isBuffered ? "playback" : "interactive";
+  const context = new AudioContext({ latencyHint });
   if (facts.rates.includes(context.sampleRate)) return context;
   context.close();
-  return new AudioContext({ latencyHint: "interactive", sampleRate: USUAL_RATE });
+  return new AudioContext({ latencyHint, sampleRate: USUAL_RATE });
 }

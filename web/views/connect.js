@@ -2,15 +2,18 @@
 
 /** @typedef {import('../main.js').Page} Page */
 
-import { find, make } from "../elements.js";
+import { find, make, makeSwitch } from "../elements.js";
 import { NOTES, signOf } from "../hands/keys.js";
 import { isNatural, nameOf } from "../hands/scale.js";
 import { onLanguage, translate } from "../i18n.js";
+import { remember, settings } from "../settings.js";
 import { statusText } from "./header.js";
 import { showLearning } from "./learn.js";
 import { whileShown } from "./tabs.js";
 
 const ALL = "";
+const MINUTE = 60_000; // ms
+const MOST_COUNTED = 999;
 const ROWS = [
   ["Digit2", "Digit3", "Digit4", "Digit5", "Digit6", "Digit7"],
   ["KeyQ", "KeyW", "KeyE", "KeyR", "KeyT", "KeyY", "KeyU", "KeyI"],
@@ -22,10 +25,29 @@ const ROWS = [
 export function showConnections(page) {
   const panel = find("panel-connect", HTMLElement);
   const status = make("p", { class: "soft" });
+  const gaps = make("p", { class: "soft", role: "status", hidden: true });
+  const buffer = makeSwitch(
+    () => translate("connect.buffer"),
+    settings.isBuffered,
+    (isBuffered) => {
+      remember({ isBuffered });
+      const { instrument } = page;
+      instrument.change(instrument.way);
+      instrument.start();
+    },
+  );
+  const recent = dropoutsOf(page.instrument);
   const tell = () => {
     const known = page.instrument.sound?.status ?? null;
     const backend = known ? ` · ${translate(`status.${known.backend}`)} · ${known.rate} Hz` : "";
     status.textContent = statusText(known) + backend;
+    const count = recent();
+    const isHere = known?.backend === "worklet" || known?.backend === "script";
+    gaps.hidden = count === 0;
+    gaps.textContent = `${translate("connect.dropouts", { count })} ${translate(
+      isHere ? "connect.dropouts.here" : "connect.dropouts.server",
+    )}`;
+    buffer.hidden = !isHere || (count === 0 && !settings.isBuffered);
   };
   whileShown(panel, tell, 500);
   onLanguage(tell);
@@ -36,11 +58,37 @@ export function showConnections(page) {
     make("section", { class: "group" }, [
       make("h2", {}, [() => translate("connect.sound")]),
       status,
+      gaps,
+      buffer,
     ]),
   );
   if (document.querySelector('meta[name="yehu-server"]')) {
     import("./server.js").then(({ showServer }) => panel.prepend(showServer(page.instrument)));
   }
+}
+
+/**
+ * Counts the drop-outs of the last minute.
+ * @param {import('../instrument.js').Instrument} instrument
+ */
+function dropoutsOf(instrument) {
+  /** @type {number[]} */
+  let times = []; // ms
+  let [known, before] = [instrument.sound, 0];
+  const count = () => {
+    const now = performance.now();
+    const { sound } = instrument;
+    if (sound !== known) [known, before] = [sound, sound?.status.dropouts ?? 0];
+    const all = sound?.status.dropouts ?? 0;
+    times.push(
+      ...Array.from({ length: Math.max(Math.min(all - before, MOST_COUNTED), 0) }, () => now),
+    );
+    before = all;
+    times = times.filter((time) => now - time < MINUTE).slice(-MOST_COUNTED);
+    return times.length;
+  };
+  setInterval(count, 1000);
+  return count;
 }
 
 /** @param {Page} page */

@@ -1,52 +1,85 @@
-/** The first minute: an invitation, and three gestures, each noticed when it is done. */
+/** The first minute: an invitation, three gestures, each noticed when it is done, and a challenge. */
 
 /** @typedef {import('../main.js').Page} Page */
 
+import { LASTS, Challenge, toneOf } from "../challenge.js";
 import { find, make } from "../elements.js";
 import { NOTES, signOf } from "../hands/keys.js";
 import { onLanguage, translate } from "../i18n.js";
 import { remember, settings } from "../settings.js";
 
-const STEPS = ["slide", "rock", "bow"];
+const STEPS = ["begin", "slide", "rock", "bow", "tone"];
+const TONE = STEPS.indexOf("tone");
+const DONE = STEPS.length;
 const FAR = 1.5; // semitones that are a slide
-const LONG = 400; // ms in the green
+const LONG = 0.4; // s in the green
 const SLOWEST = 0.04; // m/s that is a stroke
-const READ = 9000; // ms in which the last words are read
 const HELP = "?";
 
-/** @param {Page} page */
-export function showGuide({ hands, bow, fingerboard, keys, yehu }) {
+/**
+ * @param {Page} page
+ * @param {import('./tunes.js').Lesson} lesson
+ */
+export function showGuide({ instrument, hands, bow, fingerboard, keys, yehu }, lesson) {
   const stage = find("stage", HTMLElement);
   const guide = find("guide", HTMLElement);
   let at = -1; // before it, or after
-  let hasBegun = false;
-  let goodMs = 0;
-  let last = 0;
+  let good = 0; // s
+  let last = 0; // s
+  let challenge = new Challenge();
 
-  const words = make("p");
-  const dots = STEPS.map(() => make("i"));
+  const words = make("p", { role: "status" });
+  const live = make("p", { class: "live", "aria-hidden": "true" });
+  const dots = STEPS.slice(1).map(() => make("i"));
+  const again = make("button", { type: "button" }, [() => translate("guide.again")]);
+  const easy = make("button", { type: "button", class: "main", id: "easy" }, [
+    () => translate("guide.easy"),
+  ]);
   const skip = make("button", { type: "button", class: "quiet", id: "skip" });
-  guide.append(words, make("span", { class: "steps", "aria-hidden": "true" }, dots), skip);
+  guide.append(
+    make("span", { class: "steps", "aria-hidden": "true" }, dots),
+    words,
+    live,
+    again,
+    easy,
+    skip,
+  );
 
+  const result = () => {
+    const { tone, longest, found } = challenge;
+    if (challenge.gone === 0) return ["guide.done", translate("guide.done.about")];
+    const values = {
+      tone: tone.toFixed(1),
+      longest: longest.toFixed(1),
+      best: settings.bestTone.toFixed(1),
+    };
+    const came = found === null ? "" : translate("guide.found", { found: found.toFixed(1) });
+    return ["guide.result", `${came} ${translate("guide.result.about", values)}`, values];
+  };
   const tell = () => {
-    const name = STEPS[at] ?? "done";
+    const name = STEPS[at];
+    const [key, about, values] = name
+      ? [`guide.${name}`, translate(`guide.${name}.about`)]
+      : result();
     words.replaceChildren(
-      translate(`guide.${name}`),
-      make("span", {}, [translate(`guide.${name}.about`)]),
+      translate(/** @type {string} */ (key), /** @type {any} */ (values)),
+      make("span", {}, [/** @type {string} */ (about)]),
     );
-    skip.textContent = translate(STEPS[at] ? "guide.skip" : "guide.close");
-    dots.forEach((dot, step) => dot.classList.toggle("done", step < at));
-    guide.classList.toggle("done", at >= STEPS.length);
+    skip.textContent = translate(at < TONE ? "guide.skip" : "guide.close");
+    dots.forEach((dot, step) => dot.classList.toggle("done", step + 1 < at));
+    guide.classList.toggle("done", at >= DONE);
+    again.hidden = easy.hidden = at < DONE;
+    live.hidden = at !== TONE;
+    live.textContent = "";
   };
   const go = (/** @type {number} */ step) => {
     at = step;
-    goodMs = 0;
+    good = 0;
     guide.hidden = at < 0;
-    stage.dataset.step = STEPS[at] ?? "";
+    stage.dataset.step = STEPS[at] === "tone" ? "bow" : (STEPS[at] ?? "");
+    if (at >= TONE) remember({ isTaught: true });
+    if (at === TONE) challenge = new Challenge();
     tell();
-    if (at < STEPS.length) return;
-    remember({ isTaught: true });
-    setTimeout(() => at === STEPS.length && go(-1), READ);
   };
   const notice = (/** @type {string} */ name) => {
     if (STEPS[at] === name) go(at + 1);
@@ -54,31 +87,48 @@ export function showGuide({ hands, bow, fingerboard, keys, yehu }) {
 
   hands.addEventListener("change", () => {
     if (hands.fingers.some(({ pitch, begun }) => Math.abs(pitch - begun) > FAR)) notice("slide");
-    const [from, to] = bow.playable ?? [0, -1];
-    const now = performance.now();
-    const isGood = bow.height >= from && bow.height <= to;
-    if (isGood && hands.isBowing && Math.abs(hands.stroke.speed) > SLOWEST) {
-      goodMs += Math.min(now - last, 100);
-      if (goodMs > LONG) notice("bow");
-    }
-    last = now;
   });
   hands.addEventListener("rock", () => notice("rock"));
+  instrument.addEventListener("state", () => {
+    const { state } = instrument;
+    const now = performance.now() / 1000;
+    const lasted = Math.min(now - last, 0.1);
+    last = now;
+    if (STEPS[at] === "bow") {
+      const [from, to] = bow.playable ?? [0, -1];
+      const isGood = bow.height >= from && bow.height <= to;
+      if (isGood && hands.isBowing && Math.abs(hands.stroke.speed) > SLOWEST) good += lasted;
+      if (good > LONG) notice("bow");
+    } else if (at === TONE && state) {
+      const kind = hands.isBowing ? toneOf(state) : "none";
+      challenge.take(kind, lasted);
+      guide.dataset.tone = kind;
+      live.textContent = translate("guide.live", {
+        left: Math.ceil(LASTS - challenge.gone), tone: challenge.tone.toFixed(1),
+      }); // prettier-ignore
+      if (!challenge.isOver) return;
+      remember({ bestTone: Math.max(settings.bestTone, challenge.tone) });
+      go(DONE);
+    }
+  });
+  again.addEventListener("click", () => go(TONE));
+  easy.addEventListener("click", () => lesson.first && lesson.toggle(lesson.first, "along"));
   skip.addEventListener("click", () => {
     remember({ isTaught: true });
     go(-1);
   });
-  const help = () => go(at < 0 ? 0 : -1);
+  lesson.addEventListener("change", () => lesson.course && go(-1)); // one at a time
+  const help = () => go(at < 0 ? 1 : -1);
   find("help", HTMLButtonElement).addEventListener("click", help);
   window.addEventListener("keydown", ({ key, target }) => {
     if (key === HELP && !(target instanceof HTMLInputElement)) help();
   });
   onLanguage(tell);
+  if (!settings.isTaught) go(0);
 
   const begin = () => {
     find("invite", HTMLElement).hidden = true;
-    if (!settings.isTaught && at < 0 && !hasBegun) go(0);
-    hasBegun = true;
+    notice("begin");
   };
   for (const hand of [keys, fingerboard, bow]) hand.addEventListener("play", begin);
   // The computer's keys are printed on the fingerboard, once one is pressed.

@@ -76,6 +76,5 @@ export function statusText(status) {
   }
   const load = status.loadPercent.toFixed(0);
   const latency = status.latencyMs.toFixed(0);
-  const dropouts = status.dropouts ? translate("status.dropouts", { count: status.dropouts }) : "";
-  return translate("status.on", { load, latency }) + dropouts;
+  return translate("status.on", { load, latency });
 }

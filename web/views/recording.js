@@ -213,6 +213,6 @@ function reason(instrument, isThere) {
 }
 
 /** @param {number} seconds */
-function clock(seconds) {
+export function clock(seconds) {
   return `${Math.floor(seconds / 60)}:${String(Math.floor(seconds % 60)).padStart(2, "0")}`;
 }

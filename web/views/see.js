@@ -1,7 +1,7 @@
 /** The pictures beside the instrument: their words, and one of them large for all to see. */
 
 /** @typedef {import('../main.js').Page} Page */
-/** @typedef {import('../pictures/yehu.js').View} View */
+/** @typedef {import('../pictures/strings.js').View} View */
 
 import { find } from "../elements.js";
 import { nameOf } from "../hands/scale.js";
@@ -71,7 +71,7 @@ function chooseView(yehu) {
   const buttons = /** @type {const} */ (["slowed", "moving"]).map((view) => {
     const button = find(`view-${view}`, HTMLButtonElement);
     button.addEventListener("click", () => {
-      const next = yehu.view === view ? "still" : view; // what moves can be stopped
+      const next = yehu.strings.view === view ? "still" : view; // what moves can be stopped
       remember({ view: next });
       choose(next);
     });
@@ -80,7 +80,7 @@ function chooseView(yehu) {
 
   /** @param {View} chosen */
   function choose(chosen) {
-    yehu.view = chosen;
+    yehu.strings.view = chosen;
     yehu.isStale = true;
     for (const { view, button } of buttons) {
       button.setAttribute("aria-pressed", String(view === chosen));

@@ -8,7 +8,10 @@ import { translate } from "../i18n.js";
 
 const PANELS = ["see", "sound", "tunes", "keep", "connect", "all"];
 
-/** @param {Page} page */
+/**
+ * @param {Page} page
+ * @returns {() => void} shows the instrument, where a panel lies over it
+ */
 export function showTabs({ gallery }) {
   const list = find("tabs", HTMLElement);
   const more = find("more", HTMLElement);
@@ -66,6 +69,7 @@ export function showTabs({ gallery }) {
     tab?.focus();
   });
   choose(PANELS.includes(settings.panel) ? settings.panel : "");
+  return () => getComputedStyle(more).position === "fixed" && choose("");
 }
 
 /**

@@ -1,104 +1,243 @@
-/** The example tunes: to listen to, or to play along with. */
+/** Tunes to listen to, to play with one that waits, or in time; while one is on, its notes stand over the strings. */
 
 /** @typedef {import('../main.js').Page} Page */
 /** @typedef {import('../tune.js').Tune} Tune */
-/** @typedef {'listen' | 'along'} Way */
+/** @typedef {'listen' | 'along' | 'timed'} Way */
 
-import { find, make } from "../elements.js";
-import facts from "../facts.js";
+import { find, make, makeSwitch } from "../elements.js";
+import { jianpuText } from "../hands/scale.js";
 import { TuneGuide, TunePlayer } from "../tune.js";
 import { onLanguage, translate, translateOr } from "../i18n.js";
+import { remember, settings } from "../settings.js";
+import { clock } from "./recording.js";
 
 /** @type {Way[]} */
-const WAYS = ["listen", "along"];
+const WAYS = ["listen", "along", "timed"];
+const SLOWLY = 2 / 3;
+const SHOWN = 3; // notes that come next, on the fingerboard
 
-/** @param {Page} page */
-export function showTunes(page) {
-  const panel = find("panel-tunes", HTMLElement);
+/**
+ * @param {Page} page
+ * @param {() => void} clear shows the instrument, where a panel lies over it
+ */
+export function showTunes(page, clear) {
+  const lesson = new Lesson(page, clear);
+  const slowly = makeSwitch(
+    () => translate("tunes.slowly"),
+    settings.isSlow,
+    (isSlow) => remember({ isSlow }),
+  );
   const list = make("div", { class: "group" });
-  page.instrument.addEventListener("silence", () => present?.stop());
-  panel.append(make("p", { class: "soft" }, [() => translate("tunes.about")]), list);
+  find("panel-tunes", HTMLElement).append(
+    make("p", { class: "soft" }, [() => translate("tunes.about")]),
+    slowly,
+    list,
+  );
   import("../examples.js").then(
     ({ default: examples }) => {
       // A JSON list has no type of its places, so that `events` is told here.
       const tunes = /** @type {Tune[]} */ (/** @type {unknown} */ (Object.values(examples)));
-      // Tunes for the ordinary keyboard first: those are easiest to play.
-      tunes.sort((one, other) => Number(isForOthers(one)) - Number(isForOthers(other)));
-      list.append(...tunes.map((tune) => row(page, tune)));
+      list.append(...tunes.map((tune) => row(lesson, tune)));
+      lesson.first = tunes[0];
     },
     () => list.append(make("p", {}, [() => translate("tunes.none")])),
   );
+  return lesson;
 }
 
 /** @param {Tune} tune */
-function isForOthers({ mapping }) {
-  return mapping !== facts.defaultMapping;
-}
-
-/** @type {TunePlayer | TuneGuide | null} what is on now */
-let present = null;
+const nameOf = ({ name }) => translateOr(`tune.${name}`, name.replace(/_/g, " "));
 
 /**
- * @param {Page} page
+ * @param {Lesson} lesson
  * @param {Tune} tune
  */
-function row(page, tune) {
-  const name = () => translateOr(`tune.${tune.name}`, tune.name.replace(/_/g, " "));
+function row(lesson, tune) {
+  const name = () => nameOf(tune);
   const buttons = WAYS.map((way) => {
-    const label = () => `${translate(`tunes.${way}`)}: ${name()}`;
-    const button = make("button", { type: "button", "aria-label": label });
-    button.addEventListener("click", () => toggle(button, way));
-    onLanguage(() => tell(button, way));
+    const button = make("button", { type: "button" });
+    const tell = () => {
+      const isOn = lesson.tune === tune && lesson.way === way;
+      const word = translate(isOn ? "tunes.stop" : `tunes.${way}`);
+      button.setAttribute("aria-label", `${word}: ${name()}`);
+      button.setAttribute("aria-pressed", String(isOn));
+      button.textContent = word;
+    };
+    button.addEventListener("click", () => lesson.toggle(tune, way));
+    lesson.addEventListener("change", tell);
+    onLanguage(tell);
     return button;
   });
   const bar = make("progress", { max: 1, value: 0, "aria-label": name, hidden: true });
-
-  /**
-   * @param {HTMLButtonElement} button
-   * @param {Way} way
-   */
-  async function toggle(button, way) {
-    const isOn = button.getAttribute("aria-pressed") === "true";
-    present?.stop();
-    if (isOn) return;
-    await page.instrument.start();
-    if (!page.instrument.sound) return;
-    const one =
-      way === "listen"
-        ? new TunePlayer(page.instrument, tune)
-        : new TuneGuide(page.instrument, tune);
-    present = one;
-    button.setAttribute("aria-pressed", "true");
-    tell(button, way);
-    bar.hidden = false;
-    one.addEventListener("move", () => {
-      bar.value = one.progress;
-      if (one instanceof TuneGuide) page.yehu.mark(one.next);
-    });
-    one.addEventListener("end", () => {
-      button.setAttribute("aria-pressed", "false");
-      tell(button, way);
-      bar.hidden = true;
-      page.yehu.mark(null);
-      if (present === one) present = null;
-    });
-    one.start();
-    if (way === "along") page.fingerboard.element.scrollIntoView({ block: "nearest" });
-  }
-  const length = `${Math.floor(tune.seconds / 60)}:${String(Math.round(tune.seconds % 60)).padStart(2, "0")}`;
+  lesson.addEventListener("move", () => {
+    bar.hidden = lesson.tune !== tune || !lesson.course;
+    bar.value = lesson.course?.progress ?? 0;
+  });
+  const easy = tune.isEasy
+    ? [make("span", { class: "easy" }, [() => translate("tunes.easy")])]
+    : [];
   return make("article", { class: "tune" }, [
-    make("h2", {}, [name, " ", make("span", { class: "soft" }, [length])]),
+    make("h2", {}, [name, " ", make("span", { class: "soft" }, [clock(tune.seconds)]), ...easy]),
     make("p", { class: "soft" }, [() => translateOr(`tune.${tune.name}.about`, "")]),
     make("div", { class: "row" }, buttons),
     bar,
   ]);
 }
 
+/** What is on: tells by events 'change' of another tune or way, and 'move'. */
+export class Lesson extends EventTarget {
+  /** @type {TunePlayer | TuneGuide | null} */
+  course = null;
+  /** @type {Tune | null} the one that is on, or that was */
+  tune = null;
+  /** @type {Way | null} */
+  way = null;
+  /** @type {[Tune, Way] | null} what was on last */
+  last = null;
+  /** The note that is asked for. @type {import('../tune.js').Note | undefined} */
+  asked = undefined;
+  /** The easiest tune. @type {Tune | null} */
+  first = null;
+
+  /**
+   * @param {Page} page
+   * @param {() => void} clear
+   */
+  constructor(page, clear) {
+    super();
+    this.page = page;
+    this.clear = clear;
+    this.bar = find("lesson", HTMLElement);
+    this.canvas = find("score", HTMLCanvasElement);
+    this.said = find("said", HTMLElement);
+    this.again = find("again", HTMLButtonElement);
+    this.stopper = find("stop", HTMLButtonElement);
+    page.instrument.addEventListener("silence", () => this.course?.stop());
+    this.stopper.addEventListener("click", () =>
+      this.course ? this.course.stop() : this.#leave(),
+    );
+    onLanguage(() => this.#tell());
+    this.again.addEventListener("click", () => this.last && this.toggle(...this.last));
+  }
+
+  /**
+   * Begin a tune, or end it where it is on.
+   * @param {Tune} tune
+   * @param {Way} way
+   */
+  async toggle(tune, way) {
+    const isOn = this.tune === tune && this.way === way;
+    this.course?.stop();
+    if (isOn) return;
+    const { instrument, score, yehu } = this.page;
+    await instrument.start();
+    if (!instrument.sound) return;
+    const pace = settings.isSlow ? SLOWLY : 1;
+    const course =
+      way === "listen"
+        ? new TunePlayer(instrument, tune, pace)
+        : new TuneGuide(instrument, tune, pace, way === "timed");
+    Object.assign(this, { course, tune, way, last: [tune, way], asked: undefined });
+    this.page.setTonic(tune.tonic);
+    this.bar.hidden = this.canvas.hidden = false;
+    find("invite", HTMLElement).hidden = true;
+    this.again.hidden = true;
+    this.said.textContent = "";
+    this.said.className = "unseen";
+    yehu.showsFingers = true;
+    course.addEventListener("move", () => this.#move());
+    course.addEventListener("wrong", () => this.#answer(/** @type {TuneGuide} */ (course)));
+    course.addEventListener("end", () => this.#end(course));
+    this.clear();
+    score.take(course);
+    course.start();
+    this.#tell();
+  }
+
+  #move() {
+    const { course } = this;
+    const { yehu, fingerboard } = this.page;
+    if (!course) return;
+    const { notes, at } = course;
+    const [next, ...others] = notes.slice(at, at + SHOWN);
+    const isNew = next !== this.asked;
+    this.asked = next;
+    const now = performance.now() / 1000;
+    yehu.targets = next
+      ? {
+          pitches: [next, ...others].map(({ pitch }) => pitch),
+          repeats: course instanceof TuneGuide ? course.repeats : 1,
+          due: course.isTimed ? (next.at - course.now) / course.pace : null,
+          asked: isNew ? now : (yehu.targets?.asked ?? now),
+          isAgain: notes[at - 1]?.pitch === next.pitch,
+          wrong: isNew ? null : (yehu.targets?.wrong ?? null),
+        }
+      : null;
+    // Where somebody plays, the board shows what comes; else it follows what sounds.
+    if (course instanceof TuneGuide) fingerboard.bring(next?.pitch ?? null);
+    if (isNew) yehu.isStale = this.page.score.isStale = true;
+    this.dispatchEvent(new Event("move"));
+  }
+
+  /** @param {TuneGuide} guide */
+  #answer({ pitch, notes, at }) {
+    const { yehu, score } = this.page;
+    const wanted = notes[at].pitch;
+    const key = pitch < wanted ? "tunes.higher" : "tunes.lower";
+    if (yehu.targets) yehu.targets.wrong = { pitch, at: performance.now() / 1000 };
+    this.said.textContent = translate(key, { note: jianpuText(wanted) });
+    score.say(this.said.textContent);
+  }
+
+  /** @param {TunePlayer | TuneGuide} course */
+  #end(course) {
+    if (this.course !== course) return;
+    this.course = this.way = null;
+    const { yehu, score, fingerboard } = this.page;
+    yehu.targets = null;
+    yehu.showsFingers = false;
+    yehu.isStale = true;
+    fingerboard.bring(null);
+    score.take(null);
+    const result = course instanceof TuneGuide ? course.result : null;
+    if (!result) return this.#leave();
+    this.canvas.hidden = true;
+    this.again.hidden = false;
+    this.said.className = "";
+    this.said.textContent = told(result, course.isTimed);
+    this.#tell();
+  }
+
+  #leave() {
+    this.bar.hidden = true;
+    this.page.setTonic(null);
+    this.tune = null;
+    this.#tell();
+  }
+
+  #tell() {
+    const word = translate(this.course ? "tunes.stop" : "guide.close");
+    this.stopper.textContent = word;
+    this.stopper.setAttribute("aria-label", this.tune ? `${word}: ${nameOf(this.tune)}` : word);
+    this.dispatchEvent(new Event("change"));
+    this.dispatchEvent(new Event("move"));
+  }
+}
+
 /**
- * @param {HTMLButtonElement} button
- * @param {Way} way
+ * What went well, and what is worth another try.
+ * @param {NonNullable<TuneGuide["result"]>} result
+ * @param {boolean} isTimed
  */
-function tell(button, way) {
-  const isOn = button.getAttribute("aria-pressed") === "true";
-  button.textContent = translate(isOn ? "tunes.stop" : `tunes.${way}`);
+function told({ right, count, run, late, hardest }, isTimed) {
+  const words = [translate(isTimed ? "tunes.intime" : "tunes.right", { right, count })];
+  if (right === count) words.push(translate("tunes.all"));
+  else if (run > 2) words.push(translate("tunes.run", { run }));
+  const ms = Math.abs(Math.round(100 * late) * 10);
+  if (isTimed && ms) words.push(translate(late > 0 ? "tunes.late" : "tunes.early", { ms }));
+  if (hardest) {
+    const [from, to] = hardest.map(({ pitch }) => jianpuText(pitch));
+    words.push(translate("tunes.hardest", { from, to }));
+  }
+  return words.join(" ");
 }

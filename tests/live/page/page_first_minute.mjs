@@ -32,7 +32,7 @@ await run(async (browser, url) => {
   }
   await page.setViewportSize({ width: 1440, height: 900 });
   const touch = await fingersOf(page);
-  const words = () => page.locator("#guide:not([hidden]) p").allTextContents();
+  const words = () => page.locator("#guide:not([hidden]) p[role=status]").allTextContents();
   found.invited = await page.locator("#invite").isVisible();
   const board = await page.locator("#fingerboard").boundingBox();
   const bow = await page.locator("#bow").boundingBox();
@@ -64,12 +64,18 @@ await run(async (browser, url) => {
       await page.waitForTimeout(20);
     }
     await touch("touchEnd", []);
-    // The last words go by themselves.
-    if ((await page.locator("#guide.done").count()) > 0) break;
+    if (await page.locator("#guide .live").isVisible()) break;
   }
-  found.said.push(await page.locator("#guide p").allTextContents());
+  found.said.push(await words());
   found.taught = await page.evaluate(() => JSON.parse(localStorage.yehu).isTaught);
-  await page.locator("#skip").evaluate((button) => button.click()); // also if they have gone
+  await touch("touchStart", [{ x: bow.x + bow.width * 0.98, y: bow.y + 40, id: 2 }]);
+  for (let step = 0; step < 20; step++) {
+    await touch("touchMove", [{ x: bow.x + bow.width * 0.98, y: bow.y + 40 + 12 * step, id: 2 }]);
+    await page.waitForTimeout(20);
+  }
+  found.pressed = await page.locator("#guide").getAttribute("data-tone");
+  await touch("touchEnd", []);
+  await page.click("#skip");
   await page.keyboard.press("?");
   found.helped = await words();
   await page.keyboard.press("?");

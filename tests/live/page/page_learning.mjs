@@ -134,10 +134,9 @@ await run(async (browser, url) => {
 
   // A tune with a mapping of its own leaves what was taught as it was.
   await page.click("#tab-tunes");
-  const tune = page.getByRole("button", { name: "Listen: MPE phrase" });
-  await tune.click();
-  await page.waitForTimeout(100);
-  await tune.click();
+  const tunes = page.locator("#panel-tunes");
+  await tunes.getByRole("button", { name: "Listen: MPE phrase" }).click();
+  await tunes.getByRole("button", { name: "Stop: MPE phrase" }).click();
   await wishes(page);
   await sendMidi(page, KNOB, 74, 0);
   found.afterTune = await written(page);

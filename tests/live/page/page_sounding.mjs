@@ -72,10 +72,10 @@ await run(
     await page.keyboard.up(KEY);
     if (tune) {
       await page.click("#tab-tunes");
-      const button = page.getByRole("button", { name: `Listen: ${tune}` });
-      await button.click();
+      await page.getByRole("button", { name: `Listen: ${tune}` }).click();
       await page.waitForTimeout(5000);
-      found.pressed = await button.getAttribute("aria-pressed");
+      const stop = page.locator("#panel-tunes").getByRole("button", { name: `Stop: ${tune}` });
+      found.pressed = await stop.getAttribute("aria-pressed");
       await page.waitForFunction(
         () => !document.querySelector("#panel-tunes [aria-pressed=true]"),
         undefined,

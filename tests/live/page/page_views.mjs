@@ -145,6 +145,7 @@ await run(async (browser, url) => {
   // A tune that waits for its notes.
   await page.click("#tab-tunes");
   const tune = page.locator("#panel-tunes .tune", { hasText: "Shi Bei Jiu" });
+  found.listening = await tune.locator("button").first().getAttribute("aria-label");
   await tune.locator("button").nth(1).click();
   const bar = tune.locator("progress");
   found.along = [await bar.evaluate((element) => element.value)];
@@ -162,8 +163,9 @@ await run(async (browser, url) => {
       window.dispatchEvent(new KeyboardEvent(type, { code }));
   }, first);
   found.along.push(await bar.evaluate((element) => element.value));
+  found.stopping = await tune.locator("button").nth(1).getAttribute("aria-label");
   await page.keyboard.press("Escape");
-  found.alongEnded = await bar.isHidden();
+  found.alongEnded = (await bar.isHidden()) && (await page.locator("#lesson").isHidden());
 
   await page.click("#theme");
   found.theme = await page.evaluate(() => document.documentElement.dataset.theme);

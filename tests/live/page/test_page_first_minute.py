@@ -43,9 +43,10 @@ def test_the_invitation_goes_with_the_first_touch(found) -> None:
 
 
 def test_each_gesture_is_noticed_when_it_is_done(found) -> None:
-    slide, rock, bow, done = (words for [words] in found["said"])
-    for words, expected in (slide, "Slide"), (rock, "rock"), (bow, "bow"), (done, "You can play"):
+    slide, rock, bow, tone = (words for [words] in found["said"])
+    for words, expected in (slide, "Slide"), (rock, "rock"), (bow, "bow"), (tone, "20 seconds"):
         assert expected in words
+    assert found["pressed"] == "scratch"
     assert found["taught"] is True
 
 

@@ -140,6 +140,11 @@ def test_a_tune_that_is_played_along_waits_for_its_notes(found) -> None:
     assert after_the_right_one > 0.0
 
 
+def test_a_button_that_stops_says_so_to_screen_readers(found) -> None:
+    assert found["listening"] == "Listen: Shi Bei Jiu"
+    assert found["stopping"] == "Stop: Shi Bei Jiu"
+
+
 def test_escape_ends_what_plays(found) -> None:
     assert found["alongEnded"]
 

@@ -60,7 +60,9 @@ class Format:
 
 
 FORMATS = (
-    Format("CLAP", ("clap.cpp",), DPF, Path("clap/entry.h"), "dpf-source", put_clap, ("clap_face.cpp",)),
+    Format(
+        "CLAP", ("clap.cpp",), DPF, Path("clap/entry.h"), "dpf-source", put_clap, ("clap_face.cpp",)
+    ),
     Format("LV2", ("lv2.cpp",), SYSTEM, Path("lv2/core/lv2.h"), "lv2-dev", put_lv2),
     Format("VST3", VST3, DPF, Path("travesty/base.h"), "dpf-source", put_vst3, ("vst3_view.cpp",)),
 )
@@ -86,7 +88,9 @@ def build(folder: Path, target: str) -> list[Path]:
     """
     names = [name for name in NAMES if target in (name, ALL)]
     if any(system.window == X11 for system in systems_of(target)) and not (SYSTEM / XCB).is_file():
-        raise YehuError("there are no headers of X's windows here; Debian's package libxcb1-dev has them")
+        raise YehuError(
+            "there are no headers of X's windows here; Debian's package libxcb1-dev has them"
+        )
     for system in systems_of(target):
         compiler_of(system)  # or there would be none after a minute of compiling
     for each in FORMATS:

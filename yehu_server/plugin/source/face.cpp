@@ -48,7 +48,8 @@ bool Face::open(uintptr_t parent) {
 
 void Face::fit(int *width, int *height) {
     const int least = WIDTH / 2, most = 4 * WIDTH;
-    int fitting = *height * WIDTH / HEIGHT < *width ? *height * WIDTH / HEIGHT : *width;
+    const int by_height = ((*height + 1) * WIDTH - 1) / HEIGHT;
+    int fitting = by_height < *width ? by_height : *width;
     fitting = fitting < least ? least : fitting > most ? most : fitting;
     *width = fitting, *height = fitting * HEIGHT / WIDTH;
 }

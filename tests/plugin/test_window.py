@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from plugin.conftest import HEADERS, HERE
 
+from yehu_server.plugin import build as building
+
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb"),
@@ -34,15 +36,31 @@ def display():
 
 
 @pytest.fixture
-def window(tmp_path, built, display):
-    """Say a line to the host; what it answers: value, timers, told, size asked for, size."""
+def watched(tmp_path, monkeypatch):
+    """A folder with a plug-in whose C++ tells of races."""
+    options = ("-g", "-fsanitize=thread")
+    monkeypatch.setattr(building, "FLAGS", (*building.FLAGS, *options))
+    monkeypatch.setattr(building, "LINKING", ("-shared", *options))
+    monkeypatch.setattr(building, "FORMATS", building.FORMATS[:1])
+    building.build(tmp_path / "watched", "linux")
+    return tmp_path / "watched"
+
+
+@pytest.fixture
+def window(request, tmp_path, built, display):
+    """Say a line to the host; what it answers: value, timers, told, size asked for, size.
+
+    Parametrized by options of the compilers, for the host and for a plug-in of its own.
+    """
+    options = getattr(request, "param", ())
+    folder = request.getfixturevalue("watched") if options else built
     program = tmp_path / "window_host"
-    flags = ["-std=gnu11", "-O1", "-Wall", "-Wextra", "-Werror", f"-I{HEADERS}"]
-    command = ["cc", *flags, str(HERE / "window_host.c"), "-o", str(program), "-ldl", "-lxcb"]
-    subprocess.run(command, check=True)
+    flags = ["-std=gnu11", "-O1", "-Wall", "-Wextra", "-Werror", f"-I{HEADERS}", *options]
+    command = ["cc", *flags, str(HERE / "window_host.c"), "-o", str(program)]
+    subprocess.run([*command, "-ldl", "-lxcb", "-lpthread"], check=True)
     host = subprocess.Popen(
-        [program, str(built / "Yehu.clap")],
-        env={**os.environ, "DISPLAY": display},
+        [program, str(folder / "Yehu.clap")],
+        env={**os.environ, "DISPLAY": display, "TSAN_OPTIONS": "exitcode=66"},
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
@@ -137,3 +155,19 @@ def test_closed_it_has_no_timer_and_opens_again(window):
         window("tick")
         assert window("close")[1] == 0
     assert window("play 10")[1] == 0
+
+
+@pytest.mark.parametrize("window", [("-fsanitize=thread",)], indirect=True)
+def test_sound_and_window_do_not_disturb_each_other(window, shown):
+    """ThreadSanitizer's word: the host ends with a code of its own where there was a race."""
+    window("open")
+    window("begin 400")
+    for turn in range(12):
+        window("tick")
+        window(f"click {(NEXT, PREV)[turn % 3 == 2][0]} {NEXT[1]}")
+        window(f"key {(TAB, RIGHT)[turn % 2]}")
+        window(f"value {shown['/room/size'].number}")
+        window("state")
+        window(f"size {680 + turn} {330 + turn}")
+    window("end")
+    window("close")

@@ -5,6 +5,9 @@
  *     open                 show the plug-in's window in one of its own
  *     close                and no more
  *     play BLOCKS          process blocks of 256 frames, of an A4 that is held
+ *     begin BLOCKS         the same on a thread of its own, until
+ *     end                  all are played
+ *     state                save it, and load it again
  *     tick                 its timer is due
  *     click X Y            and press: events as of a user, of the first button and of a key
  *     key CODE
@@ -22,13 +25,16 @@
 #include <clap/entry.h>
 #include <clap/ext/gui.h>
 #include <clap/ext/params.h>
+#include <clap/ext/state.h>
 #include <clap/ext/timer-support.h>
 #include <clap/plugin-factory.h>
 #include <dlfcn.h>
+#include <pthread.h>
 #include <xcb/xcb.h>
 
 static const clap_plugin_t *plugin;
-static int timers, told, asked[2];
+static int timers, asked[2];
+static _Atomic int told;
 static xcb_connection_t *x;
 static xcb_window_t window;
 
@@ -61,7 +67,8 @@ static const clap_event_header_t *CLAP_ABI get(const clap_input_events_t *list, 
     return (void)list, (void)i, &note.header;
 }
 static bool CLAP_ABI push(const clap_output_events_t *list, const clap_event_header_t *event) {
-    return (void)list, told += event->type == CLAP_EVENT_PARAM_VALUE, true;
+    if (event->type == CLAP_EVENT_PARAM_VALUE) told++;
+    return (void)list, true;
 }
 
 static void play(int blocks) {
@@ -72,6 +79,20 @@ static void play(int blocks) {
     const clap_output_events_t outs = {NULL, push};
     const clap_process_t block = {0, 256, NULL, NULL, &out, 0, 1, &in, &outs};
     for (; blocks > 0; blocks--, notes = 0) plugin->process(plugin, &block);
+}
+
+static void *play_on(void *blocks) { return play(*(int *)blocks), NULL; }
+
+static struct { char text[1 << 16]; uint64_t size, at; } kept;
+static int64_t CLAP_ABI put(const clap_ostream_t *stream, const void *bytes, uint64_t n) {
+    if (kept.size + n > sizeof kept.text) return -1;
+    memcpy(kept.text + kept.size, bytes, n);
+    return (void)stream, kept.size += n, (int64_t)n;
+}
+static int64_t CLAP_ABI take(const clap_istream_t *stream, void *bytes, uint64_t n) {
+    n = n < kept.size - kept.at ? n : kept.size - kept.at;
+    memcpy(bytes, kept.text + kept.at, n);
+    return (void)stream, kept.at += n, (int64_t)n;
 }
 
 static void send(int kind, int detail, int px, int py) {
@@ -97,6 +118,8 @@ static void shot(const char *path, int width, int height) {
 
 int main(int words, char **word) {
     char line[512], text[256];
+    pthread_t thread;
+    int blocks = 0;
     void *library = words == 2 ? dlopen(word[1], RTLD_NOW | RTLD_LOCAL) : NULL;
     const clap_plugin_entry_t *entry = library ? dlsym(library, "clap_entry") : NULL;
     if (!entry || !entry->init(word[1])) return 3;
@@ -107,6 +130,7 @@ int main(int words, char **word) {
     const clap_plugin_gui_t *gui = plugin->get_extension(plugin, CLAP_EXT_GUI);
     const clap_plugin_params_t *params = plugin->get_extension(plugin, CLAP_EXT_PARAMS);
     const clap_plugin_timer_support_t *timer = plugin->get_extension(plugin, CLAP_EXT_TIMER_SUPPORT);
+    const clap_plugin_state_t *state = plugin->get_extension(plugin, CLAP_EXT_STATE);
     x = xcb_connect(NULL, NULL);
     if (!gui || xcb_connection_has_error(x)) return 5;
     const xcb_screen_t *screen = xcb_setup_roots_iterator(xcb_get_setup(x)).data;
@@ -130,7 +154,14 @@ int main(int words, char **word) {
             free(xcb_get_input_focus_reply(x, xcb_get_input_focus(x), NULL));
             gui->destroy(plugin);
         } else if (!strncmp(line, "play", 4)) play((int)a);
-        else if (!strncmp(line, "tick", 4)) timer->on_timer(plugin, 7);
+        else if (!strncmp(line, "begin", 5)) blocks = (int)a, pthread_create(&thread, NULL, play_on, &blocks);
+        else if (!strncmp(line, "end", 3)) pthread_join(thread, NULL);
+        else if (!strncmp(line, "state", 5)) {
+            const clap_ostream_t out = {NULL, put};
+            const clap_istream_t in = {NULL, take};
+            kept.size = kept.at = 0;
+            if (!state->save(plugin, &out) || !state->load(plugin, &in)) return 8;
+        } else if (!strncmp(line, "tick", 4)) timer->on_timer(plugin, 7);
         else if (!strncmp(line, "click", 5)) send(XCB_BUTTON_PRESS, 1, (int)a, (int)b);
         else if (!strncmp(line, "key", 3)) send(XCB_KEY_PRESS, (int)a, 0, 0);
         else if (!strncmp(line, "size", 4)) {

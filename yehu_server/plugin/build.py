@@ -32,6 +32,7 @@ FLAGS = (
     *("-std=c++17", "-O2", "-ftree-vectorize", "-fPIC", "-fvisibility=hidden"),
     *("-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics", "-fno-math-errno"),
 )
+LINKING = ("-shared", "-s")
 
 
 @dataclass(frozen=True)
@@ -192,7 +193,7 @@ def link(made: Format, system: System, work: Path) -> Path:
     versions = (False, True) if system.has_wide else (False,)
     objects += [object_file(work, system, wide=wide) for wide in versions]
     library = place / f"Yehu{system.ending}"
-    options = ["-shared", "-s"]
+    options = [*LINKING]
     if "linux" in system.triple:
         options += ["-Wl,--no-undefined", "-Wl,--build-id=none", "-Wl,-Bsymbolic"]
     if system.is_here:

@@ -171,3 +171,22 @@ def test_sound_and_window_do_not_disturb_each_other(window, shown):
         window(f"size {680 + turn} {330 + turn}")
     window("end")
     window("close")
+
+
+def test_a_vst3_host_hears_of_a_choice(built, display, shown, tmp_path):
+    program = tmp_path / "vst3_window"
+    flags = ["-std=c++17", "-Wall", "-Wextra", "-Werror", f"-I{HEADERS}", "-o", str(program)]
+    command = ["g++", *flags, str(HERE / "vst3_window.cpp"), "-ldl", "-lxcb"]
+    subprocess.run(command, check=True)
+    library = next((built / "Yehu.vst3").rglob("*.so"))
+    done = subprocess.run(
+        [program, library, *map(str, NEXT)],
+        env={**os.environ, "DISPLAY": display},
+        stdout=subprocess.PIPE,
+        check=True,
+    )
+    opened, closed, edits, number, value, kept, width = map(float, done.stdout.split())
+    assert (opened, closed, edits) == (1, 0, 1)
+    assert number == shown["/preset"].number
+    assert value == kept == pytest.approx(1.0 / shown["/preset"].steps, abs=1e-6)
+    assert width == 1020

@@ -132,3 +132,21 @@ def test_it_goes_on_at_another_rate_and_after_a_reset(play):
     samples, _ = play(lines, 80000, block=0)
     assert frequency(samples[36000:56000], 44100) == pytest.approx(440.0, rel=0.006)
     assert not samples[60000:].any()
+
+
+@pytest.mark.parametrize("seed", range(6))  # an hour together
+def test_ten_minutes_of_random_messages_allocate_nothing_and_stay_finite(play, seed):
+    rng = np.random.default_rng(seed)
+    frames, count = 600 * 48000, 60000
+    times = np.sort(rng.integers(0, frames, count))
+    kinds = rng.choice([0x80, 0x90, 0x90, 0xA0, 0xB0, 0xB0, 0xC0, 0xD0, 0xE0], count)
+    bytes_of = rng.integers(0, 128, (count, 2))
+    status = kinds + np.where(rng.random(count) < 0.9, 0, rng.integers(0, 16, count))
+    lines = [
+        f"{time} midi {kind} {one} {two}"
+        for time, kind, (one, two) in zip(times, status, bytes_of, strict=True)
+    ]
+    samples, told = play([*PLAYS, *lines], frames, block=0)
+    assert told["allocated"] == [[0.0]]
+    assert np.isfinite(samples).all()
+    assert 0.01 < np.abs(samples).max() <= 1.0

@@ -17,18 +17,22 @@ from yehu_server.plugin.carried import carried
 from yehu_server.plugin.header import header
 from yehu_server.plugin.objects import make_objects, object_file
 from yehu_server.plugin.parameters import parameters
-from yehu_server.plugin.targets import ALL, NAMES, System, systems_of
+from yehu_server.plugin.targets import ALL, NAMES, X11, System, systems_of
 
 SOURCE = Path(__file__).parent / "source"
 COMMON = ("engine.cpp", "instrument.cpp", "resampler.cpp", "text.cpp")
 VST3 = ("vst3.cpp", "vst3_processor.cpp", "vst3_controller.cpp")
+# Of the window, where a system has one (`System.window`).
+FACE = ("canvas.cpp", "face.cpp")
 HEADER_FILE = "carried.h"
 # Where the formats' headers may lie, what tells that they do, and the Debian package that has them.
-DPF = Path("/usr/share/dpf/distrho/src")
+SYSTEM, DPF = Path("/usr/include"), Path("/usr/share/dpf/distrho/src")
+XCB = Path("xcb/xcb.h")
 FLAGS = (
     *("-std=c++17", "-O2", "-ftree-vectorize", "-fPIC", "-fvisibility=hidden"),
     *("-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics", "-fno-math-errno"),
 )
+LINKING = ("-shared", "-s")
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,8 @@ class Format:
         The folder of its headers; `sign` lies in it, and `package` of Debian's brings it.
     put : callable
         Puts linked libraries, by system, into a folder; returns what it wrote.
+    face : tuple of str
+        The source files of its window.
     """
 
     name: str
@@ -51,12 +57,15 @@ class Format:
     sign: Path
     package: str
     put: Callable[[Path, Mapping[System, Path]], Path]
+    face: tuple[str, ...] = ()
 
 
 FORMATS = (
-    Format("CLAP", ("clap.cpp",), DPF, Path("clap/entry.h"), "dpf-source", put_clap),
-    Format("LV2", ("lv2.cpp",), Path("/usr/include"), Path("lv2/core/lv2.h"), "lv2-dev", put_lv2),
-    Format("VST3", VST3, DPF, Path("travesty/base.h"), "dpf-source", put_vst3),
+    Format(
+        "CLAP", ("clap.cpp",), DPF, Path("clap/entry.h"), "dpf-source", put_clap, ("clap_face.cpp",)
+    ),
+    Format("LV2", ("lv2.cpp",), SYSTEM, Path("lv2/core/lv2.h"), "lv2-dev", put_lv2),
+    Format("VST3", VST3, DPF, Path("travesty/base.h"), "dpf-source", put_vst3, ("vst3_view.cpp",)),
 )
 
 
@@ -79,6 +88,10 @@ def build(folder: Path, target: str) -> list[Path]:
         Where something is missing to build with, or the folder cannot be written.
     """
     names = [name for name in NAMES if target in (name, ALL)]
+    if any(system.window == X11 for system in systems_of(target)) and not (SYSTEM / XCB).is_file():
+        raise YehuError(
+            "there are no headers of X's windows here; Debian's package libxcb1-dev has them"
+        )
     for system in systems_of(target):
         compiler_of(system)  # or there would be none after a minute of compiling
     for each in FORMATS:
@@ -93,6 +106,8 @@ def build(folder: Path, target: str) -> list[Path]:
             # And the formats' own, apart from those of this system that lie beside them.
             for inside, around in {(each.sign.parts[0], each.headers) for each in FORMATS}:
                 (work / inside).symlink_to(around / inside)
+            if any(system.window == X11 for system in systems_of(target)):
+                (work / XCB.parts[0]).symlink_to(SYSTEM / XCB.parts[0])
             return [
                 path
                 for name in names
@@ -148,6 +163,7 @@ def compile_file(source: Path, into: Path, system: System, headers: Path) -> Non
         [
             *compiler_of(system),
             *FLAGS,
+            *(("-DYEHU_FACE",) if system.window else ()),
             f"-I{SOURCE}",
             f"-I{headers}",
             "-c",
@@ -169,19 +185,21 @@ def link(made: Format, system: System, work: Path) -> Path:
     place = work / f"{system.triple}-{made.name}"
     place.mkdir(exist_ok=True)
     objects = []
-    for name in (*COMMON, *made.files):
+    face = (*FACE, system.window, *made.face) if system.window else ()
+    for name in (*COMMON, *made.files, *face):
         objects.append(work / f"{system.triple}-{name}.o")
         if not objects[-1].exists():  # of another format
             compile_file(SOURCE / name, objects[-1], system, work)
     versions = (False, True) if system.has_wide else (False,)
     objects += [object_file(work, system, wide=wide) for wide in versions]
     library = place / f"Yehu{system.ending}"
-    options = ["-shared", "-s"]
+    options = [*LINKING]
     if "linux" in system.triple:
         options += ["-Wl,--no-undefined", "-Wl,--build-id=none", "-Wl,-Bsymbolic"]
     if system.is_here:
         options += ["-static-libstdc++", "-static-libgcc", "-Wl,--as-needed"]
-    run([*compiler_of(system), *options, *map(str, objects), "-lm", "-o", str(library)])
+    libraries = ("-lm", *system.libraries)
+    run([*compiler_of(system), *options, *map(str, objects), *libraries, "-o", str(library)])
     return library
 
 

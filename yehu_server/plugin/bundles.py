@@ -51,9 +51,10 @@ def put_lv2(folder: Path, libraries: Mapping[System, Path]) -> Path:
     path.mkdir(exist_ok=True)
     data = carried()
     shown = parameters(*data.names)
-    ending = next(iter(libraries)).ending
+    system = next(iter(libraries))
+    ending = system.ending
     (path / f"{NAME}{ending}").write_bytes(_joined(libraries))
-    (path / "manifest.ttl").write_text(manifest(f"{NAME}{ending}", data.presets))
+    (path / "manifest.ttl").write_text(manifest(f"{NAME}{ending}", data.presets, system.lv2_window))
     (path / f"{NAME}.ttl").write_text(plugin_text(shown))
     (path / "presets.ttl").write_text(presets_text(shown, data))
     return path

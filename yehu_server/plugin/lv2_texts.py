@@ -22,6 +22,7 @@ PREFIXES = """\
 @prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> .
 @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
 @prefix time: <http://lv2plug.in/ns/ext/time#> .
+@prefix ui: <http://lv2plug.in/ns/extensions/ui#> .
 @prefix units: <http://lv2plug.in/ns/extensions/units#> .
 @prefix urid: <http://lv2plug.in/ns/ext/urid#> .
 """
@@ -61,6 +62,14 @@ PLUGIN = """\
 <{uri}#group_output_pair> a pg:OutputGroup , pg:StereoGroup ;
     lv2:symbol "output_pair" ; lv2:name "Output" .
 {groups}"""
+WINDOW = """\
+<{uri}#window>
+    a {kind} ;
+    ui:binary <{library}> ;
+    lv2:requiredFeature ui:parent , <http://lv2plug.in/ns/ext/instance-access> ;
+    lv2:optionalFeature ui:resize ;
+    lv2:extensionData ui:idleInterface , ui:resize .
+"""
 FIRST_PARAMETER = 4  # number of its port
 UNITS = {
     "dB": "units:db",
@@ -79,10 +88,13 @@ def in_lv2(shown: Iterable[HostParameter]) -> list[HostParameter]:
     return [each for each in shown if each.address != PRESET]
 
 
-def manifest(library: str, presets: Iterable[str]) -> str:
-    """Write manifest.ttl, for the library and presets of the bundle."""
-    about = f"a lv2:Plugin ;\n    lv2:binary <{library}> ;\n    rdfs:seeAlso <Yehu.ttl> .\n"
+def manifest(library: str, presets: Iterable[str], window: str = "") -> str:
+    """Write manifest.ttl, for the library, presets and kind of window (of LV2's) of the bundle."""
+    about = f"a lv2:Plugin ;\n    lv2:binary <{library}> ;\n    rdfs:seeAlso <Yehu.ttl>"
+    about += f" ;\n    ui:ui <{LV2_URI}#window> .\n" if window else " .\n"
     texts = [f"<{LV2_URI}>\n    {about}"]
+    if window:
+        texts.append(WINDOW.format(uri=LV2_URI, kind=window, library=library))
     texts += [
         f"<{_preset(name)}>\n    a pset:Preset ;\n    lv2:appliesTo <{LV2_URI}> ;\n"
         f"    rdfs:label {_text(name)} ;\n    rdfs:seeAlso <presets.ttl> .\n"

@@ -12,6 +12,7 @@ if TYPE_CHECKING:  # the command line reads the names, and does not wait for LLV
 
 ANY, WIDE = "generic", "x86-64-v3"  # processors, by LLVM's names
 WIDE_PREFIX = "wide_"
+X11 = "window_x11.cpp"
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,21 @@ class System:
     def has_wide(self) -> bool:
         """Whether it has a second version, for processors with AVX2."""
         return self.triple.startswith("x86_64")
+
+    @property
+    def window(self) -> str:
+        """The source file of its windows; empty where the plug-in has none."""
+        return {"linux": X11, "linux-arm": X11, "windows": "window_windows.cpp"}.get(self.name, "")
+
+    @property
+    def lv2_window(self) -> str:
+        """The kind of its windows in LV2."""
+        return {X11: "ui:X11UI", "": ""}.get(self.window, "ui:WindowsUI")
+
+    @property
+    def libraries(self) -> tuple[str, ...]:
+        """Options to link what its windows need."""
+        return {"windows": ("-lgdi32", "-luser32"), "macos": ()}.get(self.name, ("-ldl",))
 
     @property
     def is_here(self) -> bool:

@@ -11,20 +11,11 @@
 #include <clap/ext/state.h>
 #include <clap/plugin-factory.h>
 
-#include "instrument.hpp"
+#include "clap.hpp"
 
 namespace {
 
 using namespace yehu;
-
-struct Plugin {
-    clap_plugin_t clap;
-    const clap_host_t *host;
-    Instrument instrument;
-    double rate;
-};
-
-Plugin &of(const clap_plugin_t *plugin) { return *(Plugin *)plugin->plugin_data; }
 
 /* -- ports ------------------------------------------------------------------------------------ */
 
@@ -202,6 +193,7 @@ void CLAP_ABI reset(const clap_plugin_t *plugin) { of(plugin).instrument.reset()
 
 void CLAP_ABI destroy(const clap_plugin_t *plugin) {
     Plugin *made = &of(plugin);
+    close_face(*made);
     made->~Plugin();
     free(made);
 }
@@ -230,6 +222,7 @@ const void *CLAP_ABI get_extension(const clap_plugin_t *, const char *id) {
         {CLAP_EXT_PARAMS, &params},           {CLAP_EXT_STATE, &state},
         {CLAP_EXT_LATENCY, &latency},         {"clap.tail", &tail},
     };
+    if (const void *extension = face_extension(id)) return extension;
     for (const auto &each : known)
         if (!strcmp(id, each.id)) return each.extension;
     return nullptr;

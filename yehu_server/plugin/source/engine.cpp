@@ -6,7 +6,7 @@
 #define VERSION_OF(prefix)                                                                         \
     {prefix##yehu_size, prefix##yehu_prepare, prefix##yehu_reset,   prefix##yehu_post,             \
      prefix##yehu_midi, prefix##yehu_map,     prefix##yehu_process, prefix##yehu_frame,            \
-     prefix##yehu_pitch}
+     prefix##yehu_pitch,   prefix##yehu_look}
 
 #ifdef __x86_64__
 #include <cpuid.h>
@@ -21,6 +21,7 @@ decltype(yehu_map) wide_yehu_map;
 decltype(yehu_process) wide_yehu_process;
 decltype(yehu_frame) wide_yehu_frame;
 decltype(yehu_pitch) wide_yehu_pitch;
+decltype(yehu_look) wide_yehu_look;
 }
 
 namespace {

@@ -16,6 +16,7 @@ struct Engine {
     decltype(&yehu_process) process;
     decltype(&yehu_frame) frame;
     decltype(&yehu_pitch) pitch;
+    decltype(&yehu_look) look;
 };
 
 const Engine &engine();

@@ -107,6 +107,16 @@ void Instrument::set(int parameter, double value) {
     change(parameter, value, [this](int each) { flag(set_bits, each); });
 }
 
+void Instrument::edit(int parameter, double value) {
+    set(parameter, value);
+    flag(moved_bits, parameter);
+}
+
+bool Instrument::look(struct yehu_look *into) const {
+    if (rig) code.look(rig, into);
+    return rig != nullptr;
+}
+
 void Instrument::parameter(uint32_t offset, int parameter, double value) {
     const int64_t frame = frame_at(offset);
     change(parameter, value, [=](int each) { apply(frame, each); });

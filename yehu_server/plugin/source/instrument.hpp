@@ -56,8 +56,13 @@ public:
     /* From any thread. A parameter that is set is heard from the next block on. */
     double value(int parameter) const { return values[parameter].load(std::memory_order_relaxed); }
     void set(int parameter, double value);
+    /* As `set`, where the host is to be told that it changed. */
+    void edit(int parameter, double value);
     /* Whether a parameter was changed by another one since this was asked. */
     bool was_moved(int parameter);
+
+    /* What is to be seen of it, from the main thread; false before `begin`. */
+    bool look(struct yehu_look *into) const;
 
     /* State as text; `save` returns its length, which may be more than `size`. */
     size_t save(char *into, size_t size) const;

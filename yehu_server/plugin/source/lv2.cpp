@@ -13,6 +13,12 @@
 #include <lv2/urid/urid.h>
 
 #include "instrument.hpp"
+#ifdef YEHU_FACE
+#include <lv2/instance-access/instance-access.h>
+#include <lv2/ui/ui.h>
+
+#include "face.hpp"
+#endif
 
 namespace {
 
@@ -102,7 +108,79 @@ void run(LV2_Handle handle, uint32_t frames) {
 
 const LV2_Descriptor descriptor = {YEHU_LV2_URI, instantiate, connect, activate, run, nullptr, cleanup, nullptr};
 
+#ifdef YEHU_FACE
+/* -- its window, in the host's process: it sees the instrument, and writes ports ---------------- */
+
+struct Ui {
+    Instrument *instrument;
+    LV2UI_Write_Function write;
+    LV2UI_Controller controller;
+    const LV2UI_Resize *resize;
+    Face face;
+};
+
+void edit(void *owner, int parameter, double value) {
+    Ui &ui = *(Ui *)owner;
+    ui.instrument->edit(parameter, value);
+    for (int i = PRESET + 1; i < PARAMETERS; i++) {
+        const float now = (float)ui.instrument->value(i);
+        if (ui.instrument->was_moved(i)) ui.write(ui.controller, (uint32_t)(FIRST + i - 1), sizeof now, 0, &now);
+    }
+}
+
+bool resize(void *owner, int width, int height) {
+    const Ui &ui = *(Ui *)owner;
+    return ui.resize && ui.resize->ui_resize(ui.resize->handle, width, height) == 0;
+}
+
+LV2UI_Handle open_ui(const LV2UI_Descriptor *, const char *, const char *, LV2UI_Write_Function write,
+                     LV2UI_Controller controller, LV2UI_Widget *widget, const LV2_Feature *const *features) {
+    void *parent = nullptr;
+    Plugin *plugin = nullptr;
+    const LV2UI_Resize *resizes = nullptr;
+    for (; features && *features; features++) {
+        if (!strcmp((*features)->URI, LV2_UI__parent)) parent = (*features)->data;
+        if (!strcmp((*features)->URI, LV2_INSTANCE_ACCESS_URI)) plugin = (Plugin *)(*features)->data;
+        if (!strcmp((*features)->URI, LV2_UI__resize)) resizes = (const LV2UI_Resize *)(*features)->data;
+    }
+    void *memory = parent && plugin ? malloc(sizeof(Ui)) : nullptr;
+    if (!memory) return nullptr;
+    Ui *made = new (memory) Ui{&plugin->instrument, write, controller, resizes, {plugin->instrument, {memory, edit, resize}}};
+    if (!made->face.open((uintptr_t)parent)) return made->~Ui(), free(memory), nullptr;
+    if (resizes) resizes->ui_resize(resizes->handle, made->face.width(), made->face.height());
+    *widget = (LV2UI_Widget)made->face.handle();
+    return made;
+}
+
+void close_ui(LV2UI_Handle handle) {
+    ((Ui *)handle)->~Ui();
+    free(handle);
+}
+
+int idle(LV2UI_Handle handle) { return ((Ui *)handle)->face.tick(), 0; }
+
+int set_size(LV2UI_Feature_Handle handle, int width, int height) {
+    return ((Ui *)handle)->face.set_size(width, height), 0;
+}
+
+const void *extension(const char *id) {
+    static const LV2UI_Idle_Interface idles = {idle};
+    static const LV2UI_Resize sizes = {nullptr, set_size};
+    return !strcmp(id, LV2_UI__idleInterface) ? (const void *)&idles : !strcmp(id, LV2_UI__resize) ? &sizes : nullptr;
+}
+
+void port_event(LV2UI_Handle, uint32_t, uint32_t, uint32_t, const void *) {} /* the instrument is seen itself */
+
+const LV2UI_Descriptor ui_descriptor = {YEHU_LV2_URI "#window", open_ui, close_ui, port_event, extension};
+#endif
+
 } /* namespace */
+
+#ifdef YEHU_FACE
+extern "C" LV2_SYMBOL_EXPORT const LV2UI_Descriptor *lv2ui_descriptor(uint32_t index) {
+    return index == 0 ? &ui_descriptor : nullptr;
+}
+#endif
 
 extern "C" LV2_SYMBOL_EXPORT const LV2_Descriptor *lv2_descriptor(uint32_t index) {
     return index == 0 ? &descriptor : nullptr;

@@ -38,6 +38,7 @@ v3_result query(Vst3 &plugin, const v3_tuid id, void **into) {
 uint32_t unref(Vst3 &plugin) {
     const uint32_t left = --plugin.references;
     if (left == 0) {
+        if (plugin.handler) v3_cpp_obj_unref(plugin.handler);
         plugin.~Vst3();
         free(&plugin);
     }

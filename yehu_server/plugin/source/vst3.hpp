@@ -24,6 +24,7 @@ struct Vst3 {
     std::atomic<uint32_t> references;
     double rate;
     double shown[PARAMETERS]; /* 0 to 1: what the host told the controller */
+    v3_component_handler **handler; /* of the host; or null */
     Instrument instrument;
 };
 
@@ -53,6 +54,12 @@ template <int place> constexpr v3_funknown unknown() {
 
 /* Controllers of MIDI are parameters, too: by channel, the 128 control changes, pressure, bend. */
 enum { PRESSURE = 128, BEND = 129, OF_CHANNEL = 130, CHANNELS = 16, OF_MIDI = OF_CHANNEL * CHANNELS };
+
+#ifdef YEHU_FACE
+v3_plugin_view **make_view(Vst3 &plugin);
+#else
+inline v3_plugin_view **make_view(Vst3 &) { return nullptr; }
+#endif
 
 void write_text(const char *text, int16_t *into); /* into a v3_str_128 */
 bool read_state(Vst3 &plugin, v3_bstream **stream);

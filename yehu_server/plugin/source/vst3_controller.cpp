@@ -113,8 +113,18 @@ v3_result V3_API set(void *self, v3_param_id number, double unit) {
     return parameter >= 0 || number < OF_MIDI ? V3_OK : V3_INVALID_ARG;
 }
 
-v3_result V3_API set_handler(void *, v3_component_handler **) { return V3_OK; }
-v3_plugin_view **V3_API create_view(void *, const char *) { return nullptr; }
+
+v3_result V3_API set_handler(void *self, v3_component_handler **handler) {
+    Vst3 &plugin = of<CONTROLLER>(self);
+    if (handler) v3_cpp_obj_ref(handler);
+    if (plugin.handler) v3_cpp_obj_unref(plugin.handler);
+    plugin.handler = handler;
+    return V3_OK;
+}
+
+v3_plugin_view **V3_API create_view(void *self, const char *name) {
+    return strcmp(name, "editor") ? nullptr : make_view(of<CONTROLLER>(self));
+}
 
 v3_result V3_API assign(void *, int32_t bus, int16_t channel, int16_t which, v3_param_id *number) {
     if (bus != 0 || channel < 0 || channel >= CHANNELS || which < 0 || which >= OF_CHANNEL) return V3_FALSE;

@@ -1,0 +1,192 @@
+"""The plug-in's window, in a small CLAP host under Xvfb."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from plugin.conftest import HEADERS, HERE
+
+from yehu_server.plugin import build as building
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb"),
+]
+PREV, NEXT = (40, 296), (200, 296)  # places in the chooser of presets
+ZOOM = (640, 16)
+TAB, RIGHT, END = 23, 114, 115  # codes of keys
+TRIES = 100
+
+
+@pytest.fixture(scope="module")
+def display():
+    """The name of an X display of its own."""
+    reading, writing = os.pipe()
+    command = [shutil.which("Xvfb"), "-displayfd", str(writing), "-screen", "0", "1600x900x24"]
+    server = subprocess.Popen(command, pass_fds=[writing], stderr=subprocess.DEVNULL)
+    os.close(writing)
+    with os.fdopen(reading) as told:
+        yield f":{told.readline().strip()}"
+    server.terminate()
+    server.wait()
+
+
+@pytest.fixture
+def watched(tmp_path, monkeypatch):
+    """A folder with a plug-in whose C++ tells of races."""
+    options = ("-g", "-fsanitize=thread")
+    monkeypatch.setattr(building, "FLAGS", (*building.FLAGS, *options))
+    monkeypatch.setattr(building, "LINKING", ("-shared", *options))
+    monkeypatch.setattr(building, "FORMATS", building.FORMATS[:1])
+    building.build(tmp_path / "watched", "linux")
+    return tmp_path / "watched"
+
+
+@pytest.fixture
+def window(request, tmp_path, built, display):
+    """Say a line to the host; what it answers: value, timers, told, size asked for, size.
+
+    Parametrized by options of the compilers, for the host and for a plug-in of its own.
+    """
+    options = getattr(request, "param", ())
+    folder = request.getfixturevalue("watched") if options else built
+    program = tmp_path / "window_host"
+    flags = ["-std=gnu11", "-O1", "-Wall", "-Wextra", "-Werror", f"-I{HEADERS}", *options]
+    command = ["cc", *flags, str(HERE / "window_host.c"), "-o", str(program)]
+    subprocess.run([*command, "-ldl", "-lxcb", "-lpthread"], check=True)
+    host = subprocess.Popen(
+        [program, str(folder / "Yehu.clap")],
+        env={**os.environ, "DISPLAY": display, "TSAN_OPTIONS": "exitcode=66"},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+    def say(line):
+        host.stdin.write(f"{line}\n")
+        host.stdin.flush()
+        value, *numbers = host.stdout.readline().split()
+        return float(value), *map(int, numbers)
+
+    with host:
+        yield say
+        host.stdin.close()
+        assert host.wait() == 0
+
+
+def seen(say, path):
+    """The pixels of the window [shape=(height, width, 3)]."""
+    say(f"shot {path}")
+    heading, _, pixels = path.read_bytes().partition(b"\n")
+    width, height = map(int, heading.split()[1:3])
+    return np.frombuffer(pixels, np.uint8).reshape(height, width, 3).astype(int)
+
+
+def becomes(say, number, wanted):
+    """Whether a parameter has a value, after some ticks: X delivers events when it likes."""
+    for _ in range(TRIES):
+        say("tick")
+        if say(f"value {number}")[0] == wanted:
+            return True
+    return False
+
+
+def coloured(pixels, red, green, blue):
+    """How many pixels have a colour."""
+    return int((pixels == (red, green, blue)).all(axis=2).sum())
+
+
+def test_strings_and_bow_move_and_rest_costs_nothing(window, tmp_path):
+    window("open")
+    window("tick")
+    rest = seen(window, tmp_path / "rest")
+    assert coloured(rest, 0xE2, 0xBF, 0x8D) > 10000  # wood
+    window("play 150")
+    window("tick")
+    first = seen(window, tmp_path / "first")
+    window("play 7")
+    window("tick")
+    second = seen(window, tmp_path / "second")
+    strings = np.s_[70:170, 40:410]
+    assert (first != rest)[strings].any()
+    assert (second != first)[strings].any()
+    green = [coloured(each[75:100, 500:], 0x23, 0x70, 0x3F) for each in (rest, second)]
+    assert green[0] == 0 < green[1]  # "Helmholtz motion"
+
+
+def test_it_is_played_by_mouse_and_keys_and_the_host_hears_of_it(window, shown):
+    preset, mapping = shown["/preset"], shown["/mapping"]
+    window("open")
+    window(f"click {NEXT[0]} {NEXT[1]}")
+    assert becomes(window, preset.number, 1.0)
+    assert window("play 1")[2] > 1  # the preset, and what it moves
+    window(f"click {PREV[0]} {PREV[1]}")
+    assert becomes(window, preset.number, 0.0)
+    for code in (TAB, END):
+        window(f"key {code}")
+    assert becomes(window, mapping.number, len(mapping.choices) - 1)
+    window(f"key {RIGHT}")  # there is none after the last
+    assert not becomes(window, mapping.number, len(mapping.choices))
+
+
+def test_it_scales(window, tmp_path):
+    window("open")
+    assert window("size 1400 660")[-2:] == (1362, 660)  # the picture keeps its shape
+    window("tick")
+    large = seen(window, tmp_path / "large")
+    assert coloured(large, 0xE2, 0xBF, 0x8D) > 40000
+    assert coloured(large[-20:, -20:], 0xF7, 0xF3, 0xEA) > 300  # paper, up to the corner
+    window("size 680 330")
+    window(f"click {ZOOM[0]} {ZOOM[1]}")
+    for _ in range(TRIES):
+        if (asked := window("tick")[3:5]) != (0, 0):
+            break
+    assert asked == (850, 412)
+
+
+def test_closed_it_has_no_timer_and_opens_again(window):
+    assert window("play 1")[1] == 0
+    for _ in range(3):
+        assert window("open")[1] == 1
+        window("tick")
+        assert window("close")[1] == 0
+    assert window("play 10")[1] == 0
+
+
+@pytest.mark.parametrize("window", [("-fsanitize=thread",)], indirect=True)
+def test_sound_and_window_do_not_disturb_each_other(window, shown):
+    """ThreadSanitizer's word: the host ends with a code of its own where there was a race."""
+    window("open")
+    window("begin 400")
+    for turn in range(12):
+        window("tick")
+        window(f"click {(NEXT, PREV)[turn % 3 == 2][0]} {NEXT[1]}")
+        window(f"key {(TAB, RIGHT)[turn % 2]}")
+        window(f"value {shown['/room/size'].number}")
+        window("state")
+        window(f"size {680 + turn} {330 + turn}")
+    window("end")
+    window("close")
+
+
+def test_a_vst3_host_hears_of_a_choice(built, display, shown, tmp_path):
+    program = tmp_path / "vst3_window"
+    flags = ["-std=c++17", "-Wall", "-Wextra", "-Werror", f"-I{HEADERS}", "-o", str(program)]
+    command = ["g++", *flags, str(HERE / "vst3_window.cpp"), "-ldl", "-lxcb"]
+    subprocess.run(command, check=True)
+    library = next((built / "Yehu.vst3").rglob("*.so"))
+    done = subprocess.run(
+        [program, library, *map(str, NEXT)],
+        env={**os.environ, "DISPLAY": display},
+        stdout=subprocess.PIPE,
+        check=True,
+    )
+    opened, closed, edits, number, value, kept, width = map(float, done.stdout.split())
+    assert (opened, closed, edits) == (1, 0, 1)
+    assert number == shown["/preset"].number
+    assert value == kept == pytest.approx(1.0 / shown["/preset"].steps, abs=1e-6)
+    assert width == 1020

@@ -1,0 +1,37 @@
+/* The plug-in for CLAP hosts, as its two files know it. */
+#ifndef YEHU_CLAP_HPP
+#define YEHU_CLAP_HPP
+
+#include <clap/entry.h>
+#include <clap/plugin-factory.h>
+
+#include "instrument.hpp"
+
+namespace yehu {
+
+class Face;
+
+struct Plugin {
+    clap_plugin_t clap;
+    const clap_host_t *host;
+    Instrument instrument;
+    double rate;
+    Face *face; /* null while there is none */
+    clap_id timer;
+    bool has_timer;
+};
+
+inline Plugin &of(const clap_plugin_t *plugin) { return *(Plugin *)plugin->plugin_data; }
+
+#ifdef YEHU_FACE
+/* The extension of a window, by its name, or null. */
+const void *face_extension(const char *id);
+void close_face(Plugin &plugin);
+#else
+inline const void *face_extension(const char *) { return nullptr; }
+inline void close_face(Plugin &) {}
+#endif
+
+} /* namespace yehu */
+
+#endif

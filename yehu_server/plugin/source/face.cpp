@@ -1,0 +1,261 @@
+#include "face.hpp"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+namespace yehu {
+
+namespace {
+enum : uint32_t {
+    PAPER = 0xF7F3EA, SURFACE = 0xFFFDF8, INK = 0x26211C, SOFT = 0x685F55, LINE = 0xDDD3C3,
+    INNER = 0xA3560C, OUTER = 0x0C6A75, GOOD = 0x23703F, BAD = 0xAD3019, WOOD = 0xE2BF8D,
+    EDGE = 0xB58754, SHELL = 0x5F3A22, LID = 0xF0DCB2, HAIR = 0xD9C9A0,
+};
+constexpr uint32_t STRING_COLOURS[] = {INNER, OUTER};
+
+/* Places in the picture. */
+constexpr float LOOP_X = 34, BRIDGE_X = 420, LANES[] = {104, 136}, MIDDLE = 120;
+constexpr float PANEL_X = 512, PANEL_WIDTH = 156;
+constexpr float GAUGES_Y = 112, GAUGE_HEIGHT = 33;
+constexpr float CHOOSERS_X = 12, CHOOSER_STEP = 220, CHOOSER_WIDTH = 216, CHOOSERS_Y = 276, CHOOSER_HEIGHT = 40;
+constexpr float ARROW = 26, ZOOM_X = 628, ZOOM_Y = 20;
+
+constexpr int CHOSEN[] = {PRESET, MAPPING, TUNING};
+constexpr double LEAST_SWING = 0.15e-3, KEPT = 0.995; /* m, and of the swing from look to look */
+constexpr float SWING = 26, HAIR_LENGTH = 108;
+constexpr double SILENT = 1e-4, CERTAIN = 0.8, TWICE = 1.5; /* as the page has them */
+constexpr int PERCENTS[] = {75, 100, 125, 150, 200, 250, 300};
+
+/* The string's motion, from what the ear hears, and its colour. */
+const char *regime_of(const struct yehu_look &look, double most, uint32_t *colour) {
+    *colour = SOFT;
+    if (look.string < 0 || look.speed == 0.0) return look.rms > SILENT ? "rings by itself" : "at rest";
+    if (look.certainty == 0.0) return "not heard yet";
+    const bool slips = look.slips >= TWICE;
+    *colour = look.certainty >= CERTAIN && !slips ? GOOD : BAD;
+    if (look.certainty >= CERTAIN) return slips ? "slips too often" : "Helmholtz motion";
+    return look.force > most ? "raucous" : slips ? "slips too often" : "not settled";
+}
+
+float share_of(double value, double lo, double hi) { return (float)fmin(fmax((value - lo) / (hi - lo), 0.0), 1.0); }
+float force_share(double force) { return share_of(log10(fmax(force, 1e-9)), -2.0, 1.0); }
+} /* namespace */
+
+bool Face::open(uintptr_t parent) {
+    return canvas.resize(wide, high, (float)wide / WIDTH) && window.open(*this, parent, wide, high);
+}
+
+void Face::fit(int *width, int *height) {
+    const int least = WIDTH / 2, most = 4 * WIDTH;
+    const int by_height = ((*height + 1) * WIDTH - 1) / HEIGHT;
+    int fitting = by_height < *width ? by_height : *width;
+    fitting = fitting < least ? least : fitting > most ? most : fitting;
+    *width = fitting, *height = fitting * HEIGHT / WIDTH;
+}
+
+void Face::set_size(int width, int height) {
+    fit(&width, &height);
+    if (width == wide && height == high) return;
+    wide = width, high = height, is_stale = true;
+    if (!window.is_open()) return;
+    window.resize(wide, high);
+    canvas.resize(wide, high, (float)wide / WIDTH);
+}
+
+/* -- what the user does ----------------------------------------------------------------------- */
+
+int Face::chooser_at(float x, float y) const {
+    const float place = (x - CHOOSERS_X) / CHOOSER_STEP;
+    const bool is_inside = y >= CHOOSERS_Y && y < CHOOSERS_Y + CHOOSER_HEIGHT && place >= 0 && place < CHOOSERS;
+    return is_inside ? (int)place : -1;
+}
+
+void Face::choose(int chooser, int choice) {
+    const int most = parameters[CHOSEN[chooser]].steps;
+    choice = choice < 0 ? 0 : choice > most ? most : choice;
+    focus = chooser, is_stale = true;
+    if (choice != (int)instrument.value(CHOSEN[chooser])) host.edit(host.owner, CHOSEN[chooser], choice);
+}
+
+void Face::press(int px, int py) {
+    const float scale = (float)wide / WIDTH, x = (float)px / scale, y = (float)py / scale;
+    const int chooser = chooser_at(x, y);
+    if (chooser >= 0) {
+        const bool is_back = x - CHOOSERS_X - CHOOSER_STEP * (float)chooser < CHOOSER_WIDTH / 2;
+        turn(px, py, is_back ? -1 : 1);
+    } else if (y < 2 * ZOOM_Y && x > ZOOM_X - 12) zoom(wide >= 2 * WIDTH ? -1000 : 1);
+}
+
+void Face::turn(int px, int py, int steps) {
+    const float scale = (float)wide / WIDTH;
+    const int chooser = chooser_at((float)px / scale, (float)py / scale);
+    if (chooser >= 0) choose(chooser, (int)instrument.value(CHOSEN[chooser]) + steps);
+}
+
+void Face::key(Key key) {
+    const int now = (int)instrument.value(CHOSEN[focus]);
+    switch (key) {
+    case Key::LEFT: case Key::UP: return choose(focus, now - 1);
+    case Key::RIGHT: case Key::DOWN: return choose(focus, now + 1);
+    case Key::FIRST: return choose(focus, 0);
+    case Key::LAST: return choose(focus, parameters[CHOSEN[focus]].steps);
+    case Key::LARGER: return zoom(1);
+    case Key::SMALLER: return zoom(-1);
+    case Key::NEXT: focus = (focus + 1) % CHOOSERS, is_stale = true;
+    }
+}
+
+/* To the next larger or smaller size; far down is the size at first. */
+void Face::zoom(int steps) {
+    const int count = sizeof PERCENTS / sizeof *PERCENTS;
+    int at = 0;
+    while (at + 1 < count && PERCENTS[at + 1] * WIDTH <= 100 * wide) at++;
+    at = steps < -count ? 1 : at + steps;
+    if (at < 0 || at >= count) return;
+    int width = PERCENTS[at] * WIDTH / 100, height = PERCENTS[at] * HEIGHT / 100;
+    fit(&width, &height);
+    if (host.resize(host.owner, width, height)) set_size(width, height);
+}
+
+/* -- what is drawn ---------------------------------------------------------------------------- */
+
+void Face::tick() {
+    window.poll();
+    if (!window.is_open() || !(follow() || is_stale) || canvas.width() == 0) return;
+    draw();
+    window.put(canvas.pixels(), canvas.width(), canvas.height());
+    is_stale = false;
+}
+
+/* Look at the instrument; whether what is shown has changed. */
+bool Face::follow() {
+    bool has_changed = false;
+    for (int i = 0; i < CHOOSERS; i++) {
+        const int now = (int)instrument.value(CHOSEN[i]);
+        has_changed |= now != chosen[i];
+        chosen[i] = now;
+    }
+    const double before = seen.frame;
+    if (!instrument.look(&seen) || seen.frame == before) return has_changed;
+    const bool rests = seen.string < 0 && !(seen.rms > SILENT);
+    if (rests && is_at_rest) return has_changed;
+    is_at_rest = rests;
+    latest = (latest + 1) % SHAPES;
+    swing = (float)fmax(LEAST_SWING, KEPT * swing);
+    for (int string = 0; string < STRINGS; string++)
+        for (int i = 0; i < POINTS; i++) shapes[string][latest][i] = (float)seen.shapes[string][i];
+    return true;
+}
+
+void Face::draw() {
+    canvas.fill(PAPER);
+    canvas.box(12, 10, PANEL_X - 24, 234, 8, SURFACE);
+    draw_instrument();
+    draw_gauges();
+    for (int i = 0; i < CHOOSERS; i++) draw_chooser(i);
+}
+
+void Face::draw_instrument() {
+    const float ring[] = {BRIDGE_X + 22, MIDDLE};
+    canvas.box(16, LANES[0] - 14, BRIDGE_X - 40, LANES[1] - LANES[0] + 28, 14, EDGE);
+    canvas.box(17, LANES[0] - 13, BRIDGE_X - 42, LANES[1] - LANES[0] + 26, 13, WOOD);
+    canvas.disc(ring[0], ring[1], 62, SHELL);
+    canvas.disc(ring[0], ring[1], 55, LID);
+    canvas.box(LOOP_X - 2, LANES[0] - 14, 4, LANES[1] - LANES[0] + 28, 2, SHELL);
+    canvas.box(BRIDGE_X - 2, LANES[0] - 12, 4, LANES[1] - LANES[0] + 24, 2, SHELL);
+    const float along = seen.length > 0 ? (BRIDGE_X - LOOP_X) / (float)seen.length : 0;
+    const int string = seen.string > 0 ? 1 : 0;
+    if (seen.string >= 0) {
+        const float x = LOOP_X + along * (float)seen.bow_x, share = seen.hair_length > 0 ? share_of(seen.hair_place, 0, seen.hair_length) : 0.5f;
+        const float frog = LANES[string] + share * HAIR_LENGTH, tip = frog - HAIR_LENGTH;
+        const float stick[] = {x, tip, x - 7, tip + 8, x - 7, frog}, hair[] = {x, tip, x, frog};
+        canvas.line(stick, 3, 3, EDGE);
+        canvas.line(hair, 2, 2 + 5 * share_of(seen.force, 0, 3), HAIR);
+        canvas.box(x - 9, frog - 6, 13, 12, 3, SHELL);
+    }
+    for (int i = 0; i < STRINGS; i++) draw_string(i);
+    for (const double &press : seen.finger_press) {
+        if (!(press > 0)) continue;
+        const float x = LOOP_X + along * (float)seen.finger_x[&press - seen.finger_press];
+        canvas.disc(x, LANES[string], 7 + 3 * share_of(press, 0, 3), STRING_COLOURS[string]);
+        canvas.disc(x, LANES[string], 3, SURFACE);
+    }
+    if (seen.string >= 0) canvas.disc(LOOP_X + along * (float)seen.bow_x, LANES[string], 4, STRING_COLOURS[string]);
+}
+
+/* Its motion about the middle of the latest looks, which are seen behind the last one. */
+void Face::draw_string(int string) {
+    float points[2 * POINTS], middle[POINTS] = {};
+    const bool moves = seen.rms > SILENT && (seen.string < 0 || seen.string == string);
+    for (int i = 0; moves && i < POINTS; i++) {
+        for (const auto &shape : shapes[string]) middle[i] += shape[i] / SHAPES;
+        swing = fmaxf(swing, fabsf(shapes[string][latest][i] - middle[i]));
+    }
+    for (int age = moves ? SHAPES - 1 : 0; age >= 0; age--) {
+        const float *shape = shapes[string][(latest + SHAPES - age) % SHAPES];
+        for (int i = 0; i < POINTS; i++) {
+            points[2 * i] = LOOP_X + (BRIDGE_X - LOOP_X) * (float)i / (POINTS - 1);
+            points[2 * i + 1] = LANES[string] + (moves ? SWING * (shape[i] - middle[i]) / swing : 0.0f);
+        }
+        canvas.line(points, POINTS, age ? 1.0f : 1.8f, STRING_COLOURS[string], age ? 0.25f : 1.0f);
+    }
+}
+
+void Face::draw_gauges() {
+    static const char *const names[] = {"C", "C#", "D", "Eb", "E", "F", "F#", "G", "G#", "A", "Bb", "B"};
+    const double speed = fabs(seen.speed), beta = seen.beta;
+    const double least = seen.lower * speed / (beta * beta), most = seen.upper * speed / beta;
+    char text[32];
+    uint32_t colour;
+    const char *regime = regime_of(seen, most, &colour);
+    if (seen.pitch == seen.pitch && seen.frame > 0) {
+        const int key = (int)floor(seen.pitch + 0.5);
+        const double bent = 100.0 * (seen.pitch - key) + (seen.certainty >= CERTAIN ? seen.error : 0.0);
+        snprintf(text, sizeof text, "%s%d", names[(key % 12 + 12) % 12], key / 12 - 1);
+        const float wide = canvas.text(PANEL_X, 62, 42, text, INK);
+        snprintf(text, sizeof text, "%+d ct", (int)floor(bent + 0.5));
+        canvas.text(PANEL_X + wide + 4, 62, 15, text, SOFT);
+    }
+    canvas.text(PANEL_X, 92, 16, regime, colour);
+    const bool is_bowed = seen.string >= 0;
+    const double level = 20.0 * log10(fmax(seen.rms, 1e-4));
+    snprintf(text, sizeof text, seen.rms > SILENT ? "%d dB" : "-", (int)floor(level + 0.5));
+    draw_gauge(0, "Level", text, share_of(level, -60, 0), 0, 0);
+    snprintf(text, sizeof text, is_bowed ? "%d cm/s" : "-", (int)(100 * speed + 0.5));
+    draw_gauge(1, "Bow speed", text, is_bowed ? share_of(speed, 0, 0.6) : 0, 0, 0);
+    snprintf(text, sizeof text, is_bowed ? "%d mN" : "-", (int)(1000 * seen.force + 0.5));
+    draw_gauge(2, "Bow force", text, is_bowed ? force_share(seen.force) : 0, is_bowed ? force_share(least) : 0, is_bowed ? force_share(most) : 0);
+    snprintf(text, sizeof text, is_bowed ? "%d %% of the string" : "-", (int)(100 * beta + 0.5));
+    draw_gauge(3, "Bow at", text, is_bowed ? share_of(beta, 0, 0.4) : 0, 0, 0);
+    snprintf(text, sizeof text, "%d %%", (100 * wide + WIDTH / 2) / WIDTH);
+    canvas.text(ZOOM_X, ZOOM_Y, 12, text, SOFT);
+}
+
+/* `from` and `to`: where it is good. */
+void Face::draw_gauge(int row, const char *name, const char *value, float share, float from, float to) {
+    const float y = GAUGES_Y + GAUGE_HEIGHT * (float)row;
+    canvas.text(PANEL_X, y + 12, 12, name, SOFT);
+    canvas.text(PANEL_X + PANEL_WIDTH - canvas.text(0, 0, 12, value, INK, false), y + 12, 12, value, INK);
+    canvas.box(PANEL_X, y + 18, PANEL_WIDTH, 6, 3, LINE);
+    if (to > from) canvas.box(PANEL_X + PANEL_WIDTH * from, y + 18, PANEL_WIDTH * (to - from), 6, 3, GOOD, 0.45f);
+    if (to > 0 && share > 0) canvas.disc(PANEL_X + PANEL_WIDTH * share, y + 21, 5, share > from && share < to ? GOOD : BAD);
+    else if (share > 0) canvas.box(PANEL_X, y + 18, fmaxf(PANEL_WIDTH * share, 6), 6, 3, SOFT);
+}
+
+void Face::draw_chooser(int chooser) {
+    const Parameter &p = parameters[CHOSEN[chooser]];
+    const float x = CHOOSERS_X + CHOOSER_STEP * (float)chooser, y = CHOOSERS_Y, room = CHOOSER_WIDTH - 2 * ARROW;
+    const char *name = p.choices[chosen[chooser]];
+    canvas.text(x + 2, y - 8, 12, p.name, SOFT);
+    canvas.box(x, y, CHOOSER_WIDTH, CHOOSER_HEIGHT, 8, chooser == focus ? OUTER : LINE);
+    canvas.box(x + 1.5f, y + 1.5f, CHOOSER_WIDTH - 3, CHOOSER_HEIGHT - 3, 7, SURFACE);
+    float size = 16;
+    const float long_at_1 = canvas.text(0, 0, 1, name, INK, false);
+    if (size * long_at_1 > room) size = room / long_at_1;
+    canvas.text(x + (CHOOSER_WIDTH - size * long_at_1) / 2, y + 26, size, name, INK);
+    canvas.text(x + 10, y + 26, 16, "<", chosen[chooser] > 0 ? INK : LINE);
+    canvas.text(x + CHOOSER_WIDTH - 15, y + 26, 16, ">", chosen[chooser] < p.steps ? INK : LINE);
+}
+
+} /* namespace yehu */

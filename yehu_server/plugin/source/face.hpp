@@ -1,0 +1,73 @@
+/* The plug-in's own window: strings, bow and fingers as they move, what is heard, and preset, mapping
+ * and tuning to choose. It looks at the instrument from the host's main thread (`yehu_look`), and
+ * is nothing while it is closed: no memory, window or timer.
+ */
+#ifndef YEHU_FACE_HPP
+#define YEHU_FACE_HPP
+
+#include "canvas.hpp"
+#include "instrument.hpp"
+#include "window.hpp"
+
+namespace yehu {
+
+/* What a format does for its face. */
+struct FaceHost {
+    void *owner;
+    void (*edit)(void *owner, int parameter, double value);
+    bool (*resize)(void *owner, int width, int height); /* ask for it; the host may set the size */
+};
+
+class Face {
+public:
+    static constexpr int WIDTH = 680, HEIGHT = 330, INTERVAL_MS = 33;
+    static constexpr const char *NAME = "Yehu";
+
+    Face(const Instrument &instrument, const FaceHost &host) : instrument(instrument), host(host) {}
+    bool open(uintptr_t parent);
+    void close() { window.close(); }
+    void show(bool is_shown) { window.show(is_shown); }
+    uintptr_t handle() const { return window.handle(); }
+    int width() const { return wide; }
+    int height() const { return high; }
+    /* The largest picture that fits into a size, which becomes its size. */
+    static void fit(int *width, int *height);
+    void set_size(int width, int height);
+
+    /* From the window, and `tick` from a timer. */
+    void tick();
+    void uncover() { is_stale = true; }
+    void press(int x, int y);
+    void turn(int x, int y, int steps);
+    void key(Key key);
+
+private:
+    static constexpr int CHOOSERS = 3, SHAPES = 8, POINTS = 64, STRINGS = 2;
+
+    bool follow();
+    void draw();
+    void draw_instrument();
+    void draw_string(int string);
+    void draw_gauges();
+    void draw_gauge(int row, const char *name, const char *value, float share, float from, float to);
+    void draw_chooser(int chooser);
+    int chooser_at(float x, float y) const;
+    void choose(int chooser, int choice);
+    void zoom(int percent);
+
+    const Instrument &instrument;
+    const FaceHost host;
+    Window window;
+    Canvas canvas;
+    int wide = WIDTH, high = HEIGHT;
+    bool is_stale = true, is_at_rest = false;
+    int focus = 0, chosen[CHOOSERS] = {-1, -1, -1};
+    struct yehu_look seen = {};
+    float shapes[STRINGS][SHAPES][POINTS] = {}; /* m; the latest at `latest` */
+    int latest = 0;
+    float swing = 0.0f; /* m, the greatest of late */
+};
+
+} /* namespace yehu */
+
+#endif

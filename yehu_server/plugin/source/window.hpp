@@ -1,0 +1,36 @@
+/* A window in that of a host, as each system has it (window_x11.cpp, window_windows.cpp): shows
+ * pixels, and tells a face what the user does. All of it is for the host's main thread.
+ */
+#ifndef YEHU_WINDOW_HPP
+#define YEHU_WINDOW_HPP
+
+#include <stdint.h>
+
+namespace yehu {
+
+class Face;
+enum class Key { LEFT, RIGHT, UP, DOWN, NEXT, FIRST, LAST, LARGER, SMALLER };
+
+class Window {
+public:
+    ~Window() { close(); }
+    bool open(Face &face, uintptr_t parent, int width, int height);
+    void close();
+    bool is_open() const { return native != nullptr; }
+    uintptr_t handle() const; /* as hosts know it */
+    void resize(int width, int height);
+    void show(bool is_shown);
+    void put(const uint32_t *pixels, int width, int height);
+    /* Tell what has happened, where the system does not by itself. */
+    void poll();
+    /* Whether the system calls `Face::tick`; else a timer of the host has to. */
+    static bool has_timer();
+
+private:
+    struct Native;
+    Native *native = nullptr;
+};
+
+} /* namespace yehu */
+
+#endif

@@ -80,7 +80,7 @@ def test_slurred_notes_overlap_and_new_strokes_do_not():
     assert (first.key, second.key, third.key) == (70, 72, 72)
     order = [event.message.type for event in found.score.events if event.message.type[:4] == "note"]
     assert order == ["note_on", "note_on", "note_off", "note_off", "note_on", "note_off"]
-    assert third.start_s - second.end_s == pytest.approx(20 * HOP_S)
+    assert third.start_s - second.end_s == pytest.approx(20 * HOP_S, abs=1e-9)
     assert found.strokes == 2
 
 
@@ -112,7 +112,7 @@ def test_its_midi_file_has_the_same_notes_and_bends(tmp_path):
     assert [note.key for note in notes_of(again)] == [note.key for note in notes_of(found.score)]
     wheel = [event.message.pitch for event in again.events if event.message.type == "pitchwheel"]
     assert wheel[0] * 24 / 8191 == pytest.approx(0.3, abs=0.01)
-    assert set(lost) <= {"/playing/attack", "/playing/release"}
+    assert set(lost) == {"/playing/attack", "/playing/variation"}
 
 
 def test_a_voice_without_notes_is_refused():

@@ -93,12 +93,14 @@ def of_bank(program: int) -> Array:
         midi, wav = Path(folder, "a.mid"), Path(folder, "a.wav")
         mido.MidiFile(ticks_per_beat=960, tracks=[track]).save(midi)
         command = ["fluidsynth", "-q", "-ni", "-R", "0", "-C", "0", "-r", str(RATE), "-F", str(wav)]
-        subprocess.run([*command, str(BANK), str(midi)], check=True, capture_output=True)
+        subprocess.run(  # noqa: S603 - our own command
+            [*command, str(BANK), str(midi)], check=True, capture_output=True
+        )
         return soundfile.read(wav)[0].mean(axis=1)
 
 
 def of_this_instrument() -> Array:
-    """This instrument, dry; its bow is asked for the loudness, its finger for the vibrato."""
+    """Play the tune on this instrument, dry: bow and finger are asked for swell and vibrato."""
     from yehu_server.scores.score import Score, ScoreEvent
 
     events = tuple(ScoreEvent(time, message) for time, message in midi_events())

@@ -118,3 +118,15 @@ def test_its_midi_file_has_the_same_notes_and_bends(tmp_path):
 def test_a_voice_without_notes_is_refused():
     with pytest.raises(ScoreError, match="no note"):
         played(held((np.nan, 100), (70.0, 4), (np.nan, 100)))
+
+
+def test_a_c5_that_moves_is_not_played_on_the_open_string():
+    swing = 72.0 + 0.3 * np.sin(np.arange(120) * 0.2)
+    found = played(np.concatenate((held((np.nan, 9), (72.0, 80), (np.nan, 20)), swing,
+                                   held((np.nan, 20), (79.0, 80), (np.nan, 9)))))  # fmt: skip
+    strings = [
+        event.message.value
+        for event in found.score.events
+        if isinstance(event.message, Setting) and event.message.address == "/playing/string"
+    ]
+    assert strings == [1.0, None]

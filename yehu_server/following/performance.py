@@ -13,7 +13,13 @@ from typing import Any
 import mido
 import numpy as np
 
-from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.core.player.fingering import (
+    HIGHEST_NOTE,
+    HIGHEST_ON_F,
+    LOWEST_NOTE,
+    OPEN_WITHIN,
+    SECOND_OPEN,
+)
 from yehu_server.errors import ScoreError
 from yehu_server.following.frames import HOP_S
 from yehu_server.following.heard import Heard
@@ -24,7 +30,11 @@ from yehu_server.scores.score import Score, ScoreEvent, Setting
 Array = Any
 
 BEND, DYNAMICS = "/playing/bend", "/playing/dynamics"
-ATTACK, RELEASE = "/playing/attack", "/playing/release"
+ATTACK, STRING = "/playing/attack", "/playing/string"
+INNER = 1.0
+# A note about C5 that is not within so many semitones for most of its time is not played on the
+# open string.
+STILL, MOSTLY = 0.12, 0.8
 QUARTER_S = 0.5  # of the beats that the score counts
 VELOCITY = 80  # neutral: loudness is in the dynamics
 # Level by dynamics, as `player.notes` and `player.right_hand` have it: this power of them, and the
@@ -145,6 +155,7 @@ class _Maker:
     def __init__(self, heard: Heard, wanted: Wanted, shift: float) -> None:
         self.events: list[ScoreEvent] = []
         self.moved = 0
+        self._is_inner = False
         self._wanted, self._shift = wanted, shift
         voiced = heard.level_db[heard.is_voiced]
         full = float(np.quantile(voiced, LOUD_SHARE)) if len(voiced) else 0.0
@@ -169,6 +180,7 @@ class _Maker:
         for start, end in groups:
             part = pitch[start - first : end - first]
             key, of_key = self._key(float(np.median(part)))
+            self._choose_string(start, part)
             at_bend = math.nan
             for frame in range(start, end):
                 place = frame - first
@@ -187,6 +199,15 @@ class _Maker:
                         self._send(frame, "note_off", held)
                     held = key
         self._send(stroke.end, "note_off", held)
+
+    def _choose_string(self, frame: int, pitch: Array) -> None:
+        """Ask for the inner string where the open outer one would not follow a pitch."""
+        off = np.abs(pitch - SECOND_OPEN)
+        is_about = off.min() < OPEN_WITHIN and pitch.max() <= HIGHEST_ON_F
+        wanted = bool(is_about and np.quantile(off[off < OPEN_WITHIN], MOSTLY) > STILL)
+        if wanted != self._is_inner:
+            self.set(frame, STRING, INNER if wanted else None)
+            self._is_inner = wanted
 
     def _played(self, stroke: Stroke) -> Array:
         """The pitch of each frame of a stroke as it is played."""
@@ -226,7 +247,7 @@ class _Maker:
         heard = min(max(1e3 * stroke.attack_s, SHORTEST_ATTACK_MS), LONGEST_ATTACK_MS)
         return float(USUAL_ATTACK_MS * (heard / USUAL_ATTACK_MS) ** share)
 
-    def set(self, frame: int, address: str, value: float) -> None:
+    def set(self, frame: int, address: str, value: float | None) -> None:
         """Set a parameter at a frame."""
         self._add(frame, Setting(address, value))
 

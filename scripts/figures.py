@@ -7,6 +7,7 @@ paper      Figures 2 to 6 of the paper from this model, as its notebook draws th
 body       A body that was fitted to taps, and how an instrument with another body sounds.
 rooms      How the rooms of the presets answer an impulse.
 ensemble   The beginning of examples/mo_li_hua.mid: four yehus on a stage.
+followed   A hummed tune, and what is played of it.
 life       A held note, a bow change and a plain phrase, as a machine and as hands play them.
 schelleng  Where the model can be bowed, and the forces by which the player bows it.
 
@@ -23,12 +24,12 @@ import matplotlib as mpl
 
 mpl.use("Agg")
 
-from pictures import body, ensemble, life, paper, rooms, schelleng
+from pictures import body, ensemble, followed, life, paper, rooms, schelleng
 
 ROOT = Path(__file__).resolve().parent.parent
 ALL = {
     module.__name__.rpartition(".")[2]: module.draw_all
-    for module in (paper, body, rooms, ensemble, life, schelleng)
+    for module in (paper, body, rooms, ensemble, followed, life, schelleng)
 }
 
 

@@ -154,6 +154,42 @@ def budget() -> str:
     )
 
 
+FOLLOWED = ("RPA", "RCA", "within 10 cents", "octave errors", "onsets F1", "level")
+FOLLOWED_AGAIN = ("within 5 cents", "within 10 cents", "onsets F1", "level")
+
+
+def followed() -> str:
+    """How well sounds are followed, from bench/results/following.json."""
+    rows = measured("following")
+    head = "sound, pitch, chroma, within 10 cents, wrong octave, onsets, level"
+    return table(
+        head,
+        (
+            [name, *(f"{100.0 * row[each]:.1f} %" for each in FOLLOWED[:4])]
+            + [f"{row[each]:.2f}" for each in FOLLOWED[4:]]
+            for name, row in rows.items()
+            if "RPA" in row
+        ),
+    )
+
+
+def followed_again() -> str:
+    return table(
+        "sound, within 5 cents, within 10 cents, median, later, onsets, level",
+        (
+            [
+                name.partition(",")[0],
+                *(f"{100.0 * row[each]:.0f} %" for each in FOLLOWED_AGAIN[:2]),
+                f"{row['median, cents']:.1f} cents",
+                f"{row['later, ms']:.0f} ms",
+                *(f"{row[each]:.2f}" for each in FOLLOWED_AGAIN[2:]),
+            ]
+            for name, row in measured("following").items()
+            if "later, ms" in row
+        ),
+    )
+
+
 MADE: dict[str, Callable[[], str]] = {
     "layers": layers,
     "parameters-of-the-player": lambda: parameters(Place.PLAYER),
@@ -166,6 +202,8 @@ MADE: dict[str, Callable[[], str]] = {
     "ratios": ratios,
     "kernels": kernels,
     "budget": budget,
+    "followed": followed,
+    "followed-again": followed_again,
     "controls-of-gestures": lambda: table(
         "control, unit, range, default, what",
         (

@@ -9,6 +9,7 @@ from yehu_server.cli import _parser, main
 from yehu_server.cli.config import read_config
 from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import FIRST, LAST, YehuError
+from yehu_server.following.recording import recording_of_file
 from yehu_server.playing.mapping import load
 from yehu_server.playing.preset_folders import read_preset
 from yehu_server.playing.tuning import read_tuning
@@ -31,6 +32,7 @@ READERS = {
     "c.jsonl": read_capture,
     "s.mid": read_score,
     "s.musicxml": read_musicxml,
+    "v.wav": recording_of_file,
 }
 CONTENTS = {
     "nothing": b"\0",

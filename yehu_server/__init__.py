@@ -21,6 +21,7 @@ from yehu_server.util import __version__
 
 if TYPE_CHECKING:
     from yehu_server import plot
+    from yehu_server.api.followed import Followed, follow
     from yehu_server.api.instrument import Instrument
     from yehu_server.api.notes import Note
     from yehu_server.api.playback import Player, play
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from yehu_server.errors import YehuError
 
 __all__ = [
+    "Followed",
     "Instrument",
     "Note",
     "Player",
@@ -38,6 +40,7 @@ __all__ = [
     "Sweep",
     "YehuError",
     "__version__",
+    "follow",
     "play",
     "plot",
     "render",
@@ -46,6 +49,7 @@ __all__ = [
 ]
 
 _MODULES = {
+    "Followed": "api.followed",
     "Instrument": "api.instrument",
     "Note": "api.notes",
     "Player": "api.playback",
@@ -53,6 +57,7 @@ _MODULES = {
     "Simulation": "api.simulated",
     "Sweep": "api.swept",
     "YehuError": "errors",
+    "follow": "api.followed",
     "play": "api.playback",
     "plot": "plot",
     "render": "api.rendered",

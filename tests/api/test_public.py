@@ -45,8 +45,8 @@ def test_matplotlib_waits_for_a_picture():
 def test_the_public_names_are_these():
     assert sorted(yehu.__all__) == dir(yehu)
     assert set(yehu.__all__) == {
-        *("Instrument", "Note", "Player", "Rendering", "Simulation", "Sweep", "YehuError"),
-        *("__version__", "play", "plot", "render", "simulate", "sweep"),
+        *("Followed", "Instrument", "Note", "Player", "Rendering", "Simulation", "Sweep"),
+        *("YehuError", "__version__", "follow", "play", "plot", "render", "simulate", "sweep"),
     }
     assert set(plot.__all__) == {
         *("energy", "guettler", "level", "pitch", "regimes", "schelleng", "spectrogram", "strings")

@@ -108,7 +108,7 @@ class _Written:
 
 
 def render(
-    score: PathLike | Iterable[Note | Sequence[Any]] | Array,
+    score: PathLike | Score | Iterable[Note | Sequence[Any]] | Array,
     *,
     sample_rate: float = 44100,
     instrument: Quantities | Mapping[str, Any] | PathLike | None = None,
@@ -138,7 +138,7 @@ def render(
     ----------
     score : path, or iterable of notes
         A file of MIDI, MusicXML or jianpu; or notes: `Note`, rows of pitch, start (s), duration (s)
-        and, if wanted, velocity, or an array of such rows.
+        and, if wanted, velocity, or an array of such rows; or the ``score`` of `follow`.
     sample_rate, instrument, preset, settings, a4, tuning, practice, seed
         As of `Instrument`. Rooms are presets too: ``preset="hall"``.
     phrasing : float
@@ -209,7 +209,12 @@ def render(
         is_mono=bool(mono),
     )
     number_of_song = None if song is None else whole(song, "song", 1, 1 << 16)
-    read = read_any(path_of(score, "score"), song=number_of_song) if is_file else score_of(score)
+    if isinstance(score, Score):
+        read = score
+    elif is_file:
+        read = read_any(path_of(score, "score"), song=number_of_song)
+    else:
+        read = score_of(score)
     score = phrased(read, share)
     options = replace(options, phrasing=0.0 if is_fingered(score) else share)
     get_ready(plays=True)

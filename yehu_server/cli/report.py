@@ -101,6 +101,24 @@ def replay_report(target: Path, result: Replayed) -> str:
     return f"{line}\n{counted(result.events, 'event')}"
 
 
+def follow_report(target: Path, fields: Mapping[str, Any]) -> str:
+    """The report on a recording that was followed."""
+    notes, strokes = counted(fields["notes"], "note"), counted(fields["strokes"], "stroke")
+    line = f"{target}: {fields['duration_s']:.1f} s, {notes} in {strokes}"
+    octaves, rest = divmod(abs(fields["transposed"]), 12.0)
+    if fields["transposed"]:
+        way = "up" if fields["transposed"] > 0.0 else "down"
+        by = (
+            counted(round(octaves), "octave")
+            if not rest
+            else f"{abs(fields['transposed']):g} semitones"
+        )
+        line += f", {by} {way}"
+    if fields["notes_moved"]:
+        line += f"\n{counted(fields['notes_moved'], 'note')} outside F4 to F6, moved by octaves"
+    return line
+
+
 def mapping_report(mapping: ControllerMapping) -> None:
     """Print a mapping as a table of sources, targets and ranges."""
     from rich.console import Console

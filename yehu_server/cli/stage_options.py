@@ -21,12 +21,10 @@ BY_MIDI = Path()  # --ensemble without a file
 def add_stage(parser: Any) -> None:
     """Add the options of a stage: room, channels, ensemble, stems."""
     group = parser.add_argument_group("the stage")
+    add_room(group)
     add_options(
         group,
         """
-        --dry: no room, and a body that sounds alike to both sides (default: a small, quiet room)
-        --mono: write one channel, the mean of both
-        --room NAME: the room: a preset of rooms, such as hall, or a file
         --ensemble FILE.toml: each MIDI channel but 10 a yehu of its own, up to 16; a file tells who
             plays what and sits where
         --by: with --ensemble: whether each channel or each track is a part (default: channel)
@@ -38,6 +36,18 @@ def add_stage(parser: Any) -> None:
         by={"choices": ("channel", "track"), "default": "channel"},
         stems=target,
         jobs=positive,
+    )
+
+
+def add_room(group: Any) -> None:
+    """Add the options of the room and the channels of the sound."""
+    add_options(
+        group,
+        """
+        --dry: no room, and a body that sounds alike to both sides (default: a small, quiet room)
+        --mono: write one channel, the mean of both
+        --room NAME: the room: a preset of rooms, such as hall, or a file
+        """,
     )
 
 

@@ -102,6 +102,8 @@ class Performance:
     played : Score, or sequence of Part
     has_stems : bool
         Whether `stems` has what each part gives.
+    reports : bool
+        Whether the instruments report the wishes that they fulfil, for a capture.
 
     Raises
     ------
@@ -110,7 +112,12 @@ class Performance:
     """
 
     def __init__(
-        self, played: Score | Sequence[Part], options: Options, *, has_stems: bool = False
+        self,
+        played: Score | Sequence[Part],
+        options: Options,
+        *,
+        has_stems: bool = False,
+        reports: bool = False,
     ) -> None:
         parts = [options.solo(played)] if isinstance(played, Score) else list(played)
         self._options, self._has_stems = options, has_stems
@@ -126,6 +133,8 @@ class Performance:
         self.ensemble = Ensemble(
             specs, channels=options.sound_channels, has_room=not options.is_dry
         )
+        for instrument in self.ensemble.instruments if reports else ():
+            instrument.report_wishes()
         self.players = [
             PartPlayer(part, self.ensemble.instruments[place])
             for part, place in zip(parts, self._places, strict=True)

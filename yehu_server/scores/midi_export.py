@@ -1,4 +1,4 @@
-"""Write what is played of a written score as a MIDI file, with its tempi and bars.
+"""Write what is played of a score as a MIDI file; of a written one, with its tempi and bars.
 
 What bow and fingers do becomes the controllers of the mapping `keyboard`, as far as that has them.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import io
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 
 import mido
@@ -35,17 +35,32 @@ def midi_file(written: Written, score: Score) -> tuple[bytes, dict[str, int]]:
         What `performed` made of the written one.
     """
     clock = WrittenClock(written)
+    names = [part.name for part in written.parts if part.notes]
+    return _file(_conductor(written, clock), score, clock.beat_at, names)
+
+
+def midi_of_performance(score: Score, quarter_s: float) -> tuple[bytes, dict[str, int]]:
+    """Return the same of a score that was played, not written: in quarters of one length (s)."""
+    tempo = mido.MetaMessage("set_tempo", tempo=round(quarter_s * 1e6))
+    return _file([(0, _title(score.name)), (0, tempo)], score, lambda time_s: time_s / quarter_s)
+
+
+def _file(
+    conductor: list[tuple[int, mido.MetaMessage]],
+    score: Score,
+    beat_at: Callable[[float], float],
+    names: Sequence[str] = (),
+) -> tuple[bytes, dict[str, int]]:
     file = mido.MidiFile(type=1, ticks_per_beat=TICKS)
-    file.tracks.append(_track(_conductor(written, clock)))
+    file.tracks.append(_track(conductor))
     lost: Counter[str] = Counter()
     channels = sorted(
         {event.message.channel for event in score.events if hasattr(event.message, "channel")}
     )
-    names = [part.name for part in written.parts if part.notes]
     translated = _Translation()
     by_channel: dict[int, list[tuple[int, mido.Message]]] = {each: [] for each in channels}
     for event in score.events:
-        tick = _tick(clock.beat_at(event.time_s))
+        tick = _tick(beat_at(event.time_s))
         messages = by_channel[event.message.channel]
         if isinstance(event.message, Setting):
             found = list(translated.messages(event.message))
@@ -54,10 +69,7 @@ def midi_file(written: Written, score: Score) -> tuple[bytes, dict[str, int]]:
         else:
             messages.append((tick, event.message))
     for number, channel in enumerate(channels):
-        name = names[number] if number < len(names) else ""
-        title = mido.MetaMessage(
-            "track_name", name=name.encode("latin-1", "replace").decode("latin-1")
-        )
+        title = _title(names[number] if number < len(names) else "")
         file.tracks.append(_track([(0, title), *by_channel[channel]]))
     data = io.BytesIO()
     file.save(file=data)
@@ -79,10 +91,14 @@ def _track(messages: list[tuple[int, mido.Message]]) -> mido.MidiTrack:
     return track
 
 
+def _title(name: str) -> mido.MetaMessage:
+    plain = name.encode("latin-1", "replace").decode("latin-1")
+    return mido.MetaMessage("track_name", name=plain)
+
+
 def _conductor(written: Written, clock: WrittenClock) -> list[tuple[int, mido.MetaMessage]]:
     """Title, tempi and time signatures."""
-    title = written.title.encode("latin-1", "replace").decode("latin-1")
-    messages = [(0, mido.MetaMessage("track_name", name=title))]
+    messages = [(0, _title(written.title))]
     last = None
     for beat, quarter_s in clock.tempi:
         tempo = min(max(round(quarter_s * 1e6), 1), SLOWEST)

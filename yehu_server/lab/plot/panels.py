@@ -43,13 +43,18 @@ def draw_pitch(axes: Any, watch: PlotData) -> None:
     wanted = (asked if is_asked else watch.pitches).ravel()
     wanted = wanted[np.isfinite(wanted)]
     low, high = (wanted.min() - 2.5, wanted.max() + 2.5) if len(wanted) else (64.0, 90.0)
+    label_notes(axes, low, high)
+    axes.legend(**ABOVE)
+
+
+def label_notes(axes: Any, low: float, high: float) -> None:
+    """Show pitches (fractional MIDI notes) from one to another, by the names of notes."""
     notes = range(math.ceil(low), math.floor(high) + 1)
     letters = "ABCDEFG" if len(notes) < MANY else "CEGA"
     ticks = [note for note in notes if note_name(note)[0] in letters and "#" not in note_name(note)]
     axes.set(ylim=(low, high), yticks=ticks, yticklabels=[note_name(note) for note in ticks])
     axes.set_ylabel("pitch")
     axes.grid(**GRID)
-    axes.legend(**ABOVE)
 
 
 def draw_spectrogram(axes: Any, watch: PlotData, *, has_pitch: bool = False) -> None:

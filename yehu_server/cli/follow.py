@@ -1,0 +1,243 @@
+"""``yehu-server follow``."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from yehu_server.cli.arguments import (
+    add_command,
+    add_instrument,
+    add_options,
+    add_output,
+    add_reporting,
+    check_output,
+    instrument_of,
+)
+from yehu_server.cli.converters import hours, number_within, target, whole
+from yehu_server.cli.playing_options import add_playing, playing_options_of
+from yehu_server.cli.stage_options import add_room, room_of
+from yehu_server.cli.terminal import print_report, progress_bar, warn, warn_of_compiling
+from yehu_server.errors import OutputError, ParameterError
+from yehu_server.scores.score import MAX_DURATION_H
+
+if TYPE_CHECKING:
+    from yehu_server.following.heard import Heard
+    from yehu_server.following.performance import Performed
+    from yehu_server.rendering.options import Options
+
+EXAMPLES = """\
+examples:
+  yehu-server follow hum.wav -o played.wav
+  yehu-server follow hum.wav -o played.wav --preset flautando --correct 1 --keep-vibrato
+  yehu-server follow hum.wav -o hum.mid
+  yehu-server follow hum.wav -o hum.jsonl
+  yehu-server follow hum.wav -o played.flac --plot played.png
+
+It needs yehu-server[follow]. What it hears, and how well, is told in docs/follow.md.
+"""
+STYLES = ("exact", "gentle", "even")
+MIDI, CAPTURE = (".mid", ".midi"), (".jsonl",)
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = add_command(
+        commands,
+        "follow",
+        run=run,
+        help="play what a voice hums, or another instrument plays, from a sound file",
+        description="Listen to a voice or one instrument in a sound file, and play what is heard.",
+        epilog=EXAMPLES,
+    )
+    add_options(
+        parser, "recording IN: a sound file of one voice, such as WAV or FLAC", recording=Path
+    )
+    add_output(parser, more=", by its ending: .wav or .flac; .mid, notes; .jsonl, a capture")
+    add_options(
+        parser,
+        f"""
+        --transpose SEMITONES: play so much higher, -60 to 60 (default: by octaves, into range)
+        --correct SHARE: how far notes are moved to the tuning: 0 to 1 (default: 0, as it was sung)
+        --keep-vibrato: with --correct, move notes as they are (default: their vibrato and slides
+            get narrower, too)
+        --style: how much of its loudness and attacks is played: exact all, gentle some, even none
+            (default: exact)
+        --max-duration HOURS: refuse a recording that lasts longer (default: {MAX_DURATION_H:g})
+        --plot PNG: also draw the pitch and level that were heard and that are played
+        --rate HZ: sample rate (default: 44100)
+        --subtype: sample format (default: 24 bits)
+        --tail SECONDS: time after the end, up to 600 (default: until it is quiet, at most 5 s)
+        --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
+        --normalize: scale the result to a peak of -1 dBFS
+        """,
+        transpose=number_within(-60.0, 60.0, "semitones"),
+        correct={"type": number_within(0.0, 1.0, ""), "default": 0.0},
+        style={"choices": STYLES, "default": STYLES[0]},
+        max_duration={"type": hours, "default": MAX_DURATION_H},
+        plot=target,
+        rate={"type": whole, "default": 44100},
+        subtype={"choices": ("16", "24", "float"), "default": "24"},
+        tail=number_within(0.0, 600.0, "s"),
+        gain_db=number_within(-60.0, 24.0, "dB"),
+    )
+    add_room(parser)
+    add_instrument(parser)
+    add_playing(parser)
+    add_reporting(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
+    from yehu_server.cli.report import follow_report
+    from yehu_server.following.heard import hear
+    from yehu_server.following.notes import strokes_of
+    from yehu_server.following.performance import STYLES as ALL
+    from yehu_server.following.performance import Wanted, performed
+    from yehu_server.following.recording import recording_of_file
+    from yehu_server.following.tracker import need_follow
+
+    start = time.perf_counter()
+    need_follow("follow")
+    options = _options(arguments)
+    recording = recording_of_file(arguments.recording, arguments.max_duration)
+    with progress_bar(arguments, "listening") as progress:
+        heard = hear(recording, progress=progress)
+    wanted = Wanted(
+        transpose=arguments.transpose,
+        correct=arguments.correct,
+        keeps_vibrato=arguments.keep_vibrato,
+        style=ALL[arguments.style],
+        tuning=options.playing.tuning,
+        a4=options.playing.a4,
+    )
+    found = performed(heard, strokes_of(heard), wanted)
+    for warning in heard.warnings:
+        warn(f"{arguments.recording}: {warning}")
+    _write(arguments, options, heard, found)
+    fields = {
+        "duration_s": heard.duration_s,
+        "voiced_s": float(heard.is_voiced.sum() * heard.times_s[1]),
+        "notes": found.notes,
+        "strokes": found.strokes,
+        "transposed": found.semitones,
+        "notes_moved": found.notes_moved,
+        "warnings": list(heard.warnings),
+        "elapsed_s": time.perf_counter() - start,
+    }
+    print_report(arguments, fields, follow_report(arguments.output, fields))
+    return 0
+
+
+def _options(arguments: argparse.Namespace) -> Options:
+    """How to render; checks all that can be checked before listening.
+
+    Raises
+    ------
+    YehuError
+        Where something is wrong.
+    """
+    from yehu_server.core.physics.grid import check_rate
+    from yehu_server.rendering.options import Options
+    from yehu_server.util.files import check_distinct, check_target
+    from yehu_server.util.sound_file import check_format, format_of
+
+    ending = arguments.output.suffix.lower()
+    check_rate(arguments.rate)
+    if arguments.dry and arguments.room is not None:
+        raise ParameterError("--dry has no room: leave out --room")
+    playing = playing_options_of(arguments)
+    if arguments.room is not None:
+        room = room_of(arguments.room, playing.presets)
+        playing = replace(playing, start=(*playing.start, *room))
+    outputs = {"-o": arguments.output}
+    if arguments.plot is not None:
+        from yehu_server.lab.plot.png import check_picture
+
+        if ending in (*MIDI, *CAPTURE):
+            raise OutputError("--plot shows what is played: name a sound file with -o")
+        check_picture(arguments.plot, "--plot", overwrite=arguments.overwrite)
+        outputs["--plot"] = arguments.plot
+    own = [] if arguments.instrument is None else [arguments.instrument]
+    check_distinct(outputs, [arguments.recording, *playing.files, *own])
+    form = "wav"
+    if ending in (*MIDI, *CAPTURE):
+        check_target(arguments.output)
+    else:
+        form = format_of(arguments.output)
+        check_format(form, arguments.subtype)
+        check_output(arguments)
+    return Options(
+        rate=arguments.rate,
+        format_name=form,
+        subtype=arguments.subtype,
+        tail_s=arguments.tail,
+        gain_db=arguments.gain_db,
+        normalize=arguments.normalize,
+        playing=playing,
+        quantities=instrument_of(arguments),
+        is_dry=arguments.dry,
+        is_mono=arguments.mono,
+    )
+
+
+def _write(arguments: argparse.Namespace, options: Options, heard: Heard, found: Performed) -> None:
+    """Write the file that is asked for."""
+    from yehu_server.util.files import anything, nothing, replacing
+
+    ending = arguments.output.suffix.lower()
+    if ending in MIDI:
+        from yehu_server.following.performance import QUARTER_S
+        from yehu_server.scores.midi_export import midi_of_performance
+
+        data, lost = midi_of_performance(found.score, QUARTER_S)
+        with replacing(arguments.output, anything if arguments.overwrite else nothing) as partial:
+            partial.write_bytes(data)
+        if lost:
+            told = ", ".join(f"{address} ({count})" for address, count in sorted(lost.items()))
+            warn(f"{arguments.output}: MIDI has no controllers for {told}")
+        return
+    from yehu_server.core.engine.warming import warm_up
+    from yehu_server.playing.calibration_store import calibration_for
+
+    warn_of_compiling(arguments)
+    warm_up()
+    with progress_bar(arguments, "calibrating", "notes") as progress:
+        calibration = calibration_for(
+            float(options.rate), options.quantities, a4=options.playing.a4, progress=progress
+        )
+    options = replace(options, calibration=calibration)
+    with progress_bar(arguments, "playing") as progress:
+        if ending in CAPTURE:
+            from yehu_server.rendering.to_capture import render_capture
+
+            overwrite = arguments.overwrite
+            render_capture(found.score, arguments.output, options, progress, overwrite=overwrite)
+        else:
+            _render(arguments, options, heard, found, progress)
+
+
+def _render(
+    arguments: argparse.Namespace, options: Options, heard: Heard, found: Performed, progress: Any
+) -> None:
+    """Write the sound and, where it is asked for, the picture."""
+    from yehu_server.rendering.plot_data import PlotData
+    from yehu_server.rendering.to_files import render
+
+    watch = None
+    if arguments.plot is not None:
+        watch = PlotData(float(options.rate), found.score.duration_s, 1, options.playing.a4)
+        options = replace(options, block=PLOTTED_BLOCK)
+    may_replace = check_output(arguments)
+    render(found.score, arguments.output, options, progress, may_replace, watch=watch)
+    if watch is not None:
+        from yehu_server.lab.plot.followed import write_followed
+
+        watch.finish()
+        write_followed(heard, found.semitones, watch, arguments.plot, overwrite=arguments.overwrite)
+
+
+PLOTTED_BLOCK = 512  # frames between two readings of the pitch that is asked for

@@ -1,0 +1,186 @@
+"""What is heard of each 5 ms: level, change of the spectrum, and pitches that it may have.
+
+The candidates are the tracker's pitch, simple ratios of it, and the first pitch at which the sound
+is much like itself. Each is refined by the normalised square difference [McLeod], at the most
+periods that fit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from yehu_server.following.recording import RATE
+from yehu_server.playing.pitch_and_level import a_weighting
+
+Array = Any
+
+HOP = 80  # samples from one frame to the next
+HOP_S = HOP / RATE
+# Samples of a frame for high pitches and for low ones; the longest lag is a part of them.
+SHORT, LONG, LONGEST_LAG = 512, 1024, 5 / 8
+SHORT_FROM_HZ = 160.0
+HALF = LONG // 2
+LOWEST_HZ, HIGHEST_HZ = 50.0, 2200.0
+RATIOS = (1.0, 0.5, 2.0, 1.0 / 3.0, 3.0)  # of the tracker's pitch
+CANDIDATES = len(RATIOS) + 1
+NEARLY_BEST = 0.9  # the first peak this near to the highest is the period, not a multiple of it
+FINE_S = 0.009  # of the lag at which a pitch is refined, about
+SEARCHED = 0.06  # as a part of the period
+SILENCE_DB = -120.0
+BATCH = 400  # frames at a time
+# Bands of the change: so many, from the lowest to the highest; a band is compared with what it was
+# some frames before, and changes of quiet ones count less.
+BANDS, BAND_HZ = 24, (100.0, 7800.0)
+BACK, FLOOR_DB = 4, -70.0
+
+_WINDOW = np.hanning(SHORT + 2)[1:-1]
+_SCALE = 2.0 / (SHORT * np.square(_WINDOW).sum())
+_A_WEIGHTS = _SCALE * a_weighting(np.fft.rfftfreq(SHORT, 1.0 / RATE)) ** 2
+
+
+def _band_weights() -> Array:
+    """Which of the spectrum belongs to each band: ndarray [shape=(SHORT // 2 + 1, BANDS)]."""
+    hz = np.fft.rfftfreq(SHORT, 1.0 / RATE)
+    edges = np.geomspace(*BAND_HZ, BANDS + 1)
+    weights = ((hz[:, None] >= edges[:-1]) & (hz[:, None] < edges[1:])).astype(np.float64)
+    return _SCALE * weights[:, weights.any(axis=0)]
+
+
+_BANDS = _band_weights()
+
+
+@dataclass(frozen=True)
+class Frames:
+    """What was heard of some frames.
+
+    Attributes
+    ----------
+    level_db : ndarray [shape=(frames,)]
+        A-weighted (dB of full scale).
+    bands_db : ndarray [shape=(frames, bands)]
+        Levels of the bands of the spectrum.
+    pitch_hz, likeness : ndarray [shape=(frames, CANDIDATES)]
+        The candidates, the tracker's first, and how like the sound is to itself a period before, up
+        to 1; NaN and 0 where there is none.
+    certainty : ndarray [shape=(frames,)]
+        The tracker's.
+    """
+
+    level_db: Array
+    bands_db: Array
+    pitch_hz: Array
+    likeness: Array
+    certainty: Array
+
+
+def measured(sound: Array, pitch_hz: Array, certainty: Array) -> Frames:
+    """Measure frames whose middles are HALF, HALF + HOP, ... samples into a sound.
+
+    Parameters
+    ----------
+    sound : ndarray [shape=(samples,)]
+    pitch_hz, certainty : ndarray [shape=(frames,)]
+        What the tracker has there.
+    """
+    count = len(pitch_hz)
+    windows = np.lib.stride_tricks.sliding_window_view(sound, LONG)[::HOP][:count]
+    long = windows.astype(np.float64)
+    short = long[:, (LONG - SHORT) // 2 : (LONG + SHORT) // 2]
+    power = np.square(np.abs(np.fft.rfft(short * _WINDOW, axis=1)))
+    alike = {False: likeness(long), True: likeness(short)}  # by whether they are short
+    own = most_alike(alike[False])
+    wanted = np.concatenate((pitch_hz[:, None] * np.array(RATIOS), own[:, None]), axis=1)
+    found, like = np.full(wanted.shape, np.nan), np.zeros(wanted.shape)
+    is_within = (wanted >= LOWEST_HZ) & (wanted <= HIGHEST_HZ)
+    for is_short, curves in alike.items():
+        row, column = np.nonzero(is_within & ((wanted >= SHORT_FROM_HZ) == is_short))
+        if len(row):
+            found[row, column], like[row, column] = refined(curves, row, wanted[row, column])
+    heard = _db(power @ _A_WEIGHTS), _db(power @ _BANDS), found, like, certainty
+    return Frames(*(each.astype(np.float32) for each in heard))  # half the memory of an hour
+
+
+def _db(power: Array) -> Array:
+    return 10.0 * np.log10(np.maximum(power, 10.0 ** (SILENCE_DB / 10.0)))
+
+
+def likeness(frames: Array) -> Array:
+    """The normalised square difference of frames, at lags of half samples.
+
+    Parameters
+    ----------
+    frames : ndarray [shape=(frames, samples)]
+
+    Returns
+    -------
+    ndarray [shape=(frames, lags)]
+        1 where a frame is the same again, 0 where unrelated.
+    """
+    x = frames - frames.mean(axis=1, keepdims=True)
+    size = x.shape[1]
+    lags = int(LONGEST_LAG * size)
+    spectrum = np.square(np.abs(np.fft.rfft(x, 2 * size, axis=1)))
+    product = 2.0 * np.fft.irfft(spectrum, 4 * size, axis=1)[:, : 2 * lags - 1]
+    squares = np.concatenate((np.zeros((len(x), 1)), np.cumsum(x * x, axis=1)), axis=1)
+    at = np.arange(lags)
+    energy = squares[:, size - at] + squares[:, -1:] - squares[:, at]
+    fine = np.empty(product.shape)
+    fine[:, ::2] = energy
+    fine[:, 1::2] = 0.5 * (energy[:, :-1] + energy[:, 1:])
+    return 2.0 * product / np.maximum(fine, 1e-12)
+
+
+def most_alike(alike: Array) -> Array:
+    """The pitch (Hz) at the first high peak of each curve of `likeness`; 0 where there is none."""
+    first, last = int(2 * RATE / HIGHEST_HZ), int(2 * RATE / LOWEST_HZ)
+    part = alike[:, first : last + 1]
+    inner = part[:, 1:-1]
+    is_peak = (inner > part[:, :-2]) & (inner >= part[:, 2:])
+    peaks = np.where(is_peak, inner, -np.inf)
+    highest = peaks.max(axis=1)
+    lag = first + 1 + np.argmax(peaks >= NEARLY_BEST * highest[:, None], axis=1)
+    return np.where(highest > 0.0, 2.0 * RATE / lag, 0.0)
+
+
+def refined(alike: Array, row: Array, wanted_hz: Array) -> tuple[Array, Array]:
+    """The pitches (Hz) of peaks near those wanted, and the likeness a period before.
+
+    Parameters
+    ----------
+    alike : ndarray [shape=(frames, lags)]
+        Of `likeness`.
+    row : ndarray [shape=(pitches,)]
+        Which of the frames each is of.
+    """
+    period = 2.0 * RATE / wanted_hz  # lags
+    near, like = _peak(alike, row, period, np.maximum(SEARCHED * period, 2.0))
+    most = np.minimum(2.0 * FINE_S * RATE, alike.shape[1] - 3.0)
+    periods = np.maximum(np.floor(most / near), 1.0)
+    lag, _ = _peak(alike, row, periods * near, np.clip(0.02 * periods * near, 2.0, 0.3 * near))
+    return 2.0 * RATE * periods / lag, like
+
+
+REACH = 40  # lags to either side, the most that is searched
+
+
+def _peak(alike: Array, row: Array, lag: Array, reach: Array) -> tuple[Array, Array]:
+    """The place of the highest value near a lag, by a parabola, and that value.
+
+    Where it lies at the end of what is searched there is no peak: the lag as it was.
+    """
+    offsets = np.arange(-REACH, REACH + 1)
+    places = np.rint(lag).astype(np.int64)[:, None] + offsets
+    places = np.clip(places, 1, alike.shape[1] - 2)
+    values = alike[row[:, None], places]
+    values = np.where(np.abs(offsets) <= np.ceil(reach)[:, None], values, -np.inf)
+    best = np.argmax(values, axis=1)
+    here = places[np.arange(len(row)), best]
+    left, middle, right = (alike[row, here + step] for step in (-1, 0, 1))
+    bend = left - 2.0 * middle + right
+    is_peak = (left <= middle) & (middle >= right) & (bend < 0.0)
+    safe = np.where(is_peak, bend, -1.0)
+    vertex = here + np.where(is_peak, 0.5 * (left - right) / safe, 0.0)
+    return np.where(is_peak, vertex, lag), middle

@@ -1,0 +1,195 @@
+"""What is heard of a recording: its pitch, its level and how much it changes, each 5 ms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from yehu_server.errors import ScoreError
+from yehu_server.following.decoder import NOT_VOICED, decoded, gate_of
+from yehu_server.following.frames import (
+    BACK,
+    BATCH,
+    FLOOR_DB,
+    HALF,
+    HOP,
+    HOP_S,
+    LONG,
+    SILENCE_DB,
+    Frames,
+    measured,
+)
+from yehu_server.following.recording import RATE, Recording, form_of, heard_blocks
+from yehu_server.following.tracker import (
+    PERIOD_S,
+    Estimates,
+    SwiftTracker,
+    Tracker,
+    at_times,
+    need_follow,
+)
+
+Array = Any
+Progress = Callable[[float, float], None]
+
+# Of the loud frames, so many must have a pitch, and be so like themselves a period before.
+LEAST_VOICED, LEAST_LIKENESS, DOUBTFUL = 0.08, 0.55, 0.8
+LOUD_DB = 25.0  # below the loudest
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What was heard; all arrays have the shape (frames,).
+
+    Attributes
+    ----------
+    name : str
+        Of the recording.
+    pitch_hz : ndarray
+        NaN where there is no pitch.
+    level_db : ndarray
+        A-weighted, in dB of full scale.
+    flux_db : ndarray
+        How much louder the bands of the spectrum are than 20 ms before, on the mean.
+    likeness : ndarray
+        How like the sound is to itself a period before, up to 1; 0 where there is no pitch.
+    warnings : tuple of str
+    """
+
+    name: str
+    pitch_hz: Array
+    level_db: Array
+    flux_db: Array
+    likeness: Array
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def times_s(self) -> Array:
+        """The middle of each frame."""
+        return np.arange(len(self.pitch_hz)) * HOP_S
+
+    @property
+    def duration_s(self) -> float:
+        """About how long the recording lasts."""
+        return len(self.pitch_hz) * HOP_S
+
+    @property
+    def is_voiced(self) -> Array:
+        """Whether there is a pitch."""
+        return np.isfinite(self.pitch_hz)
+
+
+def hear(
+    recording: Recording, tracker: Tracker | None = None, progress: Progress | None = None
+) -> Heard:
+    """Listen to a recording.
+
+    Parameters
+    ----------
+    tracker : Tracker, optional
+        By default SwiftF0.
+    progress : callable, optional
+        Called with the seconds heard and those there are.
+
+    Raises
+    ------
+    ScoreError
+        One line: where it cannot be read, or no single voice is heard.
+    ParameterError
+        Where the libraries of the extra are missing.
+    """
+    need_follow()
+    form = form_of(recording)
+    listener = Listener(tracker or SwiftTracker())
+    for block in heard_blocks(recording, form):
+        listener.push(block)
+        if progress is not None:
+            progress(listener.time_s, form.duration_s)
+    frames = listener.finish()
+    path = decoded(frames)
+    at = np.arange(len(path)), np.maximum(path, 0)
+    is_voiced = path != NOT_VOICED
+    pitch = np.where(is_voiced, frames.pitch_hz[at], np.nan)
+    likeness = np.where(is_voiced, frames.likeness[at], 0.0)
+    level = np.maximum(frames.level_db - form.gain_db, SILENCE_DB)
+    flux = _flux(frames.bands_db)
+    warnings = (*form.warnings, *_doubts(recording.name, frames.level_db, likeness))
+    return Heard(recording.name, pitch, level, flux, likeness, warnings)
+
+
+def _flux(bands_db: Array) -> Array:
+    """How much louder the bands are than BACK frames before, on the mean (dB)."""
+    levels = np.maximum(bands_db, FLOOR_DB)
+    rise = np.zeros(len(levels))
+    rise[BACK:] = np.maximum(levels[BACK:] - levels[:-BACK], 0.0).mean(axis=1)
+    # The middle of the rise is between the two.
+    return np.concatenate((rise[BACK // 2 :], np.zeros(min(BACK // 2, len(rise)))))
+
+
+def _doubts(name: str, level_db: Array, likeness: Array) -> list[str]:
+    """What speaks against a single voice; raises ScoreError where there is none."""
+    loud = level_db > max(level_db.max(initial=SILENCE_DB) - LOUD_DB, gate_of(level_db))
+    voiced = likeness[loud] > 0.0
+    share = float(voiced.mean()) if len(voiced) else 0.0
+    if share < LEAST_VOICED:
+        raise ScoreError(f"{name}: no voice is heard: {100.0 * share:.0f} % of it has a pitch")
+    typical = float(np.median(likeness[loud][voiced]))
+    if typical < LEAST_LIKENESS:
+        raise ScoreError(f"{name}: not a single voice: chords or noise cannot be followed")
+    if typical < DOUBTFUL:
+        return ["several voices or much noise: what is heard is unsure"]
+    return []
+
+
+class Listener:
+    """Listens to a sound that comes in blocks; what it keeps of each frame alone grows."""
+
+    def __init__(self, tracker: Tracker) -> None:
+        self._tracker = tracker
+        self._estimates = Estimates(np.zeros(0), np.zeros(0))
+        self._sound = np.zeros(HALF, np.float32)  # half a frame before the first
+        self._samples = self._measured = 0
+        self._frames: list[Frames] = []
+
+    @property
+    def time_s(self) -> float:
+        """How much it has heard."""
+        return self._samples / RATE
+
+    def push(self, samples: Array) -> None:
+        """Take the next samples [shape=(samples,)] at RATE."""
+        if len(samples) == 0:
+            return
+        self._samples += len(samples)
+        self._sound = np.concatenate((self._sound, samples))
+        self._take(self._tracker.push(samples))
+        known = int((len(self._estimates.pitch_hz) - 1) * PERIOD_S / HOP_S)
+        self._measure(min(known, (self._samples - HALF) // HOP))
+
+    def finish(self) -> Frames:
+        """Return all frames."""
+        self._take(self._tracker.finish())
+        self._sound = np.concatenate((self._sound, np.zeros(LONG, np.float32)))
+        self._measure(self._samples // HOP)
+        names = [each.name for each in fields(Frames)]
+        return Frames(*(np.concatenate([getattr(each, n) for each in self._frames]) for n in names))
+
+    def _take(self, new: Estimates) -> None:
+        old = self._estimates
+        self._estimates = Estimates(
+            np.concatenate((old.pitch_hz, new.pitch_hz)),
+            np.concatenate((old.certainty, new.certainty)),
+        )
+
+    def _measure(self, end: int) -> None:
+        """Measure the frames up to a number."""
+        while self._measured < end:
+            count = min(end - self._measured, BATCH)
+            times = (self._measured + np.arange(count)) * HOP_S
+            pitch, certainty = at_times(self._estimates, times)
+            self._frames.append(measured(self._sound, pitch, certainty))
+            self._sound = self._sound[count * HOP :]
+            self._measured += count

@@ -1,0 +1,200 @@
+"""Recordings to follow: read in blocks, made one channel at the rate of the analysis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.errors import ScoreError
+from yehu_server.scores.score import MAX_DURATION_H, check_duration
+from yehu_server.util.files import why
+
+Array = Any
+
+RATE = 16000  # Hz, of the analysis
+LOWEST_RATE, HIGHEST_RATE = 8000, 768_000
+MOST_CHANNELS = 64
+SHORTEST_S = 0.05
+BLOCK_S = 2.0
+QUIETEST = 1e-4  # peak of full scale, under which there is only silence
+WORKING_PEAK = 0.5  # to which sounds are scaled: as the pitch tracker was trained
+CLIPPED, CLIPPED_SHARE = 0.999, 1e-3  # of the peak; of all samples
+# A mean of channels with less than this share of the power of the loudest is not taken: one side is
+# dead, or both cancel each other.
+LEAST_SHARE = 0.3
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A sound that can be read more than once.
+
+    Attributes
+    ----------
+    name : str
+        For messages.
+    rate : int
+        Hz.
+    blocks : callable
+        Returns an iterator over its blocks: ndarrays [shape=(frames, channels), float32].
+    """
+
+    name: str
+    rate: int
+    blocks: Callable[[], Iterator[Array]]
+
+
+@dataclass(frozen=True)
+class Form:
+    """How one channel is made of a recording, and what is wrong with it.
+
+    Attributes
+    ----------
+    weights : ndarray [shape=(channels,)]
+        Of the channels, with the scale to WORKING_PEAK.
+    offset : float
+        What is subtracted then.
+    gain_db : float
+        By how much louder the result is.
+    """
+
+    weights: Array
+    offset: float
+    gain_db: float
+    duration_s: float
+    warnings: tuple[str, ...]
+
+
+def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Recording:
+    """A sound file as a recording.
+
+    Raises
+    ------
+    ScoreError
+        One line with the name: where it cannot be read, is no sound, or lasts too long.
+    """
+    import soundfile
+
+    try:
+        if not path.is_file() and path.exists():  # a pipe may never end
+            raise ScoreError(f"{path}: not a file")
+        with path.open("rb") as data, soundfile.SoundFile(data) as file:
+            rate, frames, channels = file.samplerate, file.frames, file.channels
+    except OSError as error:
+        raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
+    except ValueError as error:  # a NUL in the name
+        raise ScoreError("cannot be read (no such file name)") from error
+    except soundfile.LibsndfileError as error:
+        raise ScoreError(f"{path}: not a sound file ({error.error_string})") from error
+    if channels > MOST_CHANNELS:
+        raise ScoreError(f"{path}: has {channels} channels, more than {MOST_CHANNELS}")
+    _check_rate(str(path), rate)
+    check_duration(frames / rate, max_duration_h, f"{path}: the recording lasts")
+
+    def blocks() -> Iterator[Array]:
+        try:
+            with path.open("rb") as data, soundfile.SoundFile(data) as file:
+                yield from file.blocks(round(BLOCK_S * rate), dtype="float32", always_2d=True)
+        except OSError as error:
+            raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
+        except soundfile.LibsndfileError as error:
+            raise ScoreError(f"{path}: cannot be read ({error.error_string})") from error
+
+    return Recording(str(path), rate, blocks)
+
+
+def recording_of_samples(samples: Array, rate: int, name: str = "the recording") -> Recording:
+    """An array [shape=(frames,) or (frames, channels)] as a recording.
+
+    Raises
+    ------
+    ScoreError
+        Where it is none.
+    """
+    sound = np.asarray(samples)
+    sound = sound[:, None] if sound.ndim == 1 else sound
+    if sound.ndim != 2 or not 1 <= sound.shape[1] <= MOST_CHANNELS:
+        raise ScoreError(f"{name}: expected frames, or frames by channels, not {sound.shape}")
+    if not (np.issubdtype(sound.dtype, np.floating) or np.issubdtype(sound.dtype, np.integer)):
+        raise ScoreError(f"{name}: expected numbers, not {sound.dtype}")
+    scale = 1.0
+    if np.issubdtype(sound.dtype, np.integer):
+        scale = 1.0 / (np.iinfo(sound.dtype).max + 1.0)
+    _check_rate(name, rate)
+    size = round(BLOCK_S * rate)
+
+    def blocks() -> Iterator[Array]:
+        for start in range(0, len(sound), size):
+            yield (sound[start : start + size] * scale).astype(np.float32)
+
+    return Recording(name, rate, blocks)
+
+
+def _check_rate(name: str, rate: int) -> None:
+    if not LOWEST_RATE <= rate <= HIGHEST_RATE:
+        raise ScoreError(f"{name}: {rate} Hz is not within {LOWEST_RATE} to {HIGHEST_RATE} Hz")
+
+
+def form_of(recording: Recording) -> Form:
+    """Read a recording once, to tell how one channel is made of it.
+
+    Raises
+    ------
+    ScoreError
+        Where it cannot be followed: too short, silent, or with samples that are no numbers.
+    """
+    frames, clipped = 0, 0
+    total: Array = 0.0
+    powers: Array = 0.0
+    peaks: Array = 0.0
+    mean_power = mean_peak = 0.0
+    for block in recording.blocks():
+        if not np.isfinite(block).all():
+            raise ScoreError(f"{recording.name}: has samples that are not finite numbers")
+        mean = block.mean(axis=1)
+        frames += len(block)
+        total = total + block.sum(axis=0, dtype=np.float64)
+        powers = powers + np.square(block, dtype=np.float64).sum(axis=0)
+        peaks = np.maximum(peaks, np.abs(block).max(axis=0, initial=0.0))
+        mean_power += float(np.square(mean, dtype=np.float64).sum())
+        mean_peak = max(mean_peak, float(np.abs(mean).max(initial=0.0)))
+        clipped += int((np.abs(block) >= CLIPPED).any(axis=1).sum())
+    duration_s = frames / recording.rate
+    if duration_s < SHORTEST_S:
+        raise ScoreError(f"{recording.name}: too short to be followed ({1e3 * duration_s:.0f} ms)")
+    offsets = total / frames
+    powers = powers - frames * offsets**2
+    mean_power -= frames * float(offsets.mean()) ** 2
+    loudest = int(np.argmax(powers))
+    weights = np.full(len(powers), 1.0 / len(powers))
+    peak = mean_peak
+    warnings = []
+    if mean_power < LEAST_SHARE * powers[loudest]:
+        weights = np.eye(len(powers))[loudest]
+        peak = float(peaks[loudest])
+        warnings.append(f"channel {loudest + 1} of {len(powers)} alone is followed")
+    power = max(mean_power, float(weights @ powers)) / frames
+    if math.sqrt(max(power, 0.0)) < QUIETEST:
+        raise ScoreError(f"{recording.name}: is silent")
+    if clipped > CLIPPED_SHARE * frames:
+        share = 100.0 * clipped / frames
+        warnings.append(f"clipped: {share:.1f} % of it is at full scale, and its loudness unsure")
+    scale = WORKING_PEAK / peak
+    gain_db = 20.0 * math.log10(scale)
+    offset = float(weights @ offsets) * scale
+    return Form(weights * scale, offset, gain_db, duration_s, tuple(warnings))
+
+
+def heard_blocks(recording: Recording, form: Form) -> Iterator[Array]:
+    """Yield a recording as one channel at RATE: ndarrays [shape=(frames,), float32]."""
+    import soxr
+
+    resampler = soxr.ResampleStream(recording.rate, RATE, 1, dtype="float32")
+    weights = form.weights.astype(np.float32)
+    for block in recording.blocks():
+        yield resampler.resample_chunk(block @ weights - np.float32(form.offset))
+    yield resampler.resample_chunk(np.zeros(0, np.float32), last=True)

@@ -15,6 +15,7 @@ from yehu_server.errors import ScoreError
 
 MOST_BARS = 10_000  # as played
 MOST_TIMES = 100
+ENDS = {"fine", "dacapo", "dalsegno"}  # after which something else begins
 
 
 @dataclass
@@ -128,8 +129,8 @@ def _passages(bars: Sequence[BarLines]) -> list[_Passage]:
             first = level.base if level.sign is None else level.sign
             found.append(_Passage(first, at, min(bar.times, MOST_TIMES)))
             level.base, level.sign = at + 1, None
-        elif "fine" in bar.jumps and level.sign is None and len(levels) == 1:
-            level.base = at + 1  # what follows is a trio, with repeats of its own
+        elif bar.jumps & ENDS and level.sign is None and len(levels) == 1:
+            level.base = at + 1  # what follows, such as a trio, has repeats of its own
         if ends and at == open_[-1][0].last:
             inner, _ = levels.pop(), open_.pop()
             levels[-1].base, levels[-1].sign = at + 1, inner.sign
@@ -273,9 +274,7 @@ class _Player:
             if at == passage.last:
                 del self._passes[id(passage)]
         if at not in self._taken and not jumps.isdisjoint(("dacapo", "dalsegno")):
-            if all(
-                self._passes.get(id(each), each.times) >= each.times for each in self._passages
-            ):
+            if all(self._passes.get(id(each), each.times) >= each.times for each in self._passages):
                 self._taken.add(at)
                 self._from = at
                 return self._go(self._segno(at) if "dalsegno" in jumps else self._movement)

@@ -97,9 +97,11 @@ def _channel(event: ScoreEvent) -> int | None:
 
 MIDI = (".mid", ".midi", ".kar", ".rmi", ".smf")
 MUSICXML = (".musicxml", ".xml", ".mxl")
-JIANPU = (".jianpu", ".jpu", ".txt")
+JIANPU = (".jianpu", ".jpu", ".jp", ".txt")
 ERSIPU = (".ersipu", ".ersi")
-WRITTEN = (*MUSICXML, *JIANPU, *ERSIPU)
+MUSESCORE = (".mscz", ".mscx")
+HUMDRUM = (".krn",)
+WRITTEN = (*MUSICXML, *JIANPU, *ERSIPU, *MUSESCORE)
 MIDI_BEGINNINGS = (b"MThd", b"RIFF")
 XML = b"<"
 BYTE_ORDER_MARKS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
@@ -218,10 +220,19 @@ def read_written(path: Path) -> Written:
         from yehu_server.scores.jianpu.reader import read_jianpu
 
         return read_jianpu(path)
-    if kind in MUSICXML or _is_xml(_beginning(path)):
+    if kind in MUSICXML or (kind not in MUSESCORE and _is_xml(_beginning(path))):
         from yehu_server.scores.musicxml.reader import read_musicxml
 
         return read_musicxml(path)
+    if kind in MUSESCORE:
+        from yehu_server.scores.musescore import read_musescore
+
+        return read_musescore(path)
+    if kind in HUMDRUM or _beginning(path).startswith((b"**", b"!!!")):
+        raise ScoreError(
+            f"{one_line(str(path))}: is humdrum (**kern), which is not read; "
+            "convert it to MusicXML, as Verovio and music21 do"
+        )
     endings = ", ".join(WRITTEN)
     raise ScoreError(
         f"{one_line(str(path))}: is no written score: it is no XML, nor named {endings}"
@@ -234,7 +245,8 @@ def is_written(path: Path) -> bool:
     if data.startswith(MIDI_BEGINNINGS):
         return False
     kind = path.suffix.lower()
-    return kind in WRITTEN or (kind not in MIDI and _is_xml(data))
+    named = kind in (*WRITTEN, *HUMDRUM)
+    return named or (kind not in MIDI and (_is_xml(data) or data.startswith((b"**", b"!!!"))))
 
 
 def _beginning(path: Path) -> bytes:

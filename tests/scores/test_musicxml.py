@@ -374,7 +374,7 @@ def test_utf_8_that_calls_itself_utf_16_is_read(read):
 
 def test_endings_without_numbers_and_bars_that_nobody_plays_are_told(read):
     first = barline(location="left", ending="0 start").replace('number="0"', 'number=""')
-    stop = '<barline location="right"><ending number="" type="stop"/><repeat direction="backward"/></barline>'
+    stop = barline(repeat="backward", ending="0 stop").replace('number="0"', 'number=""')
     for begin in (first, ""):
         bars = (
             note("G4", 4),

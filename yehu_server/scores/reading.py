@@ -99,9 +99,11 @@ MIDI = (".mid", ".midi", ".kar", ".rmi", ".smf")
 MUSICXML = (".musicxml", ".xml", ".mxl")
 JIANPU = (".jianpu", ".jpu", ".jp", ".txt")
 ERSIPU = (".ersipu", ".ersi")
+ABC = (".abc",)
+ABC_BEGINNINGS = (b"X:", b"%abc")
 MUSESCORE = (".mscz", ".mscx")
 HUMDRUM = (".krn",)
-WRITTEN = (*MUSICXML, *JIANPU, *ERSIPU, *MUSESCORE)
+WRITTEN = (*MUSICXML, *JIANPU, *ERSIPU, *ABC, *MUSESCORE)
 MIDI_BEGINNINGS = (b"MThd", b"RIFF")
 XML = b"<"
 BYTE_ORDER_MARKS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
@@ -161,10 +163,8 @@ def read_any(
         score = read_score(path, song=song, strict=strict, max_duration_h=max_duration_h)
         with naming(path):
             return _midi_played(score, how)
-    written = read_written(path)
+    written = read_written(path, song)
     with naming(path):
-        if song not in (None, 1):
-            raise ScoreError("has 1 song")
         score = performed_part(written, how)
         check_duration(score.duration_s, max_duration_h)
         if strict and score.warnings:
@@ -207,8 +207,8 @@ def _midi_played(score: Score, how: How) -> Score:
     return midi_in_range(score, is_mpe=how.is_mpe) if how.in_range else score
 
 
-def read_written(path: Path) -> Written:
-    """Read a written score: MusicXML, jianpu or two-four notation.
+def read_written(path: Path, song: int | None = None) -> Written:
+    """Read a written score: MusicXML, jianpu, two-four notation, or a tune of a file of ABC.
 
     Raises
     ------
@@ -216,6 +216,9 @@ def read_written(path: Path) -> Written:
         One line naming the file, where it cannot be read or is none of these.
     """
     kind = path.suffix.lower()
+    is_abc = kind in ABC or _beginning(path).startswith(ABC_BEGINNINGS)
+    if song not in (None, 1) and not is_abc:
+        raise ScoreError(f"{one_line(str(path))}: has 1 song")
     if kind in (*JIANPU, *ERSIPU):
         from yehu_server.scores.jianpu.reader import read_jianpu
 
@@ -224,6 +227,10 @@ def read_written(path: Path) -> Written:
         from yehu_server.scores.musicxml.reader import read_musicxml
 
         return read_musicxml(path)
+    if is_abc and kind != ".txt":
+        from yehu_server.scores.abc.reader import read_abc
+
+        return read_abc(path, song)
     if kind in MUSESCORE:
         from yehu_server.scores.musescore import read_musescore
 
@@ -246,7 +253,9 @@ def is_written(path: Path) -> bool:
         return False
     kind = path.suffix.lower()
     named = kind in (*WRITTEN, *HUMDRUM)
-    return named or (kind not in MIDI and (_is_xml(data) or data.startswith((b"**", b"!!!"))))
+    return named or (
+        kind not in MIDI and (_is_xml(data) or data.startswith((*ABC_BEGINNINGS, b"**", b"!!!")))
+    )
 
 
 def _beginning(path: Path) -> bytes:

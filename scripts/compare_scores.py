@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import signal
-import sys
 import warnings
 from collections import Counter
 from collections.abc import Iterator
@@ -168,4 +167,4 @@ def _too_slow(*_: object) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

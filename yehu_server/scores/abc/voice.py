@@ -39,7 +39,7 @@ TOKEN = re.compile(
 |(?P<broken>>+|<+)
 |(?P<short>[.~H-Yh-w])
 |(?P<over>&)
-|(?P<space>[\s`y*$!\\]+\d*)
+|(?P<space>[\s`*$\\]+|y\d*|!)
 |(?P<other>.)""",
     re.VERBOSE,
 )

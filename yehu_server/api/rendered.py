@@ -139,8 +139,8 @@ def render(
     Parameters
     ----------
     score : path, or iterable of notes
-        A file of MIDI, MusicXML or jianpu; or notes: `Note`, rows of pitch, start (s), duration (s)
-        and, if wanted, velocity, or an array of such rows.
+        A file of MIDI, MusicXML, ABC or jianpu; or notes: `Note`, rows of pitch, start (s),
+        duration (s) and, if wanted, velocity, or an array of such rows.
     sample_rate, instrument, preset, settings, a4, tuning, practice, seed
         As of `Instrument`. Rooms are presets too: ``preset="hall"``.
     phrasing : float

@@ -260,10 +260,10 @@ def test_reset_all_controllers_does_not_bend_the_note_of_another_channel(midi, l
 
 
 def test_rpn_1_and_2_tune_the_notes_of_a_channel(midi, listener):
-    midi.rpn(0, 2, (6, 64 + 2))
+    midi.rpn(0, 2, (6, 64 + 3))
     midi.rpn(0, 1, (6, 96), (38, 0))  # half a semitone
     midi.on(70)
-    assert listener.pitch == pytest.approx(72.5, abs=1e-3)
+    assert listener.where() == ("C", 1.5)
     midi.off(70)
-    midi.on(70, channel=2)
-    assert listener.pitch == pytest.approx(70.0, abs=1e-3)
+    midi.on(75, channel=2)
+    assert listener.where() == ("C", 3.0)

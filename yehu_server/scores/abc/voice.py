@@ -222,6 +222,8 @@ class VoiceReader:
 
     def _break(self, signs: str) -> None:
         """Broken rhythm: one of two notes is longer by what the other loses."""
+        if self._at <= self._last_begin:  # nothing before it in this bar
+            return
         short = Fraction(1, 2 ** min(len(signs), 4))
         first, self._next_factor = (2 - short, short) if signs[0] == ">" else (short, 2 - short)
         length = (self._at - self._last_begin) * first
@@ -305,7 +307,7 @@ class VoiceReader:
             bar.number = str(len(self.bars) + 1)
             self.bars.append(bar)
             self._bar = RawBar("", BarLines(endings=self._ending))
-            self._at = Fraction(0)
+            self._at = self._last_begin = Fraction(0)
             self._in_bar = {}
         if times and self.bars:
             self.bars[-1].lines.times = times

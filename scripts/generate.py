@@ -100,7 +100,8 @@ def articulations() -> str:
 
 def name_of(key: int) -> str:
     """The name of a key (MIDI note); 60 is C4."""
-    return f"{['C', 'C♯', 'D', 'D♯', 'E', 'F', 'F♯', 'G', 'G♯', 'A', 'A♯', 'B'][key % 12]}{key // 12 - 1}"
+    names = ["C", "C♯", "D", "D♯", "E", "F", "F♯", "G", "G♯", "A", "A♯", "B"]
+    return f"{names[key % 12]}{key // 12 - 1}"
 
 
 def measured(name: str) -> dict[str, Any]:

@@ -391,17 +391,19 @@ def test_an_instrument_file_changes_the_instrument(play, midi, tmp_path, name, t
 
 
 @pytest.mark.parametrize(
-    ("policy", "note", "fitted"),
+    ("policy", "note", "fitted", "alone"),
     [
-        ("transpose", 127, 79),
-        ("clamp", 20, 65),
-        ("clamp", 70, 70),
+        ("transpose", 127, 79, 0),  # as a whole part
+        ("clamp", 20, 65, 1),
+        ("clamp", 70, 70, 0),
     ],
 )
-def test_a_note_out_of_range_sounds_where_the_policy_puts_it(play, midi, policy, note, fitted):
+def test_a_note_out_of_range_sounds_where_the_policy_puts_it(
+    play, midi, policy, note, fitted, alone
+):
     words = ("--range", policy, "--tail", 0.2)
     summary, sound = play(midi(*notes((0, 0.3, note, 64))), *words)
-    assert summary["notes_out_of_range"] == (note != fitted)
+    assert summary["notes_out_of_range"] == alone
     _, expected = play(midi(*notes((0, 0.3, fitted, 64))), "--tail", 0.2)
     np.testing.assert_array_equal(sound, expected)
 

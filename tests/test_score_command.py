@@ -33,7 +33,7 @@ def test_a_score_is_shown_note_by_note(command, tune):
     lines = out.splitlines()
     assert lines[0] == "A tune"
     assert "bar 1: 90 quarters a minute" in lines
-    assert "part 1: P1, channel 1, 5 notes" in lines
+    assert "part 1: P1, 5 notes, F#4-50 to C5, played where no other is asked for" in lines
     rows = [
         line.split() for line in lines if line[:5].strip().isdigit() or line.startswith("       ")
     ]
@@ -58,7 +58,7 @@ def test_words_over_a_part_of_rests_alone_are_shown_at_no_note(command, tmp_path
     tune.write_text('4/4 1 2 3 4\nNextPart\n4/4 0 "rit." 0 0 0 "a tempo"\n', encoding="utf-8")
     code, out, err = command("score", "show", tune)
     assert (code, err) == (0, "")
-    assert "part 2, not played, 0 notes" in out
+    assert "part 2: part 2, 0 notes, not played" in out
 
 
 def test_what_is_played_is_written_as_midi(command, refused, tune, tmp_path):

@@ -19,9 +19,9 @@ log=$venv/setup.log
 # Python 3.13 and newer: for ALSA and, as its wheels are, for JACK.
 debian_packages=(libportaudio2)
 debian_build_packages=(g++ libasound2-dev libjack-jackd2-dev pkg-config)
-# What only tests need: a JACK server, real OSC senders, a linker for WebAssembly, and what runs it
-# and the page.
-debian_test_packages=(jackd2 liblo-tools puredata-core lld npm chromium)
+# What only tests need: a JACK server, real OSC senders, a linker for WebAssembly, what runs it and
+# the page, and another reader of ABC.
+debian_test_packages=(jackd2 liblo-tools puredata-core lld npm chromium abcmidi)
 
 # Python 3.12 and 3.11 first, since nothing has to be compiled for them. numba sets the newest.
 python_candidates=(python3.12 python3.11 python3.13 python3.14 python3 python)

@@ -86,7 +86,7 @@ def test_it_tells_what_it_was(tune):
 
 def test_what_could_not_be_played_as_written_is_told(tmp_path):
     low = midi_file(tmp_path / "low.mid", notes((0.0, 0.2, 40, 90)))
-    assert yehu.render(low).warnings == ("1 note outside F4 to F6, moved by octaves",)
+    assert yehu.render(low).warnings == ("moved to fit F4 to F6: three octaves up",)
     damaged = tmp_path / "damaged.mid"
     damaged.write_bytes(low.read_bytes()[:-6])
     assert len(yehu.render(damaged).warnings) > 1

@@ -257,3 +257,13 @@ def test_reset_all_controllers_does_not_bend_the_note_of_another_channel(midi, l
     midi.cc(121, 0, channel=2)
     assert listener.where() == ("C", 7)
     assert listener.press == HARDEST
+
+
+def test_rpn_1_and_2_tune_the_notes_of_a_channel(midi, listener):
+    midi.rpn(0, 2, (6, 64 + 3))
+    midi.rpn(0, 1, (6, 96), (38, 0))  # half a semitone
+    midi.on(70)
+    assert listener.where() == ("C", 1.5)
+    midi.off(70)
+    midi.on(75, channel=2)
+    assert listener.where() == ("C", 3.0)

@@ -331,6 +331,64 @@ def test_an_interrupted_ending_does_not_play_for_ever(read):
     assert len(read(score(bar)).parts[0].notes) == 4
 
 
+def test_a_cue_note_that_heads_a_chord_shifts_nothing(read):
+    cue = note("G4", 1).replace("<note>", "<note><cue/>")
+    written = read(
+        score(cue + note("+B4", 1).replace("<chord/>", "<cue/><chord/>") + note("C5", 3))
+    )
+    assert [(float(each.beat), each.pitch) for each in written.parts[0].notes] == [(1.0, 72.0)]
+
+
+def test_a_chord_note_without_a_voice_belongs_to_its_chord(read):
+    back = "<backup><duration>48</duration></backup>"
+    chord = note("+A4", 4).replace("<voice>1</voice>", "")
+    written = read(score(note("C5", 4) + back + note("F4", 4, voice=2) + chord))
+    assert [[each.pitch for each in part.notes] for part in written.parts] == [[72.0], [69.0]]
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_figures_of_tempo_go_over_words_in_any_order(read, number):
+    signs = (words("Allegretto"), '<sound tempo="189"/>')[:: 1 if number == 1 else -1]
+    tempi = read(score("".join(signs) + FOUR)).tempi
+    assert [(each.beat, each.quarters_per_minute) for each in tempi] == [(0, 189.0)]
+
+
+def test_divisions_may_be_told_after_the_first_notes(read):
+    late = "<attributes><divisions>12</divisions></attributes>"
+    first = "<attributes><key><fifths>1</fifths></key></attributes>"
+    written = read(score(first + note("G4", 1) + note("A4", 1) + late + note("B4", 2)))
+    assert [float(each.beat) for each in written.parts[0].notes] == [0.0, 1.0, 2.0]
+
+
+def test_a_grace_note_on_another_staff_belongs_to_its_note(read):
+    small = grace("G4").replace("</note>", "<staff>2</staff></note>")
+    [part] = read(score(small + note("A4", 4))).parts
+    assert [each.pitch for each in part.notes[0].before] == [67.0]
+
+
+def test_utf_8_that_calls_itself_utf_16_is_read(read):
+    text = score(FOUR, title="Dvo\u0159\u00e1k", before="")
+    data = f'<?xml version="1.0" encoding="UTF-16"?>{text}'.encode()
+    assert read(data).title == "Dvo\u0159\u00e1k"
+
+
+def test_endings_without_numbers_and_bars_that_nobody_plays_are_told(read):
+    first = barline(location="left", ending="0 start").replace('number="0"', 'number=""')
+    stop = barline(repeat="backward", ending="0 stop").replace('number="0"', 'number=""')
+    for begin in (first, ""):
+        bars = (
+            note("G4", 4),
+            begin + note("A4", 4) + stop,
+            barline(location="left", ending="2 start") + note("B4", 4) + barline(ending="2 stop"),
+        )
+        pitches = [each.pitch for each in read(score(*bars)).parts[0].notes]
+        assert pitches == [67.0, 69.0, 67.0, 71.0]
+    jump = '<direction><sound {}="x"/></direction>'
+    signs = ("segno", "tocoda", "dalsegno", "", "coda")
+    bars = [(jump.format(sign) if sign else "") + FOUR for sign in signs]
+    assert "1 bar is not played, which repeats or jumps pass over: 4" in read(score(*bars)).warnings
+
+
 # -- archives -----------------------------------------------------------------------------------
 
 

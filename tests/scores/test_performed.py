@@ -438,7 +438,7 @@ def test_each_part_has_a_channel_and_none_is_percussion():
 
 def test_marks_that_were_not_understood_are_told_with_their_count():
     score = performed(Written((Part("", tuple(FOUR)),), unknown={"squiggle": 2, "blob": 1}))
-    assert score.warnings == ("not understood: squiggle (2 times)", "not understood: blob")
+    assert score.warnings == ("not understood: squiggle (2 times), blob",)
 
 
 def test_a_score_without_notes_is_refused():

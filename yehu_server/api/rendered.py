@@ -17,12 +17,13 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT
+from yehu_server.playing.tuning import RangePolicy
 from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
 from yehu_server.rendering.to_files import NORMALIZED_PEAK
 from yehu_server.scores.phrasing import is_fingered, phrased
-from yehu_server.scores.reading import read_any
+from yehu_server.scores.reading import How, read_any
 from yehu_server.scores.score import Score
 
 Array = Any
@@ -127,6 +128,7 @@ def render(
     out_of_range: str = "transpose",
     channels: Iterable[int] | None = None,
     song: int | None = None,
+    part: str | None = None,
     seed: int = 0,
     progress: Callable[[float, float], None] | None = None,
 ) -> Rendering:
@@ -137,8 +139,9 @@ def render(
     Parameters
     ----------
     score : path, or iterable of notes
-        A file of MIDI, MusicXML or jianpu; or notes: `Note`, rows of pitch, start (s), duration (s)
-        and, if wanted, velocity, or an array of such rows; or the ``score`` of `follow`.
+        A file of MIDI, MusicXML, ABC or jianpu; or notes: `Note`, rows of pitch, start (s),
+        duration (s) and, if wanted, velocity, or an array of such rows; or the ``score`` of
+        `follow`.
     sample_rate, instrument, preset, settings, a4, tuning, practice, seed
         As of `Instrument`. Rooms are presets too: ``preset="hall"``.
     phrasing : float
@@ -161,6 +164,9 @@ def render(
         The MIDI channels to play, 1 to 16; by default all but 10.
     song : int, optional
         The song of a file that has several; by default one after another.
+    part : str, optional
+        The part to play, by its name, the beginning of that, or its number; by default of a written
+        score the first, of a MIDI file all.
     progress : callable, optional
         Called with the seconds done and those of the score.
 
@@ -209,10 +215,17 @@ def render(
         is_mono=bool(mono),
     )
     number_of_song = None if song is None else whole(song, "song", 1, 1 << 16)
+    playing = make.playing
+    how = How(
+        () if part is None else (str(part),),
+        all_parts=channels is not None,
+        in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
+        is_mpe=playing.mapping.mpe,
+    )
     if isinstance(score, Score):
         read = score
     elif is_file:
-        read = read_any(path_of(score, "score"), song=number_of_song)
+        read = read_any(path_of(score, "score"), how, song=number_of_song)
     else:
         read = score_of(score)
     score = phrased(read, share)
@@ -221,7 +234,7 @@ def render(
     calibration = calibration_for(float(options.rate), options.quantities, a4=options.playing.a4)
     options = replace(options, calibration=calibration)
     sound, asked, summary = _played(score, replace(options, normalize=bool(normalize)), progress)
-    warnings = (*score.warnings, *_remarks(summary))
+    warnings = (*score.remarks, *score.warnings, *_remarks(summary))
     return Rendering(sound, options.rate, score.name, warnings, summary, asked, options.playing.a4)
 
 

@@ -35,6 +35,7 @@ from yehu_server.cli import (
 )
 from yehu_server.cli.arguments import Parser
 from yehu_server.cli.config import parse
+from yehu_server.cli.render_pipe import BROKEN_PIPE
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import YehuError
 from yehu_server.util import __version__
@@ -57,6 +58,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         finally:
             with contextlib.suppress(BrokenPipeError):
                 sys.stdout.flush()  # here, where we can tell that it is full
+    except BrokenPipeError:  # such as `| head`, which has read enough
+        with Path(os.devnull).open("w") as nothing:
+            os.dup2(nothing.fileno(), sys.stdout.fileno())
+        return BROKEN_PIPE
     except YehuError as error:
         warn(str(error))
         return 2

@@ -102,16 +102,17 @@ def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[Par
     from yehu_server.core.engine.rig import MOST_PARTS
     from yehu_server.core.midi.channels import PERCUSSION
     from yehu_server.scores.ensemble_file import PartEntry
-    from yehu_server.scores.reading import channels_with_notes, tracks_with_notes
+    from yehu_server.scores.reading import channels_with_notes, part_name, tracks_with_notes
 
     if arguments.by == "track":
         found = [
-            PartEntry("", name=f"track {track}", track=track) for track in tracks_with_notes(scores)
+            PartEntry("", name=part_name(scores, track=track), track=track)
+            for track in tracks_with_notes(scores)
         ]
     else:
         chosen = arguments.channel or [each for each in range(16) if each != PERCUSSION]
         found = [
-            PartEntry("", name=f"channel {channel + 1}", channel=channel)
+            PartEntry("", name=part_name(scores, channel=channel), channel=channel)
             for channel in channels_with_notes(scores)
             if channel in chosen
         ]

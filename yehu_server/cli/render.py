@@ -81,6 +81,8 @@ def add_to(commands: Any) -> None:
         --format: file format (default: by the ending of OUT); raw, samples alone, for -o -
         --subtype: sample format (default: 24 bits; of raw, float)
         --channel N: play only this MIDI channel, 1 to 16; may be repeated (default: all but 10)
+        --part NAME ...: play this part, by its name, the beginning of that, or its number; may be
+            repeated (default: of a written score the first, of a MIDI file all)
         --tail SECONDS: time after the end of the score, up to 600 (default: until 80 dB below full
             scale, at most 5 s)
         --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)

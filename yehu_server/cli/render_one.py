@@ -91,13 +91,14 @@ def rendered(
         is_mono=arguments.mono,
         jobs=arguments.jobs,
     )
-    scores = _scores(arguments)
+    scores = _scores(arguments, playing)
     players = _players(arguments, scores, options, phrasing)
     read = [*arguments.midi, *playing.files, *instrument, *players.files]
     stems = _stems(arguments, options, players)
     check_distinct({**outputs, **{f"stem {stem.name}": stem for stem in stems}}, read)
-    for warning in players.parts[0].score.warnings:
-        warn(warning)
+    played = players.parts[0].score
+    for line in (*played.remarks * (not arguments.quiet), *played.warnings):
+        warn(line)
     warn_of_compiling(arguments)
     warm_up()
     parts = _calibrated(arguments, players.parts, float(options.rate))
@@ -221,7 +222,7 @@ def _counts(summary: Summary | PartSummary) -> dict[str, Any]:
     return fields
 
 
-def _scores(arguments: argparse.Namespace) -> list[Score]:
+def _scores(arguments: argparse.Namespace, playing: PlayingOptions) -> list[Score]:
     """Read all files.
 
     Raises
@@ -231,14 +232,23 @@ def _scores(arguments: argparse.Namespace) -> list[Score]:
     ScoreError
         Where one cannot be read, or they last too long together.
     """
-    from yehu_server.scores.reading import read_any
+    from yehu_server.playing.tuning import RangePolicy
+    from yehu_server.scores.reading import How, read_any
     from yehu_server.scores.score import check_duration
 
     longest = arguments.max_duration
+    how = How(
+        arguments.part,
+        all_parts=arguments.ensemble is not None or arguments.channel is not None,
+        in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
+        is_mpe=playing.mapping.mpe,
+    )
     scores = []
     for path in arguments.midi:
         scores.append(
-            read_any(path, song=arguments.song, strict=arguments.strict, max_duration_h=longest)
+            read_any(
+                path, how, song=arguments.song, strict=arguments.strict, max_duration_h=longest
+            )
         )
         check_duration(sum(each.duration_s for each in scores), longest, "all scores last")
     return scores

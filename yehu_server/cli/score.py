@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
-from yehu_server.cli.converters import target
+from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import print_result, warn
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def add_to(commands: Any) -> None:
     parser = add_command(
         commands,
         "score",
-        help="show what is understood of a written score: MusicXML or jianpu",
+        help="show what is understood of a written score: MusicXML, ABC or jianpu",
         description="Show what is understood of a written score, and what will be played.",
         epilog=EXAMPLES,
     )
@@ -38,12 +38,14 @@ def add_to(commands: Any) -> None:
     add_options(
         show,
         """
-        score FILE: a file of MusicXML or jianpu
+        score FILE: a file of MusicXML, ABC or jianpu
+        --song N: the N-th tune of a file of ABC (default: the first)
         --json: print one JSON object
         --export-midi OUT.mid: write what is played as a MIDI file, and say what that cannot hold
         --overwrite: replace OUT.mid if it exists
         """,
         score=Path,
+        song=positive,
         export_midi=target,
     )
 
@@ -52,7 +54,7 @@ def _show(arguments: argparse.Namespace) -> int:
     from yehu_server.scores.reading import read_written
     from yehu_server.scores.written.text import fields_of, lines_of
 
-    written = read_written(arguments.score)
+    written = read_written(arguments.score, arguments.song)
     if arguments.export_midi is not None:
         _export(arguments, written)
     if arguments.json:

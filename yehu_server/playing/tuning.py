@@ -81,6 +81,13 @@ class Tuning:
     fixed: bool = False
     files: tuple[Path, ...] = field(default=(), compare=False)
 
+    @property
+    def has_octaves(self) -> bool:
+        """Whether twelve keys are an octave, wherever both have a pitch."""
+        keys = self.keys or ()
+        pairs = zip(keys, keys[12:], strict=False)
+        return all(abs(b - a - 12.0) < 0.01 for a, b in pairs if a is not None and b is not None)
+
     def pitch(self, note: float, a4: float) -> float | None:
         """Return the pitch of a key as a fractional MIDI note relative to `a4` (Hz).
 

@@ -50,7 +50,8 @@ class Tree:
 
 def is_score(name: str) -> bool:
     """Whether a file is a score, by the ending of its name."""
-    return os.path.splitext(name)[1].lower() in ENDINGS  # noqa: PTH122 - a name is no path
+    lower = name.lower()
+    return os.path.splitext(lower)[1] in ENDINGS or lower.endswith(".jianpu.txt")  # noqa: PTH122 - a name is no path
 
 
 def tree_of(folder: Path, output: Path, ending: str) -> Tree:

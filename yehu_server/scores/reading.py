@@ -4,14 +4,24 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from yehu_server.core.midi.channels import PERCUSSION
 from yehu_server.errors import ScoreError, one_line
+from yehu_server.scores.chosen_parts import (
+    ONE_BY_ONE,
+    listed,
+    midi_in_range,
+    numbers_of,
+    parts_chosen,
+    told_others,
+    usual_parts,
+)
 from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, naming
 from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
+from yehu_server.scores.written.in_range import moved
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.performed import performed
 from yehu_server.util.files import read_bytes
@@ -26,6 +36,19 @@ def tracks_with_notes(scores: Iterable[Score]) -> list[int]:
     """The tracks that have notes, counted from 1, in order; percussion does not count."""
     notes = (event for event in _notes(scores) if event.message.channel != PERCUSSION)
     return sorted({event.track for event in notes})
+
+
+def part_name(scores: Sequence[Score], channel: int | None = None, track: int | None = None) -> str:
+    """The name of what a channel or a track plays; its number where it has none of its own."""
+    found = {(part.channel, part.track): part.name for score in scores[:1] for part in score.parts}
+    usual = f"channel {channel + 1}" if channel is not None else f"track {track}"
+    for (its_channel, its_track), name in found.items():
+        if its_channel == channel is not None or its_track == track is not None:
+            return name
+    if channel is None:
+        return usual
+    tracks = {event.track for event in _notes(scores[:1]) if event.message.channel == channel}
+    return found.get((None, min(tracks)), usual) if len(tracks) == 1 else usual
 
 
 def percussion_notes(scores: Iterable[Score]) -> int:
@@ -74,16 +97,46 @@ def _channel(event: ScoreEvent) -> int | None:
 
 MIDI = (".mid", ".midi", ".kar", ".rmi", ".smf")
 MUSICXML = (".musicxml", ".xml", ".mxl")
-JIANPU = (".jianpu", ".jpu", ".txt")
+JIANPU = (".jianpu", ".jpu", ".jp", ".txt")
 ERSIPU = (".ersipu", ".ersi")
-WRITTEN = (*MUSICXML, *JIANPU, *ERSIPU)
+ABC = (".abc",)
+ABC_BEGINNINGS = (b"X:", b"%abc")
+MUSESCORE = (".mscz", ".mscx")
+HUMDRUM = (".krn",)
+WRITTEN = (*MUSICXML, *JIANPU, *ERSIPU, *ABC, *MUSESCORE)
 MIDI_BEGINNINGS = (b"MThd", b"RIFF")
 XML = b"<"
 BYTE_ORDER_MARKS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
 
 
+@dataclass(frozen=True)
+class How:
+    """How a score is to be played.
+
+    Attributes
+    ----------
+    parts : sequence of str
+        Names of the parts to play.
+    all_parts : bool
+        Whether all are played where none is named: else a written score plays its first one.
+    in_range : bool
+        Whether parts are moved by octaves as a whole, to fit the instrument.
+    is_mpe : bool
+        Whether the channels of a MIDI file are notes, and not parts.
+    """
+
+    parts: Sequence[str] = ()
+    all_parts: bool = False
+    in_range: bool = True
+    is_mpe: bool = False
+
+
+USUAL = How()
+
+
 def read_any(
     path: str | os.PathLike[str],
+    how: How = USUAL,
     *,
     song: int | None = None,
     strict: bool = False,
@@ -102,24 +155,60 @@ def read_any(
     DamagedError
         With `strict`: one line naming the file and what is first wrong.
     ScoreError
-        One line naming the file, where it cannot be read, has nothing to play or lasts too long.
+        One line naming the file, where it cannot be read, has nothing to play, no part of a name,
+        or lasts too long.
     """
     path = Path(path)
     if not is_written(path):
-        return read_score(path, song=song, strict=strict, max_duration_h=max_duration_h)
-    written = read_written(path)
+        score = read_score(path, song=song, strict=strict, max_duration_h=max_duration_h)
+        with naming(path):
+            return _midi_played(score, how)
+    written = read_written(path, song)
     with naming(path):
-        if song not in (None, 1):
-            raise ScoreError("has 1 song")
-        score = performed(written)
+        score = performed_part(written, how)
         check_duration(score.duration_s, max_duration_h)
         if strict and score.warnings:
             raise DamagedError(f"{score.warnings[0]}: refused by --strict")
     return replace(score, name=path.stem)
 
 
-def read_written(path: Path) -> Written:
-    """Read a written score: MusicXML, jianpu or two-four notation.
+def performed_part(written: Written, how: How = USUAL) -> Score:
+    """Return the parts of a written score that are asked for, as they are played.
+
+    Raises
+    ------
+    ScoreError
+        Where there is no such part, or no note.
+    """
+    if how.parts:
+        plays = numbers_of(written.names, how.parts)
+    elif how.all_parts:
+        plays = [*range(len(written.parts))]
+    else:
+        plays = usual_parts(written)
+    remarks = [*written.remarks, told_others(written, plays)]
+    if how.in_range:
+        written, line = moved(written, plays)
+        remarks.append(line)
+    remarks = [*filter(None, remarks)]
+    return performed(replace(written, remarks=tuple(remarks)), plays)
+
+
+def _midi_played(score: Score, how: How) -> Score:
+    if how.parts:
+        score = parts_chosen(score, how.parts)
+    elif len(score.parts) > 1 and not (how.all_parts or how.is_mpe):
+        names = listed([part.name for part in score.parts])
+        line = f"{len(score.parts)} parts on one yehu: {names} ({ONE_BY_ONE})"
+        score = replace(score, remarks=(*score.remarks, line))
+    if not has_notes([score]):
+        line = "has controllers and no note: nothing sounds"
+        return replace(score, remarks=(*score.remarks, line))
+    return midi_in_range(score, is_mpe=how.is_mpe) if how.in_range else score
+
+
+def read_written(path: Path, song: int | None = None) -> Written:
+    """Read a written score: MusicXML, jianpu, two-four notation, or a tune of a file of ABC.
 
     Raises
     ------
@@ -127,14 +216,30 @@ def read_written(path: Path) -> Written:
         One line naming the file, where it cannot be read or is none of these.
     """
     kind = path.suffix.lower()
+    is_abc = kind in ABC or _beginning(path).startswith(ABC_BEGINNINGS)
+    if song not in (None, 1) and not is_abc:
+        raise ScoreError(f"{one_line(str(path))}: has 1 song")
     if kind in (*JIANPU, *ERSIPU):
         from yehu_server.scores.jianpu.reader import read_jianpu
 
         return read_jianpu(path)
-    if kind in MUSICXML or _is_xml(_beginning(path)):
+    if kind in MUSICXML or (kind not in MUSESCORE and _is_xml(_beginning(path))):
         from yehu_server.scores.musicxml.reader import read_musicxml
 
         return read_musicxml(path)
+    if is_abc and kind != ".txt":
+        from yehu_server.scores.abc.reader import read_abc
+
+        return read_abc(path, song)
+    if kind in MUSESCORE:
+        from yehu_server.scores.musescore import read_musescore
+
+        return read_musescore(path)
+    if kind in HUMDRUM or _beginning(path).startswith((b"**", b"!!!")):
+        raise ScoreError(
+            f"{one_line(str(path))}: is humdrum (**kern), which is not read; "
+            "convert it to MusicXML, as Verovio and music21 do"
+        )
     endings = ", ".join(WRITTEN)
     raise ScoreError(
         f"{one_line(str(path))}: is no written score: it is no XML, nor named {endings}"
@@ -147,7 +252,10 @@ def is_written(path: Path) -> bool:
     if data.startswith(MIDI_BEGINNINGS):
         return False
     kind = path.suffix.lower()
-    return kind in WRITTEN or (kind not in MIDI and _is_xml(data))
+    named = kind in (*WRITTEN, *HUMDRUM)
+    return named or (
+        kind not in MIDI and (_is_xml(data) or data.startswith((*ABC_BEGINNINGS, b"**", b"!!!")))
+    )
 
 
 def _beginning(path: Path) -> bytes:

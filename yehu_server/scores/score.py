@@ -105,6 +105,18 @@ COMMON_TIME = Metre(0.0, 4.0)
 
 
 @dataclass(frozen=True)
+class ScorePart:
+    """A part of a score, by its name: what a channel plays, or a track, or both; None: any.
+
+    Channels are counted from 0, tracks from 1.
+    """
+
+    name: str
+    channel: int | None = None
+    track: int | None = None
+
+
+@dataclass(frozen=True)
 class Score:
     """A performance: events in order, and warnings about damage in the file.
 
@@ -121,6 +133,10 @@ class Score:
         One line for each kind of damage, with its count and the byte where it is first.
     metres : tuple of Metre
         The time signatures, in order.
+    parts : tuple of ScorePart
+        Those with notes, as far as they are known.
+    remarks : tuple of str
+        One line each, of what a player should know and no file is to blame for.
 
     Raises
     ------
@@ -133,6 +149,8 @@ class Score:
     name: str = ""
     warnings: tuple[str, ...] = ()
     metres: tuple[Metre, ...] = (COMMON_TIME,)
+    parts: tuple[ScorePart, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     def bar_at(self, beat: float) -> tuple[float, float]:
         """Return the beat from which the metre of a beat holds, and the quarters in its bars."""
@@ -161,7 +179,9 @@ def concatenate(scores: Sequence[Score]) -> Score:
             events.append(ScoreEvent(start, mido.Message("reset")))
     names = " + ".join(score.name for score in scores)
     warnings = (f"{score.name}: {warning}" for score in scores for warning in score.warnings)
-    return Score(tuple(events), start, names, tuple(warnings))
+    remarks = (f"{score.name}: {remark}" for score in scores for remark in score.remarks)
+    parts = scores[0].parts if scores else ()
+    return Score(tuple(events), start, names, tuple(warnings), parts=parts, remarks=tuple(remarks))
 
 
 @dataclass(frozen=True)

@@ -134,6 +134,7 @@ def moves_key(m: Any, t: Any, channel: int, of_key: int, is_global: bool) -> boo
 def forget_channel(m: Any, channel: int) -> None:
     """Forget what messages have set up, except moves."""
     m.bend_range[channel] = math.nan
+    m.coarse_tuning[channel] = m.fine_tuning[channel] = 0.0
     m.sustain[channel] = 0
     m.is_registered[channel] = 1
     m.coarse[channel] = m.fine[channel] = NONE

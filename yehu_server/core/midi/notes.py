@@ -106,7 +106,11 @@ def note_on_native(
         if m.held_by[n] == NONE:
             m.held_again[n] = frame
         m.held_by[n] = NONE
-    wanted = tuned(t, key) if math.isnan(pitch) else pitch
+    wanted = pitch
+    if math.isnan(pitch):
+        wanted = tuned(t, key)
+        if is_midi(channel):
+            wanted += m.coarse_tuning[channel] + m.fine_tuning[channel]
     playable = fitted(int(t.policy), wanted)
     keep_targets_of(m, t, VELOCITY)
     keep_targets_of(m, t, NOTE)

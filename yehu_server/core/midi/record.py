@@ -79,6 +79,8 @@ MIDI = np.dtype(
         ("found_value", np.float64, ROWS),
         # Channels.
         ("bend_range", np.float64, CHANNELS),  # semitones; NaN: RPN 0 has not set it
+        ("coarse_tuning", np.float64, CHANNELS),  # semitones, by RPN 2
+        ("fine_tuning", np.float64, CHANNELS),  # semitones, by RPN 1
         ("sustain", np.int64, CHANNELS),
         ("is_registered", np.int64, CHANNELS),  # whether a registered parameter is selected
         ("coarse", np.int64, CHANNELS),  # halves of its number, or NONE

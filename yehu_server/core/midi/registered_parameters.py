@@ -1,6 +1,7 @@
 """Registered and other parameters (RPN, NRPN): selects one, and enters its value. Compiled.
 
-Registered are the bend range and MPE's configuration; others are sources of a mapping.
+Registered are the bend range, the tuning of a channel and MPE's configuration; others are sources
+of a mapping.
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ from yehu_server.core.player.rows import ROW
 DATA_ENTRY, DATA_ENTRY_FINE = 6, 38
 INCREMENT, DECREMENT = 96, 97
 NRPN_FINE, NRPN_COARSE, RPN_FINE, RPN_COARSE = 98, 99, 100, 101
-BEND_RANGE, MPE_CONFIGURATION = 0, 6  # registered parameters
+BEND_RANGE, FINE_TUNING, COARSE_TUNING, MPE_CONFIGURATION = 0, 1, 2, 6  # registered parameters
+CENTRE, FINE_STEPS = 64, 8192.0  # no tuning, of 7 bits; and the steps of a semitone, of 14
 BEND_RANGE_ROW = ROW["/playing/bend_range"]
 
 
@@ -64,6 +66,29 @@ def enter_data(m: Any, t: Any, frame: int, channel: int, control: int, value: in
         set_zone(m, t, frame, channel, value)
     elif number == BEND_RANGE:
         set_bend_range(m, t, frame, channel, control, value)
+    elif number in (FINE_TUNING, COARSE_TUNING):
+        set_tuning(m, channel, number, control, value)
+
+
+@compiled_exactly
+def set_tuning(m: Any, channel: int, number: int, control: int, value: int) -> None:
+    """Set the coarse or fine tuning of a channel, for notes that begin from now on."""
+    way = 1 if control == INCREMENT else -1
+    if number == COARSE_TUNING:
+        if control == DATA_ENTRY:
+            m.coarse_tuning[channel] = value - CENTRE
+        elif control in (INCREMENT, DECREMENT):
+            m.coarse_tuning[channel] += way
+        m.coarse_tuning[channel] = min(max(m.coarse_tuning[channel], -64.0), 63.0)
+        return
+    steps = int(np.rint((m.fine_tuning[channel] + 1.0) * FINE_STEPS))
+    if control == DATA_ENTRY:
+        steps = value << 7
+    elif control == DATA_ENTRY_FINE:
+        steps = (steps >> 7 << 7) | value
+    else:
+        steps += way
+    m.fine_tuning[channel] = min(max(steps / FINE_STEPS - 1.0, -1.0), 1.0 - 1.0 / FINE_STEPS)
 
 
 @compiled_exactly

@@ -84,13 +84,14 @@ class Repeat:
 
 @dataclass
 class _Open:
-    """A repeat, or the endings of one, that has not ended yet."""
+    """A repeat, or the endings of one, that has not ended yet; with `signs`, one of bar lines."""
 
     elements: list[object]
     word: Word
     repeat: Repeat
     begin: Fraction  # within the bar, of the repeat or of its first ending
     endings: bool = False
+    signs: bool = False
 
 
 class RepeatStack:
@@ -145,8 +146,36 @@ class RepeatStack:
         opened.repeat.endings.append(opened.elements)
         self._bars.return_to(opened.begin)
 
+    def begin_by_sign(self, word: Word) -> None:
+        """A bar line with points to its right, ``|:``; it ends one that has no end."""
+        self._forget_sign()
+        self._check_depth(word)
+        repeat = Repeat(2)
+        self.add(repeat)
+        self._stack.append(_Open(repeat.body, word, repeat, self._bars.place, signs=True))
+
+    def end_by_sign(self) -> None:
+        """A bar line with points to its left, ``:|``: from its sign, or from the repeat before."""
+        opened = self._stack[-1] if self._stack else None
+        if opened is not None and opened.signs:
+            self._stack.pop()
+            return
+        elements = self._elements()
+        begin = 1 + max(
+            (at for at, each in enumerate(elements) if isinstance(each, Repeat)), default=-1
+        )
+        while begin < len(elements) and isinstance(elements[begin], (MetreMark, TempoMark)):
+            begin += 1
+        elements[begin:] = [Repeat(2, elements[begin:])]
+
+    def _forget_sign(self) -> None:
+        """Play once what a sign began and none ended."""
+        if self._stack and self._stack[-1].signs:
+            self._stack.pop().repeat.times = 1
+
     def close(self, word: Word) -> None:
         """A repeat or its endings end. Raises ScoreError where none is open."""
+        self._forget_sign()
         if not self._stack:
             raise failure(word, "} without a { before it")
         closed = self._stack.pop()
@@ -155,6 +184,7 @@ class RepeatStack:
 
     def all_closed(self) -> list[object]:
         """Return all elements. Raises ScoreError where a repeat has no end."""
+        self._forget_sign()
         if self._stack:
             raise failure(self._stack[-1].word, "has no } that ends it")
         return self._all
@@ -191,19 +221,19 @@ def unfolded(written: Sequence[object]) -> tuple[list[object], list[str]]:
         if not signs:
             warnings.append("a DS without a Segno: played from the beginning")
         start = signs[-1] if signs else 0
-    played = once[:back] + _to_the_end(again, start, turn)
+    played = once[:back] + _to_the_end(again, start, turn, once[back + 1 :])
     _check(played)
     return _without_jumps(played), warnings
 
 
-def _to_the_end(again: list[object], start: int, turn: int) -> list[object]:
-    """From a place to Fine, or by the coda, or to the end."""
+def _to_the_end(again: list[object], start: int, turn: int, rest: list[object]) -> list[object]:
+    """From a place to Fine and on with what was not played yet, or by the coda, or to the end."""
     for at in range(start, len(again)):
         if again[at] is Jump.FINE:
-            return again[start:at]
+            return again[start:at] + rest
         if again[at] is Jump.TO_CODA and at < turn:
-            return again[start:at] + again[turn + 1 :]
-    return again[start:]
+            return again[start:at] + rest
+    return again[start:turn] + rest
 
 
 def _without_jumps(elements: list[object]) -> list[object]:

@@ -113,7 +113,7 @@ SILENT = frozenset({
 })  # fmt: skip
 SILENT_HEADERS = frozenset({
     "subtitle", "subsubtitle", "composer", "poet", "arranger", "copyright", "opus", "piece",
-    "meter", "tagline", "dedication", "frets",
+    "meter", "tagline", "dedication", "frets", "chords",
 })  # fmt: skip
 
 

@@ -96,7 +96,7 @@ def note_word(text: str, octaves: Octaves) -> NoteWord | None:
     if length is None:
         return None
     dashes = len(plain) - len(head)
-    bare = "".join(sign for sign in head if sign not in "cqsdh\\.")
+    bare = "".join(sign for sign in head if sign not in "cqsdh\\_.")
     if not bare.strip("-"):  # a dash, with its length before or behind it, or a base octave alone
         dashes += len(bare)
         if tremolo or not (dashes or (shift and not head)):
@@ -112,10 +112,11 @@ def note_word(text: str, octaves: Octaves) -> NoteWord | None:
 def _length(text: str) -> tuple[int | None, int] | None:
     """The beams and dots among the signs of a word; None where they contradict each other."""
     letters = [sign for sign in text if sign in LENGTHS]
-    strokes, dots = text.count("\\"), text.count(".")
+    strokes = text.count("\\") + text.count("_")  # lines under the figure
+    dots = text.count(".")
     if len(letters) > 1 or (letters and strokes) or strokes > 4 or dots > MOST_DOTS:
         return None
-    if text.startswith("\\"):  # a command
+    if text.startswith(("\\", "_")):  # a command
         return None
     if letters:
         return LENGTHS.index(letters[0]), dots

@@ -38,6 +38,9 @@ _TUPLET = re.compile(r"([1-9]\d?)\[")
 _BARS_REST = re.compile(r"R\*([1-9]\d*)")
 _REPEAT = re.compile(r"R([1-9]\d*)?\{")
 _LETTER = re.compile(r"letter[A-Z0-9]+")
+_BAR_SIGNS = re.compile(  # ‖ is a double one
+    r"(:+[|\u2016]+:+|::|[|\u2016\[]*[|\u2016]:+|:+[|\u2016]+\]?|[|\u2016]+\]|\[[|\u2016]+|[|\u2016]+)"
+)
 _ATTACHED = re.compile(r"(\(*)([^()~|]+)([()~]*)")
 _JUMPS = {jump.value: jump for jump in Jump}
 
@@ -53,12 +56,24 @@ class PartParser:
         Other things to warn of, shared by all parts.
     scale : Scale
         What figures sound like; headers change it too.
+    metre : MetreMark or None
+        That with which the part begins, where it names one. `metre` of the call is that of the part
+        before, which holds until then.
     """
 
-    def __init__(self, unknown: Counter[str], notices: Counter[str], scale: Scale) -> None:
+    def __init__(
+        self,
+        unknown: Counter[str],
+        notices: Counter[str],
+        scale: Scale,
+        metre: MetreMark | None = None,
+    ) -> None:
         self.unknown, self.notices = unknown, notices
         self.scale = scale
         self._bars = Bars(notices)
+        self.metre: MetreMark | None = None
+        if metre is not None:
+            self._bars.change(metre.bar, metre.first)
         self._braces = RepeatStack(self._bars)
         self._octaves = Octaves.UNSAID
         self._keeps_length, self._last_beams = False, 0
@@ -89,7 +104,9 @@ class PartParser:
             self._skips = False
             if word.text.startswith('"'):
                 return
-        if not any(read(word) for read in self._ways):
+        if word.text == "LP:":
+            self.notices["music in LilyPond code (LP:) is not played"] += 1
+        elif not any(read(word) for read in self._ways):
             self.unknown[printable(word.text)] += 1
 
     def end(self) -> list[object]:
@@ -207,8 +224,9 @@ class PartParser:
     def _as_attached(self, word: Word) -> bool:
         """A note with brackets, ties or bar lines written onto it."""
         found = _ATTACHED.fullmatch(word.text)
-        if "|" in word.text and '"' not in word.text and word.text != "|":
-            pieces = [piece for piece in re.split(r"(\|+)", word.text) if piece]
+        has_bar = not {"|", "\u2016"}.isdisjoint(word.text) or word.text == "::"
+        if has_bar and '"' not in word.text and not _BAR_SIGNS.fullmatch(word.text):
+            pieces = [piece for piece in _BAR_SIGNS.split(word.text) if piece]
         elif found is not None and (found[1] or found[3]):
             if note_word(found[2], self._octaves) is None:
                 return False
@@ -217,7 +235,7 @@ class PartParser:
             return False
         column = word.column
         for piece in pieces:
-            self.read(Word("|" if piece.startswith("|") else piece, word.line, column))
+            self.read(Word(piece, word.line, column))
             column += len(piece)
         return True
 
@@ -258,7 +276,10 @@ class PartParser:
             first = Fraction(4, int(found[3])) * (Fraction(3, 2) if found[4] else 1)
             if first > bar:
                 raise failure(word, "the pickup is longer than the bar")
-        self._braces.add(MetreMark(bar, first))
+        mark = MetreMark(bar, first)
+        self._braces.add(mark)
+        if not self._count:
+            self.metre = mark
         self._bars.change(bar, first)
         return True
 
@@ -277,8 +298,8 @@ class PartParser:
         text = word.text
         if text in _JUMPS:
             self._braces.add(_JUMPS[text])
-        elif text == "|":
-            self._braces.bar_line(word)
+        elif _BAR_SIGNS.fullmatch(text):
+            self._bar_line(text, word)
         elif text == "}":
             self._braces.close(word)
         elif text == "A{":
@@ -292,6 +313,14 @@ class PartParser:
         else:
             return False
         return True
+
+    def _bar_line(self, text: str, word: Word) -> None:
+        if text.startswith(":"):
+            self._braces.end_by_sign()
+        if text == "|" or ":" not in text:
+            self._braces.bar_line(word)
+        if text.endswith(":"):
+            self._braces.begin_by_sign(word)
 
     def _begin_tuplet(self, notes: int, word: Word) -> None:
         if notes > MOST_TUPLET:

@@ -26,6 +26,7 @@ from yehu_server.scores.written.notated import (
     MOST_BEATS,
     MOST_PARTS,
     Bar,
+    KeySign,
     Part,
     Sign,
     Span,
@@ -98,17 +99,23 @@ class _Reader:
         self._names: dict[int, str] = {}
         self._parts: dict[int, list[Played]] = {}
         self._end = Fraction(0)
+        self._key: float | None = None
 
     def read(self, movement: Sequence[Words]) -> None:
         """Read the parts of a movement, which begins where the one before ended."""
         played = []
+        key, metre = None, None  # with which the part before begins
         for number, part in enumerate(movement):
-            parser = PartParser(self._unknown, self._notices, Scale(self._characters))
+            scale = Scale(self._characters, key)
+            parser = PartParser(self._unknown, self._notices, scale, metre)
             for word in part:
                 if isinstance(word, Header):
                     self._head(word, parser.scale, number)
                 else:
                     parser.read(word)
+            key, metre = scale.first_key, parser.metre or metre
+            if number == 0 and self._key is None:
+                self._key = key
             order, warnings = unfolded(parser.end())
             self._notices.update(warnings)
             played.append(PartPlayer(self._end, self._notices).play(order))
@@ -147,7 +154,11 @@ class _Reader:
         if not any(part.notes for part in parts):
             raise ScoreError("has no notes of jianpu")
         metres = self._metres()
-        return Written(tuple(parts), self._tempi(), metres, self._bars(metres), self._title)
+        whole = Written(tuple(parts), self._tempi(), metres, self._bars(metres), self._title)
+        if self._key is None:
+            return whole
+        fifths = (7 * round(self._key) + 5) % 12 - 5
+        return replace(whole, keys=(KeySign(Fraction(0), fifths),))
 
     def _tempi(self) -> tuple[Tempo, ...]:
         """Of all parts; where several change it at once, the first of them."""

@@ -26,12 +26,15 @@ class Scale:
         Of 二四谱.
     characters : mapping of str to float
         Semitones above do of the characters of this notation.
+    first_key : float or None
+        The first key that is written, in semitones above middle C; else that of the part before.
     """
 
-    def __init__(self, characters: Mapping[str, float] | None) -> None:
+    def __init__(self, characters: Mapping[str, float] | None, key: float | None = None) -> None:
         self.mode = USUAL_MODE
         self.characters = characters or ERSIPU
-        self._key: float | None = None  # semitones above middle C
+        self._key = key  # semitones above middle C
+        self.first_key, self._has_own = key, False
         self._octave = 0
 
     def read_key(self, text: str) -> bool:
@@ -42,6 +45,8 @@ class Scale:
         letter, sign = found[2] or found[5], found[3] or found[4]
         do = LETTERS[letter.upper()] - MAJOR[int(found[1]) - 1]
         self._key = (do - LOWEST_DO) % 12.0 + LOWEST_DO + {"#": 1, "b": -1}.get(sign or "", 0)
+        if not self._has_own:
+            self._has_own, self.first_key = True, self._key
         return True
 
     def shift(self, octaves: int, word: Word) -> None:

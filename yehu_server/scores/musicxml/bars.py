@@ -2,71 +2,50 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from dataclasses import dataclass, field
 from fractions import Fraction
 from xml.etree.ElementTree import Element
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.musicxml.directions import DirectionReader, RawDirection
+from yehu_server.scores.musicxml.directions import DirectionReader
 from yehu_server.scores.musicxml.marks import STEPS, NoteMarks, neighbour, number, printable
-from yehu_server.scores.musicxml.repeats import MOST_TIMES, BarLines
-from yehu_server.scores.written.notated import MOST_BEATS, MOST_NOTES, Mark
+from yehu_server.scores.written.notated import MOST_BEATS, MOST_NOTES
+from yehu_server.scores.written.raw import FINEST, RawBar, RawDirection, RawNote
+from yehu_server.scores.written.repeats import MOST_TIMES, BarLines
 
 MOST_DIVISIONS = 1 << 20  # of a quarter note
-FINEST = 1 << 24  # the smallest part of a quarter note is this one
 LOWEST, HIGHEST = 0.0, 127.0  # MIDI notes
 TYPES = {
     "maxima": Fraction(32), "long": Fraction(16), "breve": Fraction(8), "whole": Fraction(4),
     "half": Fraction(2), "quarter": Fraction(1), "eighth": Fraction(1, 2), "16th": Fraction(1, 4),
     "32nd": Fraction(1, 8), "64th": Fraction(1, 16), "128th": Fraction(1, 32),
 }  # fmt: skip
+_NUMBERS = re.compile(r"\d+")
 # What is printed, or sounds by other means than this instrument.
 PRINTED = {
     "print", "listening", "link", "bookmark", "grouping", "figured-bass", "harmony",
 }  # fmt: skip
 
 
-@dataclass
-class RawNote:
-    """A note in its bar, before ties are joined; beats in quarters since the bar's beginning."""
-
-    at: Fraction
-    length: Fraction
-    pitch: float
-    voice: tuple[str, str]  # staff and voice
-    marks: list[Mark] = field(default_factory=list)
-    is_grace: bool = False
-    is_after: bool = False  # a grace note that belongs to the note before it
-    ties: set[str] = field(default_factory=set)  # start, stop
-    # Spans that begin or end here: their name, `start` or `stop`, and their number.
-    ends: list[tuple[str, str, str]] = field(default_factory=list)
-
-
-@dataclass
-class RawBar:
-    """A bar as written."""
-
-    number: str
-    lines: BarLines
-    notes: list[RawNote] = field(default_factory=list)
-    directions: list[RawDirection] = field(default_factory=list)
-    length: Fraction = Fraction(0)  # as filled
-    metre: Fraction | None = None  # quarters in a bar, where a time signature stands
-
-
 class BarReader:
-    """Reads the bars of a part, in their order."""
+    """Reads the bars of a part (<part>), in their order."""
 
-    def __init__(self, unknown: Counter[str], warnings: Counter[str]) -> None:
+    def __init__(self, part: Element, unknown: Counter[str], warnings: Counter[str]) -> None:
         self._unknown = unknown
         self._warnings = warnings
-        self._divisions = Fraction(1)
+        # Some writers tell the divisions after the first notes.
+        first = next(map(_divisions, part.iterfind("measure/attributes/divisions")), None)
+        self._divisions = Fraction(1) if first is None else first
         self._fifths = 0
         self._transposed = 0.0  # semitones
         self._metre = Fraction(4)
-        self._ending: frozenset[int] = frozenset()
+        self._ending: frozenset[int] = frozenset()  # that is open
+        self._last_ending = (0, -1)  # the highest number of the last one, and its last bar
+        self._bars = 0
         self._notes = 0
+        self._head: RawNote | None = None  # what <chord/> belongs to, played or not
+        self._smalls: list[RawNote] = []  # grace notes before their note
         self._at = Fraction(0)
         self._bar = RawBar("", BarLines())
 
@@ -80,7 +59,12 @@ class BarReader:
         """
         lines = BarLines(endings=self._ending)
         self._bar = bar = RawBar(measure.get("number", "")[:8], lines)
+        self._bars += 1
+        if self._ending:
+            self._last_ending = max(self._ending), self._bars
         self._at = Fraction(0)
+        self._head = None
+        self._smalls = []
         directions = DirectionReader(bar.directions, lines.jumps, self._unknown)
         for child in measure:
             if child.tag == "note":
@@ -126,8 +110,8 @@ class BarReader:
     def _attributes(self, attributes: Element) -> None:
         for child in attributes:
             if child.tag == "divisions":
-                value = Fraction(number(child.text)).limit_denominator(1000)
-                if 0 < value <= MOST_DIVISIONS:
+                value = _divisions(child)
+                if value is not None:
                     self._divisions = value
                 else:
                     self._warnings["divisions of zero or beyond reason are left out"] += 1
@@ -138,6 +122,13 @@ class BarReader:
             elif child.tag == "transpose":
                 semitones = number(child.findtext("chromatic"))
                 self._transposed = semitones + 12.0 * number(child.findtext("octave-change"))
+        if attributes.find("key") is not None and self._bar.fifths is None:
+            self._bar.fifths = self._sounding_fifths()
+
+    def _sounding_fifths(self) -> int:
+        """The sharps of the key that sounds, which a transposing part does not write."""
+        fifths = self._fifths + 7 * int(self._transposed)
+        return (fifths + 5) % 12 - 5 if self._transposed else fifths
 
     def _time(self, time: Element) -> None:
         quarters = Fraction(0)
@@ -151,7 +142,7 @@ class BarReader:
 
     def _barline(self, barline: Element) -> None:
         lines = self._bar.lines
-        for child in barline:
+        for child in sorted(barline, key=lambda each: each.tag == "ending"):  # repeats first
             if child.tag == "repeat" and child.get("direction") == "forward":
                 lines.forward = True
             elif child.tag == "repeat":
@@ -165,34 +156,41 @@ class BarReader:
                 self._unknown[f"{child.tag} on a bar line"] += 1
 
     def _read_ending(self, ending: Element) -> None:
-        numbers = {
-            int(number(each)) for each in ending.get("number", "1").replace(",", " ").split()[:16]
-        }
+        numbers = {int(number(each)) for each in _NUMBERS.findall(ending.get("number", "")[:64])}
         numbers = {each for each in numbers if 0 < each <= MOST_TIMES}
-        if ending.get("type") == "start":
-            self._ending = self._bar.lines.endings = frozenset(numbers)
-        else:
-            self._ending = frozenset()
+        lines = self._bar.lines
+        starts = ending.get("type") == "start"
+        if starts or not lines.endings:  # one that ends and has not begun has one bar
+            highest, last = self._last_ending
+            follows = highest + 1 if last == self._bars - 1 else 1
+            numbers = numbers or {min(follows, MOST_TIMES)}
+            if starts or self._bar.lines.times:
+                lines.endings, lines.opens = frozenset(numbers), True
+        if lines.endings:
+            self._last_ending = max(lines.endings), self._bars
+        self._ending = lines.endings if starts else frozenset()
 
     # -- notes -------------------------------------------------------------------------------
 
     def _note(self, element: Element) -> None:
         is_grace = element.find("grace") is not None
-        is_chord = element.find("chord") is not None
         length = Fraction(0) if is_grace else self._duration(element)
-        notes = self._bar.notes
-        at = self._at
-        if is_chord and notes and not is_grace:
-            at = max(self._at - length, Fraction(0)) if notes[-1].is_grace else notes[-1].at
-        elif not is_grace:
+        staff, own = element.findtext("staff") or "1", element.findtext("voice") or "1"
+        note = RawNote(self._at, length, 0.0, (staff[:8], own[:8]), is_grace=is_grace)
+        head = self._head
+        is_chord = head is not None and element.find("chord") is not None
+        if is_chord and head is not None:
+            note.at, note.voice, note.is_grace = head.at, head.voice, head.is_grace
+        else:
             self._at += length
             self._bar.length = max(self._bar.length, self._at)
+            self._head = note
         if element.find("cue") is not None:
             self._warnings["cue notes are not played"] += 1
             return
         if element.find("rest") is not None:
             if element.find("notations/fermata") is not None:
-                self._bar.directions.append(RawDirection(at, "sign", "fermata"))
+                self._bar.directions.append(RawDirection(note.at, "sign", "fermata"))
             return
         pitch = self._pitch(element)
         if pitch is None:
@@ -200,9 +198,8 @@ class BarReader:
         self._notes += 1
         if self._notes > MOST_NOTES:
             raise ScoreError(f"has more than {MOST_NOTES} notes")
-        voice = ((element.findtext("staff") or "1")[:8], (element.findtext("voice") or "1")[:8])
-        note = RawNote(at, length, pitch, voice, is_grace=is_grace)
-        if is_grace:
+        note.pitch = pitch
+        if note.is_grace:
             note.length = TYPES.get((element.findtext("type") or "").strip(), Fraction(1, 2))
             grace = element.find("grace")
             note.is_after = grace is not None and grace.get("steal-time-previous") is not None
@@ -211,10 +208,20 @@ class BarReader:
             return
         self._spans(element, note)
         self._marks(element, note)
-        if is_chord and notes and notes[-1].voice == voice and notes[-1].is_grace == is_grace:
-            self._in_chord(notes[-1], note)
-        else:
-            notes.append(note)
+        notes = self._bar.notes
+        last = notes[-1] if notes else None
+        place = (note.at, note.voice, note.is_grace)
+        if is_chord and last is not None and (last.at, last.voice, last.is_grace) == place:
+            self._in_chord(last, note)
+            return
+        notes.append(note)
+        if note.is_grace:
+            self._smalls.append(note)
+            return
+        for small in self._smalls:  # it may stand on the other staff
+            if small.voice[1] == note.voice[1]:
+                small.voice = note.voice
+        self._smalls = [each for each in self._smalls if each.voice[1] != note.voice[1]]
 
     def _in_chord(self, first: RawNote, note: RawNote) -> None:
         """Keep the highest note of a chord, with the marks of all."""
@@ -268,3 +275,9 @@ class BarReader:
                     dynamics, note.at
                 )
         note.marks = marks.marks
+
+
+def _divisions(element: Element) -> Fraction | None:
+    """The divisions of a quarter note; None where they are zero or beyond reason."""
+    value = Fraction(number(element.text)).limit_denominator(1000)
+    return value if 0 < value <= MOST_DIVISIONS else None

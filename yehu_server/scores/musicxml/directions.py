@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from fractions import Fraction
 from xml.etree.ElementTree import Element
 
 from yehu_server.scores.musicxml.marks import number, printable
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HIGHEST_TEMPO, LOWEST_TEMPO
+from yehu_server.scores.written.raw import RawDirection
 from yehu_server.scores.written.words import Meaning, meaning_of
 
 UNITS = {
@@ -19,28 +19,6 @@ LONGEST_WORDS = 200
 JUMPS = ("dacapo", "dalsegno", "tocoda", "fine", "segno", "coda")
 # These are printed, move pedals that a fiddle has not, or stand for what is read elsewhere.
 PRINTED = {"rehearsal", "bracket", "octave-shift", "principal-voice", "staff-divide", "image"}
-
-
-@dataclass(frozen=True)
-class RawDirection:
-    """What a direction says, at a beat of its bar.
-
-    Attributes
-    ----------
-    kind : str
-        sign, wedge, hairpin (words, until the next dynamic), dashes, change (of tempo), back (to
-        the tempo before) or tempo.
-    name : str
-        Of the sign or span; of a wedge also `stop`.
-    number : str
-        By which a wedge's end finds its beginning.
-    """
-
-    at: Fraction
-    kind: str
-    name: str = ""
-    value: float | None = None
-    number: str = ""
 
 
 class DirectionReader:
@@ -108,7 +86,7 @@ class DirectionReader:
         """Read one <sound>."""
         tempo = number(sound.get("tempo"))
         if LOWEST_TEMPO <= tempo <= HIGHEST_TEMPO:
-            self._add(at, "tempo", "", tempo)
+            self._add(at, "tempo", "playback", tempo)
         percent = number(sound.get("dynamics"))
         if percent > 0.0 and with_dynamics:
             self._add(at, "sign", "velocity", min(max(FORTE * percent / 100.0, 1.0), 127.0))
@@ -127,7 +105,7 @@ class DirectionReader:
             return
         tempo *= unit * (2.0 - 0.5**dots)
         if LOWEST_TEMPO <= tempo <= HIGHEST_TEMPO:
-            self._add(at, "tempo", "", tempo)
+            self._add(at, "tempo", "figures", tempo)
 
     def _words(self, text: str, at: Fraction, *, has_tempo: bool, jumps: bool) -> None:
         words = text.strip()[:LONGEST_WORDS]
@@ -145,6 +123,6 @@ class DirectionReader:
                 self._jumps.add(meaning.name)
         elif meaning.kind == "tempo":
             if not has_tempo:
-                self._add(at, "tempo", "", meaning.value)
+                self._add(at, "tempo", "words", meaning.value)
         else:
             self._add(at, meaning.kind, meaning.name, meaning.value)

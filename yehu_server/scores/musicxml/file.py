@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import zipfile
 import zlib
 from typing import Any
@@ -25,6 +26,7 @@ MOST_ENTRIES = 1000  # of an archive
 MOST_CONTAINER_BYTES = 1 << 16
 ZIP = b"PK\x03\x04"
 CONTAINER = "META-INF/container.xml"
+_SAYS_UTF16 = re.compile(rb"(?:\xef\xbb\xbf)?\s*<\?xml[^>]*encoding=[\"']utf-?16", re.IGNORECASE)
 COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 ENTRY = b"PK\x01\x02"  # before each entry of an archive's directory
 # What zipfile raises for archives that are damaged or made to harm.
@@ -100,7 +102,8 @@ def parse(data: bytes) -> ET.Element:
         With the line, where there is one.
     """
     builder = _Builder()
-    parser = expat.ParserCreate()
+    says_utf16 = _SAYS_UTF16.match(data) is not None  # in bytes that are none
+    parser = expat.ParserCreate("utf-8" if says_utf16 else None)
     parser.buffer_text = True
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end

@@ -25,6 +25,7 @@ from yehu_server.scores.score import (
     Metre,
     Score,
     ScoreEvent,
+    ScorePart,
     check_duration,
     concatenate,
     naming,
@@ -32,6 +33,7 @@ from yehu_server.scores.score import (
 )
 from yehu_server.scores.smf.chunks import Part, read_parts
 from yehu_server.scores.smf.faults import DamageReport
+from yehu_server.scores.smf.named_tracks import parts_of_tracks
 from yehu_server.scores.smf.track import Clock, Placed, Track, checked_division
 from yehu_server.scores.smf.wrapper import unwrapped
 
@@ -196,9 +198,20 @@ def _play_together(
         )
         for tick, message, at in messages
     )
+    names = {number: track.name for number, track in enumerate(tracks, start=first)}
     signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
     metres = (Metre(clock.beat(tick), quarters) for tick, quarters in signatures)
-    return Score(events, end_s, metres=(COMMON_TIME, *metres))
+    return Score(events, end_s, metres=(COMMON_TIME, *metres), parts=_parts(events, names))
+
+
+def _parts(events: Sequence[ScoreEvent], names: dict[int, str]) -> tuple[ScorePart, ...]:
+    """The parts with notes: tracks, or the channels of a single one; percussion is none."""
+    places = {
+        (event.track, event.message.channel)
+        for event in events
+        if event.message.type == "note_on" and event.message.channel != PERCUSSION
+    }
+    return parts_of_tracks(places, names)
 
 
 def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> str:

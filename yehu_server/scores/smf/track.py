@@ -79,7 +79,8 @@ class Clock:
 
 
 META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
-END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE = 0x2F, 0x51, 0x58
+TRACK_NAME, END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE = 0x03, 0x2F, 0x51, 0x58
+LONGEST_NAME = 40  # characters
 STATUS = re.compile(rb"[\x80-\xff]")
 SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
 
@@ -101,6 +102,7 @@ class Track:
     end_at: int = 0  # byte of the last event
     events: int = 0  # of any kind, dropped ones too
     longest: tuple[int, int, int] = (0, 0, 0)  # rest before an event: ticks, its end, its byte
+    name: str = ""
     start_at: int = 0  # its first byte in the file
     is_whole: bool = True  # not cut in the middle of an event
     after_end: int | None = None  # byte after the end-of-track event
@@ -207,8 +209,10 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) 
 
 
 def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: DamageReport) -> None:
-    """Keep a tempo or a time signature; other metas are dropped."""
-    if kind == SET_TEMPO:
+    """Keep a tempo, a time signature or the track's name; other metas are dropped."""
+    if kind == TRACK_NAME and not track.name:
+        track.name = _text(body)
+    elif kind == SET_TEMPO:
         tempo = int.from_bytes(body[:3], "big")
         if len(body) >= 3 and tempo > 0:
             track.tempos.append((tick, tempo))
@@ -219,3 +223,12 @@ def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: Dama
             track.metres.append((tick, 4.0 * body[0] / 2.0 ** body[1]))
         else:
             faults.add("an impossible time signature ignored", at)
+
+
+def _text(body: bytes) -> str:
+    """A name in UTF-8, or in whatever the writer's system had."""
+    try:
+        text = body.decode("utf-8")
+    except UnicodeDecodeError:
+        text = body.decode("latin-1")
+    return "".join(sign for sign in text if sign.isprintable()).strip()[:LONGEST_NAME]

@@ -21,6 +21,7 @@ MOST_BEATS = 400_000  # quarter notes; a day at 278 a minute
 MOST_PARTS = 64
 LOWEST_TEMPO, HIGHEST_TEMPO = 5.0, 1000.0  # quarter notes a minute
 USUAL_TEMPO = 100.0  # where none is written
+MOST_NAMED = 12  # marks that were not understood
 LONGEST_CHANGE = Fraction(8)  # quarters of a change of tempo, where nothing written ends it
 
 # Marks on notes, and what their values are; None stands for the usual value.
@@ -235,6 +236,23 @@ class Tempo:
 
 
 @dataclass(frozen=True)
+class KeySign:
+    """A key signature from a beat on: sharps, or below 0 flats."""
+
+    beat: Fraction
+    fifths: int
+
+    @property
+    def do(self) -> str:
+        """The name of do in this key, such as F or Bb."""
+        return DO[self.fifths % 12] if abs(self.fifths) > 6 else DO_BY_FIFTHS[self.fifths + 6]
+
+
+DO_BY_FIFTHS = ("Gb", "Db", "Ab", "Eb", "Bb", "F", "C", "G", "D", "A", "E", "B", "F#")
+DO = ("C", "G", "D", "A", "E", "B", "F#", "C#", "Ab", "Eb", "Bb", "F")  # by fifths modulo 12
+
+
+@dataclass(frozen=True)
 class Bar:
     """A bar line: the beat after it, and the bar's number as written."""
 
@@ -254,6 +272,10 @@ class Written:
         Marks that were not understood: each as written (one printable line), and how often.
     warnings : tuple of str
         One line each, about anything else that is not as it should be.
+    keys : tuple of KeySign
+        In order of beats; empty where none is written.
+    remarks : tuple of str
+        One line each, of what a player should know and nothing is wrong with.
     """
 
     parts: tuple[Part, ...]
@@ -263,11 +285,29 @@ class Written:
     title: str = ""
     unknown: Mapping[str, int] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    keys: tuple[KeySign, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     @property
     def not_understood(self) -> list[str]:
-        """A line for each mark that was not understood."""
-        return [times(f"not understood: {mark}", count) for mark, count in self.unknown.items()]
+        """A line with all marks that were not understood; none where all were."""
+        named = [times(mark, count) for mark, count in self.unknown.items()]
+        if len(named) > MOST_NAMED:
+            named[MOST_NAMED:] = [f"and {len(named) - MOST_NAMED} others"]
+        return [f"not understood: {', '.join(named)}"] if named else []
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """A name for each part, unlike the others: that in the score, else its number."""
+        found: list[str] = []
+        for number, part in enumerate(self.parts, start=1):
+            name = own = part.name or f"part {number}"
+            count = 1
+            while name in found:
+                count += 1
+                name = f"{own} ({count})"
+            found.append(name)
+        return tuple(found)
 
     @property
     def end(self) -> Fraction:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
@@ -14,7 +15,7 @@ from functools import lru_cache
 import mido
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.score import Score, ScoreEvent, Setting
+from yehu_server.scores.score import Score, ScoreEvent, ScorePart, Setting
 from yehu_server.scores.written.clock import WrittenClock
 from yehu_server.scores.written.loudness import Loudness
 from yehu_server.scores.written.mark_settings import (
@@ -50,34 +51,48 @@ OFF, SET, ON, AFTER = range(4)
 Timed = tuple[float, int, int, ScoreEvent]  # time, order, number, event
 
 
-def performed(written: Written) -> Score:
+def performed(written: Written, plays: Sequence[int] | None = None) -> Score:
     """Return a written score as it is played.
+
+    Parameters
+    ----------
+    plays : sequence of int, optional
+        Numbers of the parts to play, from 0; by default all. Tempo and waits are of all.
 
     Raises
     ------
     ScoreError
         Where there is no note, or it lasts longer than a day.
     """
-    if not any(part.notes for part in written.parts):
-        raise ScoreError("has no note to play")
     clock = WrittenClock(written)
-    warnings = [*written.not_understood, *written.warnings]
-    parts = [part for part in written.parts if part.notes]
-    if len(parts) > len(CHANNELS):
-        warnings.append(f"{len(parts)} parts; the first {len(CHANNELS)} are played")
-    elif len(parts) > 1:
-        warnings.append(
-            f"{len(parts)} parts are all played on the one instrument; --channel 1 plays the first"
-        )
+    warnings = [*written.warnings, *written.not_understood]
+    chosen = range(len(written.parts)) if plays is None else plays
+    numbers = [number for number in chosen if written.parts[number].notes]
+    if not numbers:
+        raise ScoreError("has no note to play")
+    if len(numbers) > len(CHANNELS):
+        warnings.insert(0, f"{len(numbers)} parts; the first {len(CHANNELS)} are played")
     timed: list[Timed] = []
     left: Counter[str] = Counter()
-    for channel, part in zip(CHANNELS, parts, strict=False):
+    parts = []
+    end = Fraction(0)
+    for channel, number in zip(CHANNELS, numbers, strict=False):
+        part = written.parts[number]
         timed += _Performer(part, channel, clock, left, len(timed)).events()
+        parts.append(ScorePart(written.names[number], channel, channel + 1))
+        end = max(end, part.notes[-1].end)
     warnings += [times(mark, count) for mark, count in left.items()]
     timed.sort(key=lambda each: each[:3])
-    end_s = max(clock.seconds(written.end), timed[-1][0])
-    events = tuple(event for *_, event in timed)
-    return Score(events, end_s, written.title, tuple(warnings), written.metres)
+    end_s = max(clock.seconds(end), timed[-1][0])
+    return Score(
+        tuple(event for *_, event in timed),
+        end_s,
+        written.title,
+        tuple(warnings),
+        written.metres,
+        tuple(parts),
+        written.remarks,
+    )
 
 
 class _Performer:

@@ -9,8 +9,8 @@ from fractions import Fraction
 from typing import Any
 
 from yehu_server.playing.pitch_and_level import note_name
+from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Tempo, Written
-from yehu_server.scores.written.performed import CHANNELS
 
 MOST_TEMPI = 20  # that the head shows
 
@@ -18,33 +18,53 @@ MOST_TEMPI = 20  # that the head shows
 def lines_of(written: Written) -> Iterator[str]:
     """The score as lines: what is at its head, then the notes of each part."""
     yield written.title or "(no title)"
+    yield from written.remarks
+    for key in written.keys:
+        yield f"bar {written.place(key.beat)[0]}: 1={key.do}"
     tempi = _tempi(written)
     for tempo in tempi[:MOST_TEMPI]:
         yield f"bar {written.place(tempo.beat)[0]}: {tempo.quarters_per_minute:g} quarters a minute"
     if len(tempi) > MOST_TEMPI:
         yield f"and {len(tempi) - MOST_TEMPI} more changes of tempo"
-    last = 0.0
-    for metre in written.metres:
-        if metre.quarters != last:
-            last = metre.quarters
-            bar = written.place(Fraction(metre.beat))[0]
-            yield f"bar {bar}: {last:g} quarter{'' if last == 1.0 else 's'} in a bar"
-    channels = iter(CHANNELS)
-    for number, part in enumerate(written.parts, start=1):
+    for beat, quarters in _metres(written):
+        bar = written.place(beat)[0]
+        yield f"bar {bar}: {quarters:g} quarter{'' if quarters == 1.0 else 's'} in a bar"
+    played = next((at for at, part in enumerate(written.parts) if part.notes), None)
+    for number, (part, name) in enumerate(zip(written.parts, written.names, strict=True), start=1):
         yield ""
-        channel = next(channels, None) if part.notes else None
-        where = "not played" if channel is None else f"channel {channel + 1}"
-        name = f": {part.name}" if part.name else ""
-        yield f"part {number}{name}, {where}, {len(part.notes)} notes"
+        yield f"part {number}: {name}, {_what(part, is_played=number - 1 == played)}"
         yield f"{'bar':>5}  {'quarter':<8}  {'note':<7}  {'length':<7}  marks"
         yield from _notes(written, part)
     yield ""
     yield from told_unknown(written)
 
 
+def _what(part: Part, *, is_played: bool) -> str:
+    """How much a part has, how high it is, and what becomes of it."""
+    if not part.notes:
+        return "0 notes, not played"
+    pitches = [note.pitch for note in part.notes]
+    lowest, highest = note_name(min(pitches)), note_name(max(pitches))
+    told = f"{len(part.notes)} note{'' if len(part.notes) == 1 else 's'}, {lowest} to {highest}"
+    if is_played:
+        told += ", played where no other is asked for"
+    moved = moved_part(part)[1].told
+    return f"{told}; {moved}" if moved else told
+
+
+def _metres(written: Written) -> list[tuple[Fraction, float]]:
+    """The time signatures that change something, by beats; of several at a beat the last."""
+    holding = {Fraction(metre.beat): metre.quarters for metre in written.metres}
+    shown: list[tuple[Fraction, float]] = []
+    for beat, quarters in sorted(holding.items()):
+        if not shown or shown[-1][1] != quarters:
+            shown.append((beat, quarters))
+    return shown
+
+
 def told_unknown(written: Written) -> Iterator[str]:
     """What was not understood, and the warnings."""
-    yield from [*written.not_understood, *written.warnings] or ["all marks understood"]
+    yield from [*written.warnings, *written.not_understood] or ["all marks understood"]
 
 
 def _tempi(written: Written) -> list[Tempo]:
@@ -114,10 +134,12 @@ def fields_of(written: Written) -> dict[str, Any]:
     return {
         "title": written.title,
         "tempi": [[float(each.beat), each.quarters_per_minute] for each in written.tempi],
+        "keys": [[float(each.beat), each.fifths] for each in written.keys],
         "metres": [[each.beat, each.quarters] for each in written.metres],
         "parts": [_part(written, part) for part in written.parts],
         "unknown": dict(written.unknown),
         "warnings": list(written.warnings),
+        "remarks": list(written.remarks),
     }
 
 

@@ -1,4 +1,4 @@
-"""The voices of a MusicXML part as they are played: ties joined, spans closed, repeats unfolded."""
+"""The voices of a part as they are played: ties joined, spans closed, repeats unfolded."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from yehu_server.scores.musicxml.bars import RawBar, RawNote
-from yehu_server.scores.musicxml.directions import RawDirection
 from yehu_server.scores.written.notated import (
     DYNAMICS,
     FORCED,
@@ -20,6 +18,7 @@ from yehu_server.scores.written.notated import (
     Sign,
     Span,
 )
+from yehu_server.scores.written.raw import RANKS, RawBar, RawDirection, RawNote
 
 SPANS = {"slur": "slur", "glissando": "glissando", "slide": "portamento"}
 MOST_VOICES = 16  # of a part; no music has more
@@ -122,7 +121,7 @@ class Directions:
     def __init__(self) -> None:
         self.signs: list[Sign] = []
         self.spans: list[Span] = []
-        self.tempi: list[tuple[Fraction, float]] = []
+        self.tempi: dict[Fraction, tuple[int, float]] = {}  # with its rank
         self._wedges: dict[str, tuple[str, Fraction]] = {}
         self._hairpin = OpenSpan(self.spans, LONGEST_HAIRPIN)  # in words
         self._change = OpenSpan(self.spans, LONGEST_CHANGE)
@@ -155,9 +154,12 @@ class Directions:
             self._change.begin(raw.name, beat)
         elif raw.kind in ("back", "tempo"):
             self._change.end(beat)
-            self._steady = self._steady if raw.kind == "back" else raw.value
-            if self._steady is not None:
-                self.tempi.append((beat, self._steady))
+            tempo = self._steady if raw.kind == "back" else raw.value
+            rank = RANKS.get(raw.name, 0)
+            before = self.tempi.get(beat)
+            if tempo is not None and (before is None or rank > before[0]):
+                self.tempi[beat] = rank, tempo
+                self._steady = tempo
 
     def end(self, beat: Fraction) -> None:
         """End what is still open at the end of the score."""
@@ -167,8 +169,8 @@ class Directions:
 
 def parts_of(
     name: str, bars: list[RawBar], played: list[tuple[int, Fraction]], end: Fraction
-) -> tuple[list[Part], list[tuple[Fraction, float]]]:
-    """Return the voices of one part, and its tempi.
+) -> tuple[list[Part], dict[Fraction, tuple[int, float]]]:
+    """Return the voices of one part, and its tempi with their ranks (`raw.RANKS`), by beats.
 
     Parameters
     ----------

@@ -1,0 +1,177 @@
+"""Read ABC, the notation in letters: melodies of version 2.1 of its standard.
+
+docs/scores.md tells what is understood.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+from yehu_server.errors import ScoreError
+from yehu_server.scores.abc.fields import metre_of, order_of_parts
+from yehu_server.scores.abc.voice import VoiceReader
+from yehu_server.scores.score import naming, read_score_bytes
+from yehu_server.scores.written.assembly import assembled
+from yehu_server.scores.written.notated import MOST_PARTS, Written
+
+MOST_BYTES = 4 << 20
+BEGINNINGS = (b"X:", b"%abc")
+MUSIC_FIELDS = "KLMQ"
+_FIELD = re.compile(r"([A-Za-z+]):\s*(.*)")
+_NAME = re.compile(r'(?:name|nm)="([^"]*)"')
+
+
+def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
+    """Read a tune of a file, the first where no other is asked for.
+
+    Raises
+    ------
+    ScoreError
+        One line naming the file: where it cannot be read, has no tune, or no such one.
+    """
+    with naming(path):
+        head, tunes = _tunes(_decoded(read_score_bytes(path, MOST_BYTES)))
+        if not tunes:
+            raise ScoreError("has no tune of ABC, which begins with X:")
+        number = song or 1
+        if not 0 < number <= len(tunes):
+            raise ScoreError(f"has {len(tunes)} tunes: there is no tune {number}")
+        written = _Tune().read([*head, *tunes[number - 1]])
+        if len(tunes) > 1 and song is None:
+            line = f"tune 1 of {len(tunes)}; --song N takes another"
+            written = replace(written, remarks=(line,))
+        return written
+
+
+def _decoded(data: bytes) -> str:
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _tunes(text: str) -> tuple[list[str], list[list[str]]]:
+    """The lines of the file's head, and of each tune."""
+    head: list[str] = []
+    tunes: list[list[str]] = []
+    is_open = False
+    for line in text.splitlines():
+        if re.match(r"X:", line):
+            tunes.append([])
+            is_open = True
+        elif not line.strip():
+            is_open = False
+        if is_open:
+            tunes[-1].append(line)
+        elif not tunes and _FIELD.match(line):
+            head.append(line)
+    return head, tunes
+
+
+class _Tune:
+    """Reads the lines of one tune."""
+
+    def __init__(self) -> None:
+        self._unknown: Counter[str] = Counter()
+        self._warnings: Counter[str] = Counter()
+        self._voices: dict[str, VoiceReader] = {}
+        self._names: dict[str, str] = {}
+        self._defaults: list[tuple[str, str]] = []  # fields of the head
+        self._order = ""
+        self._labels: list[tuple[str, int]] = []
+        self._title = ""
+        self._in_music = False
+        self._now: VoiceReader | None = None
+        self._shortcuts: dict[str, str] = {}
+
+    def read(self, lines: Sequence[str]) -> Written:
+        for written in lines:
+            line = re.sub(r"(?<!\\)%.*", "", written).rstrip()
+            if not line.strip():
+                continue
+            found = _FIELD.match(line)
+            if found:
+                self._field(found[1], found[2].strip())
+            elif self._in_music:
+                self._reader().line(line, self._inline)
+        for voice in self._voices.values():
+            voice.end()
+        parts = [
+            (self._names.get(name, ""), voice.bars)
+            for name, voice in self._voices.items()
+            if voice.bars
+        ]
+        if not parts:
+            raise ScoreError("has no notes of ABC")
+        sections = self._sections(max(len(bars) for _, bars in parts))
+        return assembled(parts, self._title, self._unknown, self._warnings, sections)
+
+    def _reader(self) -> VoiceReader:
+        return self._now or self._voice("1")
+
+    def _voice(self, name: str) -> VoiceReader:
+        if name not in self._voices:
+            if len(self._voices) >= MOST_PARTS:
+                raise ScoreError(f"has more than {MOST_PARTS} voices")
+            voice = VoiceReader(self._unknown, self._warnings)
+            metre = next((metre_of(text) for key, text in self._defaults[::-1] if key == "M"), None)
+            if metre is not None and metre < 3:
+                voice.unit = Fraction(1, 4)
+            for key in "LMKQ":
+                for letter, text in self._defaults:
+                    if letter == key and (key != "Q" or not self._voices):
+                        voice.field(letter, text)
+            voice.shortcuts |= self._shortcuts
+            self._voices[name] = voice
+        self._now = self._voices[name]
+        return self._now
+
+    def _field(self, letter: str, text: str) -> None:
+        if letter == "T":
+            self._title = self._title or "".join(filter(str.isprintable, text))[:200]
+        elif letter == "P" and not self._in_music:
+            self._order = text
+        elif letter == "U":
+            sign, _, name = text.partition("=")
+            self._shortcuts[sign.strip()[:1]] = name.strip().strip("!+")
+        elif letter == "V":
+            self._take_voice(text)
+        elif letter == "P":
+            self._labels.append((text.strip()[:1], self._reader().label()))
+        elif self._in_music and letter in MUSIC_FIELDS:
+            self._reader().field(letter, text)
+        elif letter in MUSIC_FIELDS:
+            self._defaults.append((letter, text))
+            self._in_music = letter == "K" or self._in_music
+        elif letter == "s":
+            self._unknown["lines of symbols (s:)"] += 1
+        elif letter == "m":
+            self._unknown["macros (m:)"] += 1
+
+    def _take_voice(self, text: str) -> None:
+        name = text.split(maxsplit=1)[0] if text.split() else "1"
+        called = _NAME.search(text)
+        if called:
+            self._names[name] = "".join(filter(str.isprintable, called[1]))[:80]
+        if self._in_music:
+            self._voice(name)
+
+    def _inline(self, letter: str, text: str) -> VoiceReader:
+        self._field(letter, text.strip())
+        return self._reader()
+
+    def _sections(self, count: int) -> list[range]:
+        """The bars of each part, in the order that the head asks for."""
+        begins = [*self._labels, ("", count)]
+        ranges: dict[str, range] = {}
+        for (name, begin), (_, end) in pairwise(begins):
+            ranges.setdefault(name, range(begin, end))
+        order = [ranges[name] for name in order_of_parts(self._order) if name in ranges]
+        first = begins[0][1]
+        return [range(first), *order] if order and first else order

@@ -1,0 +1,357 @@
+"""The music of one voice of ABC: its letters become bars."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable
+from fractions import Fraction
+
+from yehu_server.errors import ScoreError, one_line
+from yehu_server.scores.abc.decorations import DECORATIONS, JUMPS, SHORTCUTS, SILENT, WEDGES
+from yehu_server.scores.abc.fields import ALTERS, key_of, length_of, metre_of, tempo_of
+from yehu_server.scores.written.notated import DYNAMICS, FORCED, MOST_NOTES, Mark
+from yehu_server.scores.written.raw import RawBar, RawDirection, RawNote
+from yehu_server.scores.written.repeats import MOST_TIMES, BarLines
+from yehu_server.scores.written.words import meaning_of
+
+STEPS = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
+MIDDLE_C = 60.0
+TIMES = {2: 3, 3: 2, 4: 3, 6: 2, 8: 3}  # of tuplets; others depend on the metre
+LONGEST = 64  # quarters of a note
+MOST_BARS_REST = 1000
+LENGTH = r"\d*/*\d*"
+NOTE = rf"(\^\^|\^|__|_|=)?([A-Ga-g])([',]*)({LENGTH})(-?)"
+TOKEN = re.compile(
+    rf"""(?P<field>\[[A-Za-z]:[^\]]*\])
+|(?P<bar>\.?(?::*\[?\|[|\]]*:*|::+))(?P<number>[1-9][\d,\-]*)?
+|(?P<ending>\[[1-9][\d,\-]*)
+|(?P<text>"[^"]*")
+|(?P<sign>![^!|\n]+!|\+[^+|\s]+\+)
+|(?P<chord>\[[^\]|]*\])(?P<chord_length>{LENGTH})(?P<chord_tie>-?)
+|(?P<grace>\{{[^}}]*\}})
+|(?P<note>{NOTE})
+|(?P<rest>[zx])(?P<rest_length>{LENGTH})
+|(?P<bars>[ZX])(?P<bars_count>\d*)
+|\((?P<tuplet>\d)(?P<ratio>(?::\d*){{0,2}})
+|(?P<slur>[()])
+|(?P<tie>-)
+|(?P<broken>>+|<+)
+|(?P<short>[.~H-Yh-w])
+|(?P<over>&)
+|(?P<space>[\s`*$\\]+|y\d*|!)
+|(?P<other>.)""",
+    re.VERBOSE,
+)
+
+
+class VoiceReader:
+    """Reads the music of a voice, line by line.
+
+    Attributes
+    ----------
+    bars : list of RawBar
+    """
+
+    def __init__(self, unknown: Counter[str], warnings: Counter[str]) -> None:
+        self.bars: list[RawBar] = []
+        self.unit = Fraction(1, 2)
+        self.shortcuts = dict(SHORTCUTS)
+        self._unknown, self._warnings = unknown, warnings
+        self._alters = dict.fromkeys(STEPS, 0.0)
+        self._fifths: int | None = 0
+        self._octave = 0
+        self._metre: Fraction | None = Fraction(4)
+        self._odd_times = 2  # of tuplets of 5, 7 and 9: 3 in compound time
+        self._place = ("C", 0, 0.0)  # of the last note: letter, octave, accidental
+        self._in_bar: dict[str, float] = {}  # accidentals
+        self._tied: dict[tuple[str, int], float] = {}
+        self._bar = RawBar("1", BarLines())
+        self._at = Fraction(0)
+        self._ending: frozenset[int] = frozenset()
+        self._marks: list[Mark] = []
+        self._slurs: list[str] = []
+        self._starts: list[str] = []  # slurs that begin with the next note
+        self._slur_count = 0
+        self._last: list[RawNote] = []
+        self._last_begin = Fraction(0)
+        self._next_factor = Fraction(1)
+        self._tuplet: list[Fraction] = []  # factors of the next notes
+        self._count = 0
+        self._in_overlay = False
+
+    def label(self) -> int:
+        """The number of the bar that comes next, once what is open has ended."""
+        self._end_bar(0, "|")
+        self._ending = frozenset()
+        return len(self.bars)
+
+    def field(self, letter: str, value: str) -> None:
+        """Take a field that holds from here on."""
+        if letter == "K":
+            key = key_of(value)
+            if key is not None:
+                self._fifths, self._alters, self._octave = key
+                self._bar.fifths = self._fifths
+        elif letter == "M":
+            self._metre = metre_of(value)
+            self._bar.metre = self._metre
+            self._odd_times = 3 if value.strip() in ("6/8", "9/8", "12/8") else 2
+        elif letter == "L":
+            self.unit = length_of(value) or self.unit
+        elif letter == "Q":
+            tempo = tempo_of(value, self.unit)
+            if tempo is not None:
+                self._direct("tempo", "figures", tempo)
+            elif value.strip():
+                self._words(value.strip(' "'))
+
+    def _direct(self, kind: str, name: str = "", value: float | None = None) -> None:
+        self._bar.directions.append(RawDirection(self._at, kind, name, value))
+
+    def line(self, text: str, inline: Callable[[str, str], VoiceReader]) -> None:
+        """Read a line of music; `inline` takes fields within it and returns who reads on."""
+        reader = self
+        for found in TOKEN.finditer(text):
+            if found["field"]:
+                reader = inline(found["field"][1], found["field"][3:-1])
+            else:
+                reader._take(found)  # noqa: SLF001 - of the same class
+
+    def _take(self, found: re.Match[str]) -> None:  # noqa: C901, PLR0912 - a branch for each token
+        kind = next((name for name in KINDS if found[name]), "")
+        if kind == "bar":
+            self._bar_line(found["bar"].lstrip("."), found["number"] or "")
+        elif kind == "ending":
+            self._begin_ending(found["ending"][1:])
+        elif self._in_overlay or kind in ("", "space"):
+            return
+        elif kind == "note":
+            own = found.groups()[NOTE_AT : NOTE_AT + 4]
+            self._notes([self._pitched(*own)], found["note"].endswith("-"))
+        elif kind == "chord":
+            self._chord(found)
+        elif kind == "rest":
+            self._add([], _length(found["rest_length"]) * self.unit)
+        elif kind == "bars":
+            self._bars_rest(int(found["bars_count"][:5] or 1))
+        elif kind == "tuplet":
+            self._begin_tuplet(int(found["tuplet"]), found["ratio"].split(":")[1:])
+        elif kind == "slur":
+            self._slur(found["slur"])
+        elif kind == "tie":
+            self._tie()
+        elif kind == "broken":
+            self._break(found["broken"])
+        elif kind == "grace":
+            self._graces(found["grace"])
+        elif kind == "text":
+            self._text(found["text"][1:-1])
+        elif kind == "sign":
+            self._sign(found["sign"][1:-1])
+        elif kind == "short":
+            self._sign(self.shortcuts.get(found["short"], found["short"]))
+        elif kind == "over":
+            self._warnings["second voices over a bar (&) are not played"] += 1
+            self._in_overlay = True
+        else:
+            self._unknown[one_line(found["other"])] += 1
+
+    # -- notes -------------------------------------------------------------------------------
+
+    def _pitched(
+        self, sign: str | None, letter: str, octaves: str, length: str
+    ) -> tuple[float, Fraction]:
+        name = letter.upper()
+        octave = letter.islower() + octaves.count("'") - octaves.count(",") + self._octave
+        if sign:
+            self._in_bar[name] = alter = ALTERS[sign]
+        elif (name, octave) in self._tied and name not in self._in_bar:
+            alter = self._tied[name, octave]
+        else:
+            alter = self._in_bar.get(name, self._alters[name])
+        self._place = name, octave, alter
+        pitch = MIDDLE_C + STEPS[name] + alter + 12.0 * octave
+        return min(max(pitch, 0.0), 127.0), _length(length) * self.unit
+
+    def _notes(
+        self, pitched: list[tuple[float, Fraction]], ties: bool, factor: Fraction = Fraction(1)
+    ) -> None:
+        pitch, length = max(pitched)[0], pitched[0][1] * factor
+        if len(pitched) > 1:
+            self._warnings["lower notes of chords are not played"] += len(pitched) - 1
+        note = RawNote(self._at, length, pitch, ("1", "1"), marks=self._marks)
+        self._marks = []
+        note.ends += [("slur", "start", number) for number in self._starts]
+        self._starts = []
+        self._tied = {}
+        self._add([note], length)
+        if ties:
+            self._tie()
+
+    def _add(self, notes: list[RawNote], length: Fraction) -> None:
+        """Put a note, or a rest, where the music is."""
+        self._count += 1
+        if self._count > MOST_NOTES:
+            raise ScoreError(f"has more than {MOST_NOTES} notes")
+        length *= self._next_factor * (self._tuplet.pop() if self._tuplet else 1)
+        self._next_factor = Fraction(1)
+        length = min(length, Fraction(LONGEST))
+        self._last, self._last_begin = notes, self._at
+        for note in notes:
+            note.length = length
+            if length > 0:
+                self._bar.notes.append(note)
+        self._at += length
+
+    def _chord(self, found: re.Match[str]) -> None:
+        inner = list(re.finditer(NOTE, found["chord"]))
+        if not inner:
+            self._unknown[one_line(found["chord"][:40])] += 1
+            return
+        pitched = [self._pitched(*each.groups()[:4]) for each in inner]
+        ties = bool(found["chord_tie"]) or any(each[5] for each in inner)
+        self._notes(pitched, ties, _length(found["chord_length"]))
+
+    def _graces(self, text: str) -> None:
+        for each in re.finditer(NOTE, text):
+            pitch, _ = self._pitched(*each.groups()[:4])
+            self._bar.notes.append(
+                RawNote(self._at, Fraction(1, 4), pitch, ("1", "1"), is_grace=True)
+            )
+
+    def _break(self, signs: str) -> None:
+        """Broken rhythm: one of two notes is longer by what the other loses."""
+        if self._at <= self._last_begin:  # nothing before it in this bar
+            return
+        short = Fraction(1, 2 ** min(len(signs), 4))
+        first, self._next_factor = (2 - short, short) if signs[0] == ">" else (short, 2 - short)
+        length = (self._at - self._last_begin) * first
+        for note in self._last:
+            note.length = length
+        self._at = self._last_begin + length
+
+    def _begin_tuplet(self, count: int, ratio: list[str]) -> None:
+        times = int(ratio[0]) if ratio and ratio[0] else TIMES.get(count, self._odd_times)
+        notes = int(ratio[1]) if len(ratio) > 1 and ratio[1] else count
+        if count and times and notes < 64:
+            self._tuplet = [Fraction(times, count)] * notes
+
+    def _tie(self) -> None:
+        for note in self._last:
+            note.ties.add("start")
+            self._tied[self._place[:2]] = self._place[2]
+
+    def _slur(self, sign: str) -> None:
+        if sign == "(":
+            self._slur_count += 1
+            self._slurs.append(str(self._slur_count))
+            self._starts.append(self._slurs[-1])
+        elif self._slurs and self._last:
+            self._last[-1].ends.append(("slur", "stop", self._slurs.pop()))
+
+    # -- marks -------------------------------------------------------------------------------
+
+    def _sign(self, name: str) -> None:
+        if name in DECORATIONS:
+            self._marks.append(Mark(*DECORATIONS[name]))
+        elif name in DYNAMICS or name in FORCED:
+            self._direct("sign", name)
+        elif name in WEDGES:
+            self._direct("wedge", WEDGES[name])
+        elif name.lower() in JUMPS:
+            self._bar.lines.jumps.add(JUMPS[name.lower()])
+        elif name not in SILENT:
+            self._unknown[one_line(name[:40])] += 1
+
+    def _text(self, text: str) -> None:
+        if text[:1] in ("^", "_", "<", ">", "@"):
+            self._words(text[1:])
+        else:
+            meaning = meaning_of(text)
+            if meaning is not None and meaning.kind == "jump":
+                self._bar.lines.jumps.add(meaning.name)
+            else:
+                self._warnings["chord symbols are not played"] += 1
+
+    def _words(self, text: str) -> None:
+        meaning = meaning_of(text)
+        if meaning is None:
+            self._unknown[f'words "{one_line(text[:40])}"'] += 1
+        elif meaning.kind == "jump":
+            self._bar.lines.jumps.add(meaning.name)
+        else:
+            name = "words" if meaning.kind == "tempo" else meaning.name
+            self._direct(meaning.kind, name, meaning.value)
+
+    # -- bars --------------------------------------------------------------------------------
+
+    def _bar_line(self, sign: str, number: str) -> None:
+        if sign == "::":
+            sign = ":|:"
+        before = len(sign) - len(sign.lstrip(":"))
+        after = len(sign) - len(sign.rstrip(":"))
+        self._end_bar(min(before + 1, MOST_TIMES) if before else 0, sign)
+        if before or after or len(sign) > 1:
+            self._ending = self._bar.lines.endings = frozenset()
+        if after:
+            self._bar.lines.forward = True
+        if number:
+            self._begin_ending(number)
+
+    def _end_bar(self, times: int, _sign: str) -> None:
+        self._in_overlay = False
+        bar = self._bar
+        if self._at > 0 or bar.notes:
+            bar.length = self._at
+            bar.number = str(len(self.bars) + 1)
+            self.bars.append(bar)
+            self._bar = RawBar("", BarLines(endings=self._ending))
+            self._at = self._last_begin = Fraction(0)
+            self._in_bar = {}
+        if times and self.bars:
+            self.bars[-1].lines.times = times
+
+    def _begin_ending(self, text: str) -> None:
+        if self._at > 0:  # an ending that begins within a bar
+            self._end_bar(0, "|")
+        numbers: set[int] = set()
+        for each in text.split(","):
+            first, _, last = each.partition("-")
+            if first.isdecimal():
+                end = int(last[:3]) if last.isdecimal() else int(first[:3])
+                numbers |= {*range(int(first[:3]), min(end, MOST_TIMES) + 1)}
+        self._ending = frozenset(numbers) or frozenset({1})
+        self._bar.lines.endings, self._bar.lines.opens = self._ending, True
+
+    def _bars_rest(self, count: int) -> None:
+        self._end_bar(0, "|")
+        for _ in range(min(count, MOST_BARS_REST)):
+            self._at = self._metre or Fraction(4)
+            self._end_bar(0, "|")
+
+    def end(self) -> None:
+        """End the last bar."""
+        self._end_bar(0, "|")
+        codas = [bar for bar in self.bars if "coda" in bar.lines.jumps]
+        if len(codas) > 1 and not any("tocoda" in bar.lines.jumps for bar in self.bars):
+            codas[0].lines.jumps -= {"coda"}
+            codas[0].lines.jumps.add("tocoda")
+
+
+KINDS = (
+    "bar", "ending", "text", "sign", "chord", "grace", "note", "rest", "bars", "tuplet", "slur",
+    "tie", "broken", "short", "over", "space", "other",
+)  # fmt: skip
+NOTE_AT = TOKEN.groupindex["note"]  # its own groups follow
+
+
+def _length(text: str) -> Fraction:
+    """A multiple of the unit: 2, 3/2, /, //, /4."""
+    number, slash, rest = text.partition("/")
+    value = Fraction(int(number[:4] or 1))
+    if slash:
+        strokes = 1 + rest.count("/")
+        under = rest.replace("/", "")
+        value /= int(under[:4]) if under and int(under[:4]) else 2 ** min(strokes, 8)
+    return value

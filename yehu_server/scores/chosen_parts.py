@@ -1,0 +1,151 @@
+"""Which parts of a score are played: those that are asked for by name, else the usual ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from yehu_server.errors import ScoreError, did_you_mean
+from yehu_server.scores.octaves import Sounding, octaves_of
+from yehu_server.scores.phrasing import REST_S
+from yehu_server.scores.score import Score, ScorePart, notes_of
+from yehu_server.scores.smf.tunings import transposed_keys
+from yehu_server.scores.written.in_range import line_of
+from yehu_server.scores.written.notated import Written
+
+MOST_NAMED = 8  # parts in a line
+ONE_BY_ONE = "--part NAME plays one of them, --ensemble all, each on a yehu of its own"
+
+
+def numbers_of(names: Sequence[str], asked: Sequence[str]) -> list[int]:
+    """Return the numbers, from 0, of the parts that are asked for, in their order.
+
+    A part is named as it is, in capitals or not; by its beginning, where no other begins alike;
+    or by its number from 1.
+
+    Raises
+    ------
+    ScoreError
+        Where there is no such part, or several.
+    """
+    found: set[int] = set()
+    for wish in asked:
+        word = wish.strip().casefold()
+        same = [at for at, name in enumerate(names) if name.casefold() == word]
+        begun = [at for at, name in enumerate(names) if name.casefold().startswith(word)]
+        if not (same or begun) and word.isdecimal() and 0 < int(word[:6]) <= len(names):
+            same = [int(word[:6]) - 1]
+        chosen = same or begun
+        if not chosen:
+            more = did_you_mean(wish, names) or f"; it has {listed(names)}"
+            raise ScoreError(f"has no part {wish}{more}")
+        if len(chosen) > 1:
+            raise ScoreError(f"part {wish} may be {listed([names[at] for at in chosen])}")
+        found.add(chosen[0])
+    return sorted(found)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names for a line: the first of them, and how many others there are."""
+    shown = [*names[:MOST_NAMED]]
+    if len(names) > MOST_NAMED:
+        shown.append(f"{len(names) - MOST_NAMED} others")
+    return ", ".join(shown)
+
+
+def usual_parts(written: Written) -> list[int]:
+    """The number, from 0, of the first part with notes, if there is one."""
+    return [at for at, part in enumerate(written.parts) if part.notes][:1]
+
+
+def told_others(written: Written, plays: Sequence[int]) -> str:
+    """A line that names the parts that are played and the others; empty where there are none."""
+    names = written.names
+    others = [names[at] for at, part in enumerate(written.parts) if part.notes and at not in plays]
+    if not others:
+        return ""
+    played = listed([names[at] for at in plays])
+    return f"plays {played}; also there: {listed(others)} ({ONE_BY_ONE})"
+
+
+def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
+    """Return the parts of a score of MIDI that are asked for.
+
+    Raises
+    ------
+    ScoreError
+        Where one is not there.
+    """
+    names = [part.name for part in score.parts]
+    kept = [score.parts[number] for number in numbers_of(names, asked)]
+    heard = {(part.channel, part.track) for part in kept}
+    events = []
+    for event in score.events:
+        message = event.message
+        if message.type == "note_on" and message.velocity > 0:
+            places = {(message.channel, None), (None, event.track), (message.channel, event.track)}
+            if heard.isdisjoint(places):
+                continue
+        events.append(event)
+    return replace(score, events=tuple(events), parts=tuple(kept))
+
+
+def midi_in_range(score: Score, *, is_mpe: bool) -> Score:
+    """Return a score of MIDI with each part moved by octaves into range, and a remark of that.
+
+    Parameters
+    ----------
+    is_mpe : bool
+        Whether the notes of a part are on channels of their own: all are one part then.
+    """
+    notes = notes_of(score)
+    higher = transposed_keys(score)
+    by_part: dict[str, list[int]] = {}
+    for number, note in enumerate(notes):
+        track = score.events[note.begins].track
+        name = "" if is_mpe else _name(score.parts, note.channel, track)
+        by_part.setdefault(name, []).append(number)
+    moves: dict[int, int] = {}  # of events, in semitones
+    told = []
+    for name, numbers in by_part.items():
+        own = [notes[number] for number in numbers]
+        octaves = octaves_of(
+            [
+                Sounding(note.start_s, note.end_s, (note.key + higher.get(note.begins, 0.0),))
+                for note in own
+            ],
+            REST_S,
+        )
+        if octaves.told:
+            told.append((name, octaves.told))
+        for note, by in zip(own, octaves.of_notes, strict=True):
+            if 0 <= note.key + 12 * by <= 127:
+                moves[note.begins] = 12 * by
+                if note.ends >= 0 and _ends_its_key(score, note.ends):
+                    moves[note.ends] = 12 * by
+    if not any(moves.values()):
+        return score
+    events = []
+    for number, event in enumerate(score.events):
+        by = moves.get(number, 0)
+        if by:
+            message = event.message.copy(note=event.message.note + by)
+            events.append(replace(event, message=message))
+        else:
+            events.append(event)
+    line = line_of([("" if len(by_part) == 1 else name, how) for name, how in told])
+    remarks = (*score.remarks, *filter(None, (line.replace(":  ", ": "),)))
+    return replace(score, events=tuple(events), remarks=remarks)
+
+
+def _ends_its_key(score: Score, number: int) -> bool:
+    """Whether an event is a note-off, and not the key struck again."""
+    message = score.events[number].message
+    return bool(message.type == "note_off" or message.velocity == 0)
+
+
+def _name(parts: Sequence[ScorePart], channel: int, track: int) -> str:
+    for part in parts:
+        if part.channel in (channel, None) and part.track in (track, None):
+            return part.name
+    return f"channel {channel + 1}"

@@ -1,0 +1,111 @@
+"""By how many octaves the notes of a part are moved, so that its tune keeps its shape.
+
+The whole part moves so that the fewest notes are left outside the instrument's range; where some
+are, a phrase may move otherwise, from rest to rest. What is outside still is left to the player,
+who moves each note by itself, as in live playing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
+
+FARTHEST = 5  # octaves
+NUMBERS = ("", "an octave", "two octaves", "three octaves", "four octaves", "five octaves")
+
+
+@dataclass(frozen=True)
+class Sounding:
+    """A note to be moved: when it sounds, in any unit, and its pitches (MIDI notes)."""
+
+    begin: float
+    end: float
+    pitches: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Octaves:
+    """By how many octaves notes are moved.
+
+    Attributes
+    ----------
+    of_notes : tuple of int
+        For each note.
+    whole : int
+        Of most of the part.
+    phrases, others : int
+        How many phrases there are, and how many of them are moved otherwise.
+    outside : int
+        Notes that are outside the range still.
+    """
+
+    of_notes: tuple[int, ...]
+    whole: int
+    phrases: int
+    others: int
+    outside: int
+
+    @property
+    def told(self) -> str:
+        """What is done, such as "an octave up, 2 of 9 phrases otherwise"; empty for nothing."""
+        words = []
+        if self.whole:
+            words.append(f"{NUMBERS[abs(self.whole)]} {'up' if self.whole > 0 else 'down'}")
+        if self.others:
+            how = "otherwise" if self.whole else "by octaves"
+            words.append(f"{self.others} of {self.phrases} phrases {how}")
+        if self.outside and words:
+            words.append(f"{self.outside} {'note' if self.outside == 1 else 'notes'} alone")
+        return ", ".join(words)
+
+
+def octaves_of(notes: Sequence[Sounding], rest: float) -> Octaves:
+    """Return by how many octaves each of some notes is moved.
+
+    Parameters
+    ----------
+    notes : sequence of Sounding
+        In the order of their beginnings.
+    rest : float
+        How long a silence is that parts phrases, in the unit of the notes.
+    """
+    whole = _best(notes, 0)
+    phrases = _phrases(notes, rest)
+    of_notes: list[int] = []
+    others = outside = 0
+    for phrase in phrases:
+        own = _best(phrase, whole) if _outside(phrase, whole) else whole
+        others += own != whole
+        outside += _outside(phrase, own)
+        of_notes += [own] * len(phrase)
+    return Octaves(tuple(of_notes), whole, len(phrases), others, outside)
+
+
+def _best(notes: Sequence[Sounding], usual: int) -> int:
+    """The octaves that leave the fewest notes outside, and of these the nearest to the usual."""
+
+    def cost(octaves: int) -> tuple[int, int, int]:
+        return _outside(notes, octaves), abs(octaves - usual), -octaves
+
+    return min(range(-FARTHEST, FARTHEST + 1), key=cost)
+
+
+def _outside(notes: Sequence[Sounding], octaves: int) -> int:
+    """How many notes are outside the range, moved by so many octaves."""
+    lowest = LOWEST_NOTE - OPEN_WITHIN - 12.0 * octaves
+    highest = HIGHEST_NOTE + OPEN_WITHIN - 12.0 * octaves
+    return sum(not all(lowest < pitch < highest for pitch in note.pitches) for note in notes)
+
+
+def _phrases(notes: Sequence[Sounding], rest: float) -> list[list[Sounding]]:
+    phrases: list[list[Sounding]] = []
+    end = 0.0
+    for note in notes:
+        if not phrases or note.begin - end >= rest:
+            phrases.append([])
+            end = note.end
+        phrases[-1].append(note)
+        end = max(end, note.end)
+    return phrases

@@ -1,0 +1,177 @@
+"""From the bars of all parts, as they stand on the page, to a score with its repeats unfolded."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+
+from yehu_server.errors import ScoreError
+from yehu_server.scores.score import COMMON_TIME, Metre
+from yehu_server.scores.written.notated import (
+    MOST_BEATS,
+    MOST_NOTES,
+    Bar,
+    KeySign,
+    Part,
+    Tempo,
+    Written,
+    times,
+)
+from yehu_server.scores.written.raw import FINEST, RawBar
+from yehu_server.scores.written.repeats import BarLines, left_out, order_of
+from yehu_server.scores.written.voices import parts_of
+
+MOST_KINDS = 100  # of unknown marks that are named
+MOST_REPEATED, MOST_OFTEN = 10_000, 4  # notes, or times as many as written
+MOST_LEFT_OUT = 8  # places of bars that are named
+
+
+def assembled(
+    parts: Sequence[tuple[str, list[RawBar]]],
+    title: str,
+    unknown: Counter[str],
+    warnings: Counter[str],
+    sections: Sequence[range] = (),
+) -> Written:
+    """Return a score of the bars of its parts, which are named.
+
+    Parameters
+    ----------
+    unknown, warnings : Counter
+        Marks that were not understood, and whatever else is to be told.
+    sections : sequence of range, optional
+        Bars that are played one after another, each with repeats of its own, as a header of ABC
+        tells; without them all bars.
+
+    Raises
+    ------
+    ScoreError
+        Where it is beyond bounds.
+    """
+    parts_bars = [bars for _, bars in parts]
+    count = max(map(len, parts_bars), default=0)
+    lines = [_lines(parts_bars, number) for number in range(count)]
+    order: list[int] = []
+    for section in sections or [range(count)]:
+        begin = section.start
+        order += (begin + at for at in order_of(lines[begin : section.stop]))
+    _check_amount(parts_bars, order)
+    played, end = _timed(parts_bars, order)
+    found: list[Part] = []
+    tempi: dict[Fraction, tuple[int, float]] = {}
+    for name, bars in parts:
+        its_parts, its_tempi = parts_of(name, bars, played, end)
+        found += its_parts
+        for beat, ranked in its_tempi.items():
+            if beat not in tempi or ranked[0] > tempi[beat][0]:
+                tempi[beat] = ranked
+    longest = max(parts_bars, key=len, default=[])
+    told = [times(text, number) for text, number in warnings.items()]
+    if missing := left_out(count, order):
+        told.insert(0, _told(missing, longest))
+    return Written(
+        tuple(found),
+        tuple(Tempo(beat, tempo) for beat, (_, tempo) in sorted(tempi.items())),
+        tuple(_metres(longest, played)),
+        tuple(Bar(begin, longest[number].number) for number, begin in played),
+        title,
+        dict(unknown.most_common(MOST_KINDS)),
+        tuple(told),
+        keys=tuple(_keys(longest, played)),
+    )
+
+
+def _told(missing: Sequence[int], bars: Sequence[RawBar]) -> str:
+    """A line that names bars by their numbers."""
+    runs: list[list[int]] = []
+    for at in missing:
+        if runs and runs[-1][-1] + 1 == at:
+            runs[-1].append(at)
+        else:
+            runs.append([at])
+    names = [
+        bars[run[0]].number if len(run) == 1 else f"{bars[run[0]].number} to {bars[run[-1]].number}"
+        for run in runs[:MOST_LEFT_OUT]
+    ]
+    more = "" if len(runs) <= MOST_LEFT_OUT else " and others"
+    plural = "bar is" if len(missing) == 1 else "bars are"
+    named = ", ".join(names)
+    return f"{len(missing)} {plural} not played, which repeats or jumps pass over: {named}{more}"
+
+
+def _keys(bars: Sequence[RawBar], played: Iterable[tuple[int, Fraction]]) -> Iterable[KeySign]:
+    holding: list[int | None] = []  # at each bar as written
+    for bar in bars:
+        holding.append(bar.fifths if bar.fifths is not None else (holding or [None])[-1])
+    last = None
+    for number, begin in played:
+        fifths = holding[number]
+        if fifths is not None and fifths != last:
+            last = fifths
+            yield KeySign(begin, fifths)
+
+
+def _check_amount(parts_bars: list[list[RawBar]], order: list[int]) -> None:
+    """Refuse scores that are too large, or that repeats make so."""
+    written = sum(len(bar.notes) for bars in parts_bars for bar in bars)
+    if written > MOST_NOTES:
+        raise ScoreError(f"has more than {MOST_NOTES} notes")
+    played = sum(
+        len(bars[number].notes) for bars in parts_bars for number in order if number < len(bars)
+    )
+    if played > max(MOST_REPEATED, MOST_OFTEN * written):
+        raise ScoreError(f"has {played} notes with its repeats, more than {MOST_REPEATED}")
+
+
+def _lines(parts_bars: list[list[RawBar]], number: int) -> BarLines:
+    """What the bar lines of all parts say; many writers give repeats to the first part alone."""
+    found = BarLines()
+    for bars in parts_bars:
+        if number < len(bars):
+            lines = bars[number].lines
+            found.forward |= lines.forward
+            found.times = max(found.times, lines.times)
+            found.endings |= lines.endings
+            found.opens |= lines.opens
+            found.jumps |= lines.jumps
+    return found
+
+
+def _timed(
+    parts_bars: list[list[RawBar]], order: list[int]
+) -> tuple[list[tuple[int, Fraction]], Fraction]:
+    """The beats at which bars begin, as the fullest part has them, and that of the end."""
+    lengths: dict[int, Fraction] = {}
+    begin = Fraction(0)
+    played = []
+    for number in order:
+        if number not in lengths:
+            lengths[number] = max(bars[number].length for bars in parts_bars if number < len(bars))
+        played.append((number, begin))
+        begin += lengths[number]
+        if begin.denominator > FINEST:
+            begin = begin.limit_denominator(FINEST)
+        if begin > MOST_BEATS:
+            raise ScoreError(f"is longer than {MOST_BEATS} quarters, with its repeats")
+    return played, begin
+
+
+def _metres(bars: list[RawBar], played: list[tuple[int, Fraction]]) -> list[Metre]:
+    """The time signatures, in order; a short first bar counts back from the second."""
+    metres = [COMMON_TIME]
+    holding: list[Fraction | None] = []  # at each bar as written
+    for bar in bars:
+        holding.append(bar.metre or (holding[-1] if holding else None))
+    for number, begin in played:
+        quarters = holding[number] if number < len(holding) else None
+        if quarters is not None and float(quarters) != metres[-1].quarters:
+            metres.append(Metre(float(begin), float(quarters)))
+    if bars and played and len(played) > 1 and played[0][0] == 0:
+        quarters = holding[0] or Fraction(4)
+        upbeat = played[1][1]
+        if upbeat < quarters:  # bars are counted from the first whole one
+            metres.insert(1, Metre(0.0, float(quarters)))
+            metres.append(Metre(float(upbeat), float(holding[min(1, len(bars) - 1)] or quarters)))
+            metres.sort(key=lambda metre: metre.beat)
+    return metres

@@ -1,0 +1,58 @@
+"""Moves the parts of a written score by octaves into the range of the instrument."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from yehu_server.scores.octaves import Octaves, Sounding, octaves_of
+from yehu_server.scores.written.mark_settings import harmonic_of
+from yehu_server.scores.written.notated import Grace, Note, Part, Written
+
+REST = 0.5  # quarters of silence that part phrases
+
+
+def moved_part(part: Part) -> tuple[Part, Octaves]:
+    """Return a part in range, and by how many octaves its notes were moved."""
+    octaves = octaves_of([_sounding(note) for note in part.notes], REST)
+    if not any(octaves.of_notes):
+        return part, octaves
+    notes = tuple(
+        _moved(note, 12.0 * by) for note, by in zip(part.notes, octaves.of_notes, strict=True)
+    )
+    return replace(part, notes=notes), octaves
+
+
+def moved(written: Written, plays: Sequence[int]) -> tuple[Written, str]:
+    """Return a score whose parts of some numbers, from 0, are in range, and a line that tells it.
+
+    The line is empty where nothing is moved.
+    """
+    parts = list(written.parts)
+    told = []
+    for number in plays:
+        parts[number], octaves = moved_part(parts[number])
+        if octaves.told:
+            told.append((written.names[number], octaves.told))
+    return replace(written, parts=tuple(parts)), line_of(told)
+
+
+def line_of(told: Sequence[tuple[str, str]]) -> str:
+    """A line that tells which parts were moved, and how."""
+    if not told:
+        return ""
+    return f"moved to fit F4 to F6: {'; '.join(f'{name} {how}' for name, how in told)}"
+
+
+def _sounding(note: Note) -> Sounding:
+    # A harmonic is as high as it is written: its finger touches an open string.
+    graces = [grace.pitch for grace in (*note.before, *note.after)]
+    own = [] if harmonic_of(note) is not None else [note.pitch]
+    return Sounding(float(note.beat), float(note.end), tuple(own + graces))
+
+
+def _moved(note: Note, by: float) -> Note:
+    def small(graces: tuple[Grace, ...]) -> tuple[Grace, ...]:
+        return tuple(replace(grace, pitch=grace.pitch + by) for grace in graces)
+
+    return replace(note, pitch=note.pitch + by, before=small(note.before), after=small(note.after))

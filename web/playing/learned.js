@@ -26,6 +26,7 @@ import { ParameterError, TABLE, find } from "./table.js";
  * @property {string} name
  * @property {string} about what it is for, in a line
  * @property {boolean} mpe whether every port starts as an MPE zone
+ * @property {number | null} keySwitches the lowest key that chooses an articulation
  * @property {Readonly<Record<string, number>>} start values that parameters start with
  * @property {readonly number[]} x points of curves: positions of the source
  * @property {readonly number[]} y the same: fractions of the span

@@ -27,7 +27,7 @@ const ALL_BUT_PERCUSSION = -1;
  * @param {Mapping} mapping
  * @param {Tuning} tuning
  */
-export function writeTables(tables, { mpe, start, x, y, binds }, tuning) {
+export function writeTables(tables, { mpe, keySwitches, start, x, y, binds }, tuning) {
   tables.fill(0);
   /** @type {Map<number, number>} */
   const firsts = new Map();
@@ -43,6 +43,7 @@ export function writeTables(tables, { mpe, start, x, y, binds }, tuning) {
   tables.set(x, AT.x);
   tables.set(y, AT.y);
   tables[AT.mpe] = Number(mpe);
+  tables[AT.first_switch] = keySwitches ?? NaN;
   tables.set(
     TABLE.map((param) => param.default),
     AT.usual,

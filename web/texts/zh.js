@@ -410,7 +410,8 @@ export default {
   "about/body/blend": "从琴体辐射声 (0) 到弦作用于琴码的力 (1) 的混合。",
   "about/body/width": "约 1.5 kHz 以上琴体声音左右两侧的差别；0：没有差别。",
   "about/body/brilliance": "约 1.3 kHz 以上的增益，由演奏者的弓决定：越用力、越近琴码越亮。",
-  "about/playing/articulation": "此后开始的音由双手如何演奏，如跳弓、滑音、颤音：docs/articulations.md 中的编号；0 为普通。",
+  "about/playing/articulation":
+    "此后开始的音由双手如何演奏，如跳弓、滑音、颤音：docs/articulations.md 中的编号；0 为普通。",
   "about/vibrato/upward": "0：揉弦在音高两侧；1：只向上，幅度加倍。",
   "about/playing/brilliance": "弓越用力或越近琴码，声音比模型亮多少：0 不变，1 如提琴录音。",
   "about/room/size": "房间的长度；宽和高随之变化。",

@@ -5,6 +5,7 @@
 import { find, make, makeSwitch } from "../elements.js";
 import { remember, settings } from "../settings.js";
 import { onLanguage, translate } from "../i18n.js";
+import { makeArticulationChooser } from "./articulations.js";
 import { makeSlider } from "./slider.js";
 
 const SLIDERS = [
@@ -40,9 +41,14 @@ export function showPlayingOptions({ instrument, hands, fingerboard, surface }) 
   const sliders = SLIDERS.map(([address, key]) =>
     makeSlider(instrument.player, address, () => translate(key)),
   );
-  find("ways", HTMLElement).append(switches, ...sliders.map(({ element }) => element));
+  const articulation = makeArticulationChooser(instrument.player);
+  find("ways", HTMLElement).append(
+    switches,
+    articulation.element,
+    ...sliders.map(({ element }) => element),
+  );
   setInterval(() => {
-    if (!document.hidden) for (const slider of sliders) slider.follow();
+    if (!document.hidden) for (const each of [...sliders, articulation]) each.follow();
   }, EVERY);
   find("bowing", HTMLElement).after(directions(surface));
   shiftBy(fingerboard);

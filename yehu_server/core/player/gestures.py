@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.controls.slots import SPEED as BOW_SPEED
 from yehu_server.core.player.phrasing import deviate
 from yehu_server.core.player.rows import (
     ARTICULATION,
@@ -23,6 +24,8 @@ from yehu_server.core.player.rows import (
     TREMOLO,
     VARIATION,
 )
+from yehu_server.core.player.rows import ATTACK as ATTACK_MS
+from yehu_server.core.player.velocity import struck_attack
 from yehu_server.params.articulations import ARTICULATIONS, Articulation, BowStep
 
 ORDINARY = 0
@@ -128,14 +131,14 @@ def rest(g: Any) -> None:
 
 
 @compiled_exactly
-def begin_gesture(p: Any, is_slur: bool) -> None:
+def begin_gesture(p: Any, c: Any, is_slur: bool) -> None:
     """Begin the gesture of a note; on a slur the bow goes on as it is."""
     g = p.gesture
     rest(g)
     number = int(np.rint(p.value[ARTICULATION]))
     g.row = number if 0 <= number < SHAPED_ROW else ORDINARY
     if g.row == ORDINARY and p.value[PHRASING] > 0.0:
-        shape(p)
+        shape(p, c)
     g.attack *= SHAPES[g.row, ATTACK]
     if is_slur and SHAPES[g.row, STROKES] == 0.0:
         g.bow_step = BOW_COUNT[g.row]
@@ -143,6 +146,10 @@ def begin_gesture(p: Any, is_slur: bool) -> None:
         step = BOW_STEPS[g.row, g.bow_step]
         g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
         g.bow_step += 1
+    if g.bow_step < BOW_COUNT[g.row]:
+        step = BOW_STEPS[g.row, g.bow_step]
+        if step[AT] == step[AT_SHARE] == 0.0:  # a swell, which begins once the bow is there
+            g.bow_from = 1e-3 * p.value[ATTACK_MS] * struck_attack(p) * g.attack
     if FINGER_COUNT[g.row] > 0:
         first = FINGER_STEPS[g.row, 0]
         if first[AT] == first[AT_SHARE] == first[GLIDE] == 0.0:
@@ -151,13 +158,16 @@ def begin_gesture(p: Any, is_slur: bool) -> None:
 
 
 @compiled_exactly
-def shape(p: Any) -> None:
-    """Shape an ordinary note as far as phrasing says: its attack, and its swell if it is long."""
+def shape(p: Any, c: Any) -> None:
+    """Shape an ordinary note as far as phrasing says: its attack, and its swell if it is long.
+
+    Only after a rest the bow comes slowly; one that still moves turns at once.
+    """
     g = p.gesture
     amount = min(p.value[PHRASING] / SHAPED_AT, 1.5)
     length = note_length(p, SHAPED_ROW)
     uneven = 1.0 + UNEVEN_ATTACK * deviate(p) * min(4.0 * p.value[VARIATION], 1.0)
-    longer = min(length / LONG_S, 1.0)
+    longer = min(length / LONG_S, 1.0) if c.value[BOW_SPEED] == 0.0 else 0.0
     factor = (SHORT_ATTACK + (LONG_ATTACK - SHORT_ATTACK) * longer) * max(uneven, 0.4)
     g.attack = max(1.0 + amount * (factor - 1.0), 0.4)
     if length >= LEAST_SHAPED_S:

@@ -134,7 +134,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     vary_next_note(p)
     is_slur = is_legato and not at_once
     p.pace = 1.0
-    begin_gesture(p, is_slur)
+    begin_gesture(p, c, is_slur)
     turns = plan_stroke(p, c, wished_speed(p), is_legato)
     if at_once:
         slide_ms = 0.0

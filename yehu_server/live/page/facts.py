@@ -22,6 +22,7 @@ from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import KINDS
 from yehu_server.errors import ParameterError
 from yehu_server.live.page.examples import examples
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.preset_file import SAVED, Preset
 from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, TABLE
@@ -95,6 +96,7 @@ def mapping(one: ControllerMapping) -> dict[str, Any]:
         "name": one.name,
         "about": one.about,
         "mpe": one.mpe,
+        "keySwitches": one.key_switches,
         "start": dict(one.start),
         "x": t["x"][:points].tolist(),
         "y": t["y"][:points].tolist(),
@@ -188,6 +190,7 @@ def facts() -> dict[str, Any]:
         "interpreter": interpreter_layout(),
         "mappings": mappings(),
         "defaultMapping": DEFAULT,
+        "articulations": [[row.name, row.chinese] for row in ARTICULATIONS],
         "presets": presets(),
         "tunings": tunings(),
         "look": look_layout(),

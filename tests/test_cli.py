@@ -89,8 +89,8 @@ def test_each_command_has_help_with_examples(command, name, expected):
 
 
 COMMANDS = (
-    *("serve", "body", "build", "dataset", "devices", "learn", "mappings", "page", "practise"),
-    *("presets", "render", "replay", "score", "simulate", "surfaces", "sweep"),
+    *("serve", "body", "build", "dataset", "devices", "follow", "learn", "mappings", "page"),
+    *("practise", "presets", "render", "replay", "score", "simulate", "surfaces", "sweep"),
     *("body fit", "mappings show", "mappings convert", "presets check"),
 )
 
@@ -174,8 +174,8 @@ def test_a_person_is_told_what_came_of_it_and_sees_no_bar_in_a_pipe(
 
 def test_a_person_is_told_of_notes_out_of_range(command, tmp_path, out):
     path = midi_file(tmp_path / "low.mid", notes((0.0, 0.1, 32, 64)))
-    _, stdout, _ = command("render", path, "-o", out / "x.wav")
-    assert "1 note outside F4 to F6, moved by octaves" in stdout
+    _, _, stderr = command("render", path, "-o", out / "x.wav")
+    assert "moved to fit F4 to F6" in stderr
 
 
 def test_a_terminal_gets_a_progress_bar_and_a_pipe_its_summary(tmp_path, out):

@@ -42,7 +42,7 @@ def tracks_file(path: Path, *tracks: list[tuple[float, mido.Message]]) -> Path:
 
 @pytest.fixture
 def trio(tmp_path) -> Path:
-    messages = [*line(1, 67), *line(2, 72), *line(5, 76), *line(10, 60)]
+    messages = [*line(1, 67), *line(2, 72), *line(5, 76), *line(10, 66)]
     return midi_file(tmp_path / "trio.mid", messages)
 
 

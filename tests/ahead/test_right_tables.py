@@ -67,7 +67,11 @@ def test_no_field_has_a_wild_number(right):
         made[field].reshape(-1)[0] = wrong
         if are_right(made):
             taken.append((field, str(wrong)))
-    assert taken == [("pitch", "nan"), ("program_row", "nan")]  # which stand for none
+    assert taken == [
+        ("first_switch", "nan"),
+        ("pitch", "nan"),
+        ("program_row", "nan"),
+    ]  # which stand for none
 
 
 WRONG = [

@@ -120,14 +120,19 @@ GESTURE = np.dtype(
 )
 
 
+RESTING = np.zeros(1, GESTURE)[0]  # as `rest` leaves it
+for _field in ("scale", "attack", "speed", "weight"):
+    RESTING[_field] = 1.0
+
+
 @compiled_exactly
 def rest(g: Any) -> None:
     """Do nothing: a steady bow, the finger on the note's pitch."""
-    g["row"], g["scale"], g["attack"] = ORDINARY, 1.0, 1.0
-    g["bow_step"] = g["bow_round"] = g["finger_step"] = g["finger_round"] = 0
-    g["bow_from"] = g["finger_from"] = 0.0
-    g["speed"] = g["weight"] = 1.0
-    g["is_off"], g["bend"], g["slide_s"] = 0, 0.0, 0.0
+    g.row, g.scale, g.attack = ORDINARY, 1.0, 1.0
+    g.bow_step = g.bow_round = g.finger_step = g.finger_round = 0
+    g.bow_from = g.finger_from = 0.0
+    g.speed = g.weight = 1.0
+    g.is_off, g.bend, g.slide_s = 0, 0.0, 0.0
 
 
 @compiled_exactly

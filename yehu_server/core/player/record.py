@@ -15,7 +15,7 @@ from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Cal
 from yehu_server.core.player.drift import DRIFT_STATE
 from yehu_server.core.player.ear import EAR, prepare_ear, reset_ear
 from yehu_server.core.player.fingering import OPEN, OpenStrings
-from yehu_server.core.player.gestures import GESTURE, rest
+from yehu_server.core.player.gestures import GESTURE, RESTING
 from yehu_server.core.player.rows import (
     BOW_SIDE,
     BOW_SPEED,
@@ -157,7 +157,7 @@ def prepare_player(
     p["recipe"] = DEFAULT_RECIPE
     p["first_error"], p["pressure_factor"], p["corrects_pressure"] = np.nan, 1.0, 1
     prepare_ear(p["ear"], rate)
-    rest(p["gesture"])
+    p["gesture"] = RESTING
     p["speed_variation"] = p["weight"] = p["pace"] = 1.0
     p["seed"] = seed
     p["bridge_x"] = quantities.bridge_x
@@ -186,7 +186,7 @@ def end_all(player: Any, controls: Any) -> None:
     player["taken"], player["sent"] = 0, np.nan
     reset_ear(player["ear"], int(controls["frame"]))  # a hop may be half done
     player["direction"], player["pace"] = UP, 1.0
-    rest(player["gesture"])
+    player["gesture"] = RESTING
     for name in DRIFT_STATE.names or ():
         player["drift_state"][name] = 0
     for row in (BOW_SPEED, BOW_SIDE, PLUCK_FORCE, *FINGER_PRESS):

@@ -260,3 +260,31 @@ def test_a_mapping_may_give_the_sustain_pedal_another_meaning(read, player, list
     assert listener["/bow/tremolo"] == 20.0
     midi.receive(mido.Message("note_off", note=74))
     assert player.sounding is None
+
+
+def test_key_switches_choose_articulations_and_sound_no_notes(player, listener):
+    midi = MidiPlayer(player, load("keyboard-articulations"))
+    chosen = []
+    for key in (36, 39, 59):
+        midi.receive(mido.Message("note_on", note=key, velocity=80))
+        midi.receive(mido.Message("note_off", note=key))
+        chosen.append(player.value("/playing/articulation"))
+    assert chosen == [0.0, 3.0, 23.0]
+    assert listener.of("/bow/side") == []
+    midi.receive(mido.Message("note_on", note=60, velocity=80))  # the next key plays: C4, as C5
+    assert listener["/bow/side"] != 0.0
+    midi.receive(mido.Message("control_change", control=32, value=5))
+    assert player.value("/playing/articulation") == 5.0
+
+
+def test_without_key_switches_low_keys_play_and_a_bank_number_changes_nothing(player, listener):
+    midi = MidiPlayer(player, load("keyboard"))
+    midi.receive(mido.Message("control_change", control=32, value=5))
+    midi.receive(mido.Message("note_on", note=39, velocity=80))
+    assert player.value("/playing/articulation") == 0.0
+    assert listener["/bow/side"] != 0.0
+
+
+def test_key_switches_lie_below_the_notes(read):
+    with pytest.raises(MappingError, match="whole number from 0 to"):
+        read("key_switches = 60\n")

@@ -10,6 +10,7 @@ import zlib
 from dataclasses import dataclass
 
 from yehu_server.core.player.rows import ROW
+from yehu_server.params.articulations import ARTICULATIONS, LAST
 from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import TABLE
 
@@ -58,6 +59,14 @@ class HostParameter:
     def symbol(self) -> str:
         """Its name in LV2, for ever."""
         return self.address.strip("/").replace("/", "_")
+
+
+ARTICULATION = "/playing/articulation"
+# Hosts keep the numbers: those that nothing has yet are there, by their numbers.
+ARTICULATION_NAMES = tuple(
+    ARTICULATIONS[number].name if number < len(ARTICULATIONS) else str(number)
+    for number in range(LAST + 1)
+)
 
 
 def parameters(
@@ -114,4 +123,5 @@ def _of_table(param: Param) -> HostParameter:
         row=ROW[param.address],
         steps=round(param.hi - param.lo) if param.is_choice else 0,
         is_exponential=param.curve is Curve.EXP,
+        choices=ARTICULATION_NAMES if param.address == ARTICULATION else (),
     )

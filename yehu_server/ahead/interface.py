@@ -220,7 +220,7 @@ def putting(rates: Sequence[float], images: Sequence[Array]) -> Native:
     Parameters
     ----------
     images : sequence of ndarray [dtype=int64]
-        For each of `rates` (Hz); see `images.image`.
+        For each of `rates` (Hz); see `memory_images.image`.
     """
     known = np.array(rates)
     ends = np.cumsum([len(image) for image in images])

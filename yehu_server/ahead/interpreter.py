@@ -33,7 +33,7 @@ interpret_one = interpret_event.symbol
 
 
 def _image() -> Array:
-    """The record of a part of one player that was sent nothing: see ``images``."""
+    """The record of a part of one player that was sent nothing: see ``memory_images``."""
     midi = np.zeros(1, MIDI)
     prepare_midi(midi, ANY_RATE, {param.address: param.default for param in TABLE})
     return np.concatenate(list(runs(np.frombuffer(midi.tobytes(), np.int64))))

@@ -156,7 +156,7 @@ class LivePlayer:
             self._midi.load(values, frame=self._at(frame))
 
     def sound(self) -> dict[str, float]:
-        """The parameters that a preset keeps: see `Controllers.sound`.
+        """The parameters that a preset keeps: see `MidiPlayer.sound`.
 
         Those that all parts share are in the sound of the first.
         """

@@ -28,7 +28,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
 class FlacStream:
-    """Writes a FLAC file of 1 to `MOST_CHANNELS` channels; see `wav.WavStream`.
+    """Writes a FLAC file of 1 to `MOST_CHANNELS` channels; see `wav_stream.WavStream`.
 
     By the format, more than two channels belong to speakers around the listener.
     """
@@ -51,7 +51,7 @@ class FlacStream:
             self._encoder.software = software
 
     def write(self, samples: Samples) -> None:
-        """Append samples; see `wav.WavStream.write`."""
+        """Append samples; see `wav_stream.WavStream.write`."""
         check_shape(samples, self._encoder.channels)
         # soundfile asserts that all frames were written, which fails on a full disk.
         with contextlib.suppress(AssertionError, soundfile.LibsndfileError):

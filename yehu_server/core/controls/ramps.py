@@ -1,7 +1,4 @@
-"""Ramps of the engine's parameters, and the gains and tunings that follow them. Compiled.
-
-Its pole is at 1 - a.
-"""
+"""Ramps of the engine's parameters, and the gains and tunings that follow them. Compiled."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ def look(rig: Any, into: Any) -> None:
 
     Parameters
     ----------
-    rig : pointer to a record of dtype ``native.RIG``
+    rig : pointer to a record of dtype ``rig.RIG``
     into : pointer to a record of dtype LOOK
 
     Real time: safe.

@@ -53,7 +53,7 @@ KICK = math.sqrt(3.0 * (1.0 - RADIUS**2) * ((1.0 + RADIUS**2) ** 2 - TURN**2) / 
 HANDS = 2
 CALMING, STEADY = 0.8, 1e-6  # a hand that does not play comes to rest, by so much in a hop
 LATE = 2  # hops after which what a finger did is heard
-DRAWN_FROM = 1 << 31  # of the seed's numbers; those before are the notes' (``variation``)
+DRAWN_FROM = 1 << 31  # of the seed's numbers; those before are the notes' (``phrasing``)
 
 DRIFT_STATE = np.dtype(
     [

@@ -34,7 +34,7 @@ FORGIVEN_S = ERRORS_AT_ONCE / ERRORS_A_SECOND
 class Clients:
     """The peers that are sent values and errors.
 
-    Addresses come in groups (``parts``): those of a part have its group before them, which is
+    Addresses come in groups: those of a part have its group before them, which is
     left out of what `values` and `status` return.
 
     Parameters

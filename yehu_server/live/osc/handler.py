@@ -45,7 +45,7 @@ DUE_AT_ONCE = 1024  # scheduled messages taken up at a time
 
 
 class OscHandler:
-    """Carries out the messages of packets; called by the thread of ``sockets.OscPorts`` only.
+    """Carries out the messages of packets; called by the thread of ``receiving.OscPorts`` only.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ class PagePlayers:
         part : int
             Counted from 0; what all parts share goes to the first.
         wishes : ndarray [shape=(n, 5)]
-            Frame, kind, index, value and other of each, as ``page_sockets.read_wishes`` has them.
+            Frame, kind, index, value and other of each, as ``sockets.read_wishes`` has them.
         arrived_ns : int
             When they came (``time.monotonic_ns()``).
         """

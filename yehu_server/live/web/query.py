@@ -63,7 +63,7 @@ PART_DOC = "Part {}: a player of its own, with the instrument that it plays."
 
 @dataclass(frozen=True)
 class Snapshot:
-    """The values of a group of addresses (``parts``): parameters by address, status by name."""
+    """The values of a group of addresses: parameters by address, status by name."""
 
     values: Mapping[str, float]
     status: Mapping[str, float | str]

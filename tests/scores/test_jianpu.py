@@ -336,3 +336,9 @@ def test_signs_of_web_pages_are_understood():
         Fraction(3, 4),
         Fraction(1),
     ]
+
+
+def test_the_last_bar_may_leave_what_the_upbeat_has():
+    whole = "1=C 3/4,4\n5, | 1 - 3 | 1 - |\n"
+    assert performed(written(whole)).warnings == ()
+    assert "do not fit" in performed(written(whole + "1 - 3 |\n")).warnings[0]

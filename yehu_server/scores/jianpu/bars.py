@@ -7,6 +7,8 @@ from fractions import Fraction
 
 from yehu_server.scores.jianpu.text import Word
 
+UNFIT = "bar lines do not fit the metre"
+
 
 class Bars:
     """The place within the bar, in the order of the page.
@@ -26,14 +28,20 @@ class Bars:
         self._notices = notices
         self._is_written = False
         self._before_repeat = Fraction(0)
+        self._upbeat = Fraction(0)
+        self._short: Word | None = None  # the end of a bar that an upbeat completes, if it is last
 
     def change(self, length: Fraction, first: Fraction) -> None:
         """A metre is written; its first bar may be a short one."""
         self.length, self.place = length, length - first
+        self._upbeat = first
         self._is_written = True
 
     def step(self, length: Fraction, word: Word) -> None:
         """A note is written."""
+        if self._short is not None:
+            self._tell(UNFIT, self._short)
+            self._short = None
         self.place += length
         if self.place >= self.length:
             over, self.place = self.place - self.length, self.place % self.length
@@ -43,7 +51,10 @@ class Bars:
     def line(self, word: Word) -> None:
         """A bar line is written."""
         if self.place and self._is_written:
-            self._tell("bar lines do not fit the metre", word)
+            if self.place + self._upbeat == self.length:
+                self._short = word
+            else:
+                self._tell(UNFIT, word)
             self.place = Fraction(0)
 
     def repeat(self, begin: Fraction, times: int) -> None:

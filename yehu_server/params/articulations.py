@@ -136,7 +136,6 @@ ARTICULATIONS: tuple[Articulation, ...] = (
     ),
     Articulation(
         "ricochet", "抛弓", "the bow is thrown and bounces, up to five times, ever sooner",
-        source="[Guettler and Askenfelt]: bounces of 8 to 15 a second; the rest by ear",
         bow=(
             BowStep(speed=1.15, weight=1.1),
             BowStep(at_ms=50.0, ramp_ms=25.0, is_on=False),
@@ -145,7 +144,7 @@ ARTICULATIONS: tuple[Articulation, ...] = (
     ),
     Articulation(
         "tremolo", "颤弓", "many short strokes, growing",
-        source="12 to 15 strokes a second in recordings of an erhu; the growth by ear",
+        source="12 to 15 strokes a second in recordings; the growth by ear",
         bow=(BowStep(speed=0.7), BowStep(speed=1.1, ramp_share=0.9)),
         tremolo=13.0, length_s=1.5,
     ),
@@ -242,8 +241,8 @@ ARTICULATIONS: tuple[Articulation, ...] = (
         "wavering", "活五", "a pitch that never rests, as the second degree of the Chaozhou scale "
         "huo wu: over it, and slowly about it",
         fingers=(
-            FingerStep(-0.4),
-            FingerStep(0.6, at_ms=40.0, glide_ms=170.0),
+            FingerStep(-0.4, glide_ms=60.0),
+            FingerStep(0.6, at_ms=60.0, glide_ms=150.0),
             FingerStep(-0.2, at_ms=230.0, glide_ms=170.0),
         ),
         again_ms=380.0,

@@ -55,11 +55,17 @@ def time_of(step: Any, length: float) -> float:
 
 
 @compiled_exactly
-def until_again(row: int, times: int) -> float:
-    """Time from a round to the next (s), or 0 where none comes."""
-    if SHAPES[row, AGAIN] == 0.0 or times + 1 >= SHAPES[row, TIMES]:
-        return 0.0
-    return float(1e-3 * SHAPES[row, AGAIN] * max(1.0 - SHAPES[row, SOONER] * times, SOONEST))
+def begin_again(track: Any, row: int, count: int, now: float) -> None:
+    """Begin a hand's steps once more, where all are done and they are to come again by now."""
+    if SHAPES[row, AGAIN] == 0.0 or not track.step >= count > 0:
+        return
+    if track.times + 1 >= SHAPES[row, TIMES]:
+        return
+    sooner = max(1.0 - SHAPES[row, SOONER] * track.times, SOONEST)
+    again = 1e-3 * SHAPES[row, AGAIN] * sooner
+    if now >= track.begins + again:
+        track.step, track.begins = 0, track.begins + again
+        track.times += 1
 
 
 @compiled_exactly
@@ -67,16 +73,13 @@ def move_bow(p: Any, c: Any, now: float, length: float) -> None:
     """Carry out the bow's steps that are due."""
     g = p.gesture
     count = BOW_COUNT[g.row]
-    if g.bow_step >= count > 0 and FINGER_COUNT[g.row] == 0:
-        again = until_again(g.row, g.bow_round)
-        if again > 0.0 and now >= g.bow_from + again:
-            g.bow_step, g.bow_from = 0, g.bow_from + again
-            g.bow_round += 1
-    while g.bow_step < count:
-        step = BOW_STEPS[g.row, g.bow_step]
-        if now < g.bow_from + time_of(step, length):
+    if FINGER_COUNT[g.row] == 0:
+        begin_again(g.bow, g.row, count, now)
+    while g.bow.step < count:
+        step = BOW_STEPS[g.row, g.bow.step]
+        if now < g.bow.begins + time_of(step, length):
             return
-        g.bow_step += 1
+        g.bow.step += 1
         ramp_ms = step[RAMP] + 1e3 * step[RAMP_SHARE] * length
         g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
         g.is_off = 0 if step[IS_ON] != 0.0 else 1
@@ -94,18 +97,14 @@ def move_finger(p: Any, c: Any, now: float, length: float) -> None:
     """Carry out the finger's steps that are due, and go on with its slide."""
     g = p.gesture
     count = FINGER_COUNT[g.row]
-    if g.finger_step >= count > 0:
-        again = until_again(g.row, g.finger_round)
-        if again > 0.0 and now >= g.finger_from + again:
-            g.finger_step, g.finger_from = 0, g.finger_from + again
-            g.finger_round += 1
-    while g.finger_step < count:
-        step = FINGER_STEPS[g.row, g.finger_step]
-        if now < g.finger_from + time_of(step, length):
+    begin_again(g.finger, g.row, count, now)
+    while g.finger.step < count:
+        step = FINGER_STEPS[g.row, g.finger.step]
+        if now < g.finger.begins + time_of(step, length):
             break
-        g.finger_step += 1
-        if step[GLIDE] > 0.0 or (g.finger_round > 0 and time_of(step, length) == 0.0):
-            begin_slide(p, g.bend, step[SEMITONES], now, 1e-3 * max(step[GLIDE], 60.0))
+        g.finger.step += 1
+        if step[GLIDE] > 0.0:
+            begin_slide(p, g.bend, step[SEMITONES], now, 1e-3 * step[GLIDE])
         else:
             g.bend, g.slide_s = step[SEMITONES], 0.0
             notes.follow_pitch(p, c, STEP_MS)

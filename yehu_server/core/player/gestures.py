@@ -92,24 +92,21 @@ VIBRATOS = np.array([
     for row in _ROWS
 ])  # fmt: skip
 
+# How far the steps of a hand are: the next one, how often they came before, and the time after the
+# note's beginning from which they count (s).
+TRACK = np.dtype([("step", np.int64), ("times", np.int64), ("begins", np.float64)], align=True)
+
 GESTURE = np.dtype(
     [
         ("row", np.int64),  # of the tables above
         ("scale", np.float64),  # of what the bow's factors differ from 1
         ("attack", np.float64),  # factor
-        # The bow: its next step, how often its steps came, the time after the note's beginning
-        # from which they count (s).
-        ("bow_step", np.int64),
-        ("bow_round", np.int64),
-        ("bow_from", np.float64),
+        ("bow", TRACK),
         ("speed", np.float64),  # factors
         ("weight", np.float64),
         ("is_off", np.int64),  # whether the hair is lifted
-        # The finger: the same, and where it is from the note's pitch (semitones).
-        ("finger_step", np.int64),
-        ("finger_round", np.int64),
-        ("finger_from", np.float64),
-        ("bend", np.float64),
+        ("finger", TRACK),
+        ("bend", np.float64),  # where the finger is from the note's pitch (semitones)
         # The slide it is in: ends (semitones), time after the note's beginning, duration (s).
         ("slide_from", np.float64),
         ("slide_to", np.float64),
@@ -129,8 +126,8 @@ for _field in ("scale", "attack", "speed", "weight"):
 def rest(g: Any) -> None:
     """Do nothing: a steady bow, the finger on the note's pitch."""
     g.row, g.scale, g.attack = ORDINARY, 1.0, 1.0
-    g.bow_step = g.bow_round = g.finger_step = g.finger_round = 0
-    g.bow_from = g.finger_from = 0.0
+    g.bow.step = g.bow.times = g.finger.step = g.finger.times = 0
+    g.bow.begins = g.finger.begins = 0.0
     g.speed = g.weight = 1.0
     g.is_off, g.bend, g.slide_s = 0, 0.0, 0.0
 
@@ -146,20 +143,20 @@ def begin_gesture(p: Any, c: Any, is_slur: bool) -> None:
         shape(p, c)
     g.attack *= SHAPES[g.row, ATTACK]
     if is_slur and SHAPES[g.row, STROKES] == 0.0:
-        g.bow_step = BOW_COUNT[g.row]
-    while g.bow_step < BOW_COUNT[g.row] and is_immediate(BOW_STEPS[g.row, g.bow_step]):
-        step = BOW_STEPS[g.row, g.bow_step]
+        g.bow.step = BOW_COUNT[g.row]
+    while g.bow.step < BOW_COUNT[g.row] and is_immediate(BOW_STEPS[g.row, g.bow.step]):
+        step = BOW_STEPS[g.row, g.bow.step]
         g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
-        g.bow_step += 1
-    if g.bow_step < BOW_COUNT[g.row]:
-        step = BOW_STEPS[g.row, g.bow_step]
+        g.bow.step += 1
+    if g.bow.step < BOW_COUNT[g.row]:
+        step = BOW_STEPS[g.row, g.bow.step]
         if step[AT] == step[AT_SHARE] == 0.0:  # a swell, which begins once the bow is there
-            g.bow_from = 1e-3 * p.value[ATTACK_MS] * struck_attack(p) * g.attack
+            g.bow.begins = 1e-3 * attack_ms(p)
     if FINGER_COUNT[g.row] > 0:
         first = FINGER_STEPS[g.row, 0]
         if first[AT] == first[AT_SHARE] == first[GLIDE] == 0.0:
             g.bend = first[SEMITONES]
-            g.finger_step = 1
+            g.finger.step = 1
 
 
 @compiled_exactly
@@ -199,9 +196,9 @@ def scaled(g: Any, factor: float) -> float:
 
 
 @compiled_exactly
-def attack_of(p: Any) -> float:
-    """Factor on the time of the attack."""
-    return float(p.gesture.attack)
+def attack_ms(p: Any) -> float:
+    """The time in which a lifted bow comes to its speed and force."""
+    return float(p.value[ATTACK_MS] * struck_attack(p) * p.gesture.attack)
 
 
 @compiled_exactly

@@ -18,7 +18,7 @@ from yehu_server.core.player.fingering import FIRST_OPEN, choose, stay, stay_for
 from yehu_server.core.player.gestures import (
     IS_PLUCKED,
     SHAPES,
-    attack_of,
+    attack_ms,
     begin_gesture,
     begin_slide,
     tremolo_of,
@@ -57,7 +57,6 @@ from yehu_server.core.player.rows import (
 )
 from yehu_server.core.player.stroke import CHANGE_MS, is_at_its_end, plan_stroke
 from yehu_server.core.player.tuning_by_ear import begin_tuning
-from yehu_server.core.player.velocity import struck_attack
 from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
 
@@ -152,11 +151,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
     begin_pressure_correction(p, pitch)
-    pause_listening(
-        p,
-        c,
-        max(slide_ms, SLURRED_MS if is_slur else p.value[ATTACK] * struck_attack(p) * attack_of(p)),
-    )
+    pause_listening(p, c, max(slide_ms, SLURRED_MS if is_slur else attack_ms(p)))
     left_hand.set_vibrato(p, c)
     left_hand.begin_vibrato(p, c)
     set_assist(p, c)

@@ -15,10 +15,9 @@ from yehu_server.core.player.bowing import (
     recipe_value,
     share,
 )
-from yehu_server.core.player.gestures import attack_of, tremolo_of
+from yehu_server.core.player.gestures import attack_ms, tremolo_of
 from yehu_server.core.player.ownership import USUAL_MS, forget, move
 from yehu_server.core.player.rows import (
-    ATTACK,
     BOW_POSITION,
     BOW_PRESSURE,
     BOW_SIDE,
@@ -31,7 +30,7 @@ from yehu_server.core.player.rows import (
     RELEASE,
     SPEED,
 )
-from yehu_server.core.player.velocity import BITE_MS, struck_attack, struck_bite, struck_speed
+from yehu_server.core.player.velocity import BITE_MS, struck_bite, struck_speed
 from yehu_server.params.table import find
 
 Array = Any
@@ -109,10 +108,9 @@ def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
         if p.side != 0.0:
             lift(p, c, p.value[RELEASE])
         return
-    attack_ms = p.value[ATTACK] * struck_attack(p) * attack_of(p)
     crossing_ms = CROSSING_MS
     if p.side == 0.0:
-        ramp_ms, crossing_ms = attack_ms, attack_ms / 4.0
+        ramp_ms, crossing_ms = attack_ms(p), attack_ms(p) / 4.0
     p.side = side
     move(p, c, BOW_SIDE, side, crossing_ms)
     move(p, c, BOW_TREMOLO, tremolo_of(p), USUAL_MS)

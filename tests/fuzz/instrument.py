@@ -93,10 +93,7 @@ class Instrument(Leader):
 
     def check_player(self) -> None:
         """All that the player decides by is a number."""
-        inner = {name for name in self._player.dtype.names if self._player.dtype[name].names}
-        for record in (self._player, *(self._player[name] for name in inner)):
-            for name in set(record.dtype.names) - MAY_BE_NAN - inner:
-                assert np.isfinite(record[name]).all(), name
+        check_numbers(self._player)
         assert np.isfinite(self.midi["value"]).all()
 
     def meters(self) -> dict[str, float]:
@@ -107,6 +104,15 @@ class Instrument(Leader):
     def target(self, address: str) -> float:
         self.play()
         return float(self._controls["target"][0, SLOT[address]])
+
+
+def check_numbers(record: np.ndarray) -> None:
+    """All numbers of a record are finite, in the records within it too."""
+    for name in set(record.dtype.names or ()) - MAY_BE_NAN:
+        if record.dtype[name].base.names:
+            check_numbers(record[name])
+        else:
+            assert np.isfinite(record[name]).all(), name
 
 
 def check_values(player: LivePlayer) -> None:

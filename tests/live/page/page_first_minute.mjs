@@ -69,11 +69,14 @@ await run(async (browser, url) => {
   found.said.push(await words());
   found.taught = await page.evaluate(() => JSON.parse(localStorage.yehu).isTaught);
   await touch("touchStart", [{ x: bow.x + bow.width * 0.98, y: bow.y + 40, id: 2 }]);
-  for (let step = 0; step < 20; step++) {
-    await touch("touchMove", [{ x: bow.x + bow.width * 0.98, y: bow.y + 40 + 12 * step, id: 2 }]);
+  const tone = page.locator("#guide");
+  for (let step = 0; step < 400 && found.pressed !== "scratch"; step++) {
+    // Down and up again: it says "scratch" as soon as it has heard the bow.
+    const down = 240 * Math.abs(((step / 20 + 1) % 2) - 1);
+    await touch("touchMove", [{ x: bow.x + bow.width * 0.98, y: bow.y + 40 + down, id: 2 }]);
     await page.waitForTimeout(20);
+    found.pressed = await tone.getAttribute("data-tone");
   }
-  found.pressed = await page.locator("#guide").getAttribute("data-tone");
   await touch("touchEnd", []);
   await page.click("#skip");
   await page.keyboard.press("?");

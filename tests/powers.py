@@ -17,4 +17,4 @@ def cubed(number: float) -> float:
 
 def cube() -> Native:
     """The function as after a start: nothing in this process has compiled or loaded it."""
-    return Native("float64(float64)", cubed)
+    return Native(cubed)

@@ -29,7 +29,7 @@ class Kept:
 
     def start(self, function=third_of) -> tuple[int, bool]:
         """Call the function with 12, as after a start; the result, and whether it was cached."""
-        native = jit.Native("int64(int64)", function)
+        native = jit.Native(function)
         return native.call(12), native.compiled.cache_hits == 1
 
     @property

@@ -112,7 +112,7 @@ def test_a_comment_compiles_nothing_anew(tmp_path, monkeypatch):
         path = tmp_path / "thirds.py"
         path.write_text(source, encoding="utf-8")
         third = runpy.run_path(str(path), run_name="thirds")["third"]
-        native = jit.Native("int64(int64)", third)
+        native = jit.Native(third)
         assert native.call(12) == 4
         return native.compiled.cache_hits == 1
 

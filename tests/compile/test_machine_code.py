@@ -17,7 +17,7 @@ import pytest
 from yehu_server.cli.terminal import warn_of_compiling
 from yehu_server.compile import cache_folder, machine_code
 from yehu_server.compile.cache_folder import source_hash
-from yehu_server.core.engine.warming import ALL_FUNCTIONS, warm_up
+from yehu_server.core.engine.warming import all_functions, warm_up
 from yehu_server.util.sealed import read_sealed, write_sealed
 
 ROOT = Path(__file__).parents[2]
@@ -75,7 +75,7 @@ def test_a_note_from_what_is_kept_needs_no_numba():
 
 
 def test_all_that_playing_needs_is_in_one_file(kept, tmp_path):
-    assert {function.name for function in ALL_FUNCTIONS} <= set(written(tmp_path, kept))
+    assert {function.name for function in all_functions()} <= set(written(tmp_path, kept))
 
 
 def test_what_was_made_for_something_else_is_left_alone(kept, tmp_path, caplog):

@@ -24,7 +24,7 @@ CODES = {
     "RANGE": ("TRANSPOSE", "CLAMP", "SKIP"),
 }
 KINDS_OF_C = {
-    "void": "void",
+    "void": "void ",
     "voidptr": "void *",
     "int64": "int64_t ",
     "float64": "double ",
@@ -173,9 +173,8 @@ def _comments(module: ModuleType, record: str) -> dict[str, str]:
 
 
 def _prototype(function: Native) -> str:
-    returned, _, taken = function.signature.partition("(")
     names = list(inspect.signature(function.function).parameters)
-    kinds = [KINDS_OF_C[kind.strip()] for kind in taken.rstrip(")").split(",") if kind.strip()]
+    returned, *kinds = (KINDS_OF_C[kind] for kind in function.types)
     arguments = ", ".join(
         f"{'const ' if name in READ_ONLY else ''}{kind}{name}"
         for kind, name in zip(kinds, names, strict=True)
@@ -183,5 +182,4 @@ def _prototype(function: Native) -> str:
     about = inspect.cleandoc(function.function.__doc__ or "").partition("\n\nParameters\n")[0]
     about = " ".join(about.replace("`", "").split())
     comment = textwrap.fill(f"/* {about} */", WIDTH, subsequent_indent=" * ")
-    kind = "void " if returned == "void" else KINDS_OF_C[returned]
-    return f"{comment}\n{kind}{function.name}({arguments or 'void'});"
+    return f"{comment}\n{returned}{function.name}({arguments or 'void'});"

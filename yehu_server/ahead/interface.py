@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from yehu_server.ahead.table_checks import (
-    CHECKS,
     check_binds,
     check_curves,
     check_fields,
@@ -34,7 +33,7 @@ from yehu_server.core.midi.events import CONTROL, MESSAGE, TABLES_TO
 from yehu_server.core.midi.packing import BYTE, LENGTH_AT
 from yehu_server.core.midi.record import MIDI, NONE
 from yehu_server.core.midi.tables import SLOTS, TABLES
-from yehu_server.core.midi.values import NO_KEY, find_values, find_values_native
+from yehu_server.core.midi.values import NO_KEY, find_values
 from yehu_server.core.physics.layout import STATE
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import MOST_HELD, PLAYER
@@ -54,33 +53,30 @@ _midi_fields: Any = MIDI.fields
 IN_USE_AT = memory.MIDI_AT + _midi_fields["tables"][1]
 LAST_AT = memory.POSTED_AT + SERVER * memory.CURSOR_BYTES + WORD
 STATUS, SYSTEM, REAL_TIME, SYSTEM_RESET = 0x80, 0xF0, 0xF8, 0xFF
-play_block = engine.callback.symbol
-fields_are_right, values_are_right = check_fields.symbol, check_values.symbol
-binds_are_right, curves_are_right = check_binds.symbol, check_curves.symbol
 
 
-@native("int64()")
+@native
 def size() -> int:
     """Bytes that an instrument takes."""
     return BYTES
 
 
-@native("void(voidptr, voidptr, int64)", calls=[engine.callback])
+@native
 def process(rig: Any, out: Any, frames: int) -> None:
     """Compute the next frames, of float samples in full scale, channels interleaved.
 
     Real time: safe; no allocation, no lock, every sample finite.
     """
-    play_block(rig, out, np.uint64(frames), rig, np.uint64(0), rig)
+    engine.callback(rig, out, np.uint64(frames), rig, np.uint64(0), rig)
 
 
-@native("int64(voidptr)")
+@native
 def frame(rig: Any) -> int:
     """Number of the next frame."""
     return int(carray(at(rig, memory.CONTROLS_AT), (1,), CONTROLS)[0].frame)
 
 
-@native("float64(voidptr, int64)")
+@native
 def value(rig: Any, parameter: int) -> float:
     """The value that a parameter has, or moves to; NaN for none."""
     if not 0 <= parameter < ROWS:
@@ -91,13 +87,13 @@ def value(rig: Any, parameter: int) -> float:
     return float(carray(at(rig, memory.PLAYER_AT), (1,), PLAYER)[0].value[parameter])
 
 
-@native("float64(voidptr)")
+@native
 def pitch(rig: Any) -> float:
     """The pitch that sounds (fractional MIDI note), or NaN in silence."""
     return sounding_pitch(carray(at(rig, memory.PLAYER_AT), (1,), PLAYER)[0])
 
 
-@native("int64(voidptr)")
+@native
 def lost(rig: Any) -> int:
     """How often the state was lost, and put back to rest; it should stay 0."""
     state = carray(at(rig, memory.STATE_AT), (1,), STATE)[0]
@@ -106,7 +102,7 @@ def lost(rig: Any) -> int:
     return int(state.lost + output.invalid_samples + mix.invalid_samples)
 
 
-@native("int64(voidptr, int64, voidptr, int64)")
+@native
 def midi(rig: Any, frame: int, data: Any, n: int) -> int:
     """Play MIDI messages, n bytes in all, on port 0 from a frame on; return how many were posted.
 
@@ -139,7 +135,7 @@ def midi(rig: Any, frame: int, data: Any, n: int) -> int:
     return posted
 
 
-@native("int64(voidptr, int64, int64, float64)")
+@native
 def control(rig: Any, frame: int, number: int, argument: float) -> int:
     """Move a named control of the mapping, by its number; return 0 where the ring is full."""
     if number < 0:
@@ -147,16 +143,17 @@ def control(rig: Any, frame: int, number: int, argument: float) -> int:
     return post_to(rig, SERVER, frame, CONTROL, number, argument, 0.0)
 
 
-@native("int64(voidptr, int64, voidptr, int64)", calls=CHECKS)
+@native
 def use_tables(rig: Any, frame: int, tables: Any, size: int) -> int:
     """Use other tables (struct yehu_tables, of some bytes) from a frame on; return 1.
 
     They are copied. Returns 0 where those given before are not in use yet, or the ring is full: try
     again later. Returns -1 where they are wrong, which changes nothing.
     """
-    if size != TABLES_BYTES or fields_are_right(tables) == 0:
+    if size != TABLES_BYTES or check_fields(tables) == 0:
         return -1
-    if min(values_are_right(tables), binds_are_right(tables), curves_are_right(tables)) == 0:
+    t = carray(tables, (1,), TABLES)[0]
+    if min(check_values(t), check_binds(t), check_curves(t)) == 0:
         return -1
     last = carray(at(rig, LAST_AT), (1,), np.int64)
     if load_acquire(rig, IN_USE_AT) != last[0]:
@@ -202,16 +199,10 @@ CLEARED, OF_PART = _cleared(), 2
 PART, AFTER_PART = memory.MIDI_AT // WORD, memory.HEAP_AT // WORD  # words
 
 
-PUT = "int64(voidptr, float64, int64, int64)"
-
-
-@native(PUT)
+@native
 def put(rig: Any, rate: float, channels: int, kept: int) -> int:
     """Stand for what `putting` makes, where its name and signature are asked for."""
     raise NotImplementedError
-
-
-put_image = put.symbol
 
 
 def putting(rates: Sequence[float], images: Sequence[Array]) -> Native:
@@ -250,12 +241,12 @@ def putting(rates: Sequence[float], images: Sequence[Array]) -> Native:
             start = ends[i]
         return 0
 
-    return native(PUT)(put)
+    return native(put)
 
 
 def prepare(rig: Any, rate: float, channels: int) -> int:
     """Make an instrument at a rate (Hz), at rest; return 0 where there is none for it."""
-    return int(put_image(rig, rate, channels, 0))
+    return int(put(rig, rate, channels, 0))
 
 
 def reset(rig: Any) -> None:
@@ -269,7 +260,7 @@ def reset(rig: Any) -> None:
     stage = carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0]
     last = carray(at(rig, LAST_AT), (1,), np.int64)
     tables = last[0]
-    if put_image(rig, m.rate, stage.channels, 1) == 0:
+    if put(rig, m.rate, stage.channels, 1) == 0:
         return
     m.held, m.sounding, m.listed = 0, NONE, 0
     for n in range(MOST_HELD):
@@ -304,7 +295,7 @@ def telling(sources: str) -> Native:
         """Tell what it was made from: YEHU_SOURCES, as a number."""
         return int(number)
 
-    made = native("int64()")(sources_number)
+    made = native(sources_number)
     made.name = "yehu_sources"
     return made
 
@@ -313,8 +304,8 @@ def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> 
     """List all functions of the interface, for the images and the hash of sources given."""
     put, told = putting(rates, images), telling(sources)
     beginning = [
-        native("int64(voidptr, float64, int64)", calls=[put])(prepare),
-        native("void(voidptr)", calls=[put, find_values_native])(reset),
+        Native(prepare, calls=[put]),
+        Native(reset, calls=[put, find_values]),
     ]
     posting = [engine.post, midi, control, use_tables]
     return [told, size, *beginning, *posting, process, frame, value, pitch, look, lost]

@@ -17,7 +17,7 @@ from yehu_server.compile.jit import Native, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.engine.atomics import at
 from yehu_server.core.engine.look import LOOK
-from yehu_server.core.midi.interpret_events import interpret as interpret_event
+from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import MIDI, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.params.table import TABLE
@@ -28,8 +28,6 @@ WORD = 8  # bytes
 TABLES_AT = MIDI.itemsize
 BYTES = TABLES_AT + SLOTS * TABLES.itemsize
 ANY_RATE = 48000.0  # Hz; only sections ask for theirs
-
-interpret_one = interpret_event.symbol
 
 
 def _image() -> Array:
@@ -42,13 +40,13 @@ def _image() -> Array:
 IMAGE = _image()
 
 
-@native("int64()")
+@native
 def interpreter_size() -> int:
     """Bytes that an interpreter takes."""
     return BYTES
 
 
-@native("void(voidptr)")
+@native
 def interpreter_prepare(interpreter: Any) -> None:
     """Make an interpreter of a part that was sent nothing; its tables are all zero."""
     words = carray(interpreter, (BYTES // WORD,), np.int64)
@@ -62,16 +60,14 @@ def interpreter_prepare(interpreter: Any) -> None:
         place += 2 + count
 
 
-@native(
-    "int64(voidptr, int64, int64, int64, float64, float64)",
-    calls=[interpret_event],
-)
+@native
 def interpreter_take(
     interpreter: Any, frame: int, kind: int, index: int, value: float, other: float
 ) -> int:
     """Interpret an event (``midi.events``); return the number of wishes that it comes to."""
-    interpret_one(interpreter, at(interpreter, TABLES_AT), frame, kind, index, value, other)
-    return int(carray(interpreter, (1,), MIDI)[0].wishes)
+    m = carray(interpreter, (1,), MIDI)[0]
+    interpret(m, at(interpreter, TABLES_AT), frame, kind, index, value, other)
+    return int(m.wishes)
 
 
 INTERPRETER: tuple[Native, ...] = (interpreter_size, interpreter_prepare, interpreter_take)

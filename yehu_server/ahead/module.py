@@ -7,13 +7,13 @@ stops the program instead, and falls away where LLVM sees that it is never reach
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from llvmlite import binding
 
-from yehu_server.compile.jit import Native
+from yehu_server.compile.jit import Native, with_called
 from yehu_server.core.engine.processor import ARM_BIT, X86_BITS
 from yehu_server.errors import YehuError
 
@@ -156,7 +156,7 @@ def joined(functions: Sequence[Native], target: Target) -> Any:
     YehuError
         Where they need what neither a page nor a C library has.
     """
-    module, *others = map(_module, dict.fromkeys(_with_called(functions)))
+    module, *others = map(_module, with_called(functions))
     for other in others:
         module.link_in(other)
     machine = target.machine()
@@ -184,12 +184,6 @@ def unresolved(module: Any) -> list[str]:
         for function in module.functions
         if function.is_declaration and not function.name.startswith("llvm.")
     )
-
-
-def _with_called(functions: Iterable[Native]) -> Iterable[Native]:
-    for function in functions:
-        yield from _with_called(function.calls)
-        yield function
 
 
 def _module(function: Native) -> Any:

@@ -27,6 +27,7 @@ from yehu_server.core.midi.tables import (
     POINTS,
     SKIP,
     TABLES,
+    Tables,
 )
 from yehu_server.core.player.rows import HIGHEST, LOWEST, ROWS
 
@@ -94,13 +95,12 @@ def checking_fields(rules: dict[str, tuple[int, float, float]]) -> Any:
                     return 0
         return 1
 
-    return native("int64(voidptr)")(check_fields)
+    return native(check_fields)
 
 
-@native("int64(voidptr)")
-def check_values(tables: Any) -> int:
+@native
+def check_values(t: Tables) -> int:
     """Tell whether values are within the ranges of their parameters, once each field is right."""
-    t = carray(tables, (1,), TABLES)[0]
     for n in range(int(t.starts)):
         row = int(t.start_row[n])
         if not LOWEST[row] <= t.start_value[n] <= HIGHEST[row]:
@@ -112,10 +112,9 @@ def check_values(tables: Any) -> int:
     return 1
 
 
-@native("int64(voidptr)")
-def check_binds(tables: Any) -> int:
+@native
+def check_binds(t: Tables) -> int:
     """Tell whether sources and targets of binds are right, once each field is."""
-    t = carray(tables, (1,), TABLES)[0]
     for n in range(int(t.binds)):
         source, row = int(t.source[n]), int(t.target[n])
         is_change = source < KEYS or PAIR <= source < PAIR + PAIRS
@@ -130,10 +129,9 @@ def check_binds(tables: Any) -> int:
     return 1
 
 
-@native("int64(voidptr)")
-def check_curves(tables: Any) -> int:
+@native
+def check_curves(t: Tables) -> int:
     """Tell whether the curves of binds are right, once each field is."""
-    t = carray(tables, (1,), TABLES)[0]
     for n in range(int(t.binds)):
         curve = int(t.curve[n])
         if curve == EXPONENTIAL and (min(t.lo[n], t.hi[n]) < TINY or t.by_range[n] != 0.0):

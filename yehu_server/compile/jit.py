@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ctypes
+import dis
 import importlib
 import os
-import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, update_wrapper
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar, cast
+from types import ModuleType, NoneType
+from typing import Annotated, Any, ParamSpec, TypeVar, cast, get_args, get_type_hints
 
 from yehu_server.compile import machine_code
 from yehu_server.compile.cache_folder import IS_CACHED, cache_folder, source_hash
@@ -133,32 +134,60 @@ C_TYPES: dict[str, Any] = {
     "uint64": ctypes.c_uint64,
     "float64": ctypes.c_double,
 }
+C_TYPE_OF = {
+    NoneType: "void",
+    Any: "voidptr",
+    bool: "int64",
+    int: "int64",
+    float: "float64",
+}
+Int32 = Annotated[int, "int32"]
+UInt64 = Annotated[Any, "uint64"]
 
 
 class Native:
-    """A function compiled on its first use, to be called by address, from C or by ctypes.
+    """A function compiled apart: compiled code calls it by its name, C and ctypes by its address.
 
     Parameters
     ----------
-    calls : sequence of Native
-        Those that it calls by their `symbol`.
+    function : callable
+        Its annotations are its types: int, float, None, Any for an address, and what is in
+        ``Annotated``, a name of `C_TYPES` or the dtype of a record, which is passed by address. A
+        bool is passed as an int, since WebAssembly and numba pass bits in different ways.
+    calls : sequence of Native, optional
+        Those that it calls, where that is not what its code names.
     """
 
-    def __init__(
-        self, signature: str, function: Callable[..., Any], calls: Sequence[Native] = ()
-    ) -> None:
-        self.signature = signature
+    def __init__(self, function: Callable[..., Any], calls: Sequence[Native] | None = None) -> None:
         self.function = function
-        self.calls = calls
         self.name = f"yehu_{function.__name__}"
-        self.full_name = f"{function.__module__}.{function.__qualname__}"
+        self._calls = calls
+
+    @property
+    def types(self) -> list[Any]:
+        """What it returns and takes: names of `C_TYPES`, and dtypes of records."""
+        hints = get_type_hints(self.function, include_extras=True)
+        hints = {"return": hints.pop("return"), **hints}
+        return [C_TYPE_OF.get(hint) or get_args(hint)[1] for hint in hints.values()]
+
+    @cached_property
+    def calls(self) -> Sequence[Native]:
+        """Those that it calls, itself or by functions that are compiled into it."""
+        if self._calls is not None:
+            return self._calls
+        found: dict[Any, None] = {}
+        ahead = [self.function]
+        while ahead:
+            for value in _values_named_in(ahead.pop()):
+                if isinstance(value, (Native, Compiled)) and value not in found:
+                    found[value] = None
+                    ahead += [value.py_func] if isinstance(value, Compiled) else []
+        return [value for value in found if isinstance(value, Native)]
 
     @cached_property
     def made(self) -> Any:
         """numba's object for it, which may not be compiled yet."""
-        return imported("yehu_server.compile.numba_compiler").c_function(
-            self.function, self.signature
-        )
+        return imported("yehu_server.compile.numba_compiler").c_function(self)
 
     @cached_property
     def compiled(self) -> Any:
@@ -184,24 +213,26 @@ class Native:
         """Whether its code is in the cache, so that its first use takes no time."""
         return IS_CACHED and self.made._cache.holds(self.made._sig)  # noqa: SLF001
 
+    def __call__(self, *arguments: Any) -> Any:
+        """Run it as Python, as other functions do that are plain (`IS_PLAIN`)."""
+        return self.function(*arguments)
+
     @cached_property
     def call(self) -> Callable[..., Any]:
-        """The function for Python, which runs without the GIL."""
+        """The function for Python, which runs without the GIL, and takes addresses of records."""
         if IS_PLAIN:
-            return self.function
-        returned, *arguments = (C_TYPES[word] for word in re.findall(r"\w+", self.signature))
-        return ctypes.CFUNCTYPE(returned, *arguments)(self.address)
-
-    @property
-    def symbol(self) -> Any:
-        """The function for other compiled ones, which find it by its name.
-
-        It is compiled apart from them: in a process of its own, where there is one to spare.
-        """
-        if IS_PLAIN:
-            return self.function
-        compiler = "yehu_server.compile.numba_compiler"
-        return Deferred(lambda: imported(compiler).external(self.name, self.signature))
+            carray = imported("yehu_server.compile.memory").carray
+            kinds = self.types[1:]
+            return lambda *values: self.function(
+                *(
+                    value if isinstance(kind, str) else carray(value, (1,), kind)[0]
+                    for value, kind in zip(values, kinds, strict=True)
+                )
+            )
+        c_types = [
+            C_TYPES[kind] if isinstance(kind, str) else ctypes.c_void_p for kind in self.types
+        ]
+        return ctypes.CFUNCTYPE(*c_types)(self.address)
 
     @cached_property
     def address(self) -> int:
@@ -218,6 +249,27 @@ class Native:
         return int(self.compiled.address) if kept is None else kept
 
 
-def native(signature: str, calls: Sequence[Native] = ()) -> Callable[[Callable[..., Any]], Native]:
-    """Compile a function to be called by address; see `Native`."""
-    return lambda function: Native(signature, function, calls)
+def native(function: Callable[..., Any]) -> Native:
+    """Compile a function apart from those that call it; see `Native`."""
+    return Native(function)
+
+
+def with_called(functions: Iterable[Native]) -> dict[Native, None]:
+    """Functions and all that they call, each once and after those that it calls."""
+    found: dict[Native, None] = {}
+    for function in functions:
+        if function not in found:
+            found |= with_called(function.calls) | {function: None}
+    return found
+
+
+def _values_named_in(function: Callable[..., Any]) -> Iterator[Any]:
+    """What a function's code names: global values, those of modules, and what it closes over."""
+    yield from (cell.cell_contents for cell in function.__closure__ or ())
+    value = None
+    for step in dis.get_instructions(function):
+        if step.opname == "LOAD_GLOBAL":
+            value = function.__globals__.get(step.argval)
+        else:  # of a module, or of no interest
+            value = vars(value).get(step.argval) if isinstance(value, ModuleType) else None
+        yield value

@@ -64,11 +64,11 @@ def file_in(folder: Path) -> Path:
 
 
 def keep(folder: Path, sources: str, functions: Iterable[Any]) -> None:
-    """Write the file, of functions that are in the cache, each after those that it calls.
+    """Write the file, of functions that are in the cache.
 
     Parameters
     ----------
-    functions : iterable of jit.Native
+    functions : iterable of jit.Native, each after those that it calls
 
     Raises
     ------
@@ -78,7 +78,7 @@ def keep(folder: Path, sources: str, functions: Iterable[Any]) -> None:
         Where the cache is damaged.
     """
     sizes, objects = [], []
-    for function in _in_order(functions):
+    for function in functions:
         payload = read_sealed(function.file)
         if payload is None:
             return
@@ -91,13 +91,6 @@ def keep(folder: Path, sources: str, functions: Iterable[Any]) -> None:
     head = {"format": FORMAT, "made for": [*processor(), sources], "functions": sizes}
     body = zlib.compress(b"".join(objects), 1)
     write_sealed(file_in(folder), json.dumps(head).encode() + b"\n" + body)
-
-
-def _in_order(functions: Iterable[Any]) -> dict[Any, None]:
-    found: dict[Any, None] = {}
-    for function in functions:
-        found |= _in_order(function.calls) | {function: None}
-    return found
 
 
 SHIPPED = Path(__file__).parent / "shipped"

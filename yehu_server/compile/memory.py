@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import IS_PLAIN, Deferred, imported, intrinsic
+from yehu_server.compile.jit import IS_PLAIN, Deferred, imported
 
 
 class Record(np.record):  # type: ignore[misc]  # NumPy's stubs call it final
@@ -61,18 +61,3 @@ def _plain_carray(address: int, shape: tuple[int, ...], kind: Any) -> Any:
 carray: Callable[..., Any] = (
     _plain_carray if IS_PLAIN else Deferred(lambda: imported("numba").carray)
 )
-
-
-def _plain_address_of(record: Any) -> int:
-    return int(record.__array_interface__["data"][0])
-
-
-@intrinsic(plain=_plain_address_of)
-def address_of(_context: Any, record: Any) -> Any:
-    """The address of a record, for what is compiled apart; nothing is copied."""
-    types = imported("numba").types
-
-    def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-        return builder.bitcast(arguments[0], context.get_value_type(types.voidptr))
-
-    return types.voidptr(record), generate

@@ -1,7 +1,7 @@
 """numba, as this package uses it. Imported only where something has to be compiled.
 
 What is compiled names other functions and intrinsics as `jit.Deferred`; numba sees what these stand
-for.
+for. In the place of a `jit.Native` it sees an external function.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from typing import Any
 
 import numba
 from numba import extending, types
-from numba.core import sigutils
 from numba.core.ccallback import CFunc
 from numba.core.compiler import Compiler
 from numba.core.registry import cpu_target
@@ -65,17 +64,25 @@ def dispatcher(
     return made
 
 
-def c_function(function: Callable[..., Any], signature: str) -> Any:
+@extending.typeof_impl.register(jit.Native)  # type: ignore[untyped-decorator]
+def _type_of_native(native: jit.Native, _context: Any) -> Any:
+    returned, *arguments = _types(native)
+    return types.ExternalFunction(native.name, returned(*arguments))
+
+
+def c_function(native: jit.Native) -> Any:
     """numba's object for a function that is called by address."""
     options = {"nopython": True, "error_model": "numpy", "fastmath": jit.FASTMATH}
-    made = CFunc(function, sigutils.normalize_signature(signature), {}, options)
-    return _cached(made, function)
+    returned, *arguments = _types(native)
+    made = CFunc(native.function, (tuple(arguments), returned), {}, options)
+    return _cached(made, native.function)
 
 
-def external(name: str, signature: str) -> Any:
-    """A function that compiled ones find by its name."""
-    arguments, returned = sigutils.normalize_signature(signature)
-    return types.ExternalFunction(name, returned(*arguments))
+def _types(native: jit.Native) -> list[Any]:
+    return [
+        getattr(types, kind) if isinstance(kind, str) else numba.from_dtype(kind)
+        for kind in native.types
+    ]
 
 
 def _cached(made: Any, function: Callable[..., Any]) -> Any:

@@ -20,16 +20,14 @@ from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine.ensemble import TAPE_FRAMES, Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.engine.warming import ALL_FUNCTIONS
-from yehu_server.core.midi.interpret_events import NATIVE_FUNCTIONS as PARTS
-from yehu_server.core.midi.interpret_events import interpret
+from yehu_server.core.engine.warming import all_functions
 from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
 from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
 
 RATE = 22050
-CALLS = {call.function.__name__: call for call in ALL_FUNCTIONS}
+CALLS = {call.function.__name__: call for call in all_functions()}
 
 # Everything that the audio thread may call: none of these waits or allocates.
 REAL_TIME_SAFE = {
@@ -39,24 +37,20 @@ REAL_TIME_SAFE = {
     "rint",  # where the processor has no instruction that rounds: x86-64 before SSE4.1
 }
 
-# What each may call that is compiled apart, and is itself one of the calls.
-NATIVE_FUNCTIONS = {
-    "callback": {"yehu_interpret_events", "yehu_sound", "yehu_mix", "yehu_publish"},
-    "interpret_events": {"yehu_interpret"},
-    "sound": {"yehu_fulfil", "yehu_attend"},
-    "sound_block": {"yehu_sound"},
-    "mix_block": {"yehu_mix"},
+# What some call that is compiled apart, and is itself one of the calls.
+APART = {
+    "callback": {"interpret_events", "sound", "mix", "publish"},
+    "interpret_events": {"interpret"},
+    "sound": {"fulfil", "attend"},
+    "sound_block": {"sound"},
+    "mix_block": {"mix"},
+    "end_notes": {"end_listed", "find_values"},
 }
-
-# Of what interprets events, each calls some of the functions that are compiled apart.
-INTERPRETING = {call.function.__name__: call for call in (*PARTS, interpret)}
 
 
 def unsafe(found: set[str], name: str) -> set[str]:
     """Foreign names that are neither safe nor those of the calls that are compiled apart."""
-    if name in INTERPRETING:
-        return found - REAL_TIME_SAFE - {call.name for call in INTERPRETING.values()}
-    return (found - REAL_TIME_SAFE) ^ NATIVE_FUNCTIONS.get(name, set())
+    return (found - REAL_TIME_SAFE) ^ {call.name for call in CALLS[name].calls}
 
 
 # Some x86-64 processors, by what LLVM calls them: of 2003, of 2013 and with AVX-512.
@@ -146,11 +140,10 @@ WORDS = ["POSTED", "DRAINED", "REPORTED", "READ", "VERSION", "TAPED"]
 # ---------------------------------------------------------------- what it may call
 
 
-def test_these_are_all_calls_and_those_compiled_apart_are_of_them():
-    for name, call in CALLS.items():
-        apart = {f"yehu_{other.function.__name__}" for other in call.calls}
-        assert name in INTERPRETING or apart == NATIVE_FUNCTIONS.get(name, set())
-        assert set(call.calls) <= set(ALL_FUNCTIONS)
+def test_what_a_function_calls_that_is_compiled_apart_is_read_of_its_code():
+    for name, apart in APART.items():
+        assert {call.function.__name__ for call in CALLS[name].calls} == apart, name
+    assert len(CALLS) == len(all_functions())  # each has a name of its own
 
 
 def test_no_call_reaches_python_an_allocation_or_a_lock():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -74,6 +74,7 @@ CONTROLS = np.dtype(
     ],
     align=True,
 )
+Controls = Annotated[Any, CONTROLS]
 
 
 def prepare_controls(quantities: Quantities, rate: float, values: Mapping[str, float]) -> Any:

@@ -51,10 +51,8 @@ from yehu_server.core.player.wishes import BEGIN, END, WISH
 
 NOTHING = -1  # the kind of an event that was cancelled
 
-interpret_event = interpret.symbol
 
-
-@native("int64(voidptr, int64)", calls=[interpret])
+@native
 def interpret_events(rigs: Any, end: int) -> int:
     """Interpret what all parts were sent for frames before `end`.
 
@@ -94,7 +92,7 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
         mail.pending_events -= 1
         if kind in (NOTE_OFF, END, RELEASE_ALL):
             cancel(events, mail.pending_events, m, order, kind, index, value)
-        interpret_event(at(rig, MIDI_AT), at(rig, TABLES_AT), frame, kind, index, value, other)
+        interpret(m, at(rig, TABLES_AT), frame, kind, index, value, other)
         hand_over(rigs, part, m)
         if is_full:
             drain(rigs, rig, mail, now)

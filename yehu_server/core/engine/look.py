@@ -78,7 +78,7 @@ LOOK = np.dtype(
 )
 
 
-@native("void(voidptr, voidptr)")
+@native
 def look(rig: Any, into: Any) -> None:
     """Look at an instrument.
 

@@ -68,7 +68,7 @@ Array = Any
 LARGEST, LARGEST_LIMITED = 1e14, 2.0
 
 
-@native("void(voidptr, voidptr, int64, int64, int64, voidptr, voidptr, int64)")
+@native
 def mix(
     rigs: Any,
     sounded: Any,
@@ -267,10 +267,7 @@ def at_tape(rigs: Any) -> Any:
     return at(rigs, parts * RIG_BYTES + TAPE_AT)
 
 
-mix_chunk = mix.symbol
-
-
-@native("void(voidptr, voidptr, int64, int64, voidptr, voidptr, int64)", calls=[mix])
+@native
 def mix_block(
     rigs: Any, sounded: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int
 ) -> None:
@@ -294,6 +291,6 @@ def mix_block(
         here = at(out, done * channels * 4)
         stems_here = at(stems, done * (parts + 1) * EARS * 8)
         chunk = at(sounded, done // CHUNK * SOUNDED_BYTES)
-        mix_chunk(rigs, chunk, apart, first + done, count, here, stems_here, has_stems)
+        mix(rigs, chunk, apart, first + done, count, here, stems_here, has_stems)
         done += count
     restore_denormals(mode)

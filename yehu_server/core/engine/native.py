@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled_with_aliasing, native
+from yehu_server.compile.jit import Int32, UInt64, compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import CHUNK, CONTROLS
 from yehu_server.core.engine.atomics import (
@@ -64,10 +64,8 @@ from yehu_server.core.stage.record import STAGE
 STALL_NS = 20_000_000
 TRIES = 100
 
-take_in_events, sound_chunk, mix_chunk = interpret_events.symbol, sound.symbol, mix.symbol
 
-
-@native("void(voidptr)")
+@native
 def publish(rig: Any) -> None:
     """Publish the meters by a seqlock: readers get all of a block's, or none."""
     version = load_acquire(rig, VERSION_AT)
@@ -77,14 +75,10 @@ def publish(rig: Any) -> None:
     store_release(rig, VERSION_AT, version + 2)
 
 
-publish_meters = publish.symbol
-
-
-@native(
-    "int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)",
-    calls=[interpret_events, sound, mix, publish],
-)
-def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rigs: Any) -> int:
+@native
+def callback(
+    _input: Any, output: Any, frames: UInt64, _times: Any, flags: UInt64, rigs: Any
+) -> Int32:
     """Compute one block for PortAudio (a PaStreamCallback).
 
     Parameters
@@ -105,16 +99,16 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     t.running = 1
     block: Any = np.int64(frames)
     update_clock(t, c.frame, started_ns, block)
-    publish_meters(rigs)  # at once, so that messages that arrive now are stamped by this block
+    publish(rigs)  # at once, so that messages that arrive now are stamped by this block
     done = 0
     while done < block:
         first = c.frame
-        count = take_in_events(rigs, first + min(block - done, CHUNK)) - first
+        count = interpret_events(rigs, first + min(block - done, CHUNK)) - first
         for part in range(parts):
             rig = at(rigs, part * RIG_BYTES)
-            sound_chunk(rig, count, at(rig, SOUNDED_AT))
+            sound(rig, count, at(rig, SOUNDED_AT))
         here = at(output, 4 * channels * done)
-        mix_chunk(rigs, at(rigs, SOUNDED_AT), RIG_BYTES, first, count, here, here, 0)
+        mix(rigs, at(rigs, SOUNDED_AT), RIG_BYTES, first, count, here, here, 0)
         done += count
     for part in range(parts):
         update_meters(at(rigs, part * RIG_BYTES), t.frame, block)
@@ -123,7 +117,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     t.running, t.ended_ns = 0, monotonic_ns()
     store_release(rigs, TAPED_AT, c.frame)
     for part in range(parts):
-        publish_meters(at(rigs, part * RIG_BYTES))
+        publish(at(rigs, part * RIG_BYTES))
     return 0
 
 
@@ -145,7 +139,7 @@ def update_meters(rig: Any, frame: int, block: int) -> None:
     t.waiting, t.unreported = mail.pending_events + mail.waiting, mail.unreported
 
 
-@native("int64(voidptr, voidptr)")
+@native
 def read_meters(rig: Any, into: Any) -> int:
     """Copy the published meters; return 0 where they were written meanwhile (try again)."""
     version = load_acquire(rig, VERSION_AT)
@@ -154,7 +148,7 @@ def read_meters(rig: Any, into: Any) -> int:
     return 1 if version % 2 == 0 and load_acquire(rig, VERSION_AT) == version else 0
 
 
-@native("float64(voidptr, int64)")
+@native
 def frame_at(rig: Any, time_ns: int) -> float:
     """The frame that is played at a time of the monotonic clock, by the last callback's time.
 
@@ -173,7 +167,7 @@ def frame_at(rig: Any, time_ns: int) -> float:
     return frame + elapsed_ns / ns_per_frame
 
 
-@native("int64(voidptr, int64, int64, int64, float64, float64)")
+@native
 def post(rig: Any, frame: int, kind: int, index: int, value: float, other: float) -> int:
     """Post an event, by its fields; return 0 where it was dropped because the ring is full.
 
@@ -182,7 +176,7 @@ def post(rig: Any, frame: int, kind: int, index: int, value: float, other: float
     return post_to(rig, SERVER, frame, kind, index, value, other)
 
 
-@native("int64(voidptr, int64, int64, int64, int64, float64, float64)")
+@native
 def post_from(
     rig: Any, writer: int, frame: int, kind: int, index: int, value: float, other: float
 ) -> int:
@@ -207,7 +201,7 @@ def post_to(
     return 1
 
 
-@native("int64(voidptr, voidptr, int64)")
+@native
 def read_reports(rig: Any, into: Any, room: int) -> int:
     """Move reports of wishes to an array of WISH [shape=(room,)]; return their number."""
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
@@ -221,7 +215,7 @@ def read_reports(rig: Any, into: Any, room: int) -> int:
     return count
 
 
-@native("int64(voidptr)")
+@native
 def taped(rig: Any) -> int:
     """Number of frames played and on the tape."""
     return int(load_acquire(rig, TAPED_AT))

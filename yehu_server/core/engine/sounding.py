@@ -71,19 +71,16 @@ from yehu_server.core.player.wishes import WISH, fulfil
 
 Array = Any
 
-fulfil_wish, attend_string = fulfil.symbol, attend.symbol
-
 
 @compiled_with_aliasing
-def apply(rig: Any, mail: Any, c: Any) -> None:
+def apply(rig: Any, mail: Any, p: Any, c: Any) -> None:
     """Fulfil the wishes that are due at this frame, and report them."""
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
     for _ in range(APPLIED_AT_ONCE):
         if mail.waiting == 0 or heap[0].wish.frame > c.frame:
             return
         wish = heap[0].wish
-        player, controls = at(rig, PLAYER_AT), at(rig, CONTROLS_AT)
-        fulfil_wish(player, controls, c.frame, wish.kind, wish.index, wish.value, wish.other)
+        fulfil(p, c, c.frame, wish.kind, wish.index, wish.value, wish.other)
         if mail.reporting != 0:
             report(rig, mail, c.frame, wish)
         mail.applied += 1
@@ -117,7 +114,7 @@ def retune(model: Array, state: Array, c: Any) -> None:
             kernel.retune(model, state, i, T, c.sigma_0[i] * loss, c.sigma_1[i] * loss)
 
 
-@native("void(voidptr, int64, voidptr)", calls=[fulfil, attend])
+@native
 def sound(rig: Any, wanted: int, into: Any) -> None:
     """Compute the next frames of an instrument, at most CHUNK, into a record of dtype SOUNDED.
 
@@ -140,9 +137,9 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
         first, start = c.frame, done
         silenced, retuned = False, False
         while done < wanted and not silenced and not retuned:
-            apply(rig, mail, c)
+            apply(rig, mail, p, c)
             if c.frame == p.ear.next:
-                attend_string(at(rig, PLAYER_AT), at(rig, CONTROLS_AT), at(rig, EAR_BUFFER_AT))
+                attend(p, c, at(rig, EAR_BUFFER_AT))
             move(c)
             write_controls(c, o.controls[done])
             gain = level(c)
@@ -188,10 +185,7 @@ def write_output(rig: Any, dry: Array, first: int, start: int, end: int) -> None
         hear(t, dry[n])
 
 
-sound_chunk = sound.symbol
-
-
-@native("void(voidptr, int64, voidptr)", calls=[sound])
+@native
 def sound_block(rig: Any, frames: int, sounded: Any) -> None:
     """Compute the next frames of an instrument apart from the others, to be mixed later.
 
@@ -203,7 +197,7 @@ def sound_block(rig: Any, frames: int, sounded: Any) -> None:
     mode = flush_denormals()
     done, chunk = 0, 0
     while done < frames:
-        sound_chunk(rig, frames - done, at(sounded, chunk * SOUNDED_BYTES))
+        sound(rig, frames - done, at(sounded, chunk * SOUNDED_BYTES))
         done += CHUNK
         chunk += 1
     restore_denormals(mode)

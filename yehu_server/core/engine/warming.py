@@ -11,44 +11,36 @@ import contextlib
 import os
 import subprocess
 import sys
+from functools import cache
 
 from yehu_server.compile import machine_code
 from yehu_server.compile.cache_folder import IS_CACHED, cache_folder, source_hash
-from yehu_server.compile.jit import IS_PLAIN
-from yehu_server.core.engine.intake import interpret_events
+from yehu_server.compile.jit import IS_PLAIN, Native, with_called
 from yehu_server.core.engine.mixing import mix, mix_block
 from yehu_server.core.engine.native import (
     callback,
     frame_at,
     post,
     post_from,
-    publish,
     read_meters,
     read_reports,
     taped,
 )
 from yehu_server.core.engine.sounding import sound, sound_block
-from yehu_server.core.midi.interpret_events import NATIVE_FUNCTIONS, interpret
 from yehu_server.core.physics.kernel import derive
-from yehu_server.core.player.listening import attend
-from yehu_server.core.player.wishes import fulfil
 from yehu_server.util.sealed import SealError
 
-# Compiled at a time: the model and the player in a process of their own, and what is sent to them.
-MODEL = (sound, fulfil, attend, mix)
-BESIDE = (
-    *NATIVE_FUNCTIONS,
-    interpret,
-    derive,
-    publish,
-    read_meters,
-    frame_at,
-    post,
-    post_from,
-    read_reports,
+CALLED = (
+    callback, sound_block, mix_block, derive, post, post_from, frame_at, read_meters, read_reports,
     taped,
-)
-ALL_FUNCTIONS = (*MODEL, *BESIDE, interpret_events, sound_block, mix_block, callback)
+)  # fmt: skip
+MODEL = (sound, mix)  # which, with what they call, are half of the work of compiling
+
+
+@cache
+def all_functions() -> tuple[Native, ...]:
+    """All functions that playing needs, each after those that it calls."""
+    return tuple(with_called(CALLED))
 
 
 def warm_up() -> None:
@@ -61,24 +53,26 @@ def warm_up() -> None:
             command = [sys.executable, "-m", __name__]
             beside = subprocess.Popen(command, stderr=subprocess.DEVNULL)  # noqa: S603 - our own
             stack.callback(beside.kill)  # where we are interrupted
-        for function in BESIDE:
-            _ = function.address
+        model = with_called(MODEL).keys()
+        for function in all_functions():
+            if not with_called([function]).keys() & model:
+                _ = function.address
         if beside is not None:
             beside.wait()
-    for function in ALL_FUNCTIONS:
+    for function in all_functions():
         _ = function.address
     if IS_CACHED:
         with contextlib.suppress(OSError, SealError):  # the cache has told of it
-            machine_code.keep(cache_folder(), source_hash(), ALL_FUNCTIONS)
+            machine_code.keep(cache_folder(), source_hash(), all_functions())
             machine_code.loaded.cache_clear()
 
 
 def is_warm() -> bool:
     """Whether all functions that playing needs are kept, ready to be called."""
     kept = machine_code.loaded(cache_folder(), source_hash())
-    return all(function.name in kept for function in ALL_FUNCTIONS)
+    return all(function.name in kept for function in CALLED)
 
 
 if __name__ == "__main__":
-    for part in MODEL:
+    for part in with_called(MODEL):
         part.keep()

@@ -9,7 +9,6 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.channels import (
     begin_port,
     forget_channel,
@@ -17,21 +16,19 @@ from yehu_server.core.midi.channels import (
     plays,
 )
 from yehu_server.core.midi.controllers import (
-    follow_native,
     move,
     move_coarse,
     move_fine,
-    move_native,
     press_key,
     set_directly,
 )
-from yehu_server.core.midi.emit_wishes import stop_sound, write_native
+from yehu_server.core.midi.emit_wishes import stop_sound
 from yehu_server.core.midi.held_keys import list_key
-from yehu_server.core.midi.note_ends import end_all, end_notes, end_notes_native, list_channel
+from yehu_server.core.midi.note_ends import end_all, end_notes, list_channel
 from yehu_server.core.midi.notes import end_channel, note_off, note_on
 from yehu_server.core.midi.packing import BYTE, LENGTH_AT, PORT_AT
-from yehu_server.core.midi.pedals import SUSTAIN, hold_by_pedal, lift_pedal, lift_pedal_native
-from yehu_server.core.midi.record import CHANNELS, IN_PORT, MIDI, NONE, PORTS
+from yehu_server.core.midi.pedals import SUSTAIN, hold_by_pedal, lift_pedal
+from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE, PORTS, Midi
 from yehu_server.core.midi.registered_parameters import (
     DATA_ENTRY,
     DATA_ENTRY_FINE,
@@ -48,9 +45,8 @@ from yehu_server.core.midi.resets import (
     disconnect_channel,
     forget_all_moves,
     reset_controllers,
-    reset_controllers_native,
 )
-from yehu_server.core.midi.tables import BEND, PAIR, PRESSURE, TABLES
+from yehu_server.core.midi.tables import BEND, PAIR, PRESSURE, Tables
 from yehu_server.core.player.rows import ROWS
 
 # High halves of status bytes.
@@ -77,7 +73,7 @@ def receive(m: Any, t: Any, frame: int, index: int) -> None:
         return
     if status >= SYSTEM:
         if status == SYSTEM_RESET and length == 1:
-            reset(m, t, frame)
+            system_reset(m, t, frame)
         return
     kind, channel = status & 0xF0, IN_PORT * port + (status & 0x0F)
     wanted = 2 if kind in (PROGRAM_CHANGE, CHANNEL_PRESSURE) else 3
@@ -118,22 +114,9 @@ def passes(t: Any, kind: int) -> bool:
 # -- control changes ------------------------------------------------------------------------------
 
 
-@native(
-    "void(voidptr, voidptr, int64, int64, int64, int64)",
-    calls=[
-        move_native,
-        follow_native,
-        lift_pedal_native,
-        reset_controllers_native,
-        end_notes_native,
-    ],
-)
-def change_control_native(
-    midi_at: Any, tables_at: Any, frame: int, channel: int, control: int, value: int
-) -> None:
-    """See `change_control`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    t = carray(tables_at, (1,), TABLES)[0]
+@native
+def change_control(m: Midi, t: Tables, frame: int, channel: int, control: int, value: int) -> None:
+    """Act on a control change."""
     if control >= ALL_SOUND_OFF and not plays(m, t, channel):
         return
     if control == BANK:
@@ -159,15 +142,6 @@ def change_control_native(
         enter_data(m, t, frame, channel, control, value)
     else:
         move_both(m, t, frame, channel, control, value)
-
-
-_change_control = change_control_native.symbol
-
-
-@compiled_exactly
-def change_control(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
-    """Act on a control change."""
-    _change_control(address_of(m), address_of(t), frame, channel, control, value)
 
 
 @compiled_exactly
@@ -262,23 +236,12 @@ def disconnect(m: Any, t: Any, frame: int, port: int) -> None:
     begin_port(m, t, port)
 
 
-@native("void(voidptr, voidptr, int64)", calls=[end_notes_native, write_native])
-def reset_native(midi_at: Any, tables_at: Any, frame: int) -> None:
-    """See `reset`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    t = carray(tables_at, (1,), TABLES)[0]
+@native
+def system_reset(m: Midi, t: Tables, frame: int) -> None:
+    """End all notes, and forget pedals, zones and moves."""
     end_all(m, t, frame)
     for channel in range(CHANNELS):
         forget_channel(m, channel)
     for port in range(PORTS):
         begin_port(m, t, port)
     forget_all_moves(m, frame)
-
-
-_reset = reset_native.symbol
-
-
-@compiled_exactly
-def reset(m: Any, t: Any, frame: int) -> None:
-    """End all notes, and forget pedals, zones and moves."""
-    _reset(address_of(m), address_of(t), frame)

@@ -146,16 +146,16 @@ def forget_moves(m: Any, channel: int) -> None:
     """Forget all moves on a channel."""
     if m.is_active[channel] != 0:
         for bind in range(MOST_BINDS):
-            m.moved[channel, bind] = m.taken[channel, bind] = 0
-        for key in range(m.pressed.shape[1]):
-            m.pressed[channel, key] = 0
+            m.move_number[channel, bind] = m.taken_number[channel, bind] = 0
+        for key in range(m.pressure_number.shape[1]):
+            m.pressure_number[channel, key] = 0
         drop_active(m, channel)
-    m.struck[channel] = 0
+    m.strike_number[channel] = 0
     for n in range(m.held):
         if m.held_channel[n] == channel:
-            m.held_struck[n] = 0
+            m.held_strike_number[n] = 0
     if m.last_channel == channel:
-        m.last_struck = 0
+        m.last_strike_number = 0
 
 
 @compiled_exactly

@@ -12,21 +12,19 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.channels import add_active, moves_key, plays
 from yehu_server.core.midi.curves import from_unit, picks_up, to_unit
-from yehu_server.core.midi.emit_wishes import write, write_native
-from yehu_server.core.midi.record import MIDI, NONE
+from yehu_server.core.midi.emit_wishes import write
+from yehu_server.core.midi.record import NONE, Midi
 from yehu_server.core.midi.section import sounds
 from yehu_server.core.midi.tables import (
     POLY_PRESSURE,
-    TABLES,
+    Tables,
 )
 from yehu_server.core.midi.values import (
     NO_KEY,
     STEPS,
     find_values,
-    find_values_native,
     keep_targets_of,
     receives,
     set_target,
@@ -39,16 +37,15 @@ FINE_BITS, FINEST = 7, 16383.0
 # -- the sounding notes ---------------------------------------------------------------------------
 
 
-@native(
-    "void(voidptr, voidptr, int64, int64, int64, int64)", calls=[find_values_native, write_native]
-)
-def follow_native(
-    midi_at: Any, tables_at: Any, frame: int, source: int, channel: int, gliding: int
-) -> None:
-    """See `follow`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    t = carray(tables_at, (1,), TABLES)[0]
-    glides = gliding != 0  # a bit is passed otherwise by WebAssembly than by numba
+@native
+def follow(m: Midi, t: Tables, frame: int, source: int, channel: int, glides: bool) -> None:
+    """Write the targets of a source that was moved on a channel.
+
+    Parameters
+    ----------
+    glides : bool
+        Whether the binds that receive it give their smoothing.
+    """
     keep_targets_of(m, t, source)
     if m.sounding == NONE:
         if m.has_last != 0:
@@ -63,21 +60,6 @@ def follow_native(
             of_key = n if sounding > 1 else NONE
             key_channel, key = m.held_channel[n], m.held_key[n]
             follow_key(m, t, frame, source, channel, glides, key_channel, key, of_key)
-
-
-_follow = follow_native.symbol
-
-
-@compiled_exactly
-def follow(m: Any, t: Any, frame: int, source: int, channel: int, glides: bool) -> None:
-    """Write the targets of a source that was moved on a channel.
-
-    Parameters
-    ----------
-    glides : bool
-        Whether the binds that receive it give their smoothing.
-    """
-    _follow(address_of(m), address_of(t), frame, source, channel, 1 if glides else 0)
 
 
 @compiled_exactly
@@ -164,43 +146,27 @@ def first_receiving(m: Any, t: Any, source: int, channel: int) -> int:
     return NONE
 
 
-@native(
-    "void(voidptr, voidptr, int64, int64, int64, float64)",
-    calls=[find_values_native, follow_native],
-)
-def move_native(
-    midi_at: Any, tables_at: Any, frame: int, source: int, channel: int, position: float
-) -> None:
-    """See `move`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    t = carray(tables_at, (1,), TABLES)[0]
+@native
+def move(m: Midi, t: Tables, frame: int, source: int, channel: int, position: float) -> None:
+    """Move a source of a channel to a position, 0 to 1."""
     if first_receiving(m, t, source, channel) == NONE:
         return
     keep_targets_of(m, t, source)
     add_active(m, channel)
-    m.count += 1
-    number = m.count
+    m.moves += 1
+    number = m.moves
     for bind in range(int(t.binds)):
         if int(t.source[bind]) != source or t.soft[bind] == 0.0:
             continue
         is_moved = is_receiving(m, t, bind, channel)
         if is_moved and takes_over(m, t, bind, channel, position):
-            m.taken[channel, bind], m.taken_position[channel, bind] = number, position
+            m.taken_number[channel, bind], m.taken_position[channel, bind] = number, position
     for bind in range(int(t.binds)):
         if int(t.source[bind]) == source:
             first = int(t.first[bind])
-            m.moved[channel, first], m.position[channel, first] = number, position
+            m.move_number[channel, first], m.position[channel, first] = number, position
             break
     follow(m, t, frame, source, channel, True)
-
-
-_move = move_native.symbol
-
-
-@compiled_exactly
-def move(m: Any, t: Any, frame: int, source: int, channel: int, position: float) -> None:
-    """Move a source of a channel to a position, 0 to 1."""
-    _move(address_of(m), address_of(t), frame, source, channel, position)
 
 
 @compiled_exactly
@@ -216,10 +182,10 @@ def takes_over(m: Any, t: Any, bind: int, channel: int, position: float) -> bool
     find_values(m, t, of_channel, key)
     present = m.found_value[int(t.target[bind])]
     had = from_unit(t, bind, m.taken_position[channel, bind])
-    if m.taken[channel, bind] != 0 and had == present:
+    if m.taken_number[channel, bind] != 0 and had == present:
         return True
     first = int(t.first[bind])
-    before = m.position[channel, first] if m.moved[channel, first] != 0 else math.nan
+    before = m.position[channel, first] if m.move_number[channel, first] != 0 else math.nan
     return bool(picks_up(t, bind, position, before, present))
 
 
@@ -234,7 +200,7 @@ def position_on(m: Any, t: Any, source: int, channel: int) -> float:
     """Where a source was last moved to on a channel; NaN: nowhere."""
     for bind in range(int(t.binds)):
         if int(t.source[bind]) == source:
-            is_moved = m.moved[channel, bind] != 0
+            is_moved = m.move_number[channel, bind] != 0
             return float(m.position[channel, bind] if is_moved else math.nan)
     return math.nan
 
@@ -269,8 +235,8 @@ def press_key(m: Any, t: Any, frame: int, channel: int, key: int, position: floa
         is_bound = is_bound or int(t.source[bind]) == POLY_PRESSURE
     if is_bound:
         add_active(m, channel)
-        m.count += 1
-        m.pressed[channel, key], m.pressure[channel, key] = m.count, position
+        m.moves += 1
+        m.pressure_number[channel, key], m.pressure[channel, key] = m.moves, position
         follow(m, t, frame, POLY_PRESSURE, channel, True)
 
 

@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.held_keys import find_key, forget_listed, hold_key, list_key
-from yehu_server.core.midi.record import MIDI, NONE, SECTION, emit
+from yehu_server.core.midi.record import NONE, SECTION, Midi, emit
 from yehu_server.core.midi.section import (
     add_value,
     begin_together,
@@ -43,13 +42,19 @@ def pass_on(m: Any, frame: int, kind: int, index: int, value: float, other: floa
         emit_to_all(m, frame, kind, index, value, other, False, 0, 0.0)
 
 
-@native("float64(voidptr, int64, int64, float64, int64, float64, int64)")
-def write_native(
-    midi_at: Any, frame: int, row: int, value: float, holding: int, glide_ms: float, of_key: int
+@native
+def write(
+    m: Midi, frame: int, row: int, value: float, hold: bool, glide_ms: float, of_key: int
 ) -> float:
-    """See `write`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    hold = holding != 0  # a bit is passed otherwise by WebAssembly than by numba
+    """Set a parameter; return the value it then has.
+
+    Parameters
+    ----------
+    glide_ms : float
+        Least time of the moves of bow and fingers that follow.
+    of_key : int
+        Where a section divides: the number of the held key that it is for, or NONE for all.
+    """
     value = in_range(row, value)
     if row == SECTION:
         value = min(np.rint(value), float(m.people))
@@ -81,25 +86,6 @@ def write_native(
     return value
 
 
-_write = write_native.symbol
-
-
-@compiled_exactly
-def write(
-    m: Any, frame: int, row: int, value: float, hold: bool, glide_ms: float, of_key: int
-) -> float:
-    """Set a parameter; return the value it then has.
-
-    Parameters
-    ----------
-    glide_ms : float
-        Least time of the moves of bow and fingers that follow.
-    of_key : int
-        Where a section divides: the number of the held key that it is for, or NONE for all.
-    """
-    return float(_write(address_of(m), frame, row, value, 1 if hold else 0, glide_ms, of_key))
-
-
 @compiled_exactly
 def express(m: Any, frame: int, row: int, value: float) -> None:
     """Set a parameter for the note that begins next, or sounds again."""
@@ -122,17 +108,16 @@ def release_held(m: Any) -> None:
 # -- notes ----------------------------------------------------------------------------------------
 
 
-@native("void(voidptr, int64, int64, float64, float64, float64, int64)")
-def begin_key_native(
-    midi_at: Any, frame: int, channel: int, key: float, pitch: float, velocity: float, struck: int
+@native
+def begin_key(
+    m: Midi, frame: int, channel: int, key: float, pitch: float, velocity: float, strike_number: int
 ) -> None:
-    """See `begin_key`."""
-    m = carray(midi_at, (1,), MIDI)[0]
+    """Begin a note at a pitch within range; what was given to `express` before is for it."""
     again = NONE
     before = find_key(m, channel, key)
     if before != NONE:
         again = m.held_again[before]
-    hold_key(m, channel, key, velocity, struck, again)
+    hold_key(m, channel, key, velocity, strike_number, again)
     m.notes += 1
     if m.people == 1:
         emit(m, 0, frame, BEGIN, channel, key, pitch)
@@ -140,21 +125,12 @@ def begin_key_native(
         begin_together(m, frame, channel, key, pitch)
 
 
-_begin_key = begin_key_native.symbol
+@native
+def end_listed(m: Midi, frame: int) -> None:
+    """End the keys that are listed, all at once; of those still held the last sounds again.
 
-
-@compiled_exactly
-def begin_key(
-    m: Any, frame: int, channel: int, key: float, pitch: float, velocity: float, struck: int
-) -> None:
-    """Begin a note at a pitch within range; what was given to `express` before is for it."""
-    _begin_key(address_of(m), frame, channel, key, pitch, velocity, struck)
-
-
-@native("void(voidptr, int64)")
-def end_listed_native(midi_at: Any, frame: int) -> None:
-    """See `end_listed`."""
-    m = carray(midi_at, (1,), MIDI)[0]
+    What was given to `express` before is for that one.
+    """
     if m.listed == 0:
         return
     if m.people == 1:
@@ -165,18 +141,6 @@ def end_listed_native(midi_at: Any, frame: int) -> None:
     else:
         end_together(m, frame)
     forget_listed(m)
-
-
-_end_listed = end_listed_native.symbol
-
-
-@compiled_exactly
-def end_listed(m: Any, frame: int) -> None:
-    """End the keys that are listed, all at once; of those still held the last sounds again.
-
-    What was given to `express` before is for that one.
-    """
-    _end_listed(address_of(m), frame)
 
 
 @compiled_exactly

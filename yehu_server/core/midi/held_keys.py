@@ -19,7 +19,9 @@ def find_key(m: Any, channel: int, key: float) -> int:
 
 
 @compiled_exactly
-def hold_key(m: Any, channel: int, key: float, velocity: float, struck: int, again: int) -> None:
+def hold_key(
+    m: Any, channel: int, key: float, velocity: float, strike_number: int, again: int
+) -> None:
     """Hold a key as the last one, which sounds; the key held longest makes room."""
     before = find_key(m, channel, key)
     if before != NONE:
@@ -28,7 +30,7 @@ def hold_key(m: Any, channel: int, key: float, velocity: float, struck: int, aga
         forget_key(m, 0)
     n = m.held
     m.held_channel[n], m.held_key[n] = channel, key
-    m.held_velocity[n], m.held_struck[n] = velocity, struck
+    m.held_velocity[n], m.held_strike_number[n] = velocity, strike_number
     m.held_again[n], m.held_by[n], m.held_since[n] = again, NONE, 0
     m.is_listed[n] = 0
     m.sounding = n
@@ -40,7 +42,10 @@ def forget_key(m: Any, number: int) -> None:
     """Hold a key no longer."""
     for i in range(number, m.held - 1):
         m.held_channel[i], m.held_key[i] = m.held_channel[i + 1], m.held_key[i + 1]
-        m.held_velocity[i], m.held_struck[i] = m.held_velocity[i + 1], m.held_struck[i + 1]
+        m.held_velocity[i], m.held_strike_number[i] = (
+            m.held_velocity[i + 1],
+            m.held_strike_number[i + 1],
+        )
         m.held_again[i], m.held_by[i] = m.held_again[i + 1], m.held_by[i + 1]
         m.held_since[i], m.is_listed[i] = m.held_since[i + 1], m.is_listed[i + 1]
     m.held -= 1

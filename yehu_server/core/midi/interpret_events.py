@@ -10,31 +10,24 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.midi.channel_messages import (
-    change_control_native,
     disconnect,
     is_bound,
     receive,
-    reset,
-    reset_native,
+    system_reset,
 )
 from yehu_server.core.midi.controllers import (
-    follow_native,
     move_control,
-    move_native,
     set_directly,
 )
 from yehu_server.core.midi.emit_wishes import (
     begin_key,
-    begin_key_native,
     end_key,
-    end_listed_native,
     express,
     hold_nothing,
     pass_on,
     record_wish,
     release_held,
     write,
-    write_native,
 )
 from yehu_server.core.midi.events import (
     CONTROL,
@@ -51,18 +44,14 @@ from yehu_server.core.midi.events import (
     TABLES_TO,
 )
 from yehu_server.core.midi.held_keys import list_key
-from yehu_server.core.midi.note_ends import end_all, end_notes, end_notes_native
-from yehu_server.core.midi.notes import note_off, note_on, note_on_native
-from yehu_server.core.midi.pedals import SUSTAIN, lift_pedal, lift_pedal_native
-from yehu_server.core.midi.record import CHANNELS, MIDI, NONE, emit
-from yehu_server.core.midi.remapping import change_binds, change_binds_native, start
-from yehu_server.core.midi.resets import (
-    reset_controllers_native,
-)
+from yehu_server.core.midi.note_ends import end_all, end_notes
+from yehu_server.core.midi.notes import note_off, note_on
+from yehu_server.core.midi.pedals import SUSTAIN, lift_pedal
+from yehu_server.core.midi.record import CHANNELS, NONE, Midi, emit
+from yehu_server.core.midi.remapping import change_binds, start
 from yehu_server.core.midi.section import slide_players
 from yehu_server.core.midi.tables import CONTROL as CONTROL_SOURCE
 from yehu_server.core.midi.tables import SLOTS, TABLES
-from yehu_server.core.midi.values import find_values_native
 from yehu_server.core.player.rows import ROW, ROWS
 from yehu_server.core.player.wishes import (
     BEGIN,
@@ -84,27 +73,9 @@ START_ROWS = np.array([ROW[param.address] for param in PLAYERS_FIRST])
 START_VALUES = np.array([param.default for param in PLAYERS_FIRST])
 
 
-# What is compiled apart, so that it is compiled once.
-NATIVE_FUNCTIONS = (
-    write_native,
-    begin_key_native,
-    end_listed_native,
-    find_values_native,
-    follow_native,
-    move_native,
-    end_notes_native,
-    note_on_native,
-    change_binds_native,
-    lift_pedal_native,
-    reset_controllers_native,
-    change_control_native,
-    reset_native,
-)
-
-
-@native("void(voidptr, voidptr, int64, int64, int64, float64, float64)", calls=NATIVE_FUNCTIONS)
+@native
 def interpret(
-    midi: Any, tables: Any, frame: int, kind: int, index: int, value: float, other: float
+    m: Midi, tables: Any, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
     """Interpret an event, given by its fields; the wishes that it comes to are in the record.
 
@@ -112,12 +83,10 @@ def interpret(
 
     Parameters
     ----------
-    midi : pointer to a record of dtype MIDI
     tables : pointer to SLOTS records of dtype TABLES
 
     Real time: safe; no allocation, no exception.
     """
-    m = carray(midi, (1,), MIDI)[0]
     all_tables = carray(tables, (SLOTS,), TABLES)
     t = all_tables[m.tables]
     m.wishes = 0
@@ -164,7 +133,7 @@ def act_on_end(m: Any, t: Any, frame: int, kind: int, index: int, value: float) 
     elif value == 0.0:
         end_all(m, t, frame)
     else:
-        reset(m, t, frame)
+        system_reset(m, t, frame)
 
 
 @compiled_exactly
@@ -220,7 +189,7 @@ def change_tables(m: Any, before: Any, t: Any, frame: int) -> None:
     """Use other tables from now on, while notes sound."""
     change_binds(m, before, t, frame)
     if t.mpe != before.mpe:
-        reset(m, t, frame)
+        system_reset(m, t, frame)
     if is_bound(t, SUSTAIN):  # the pedal no longer holds notes
         for channel in range(CHANNELS):
             m.sustain[channel] = 0

@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.compile.memory import address_of, carray
-from yehu_server.core.midi.emit_wishes import end_listed, end_listed_native, express
+from yehu_server.core.midi.emit_wishes import end_listed, express
 from yehu_server.core.midi.held_keys import list_key, next_sounding_key
-from yehu_server.core.midi.record import MIDI, NONE
-from yehu_server.core.midi.tables import TABLES
-from yehu_server.core.midi.values import find_values, find_values_native, remember_last
+from yehu_server.core.midi.record import NONE, Midi
+from yehu_server.core.midi.tables import Tables
+from yehu_server.core.midi.values import find_values, remember_last
 
 
 @compiled_exactly
@@ -22,26 +21,15 @@ def express_key(m: Any, t: Any, frame: int, channel: int, key: float) -> None:
         express(m, frame, row, m.found_value[row])
 
 
-@native("void(voidptr, voidptr, int64)", calls=[find_values_native, end_listed_native])
-def end_notes_native(midi_at: Any, tables_at: Any, frame: int) -> None:
-    """See `end_notes`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    t = carray(tables_at, (1,), TABLES)[0]
+@native
+def end_notes(m: Midi, t: Tables, frame: int) -> None:
+    """End the notes of the keys listed at once; the one that sounds again has its own values."""
     n = next_sounding_key(m)
     if n != NONE:
         channel, key = m.held_channel[n], m.held_key[n]
         remember_last(m, channel, key)
         express_key(m, t, frame, channel, key)
     end_listed(m, frame)
-
-
-_end_notes = end_notes_native.symbol
-
-
-@compiled_exactly
-def end_notes(m: Any, t: Any, frame: int) -> None:
-    """End the notes of the keys listed at once; the one that sounds again has its own values."""
-    _end_notes(address_of(m), address_of(t), frame)
 
 
 @compiled_exactly

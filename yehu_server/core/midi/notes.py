@@ -8,20 +8,17 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.channels import forget_channel, is_midi
 from yehu_server.core.midi.controllers import set_directly
 from yehu_server.core.midi.emit_wishes import (
     begin_key,
-    begin_key_native,
 )
 from yehu_server.core.midi.held_keys import find_key
 from yehu_server.core.midi.note_ends import end_notes, express_key, list_channel
 from yehu_server.core.midi.pedals import lift_pedal, release_key
-from yehu_server.core.midi.record import CHANNELS, IN_PORT, MIDI, NONE
-from yehu_server.core.midi.tables import CLAMP, KEYS, NOTE, SKIP, TABLES, VELOCITY
+from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE, Midi
+from yehu_server.core.midi.tables import CLAMP, KEYS, NOTE, SKIP, VELOCITY, Tables
 from yehu_server.core.midi.values import (
-    find_values_native,
     keep_targets_of,
 )
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
@@ -82,22 +79,17 @@ def is_switch(t: Any, channel: int, key: float) -> bool:
     return bool(is_midi(channel) and 0.0 <= place < SWITCHES)
 
 
-@native(
-    "void(voidptr, voidptr, int64, int64, float64, float64, float64)",
-    calls=[find_values_native, begin_key_native],
-)
-def note_on_native(
-    midi_at: Any,
-    tables_at: Any,
-    frame: int,
-    channel: int,
-    key: float,
-    velocity: float,
-    pitch: float,
+@native
+def note_on(
+    m: Midi, t: Tables, frame: int, channel: int, key: float, velocity: float, pitch: float
 ) -> None:
-    """See `note_on`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    t = carray(tables_at, (1,), TABLES)[0]
+    """Begin a note; where the pitch is NaN, at that of the tuning.
+
+    Parameters
+    ----------
+    velocity : float
+        0 to 1; below 0 where the note was given its values before.
+    """
     if is_switch(t, channel, key):
         set_directly(m, frame, ARTICULATION, key - t.first_switch, 0.0)
         return
@@ -121,36 +113,19 @@ def note_on_native(
     if is_midi(channel):
         m.is_keyboard[channel // IN_PORT] = 1
         if key == np.rint(key) and 0 <= key < KEYS:
-            m.pressed[channel, int(key)] = 0
-    m.count += 1
+            m.pressure_number[channel, int(key)] = 0
+    m.moves += 1
     place = channel if is_midi(channel) else CHANNELS
-    m.struck[place], m.struck_velocity[place], m.struck_key[place] = m.count, velocity, key
+    m.strike_number[place], m.strike_velocity[place], m.strike_key[place] = m.moves, velocity, key
     m.notes_of[place] += 1
     m.has_last, m.last_channel, m.last_key = 1, channel, key
-    m.last_struck, m.last_velocity = m.count, velocity
+    m.last_strike_number, m.last_velocity = m.moves, velocity
     if n != NONE:
-        m.held_struck[n], m.held_velocity[n] = m.count, velocity
-    struck = m.count
+        m.held_strike_number[n], m.held_velocity[n] = m.moves, velocity
+    strike_number = m.moves
     if velocity >= 0.0:
         express_key(m, t, frame, channel, key)
-    begin_key(m, frame, channel, key, playable, velocity, struck)
-
-
-_note_on = note_on_native.symbol
-
-
-@compiled_exactly
-def note_on(
-    m: Any, t: Any, frame: int, channel: int, key: float, velocity: float, pitch: float
-) -> None:
-    """Begin a note; where the pitch is NaN, at that of the tuning.
-
-    Parameters
-    ----------
-    velocity : float
-        0 to 1; below 0 where the note was given its values before.
-    """
-    _note_on(address_of(m), address_of(t), frame, channel, key, velocity, pitch)
+    begin_key(m, frame, channel, key, playable, velocity, strike_number)
 
 
 @compiled_exactly

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -33,7 +33,7 @@ MIDI = np.dtype(
         ("held_channel", np.int64, MOST_HELD),
         ("held_key", np.float64, MOST_HELD),
         ("held_velocity", np.float64, MOST_HELD),
-        ("held_struck", np.int64, MOST_HELD),  # number of the move that its velocity is; 0: none
+        ("held_strike_number", np.int64, MOST_HELD),  # of the move that its velocity is; 0: none
         ("held_again", np.int64, MOST_HELD),  # frame at which it was struck while held, or NONE
         ("held_by", np.int64, MOST_HELD),  # channel of the pedal that holds it, or NONE
         ("held_since", np.int64, MOST_HELD),  # order in which pedals took keys
@@ -44,23 +44,24 @@ MIDI = np.dtype(
         ("last_channel", np.int64),
         ("last_key", np.float64),
         ("last_velocity", np.float64),
-        ("last_struck", np.int64),
+        ("last_strike_number", np.int64),
         # Keys that end together: their numbers among those held.
         ("listed", np.int64),
         ("list", np.int64, MOST_HELD),
         ("is_listed", np.int64, MOST_HELD),
-        # Moves: numbers, by which the later of two counts, and positions, 0 to 1; by channel and
-        # first bind of the source. 0: none. `taken` are those that soft binds acted on.
-        ("count", np.int64),
-        ("moved", np.int64, (CHANNELS, MOST_BINDS)),
+        # Moves are numbered in their order, from 1, since the later of two counts; 0: none. Their
+        # positions are 0 to 1. By channel and first bind of the source; `taken` are those that
+        # soft binds acted on. A key that is struck moves velocity, a write sets a target.
+        ("moves", np.int64),
+        ("move_number", np.int64, (CHANNELS, MOST_BINDS)),
         ("position", np.float64, (CHANNELS, MOST_BINDS)),
-        ("taken", np.int64, (CHANNELS, MOST_BINDS)),
+        ("taken_number", np.int64, (CHANNELS, MOST_BINDS)),
         ("taken_position", np.float64, (CHANNELS, MOST_BINDS)),
-        ("pressed", np.int64, (CHANNELS, KEYS)),  # aftertouch of each key
+        ("pressure_number", np.int64, (CHANNELS, KEYS)),  # aftertouch of each key
         ("pressure", np.float64, (CHANNELS, KEYS)),
-        ("struck", np.int64, CHANNELS + 1),  # last note of a channel; at last, of all others
-        ("struck_velocity", np.float64, CHANNELS + 1),
-        ("struck_key", np.float64, CHANNELS + 1),
+        ("strike_number", np.int64, CHANNELS + 1),  # last note of a channel; at last, of all others
+        ("strike_velocity", np.float64, CHANNELS + 1),
+        ("strike_key", np.float64, CHANNELS + 1),
         ("actives", np.int64),  # channels with moves
         ("active", np.int64, CHANNELS),
         ("is_active", np.int64, CHANNELS),
@@ -69,13 +70,13 @@ MIDI = np.dtype(
         ("fader", np.float64, MOST_BINDS),
         ("fader_wrote", np.float64, MOST_BINDS),  # value it last gave its target; NaN: none
         # Targets as set last, or as before their first move: rows in that order; the number of
-        # that write, 0 for none.
+        # that write.
         ("targets", np.int64),
         ("target", np.int64, ROWS),
         ("is_target", np.int64, ROWS),
-        ("set", np.int64, ROWS),
+        ("set_number", np.int64, ROWS),
         ("set_to", np.float64, ROWS),
-        ("found", np.int64, ROWS),  # of `values.find_values`: numbers and values
+        ("found_number", np.int64, ROWS),  # of `values.find_values`: numbers and values
         ("found_value", np.float64, ROWS),
         # Channels.
         ("bend_range", np.float64, CHANNELS),  # semitones; NaN: RPN 0 has not set it
@@ -150,13 +151,14 @@ MIDI = np.dtype(
         ("out_other", np.float64, MOST_WISHES),
         ("out_person", np.int64, MOST_WISHES),
         # Where moves go while tables change.
-        ("saved_moved", np.int64, MOST_BINDS),
+        ("saved_move_number", np.int64, MOST_BINDS),
         ("saved_position", np.float64, MOST_BINDS),
-        ("saved_taken", np.int64, MOST_BINDS),
+        ("saved_taken_number", np.int64, MOST_BINDS),
         ("saved_taken_position", np.float64, MOST_BINDS),
     ],
     align=True,
 )
+Midi = Annotated[Any, MIDI]
 
 
 def prepare_midi(

@@ -12,17 +12,16 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.controllers import (
     set_directly,
 )
-from yehu_server.core.midi.emit_wishes import write, write_native
-from yehu_server.core.midi.record import MIDI, NONE
+from yehu_server.core.midi.emit_wishes import write
+from yehu_server.core.midi.record import NONE, Midi
 from yehu_server.core.midi.resets import (
     restore_moves,
 )
-from yehu_server.core.midi.tables import KEYS, MOST_BINDS, POLY_PRESSURE, TABLES
-from yehu_server.core.midi.values import find_values, find_values_native, keep_target
+from yehu_server.core.midi.tables import KEYS, MOST_BINDS, POLY_PRESSURE, Tables
+from yehu_server.core.midi.values import find_values, keep_target
 from yehu_server.core.player.rows import ROWS
 from yehu_server.params.table import TABLE
 
@@ -45,19 +44,16 @@ def start_value(t: Any, row: int) -> float:
     return float(DEFAULTS[row])
 
 
-@native("void(voidptr, voidptr, voidptr, int64)", calls=[find_values_native, write_native])
-def change_binds_native(midi_at: Any, before_at: Any, tables_at: Any, frame: int) -> None:
-    """See `change_binds`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    before = carray(before_at, (1,), TABLES)[0]
-    t = carray(tables_at, (1,), TABLES)[0]
+@native
+def change_binds(m: Midi, before: Tables, t: Tables, frame: int) -> None:
+    """Take the binds of other tables."""
     for i in range(m.actives):
         change_moves(m, before, t, m.active[i])
     change_faders(m, before, t)
     for bind in range(int(t.binds)):
         keep_target(m, int(t.target[bind]))
     for row in range(ROWS):
-        m.found[row] = 0
+        m.found_number[row] = 0
     for i in range(int(before.starts)):
         change_start(m, before, t, frame, int(before.start_row[i]))
     for i in range(int(t.starts)):
@@ -69,26 +65,17 @@ def change_binds_native(midi_at: Any, before_at: Any, tables_at: Any, frame: int
             write(m, frame, row, m.found_value[row], False, 0.0, NONE)
 
 
-_change_binds = change_binds_native.symbol
-
-
-@compiled_exactly
-def change_binds(m: Any, before: Any, t: Any, frame: int) -> None:
-    """Take the binds of other tables."""
-    _change_binds(address_of(m), address_of(before), address_of(t), frame)
-
-
 @compiled_exactly
 def change_start(m: Any, before: Any, t: Any, frame: int, row: int) -> None:
     """Give a parameter its new start value, once, if it still has the old one."""
-    if m.found[row] != 0:
+    if m.found_number[row] != 0:
         return
-    m.found[row] = 1
+    m.found_number[row] = 1
     old, new = start_value(before, row), start_value(t, row)
     now = m.set_to[row] if m.is_target[row] != 0 else m.value[row]
     if old != new and now == old:
         keep_target(m, row)
-        m.set[row], m.set_to[row] = 0, new  # moves made before still count
+        m.set_number[row], m.set_to[row] = 0, new  # moves made before still count
         if m.has_last == 0:
             write(m, frame, row, new, False, 0.0, NONE)
 
@@ -97,7 +84,7 @@ def change_start(m: Any, before: Any, t: Any, frame: int, row: int) -> None:
 def change_moves(m: Any, before: Any, t: Any, channel: int) -> None:
     """Give the moves of a channel the numbers of other binds."""
     for bind in range(MOST_BINDS):
-        m.saved_moved[bind] = m.saved_taken[bind] = 0
+        m.saved_move_number[bind] = m.saved_taken_number[bind] = 0
     is_pressed = False
     for bind in range(int(t.binds)):
         source = int(t.source[bind])
@@ -107,31 +94,31 @@ def change_moves(m: Any, before: Any, t: Any, channel: int) -> None:
                 continue
             first = int(before.first[old])
             if int(t.first[bind]) == bind:
-                m.saved_moved[bind] = m.moved[channel, first]
+                m.saved_move_number[bind] = m.move_number[channel, first]
                 m.saved_position[bind] = m.position[channel, first]
             if t.soft[bind] == 0.0 or int(before.target[old]) != int(t.target[bind]):
                 continue
             if before.soft[old] != 0.0:
-                number, position = m.taken[channel, old], m.taken_position[channel, old]
+                number, position = m.taken_number[channel, old], m.taken_position[channel, old]
             else:
-                number, position = m.moved[channel, first], m.position[channel, first]
+                number, position = m.move_number[channel, first], m.position[channel, first]
             if number != 0:
-                m.saved_taken[bind], m.saved_taken_position[bind] = number, position
+                m.saved_taken_number[bind], m.saved_taken_position[bind] = number, position
     restore_moves(m, channel)
     if not is_pressed:
         for key in range(KEYS):
-            m.pressed[channel, key] = 0
+            m.pressure_number[channel, key] = 0
 
 
 @compiled_exactly
 def change_faders(m: Any, before: Any, t: Any) -> None:
     """Let named controls stay where their bind is the same."""
     for bind in range(MOST_BINDS):
-        m.saved_moved[bind], m.saved_position[bind] = m.has_fader[bind], m.fader[bind]
+        m.saved_move_number[bind], m.saved_position[bind] = m.has_fader[bind], m.fader[bind]
         m.saved_taken_position[bind] = m.fader_wrote[bind]
         m.has_fader[bind], m.fader_wrote[bind] = 0, math.nan
     for bind in range(int(t.binds)):
         for old in range(int(before.binds)):
-            if before.same[old] == t.same[bind] and m.saved_moved[old] != 0:
+            if before.same[old] == t.same[bind] and m.saved_move_number[old] != 0:
                 m.has_fader[bind], m.fader[bind] = 1, m.saved_position[old]
                 m.fader_wrote[bind] = m.saved_taken_position[old]

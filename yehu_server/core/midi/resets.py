@@ -5,22 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.channels import add_active, forget_moves, moves_all
 from yehu_server.core.midi.controllers import (
     follow,
-    follow_native,
 )
 from yehu_server.core.midi.emit_wishes import write
-from yehu_server.core.midi.record import CHANNELS, MIDI, NONE
+from yehu_server.core.midi.record import CHANNELS, NONE, Midi
 from yehu_server.core.midi.tables import (
     BEND,
     KEYS,
     MOST_BINDS,
     NOTE,
     PRESSURE,
-    TABLES,
     VELOCITY,
+    Tables,
 )
 from yehu_server.core.player.rows import ROW
 
@@ -28,30 +26,19 @@ from yehu_server.core.player.rows import ROW
 VOLUME, PAN = ROW["/playing/volume"], ROW["/room/pan"]
 
 
-@native("void(voidptr, voidptr, int64, int64)", calls=[follow_native])
-def reset_controllers_native(midi_at: Any, tables_at: Any, frame: int, channel: int) -> None:
-    """See `reset_controllers`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    t = carray(tables_at, (1,), TABLES)[0]
+@native
+def reset_controllers(m: Midi, t: Tables, frame: int, channel: int) -> None:
+    """Act on "reset all controllers"."""
     for key in range(KEYS):
-        m.pressed[channel, key] = 0
+        m.pressure_number[channel, key] = 0
     for bind in range(int(t.binds)):
         if int(t.target[bind]) not in (VOLUME, PAN):
-            m.moved[channel, int(t.first[bind])] = 0
-            m.taken[channel, bind] = 0
+            m.move_number[channel, int(t.first[bind])] = 0
+            m.taken_number[channel, bind] = 0
     for bind in range(int(t.binds)):
         source = int(t.source[bind])
         if int(t.first[bind]) == bind and source not in (VELOCITY, NOTE):
             follow(m, t, frame, source, channel, False)
-
-
-_reset_controllers = reset_controllers_native.symbol
-
-
-@compiled_exactly
-def reset_controllers(m: Any, t: Any, frame: int, channel: int) -> None:
-    """Act on "reset all controllers"."""
-    _reset_controllers(address_of(m), address_of(t), frame, channel)
 
 
 @compiled_exactly
@@ -65,20 +52,22 @@ def disconnect_channel(m: Any, t: Any, frame: int, channel: int) -> None:
         return
     has_bend, has_pressure, is_saved = False, False, False
     for bind in range(MOST_BINDS):
-        m.saved_moved[bind] = m.saved_taken[bind] = 0
+        m.saved_move_number[bind] = m.saved_taken_number[bind] = 0
     for bind in range(int(t.binds)):
         first, source = int(t.first[bind]), int(t.source[bind])
-        if m.moved[channel, first] == 0 or not moves_all(m, t, channel, t.for_all[bind] != 0.0):
+        if m.move_number[channel, first] == 0 or not moves_all(
+            m, t, channel, t.for_all[bind] != 0.0
+        ):
             continue
         has_bend = has_bend or source == BEND
         has_pressure = has_pressure or source == PRESSURE
         if source not in (BEND, PRESSURE):  # faders and pedals stay where they are
             is_saved = True
-            m.saved_moved[first], m.saved_position[first] = (
-                m.moved[channel, first],
+            m.saved_move_number[first], m.saved_position[first] = (
+                m.move_number[channel, first],
                 m.position[channel, first],
             )
-            m.saved_taken[bind] = m.taken[channel, bind]
+            m.saved_taken_number[bind] = m.taken_number[channel, bind]
             m.saved_taken_position[bind] = m.taken_position[channel, bind]
     forget_moves(m, channel)
     if is_saved:
@@ -94,11 +83,11 @@ def restore_moves(m: Any, channel: int) -> None:
     """Give a channel the moves that were set aside."""
     add_active(m, channel)
     for bind in range(MOST_BINDS):
-        m.moved[channel, bind], m.position[channel, bind] = (
-            m.saved_moved[bind],
+        m.move_number[channel, bind], m.position[channel, bind] = (
+            m.saved_move_number[bind],
             m.saved_position[bind],
         )
-        m.taken[channel, bind] = m.saved_taken[bind]
+        m.taken_number[channel, bind] = m.saved_taken_number[bind]
         m.taken_position[channel, bind] = m.saved_taken_position[bind]
 
 
@@ -108,9 +97,9 @@ def forget_all_moves(m: Any, frame: int) -> None:
     while m.actives > 0:
         forget_moves(m, m.active[0])
     for n in range(m.held):
-        m.held_struck[n] = 0
-    m.last_struck = 0
-    m.struck[CHANNELS] = 0
+        m.held_strike_number[n] = 0
+    m.last_strike_number = 0
+    m.strike_number[CHANNELS] = 0
     for i in range(m.targets):
         row = m.target[i]
         write(m, frame, row, m.set_to[row], False, 0.0, NONE)

@@ -6,7 +6,7 @@ sources and curves are below.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -69,6 +69,7 @@ TABLES = np.dtype(
         ("program_value", np.float64, (PROGRAMS, ROWS)),
     ]
 )
+Tables = Annotated[Any, TABLES]
 
 
 def plain_tables() -> Any:

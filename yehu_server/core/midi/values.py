@@ -9,12 +9,11 @@ from __future__ import annotations
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.channels import bend_range, is_midi, master_of, moves_all
 from yehu_server.core.midi.curves import along_curve, from_unit, inverted
 from yehu_server.core.midi.held_keys import find_key
-from yehu_server.core.midi.record import IN_PORT, MIDI, NONE
-from yehu_server.core.midi.tables import KEYS, NOTE, POLY_PRESSURE, TABLES, VELOCITY
+from yehu_server.core.midi.record import IN_PORT, NONE, Midi
+from yehu_server.core.midi.tables import KEYS, NOTE, POLY_PRESSURE, VELOCITY, Tables
 
 STEPS = 127.0  # largest value of 7 bits
 NO_KEY = -1.0
@@ -40,7 +39,7 @@ def keep_target(m: Any, row: int) -> None:
         m.is_target[row] = 1
         m.target[m.targets] = row
         m.targets += 1
-        m.set[row], m.set_to[row] = 0, m.value[row]
+        m.set_number[row], m.set_to[row] = 0, m.value[row]
 
 
 @compiled_exactly
@@ -55,8 +54,8 @@ def keep_targets_of(m: Any, t: Any, source: int) -> None:
 def set_target(m: Any, row: int, value: float) -> None:
     """Record a direct write."""
     keep_target(m, row)
-    m.count += 1
-    m.set[row], m.set_to[row] = m.count, value
+    m.moves += 1
+    m.set_number[row], m.set_to[row] = m.moves, value
 
 
 @compiled_exactly
@@ -64,9 +63,9 @@ def struck_by(m: Any, channel: int, key: float) -> tuple[int, float]:
     """Number and value of the velocity of a note; 0 for none."""
     n = find_key(m, channel, key)
     if n != NONE:
-        return m.held_struck[n], m.held_velocity[n]
+        return m.held_strike_number[n], m.held_velocity[n]
     if m.has_last != 0 and m.last_channel == channel and m.last_key == key:
-        return m.last_struck, m.last_velocity
+        return m.last_strike_number, m.last_velocity
     return 0, 0.0
 
 
@@ -85,11 +84,11 @@ def move_of(m: Any, t: Any, bind: int, channel: int, key: float) -> tuple[int, f
         n = int(key)
         if not 0 <= n < KEYS or n != key:
             return 0, 0.0
-        return m.pressed[channel, n], m.pressure[channel, n]
+        return m.pressure_number[channel, n], m.pressure[channel, n]
     if t.soft[bind] != 0.0:
-        return m.taken[channel, bind], m.taken_position[channel, bind]
+        return m.taken_number[channel, bind], m.taken_position[channel, bind]
     first = int(t.first[bind])
-    return m.moved[channel, first], m.position[channel, first]
+    return m.move_number[channel, first], m.position[channel, first]
 
 
 @compiled_exactly
@@ -111,14 +110,17 @@ def latest_for_all(m: Any, t: Any, bind: int, but: int) -> tuple[int, float, int
     return number, position, channel
 
 
-@native("void(voidptr, voidptr, int64, float64)")
-def find_values_native(midi_at: Any, tables_at: Any, channel: int, key: float) -> None:
-    """See `find_values`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    t = carray(tables_at, (1,), TABLES)[0]
+@native
+def find_values(m: Midi, t: Tables, channel: int, key: float) -> None:
+    """Find the values of all targets that were ever moved, for a note of a channel.
+
+    The latest counts of the write to a target, the channel's own moves, and the moves for all
+    notes. A note in an MPE zone has its master's moves where its channel has none. Bends add up:
+    that of the note's channel, of the master, and for all notes.
+    """
     for i in range(m.targets):
         row = m.target[i]
-        m.found[row], m.found_value[row] = m.set[row], m.set_to[row]
+        m.found_number[row], m.found_value[row] = m.set_number[row], m.set_to[row]
     master = master_of(m, channel)
     for bind in range(int(t.binds)):
         number, position = move_of(m, t, bind, channel, key)
@@ -128,7 +130,7 @@ def find_values_native(midi_at: Any, tables_at: Any, channel: int, key: float) -
         if other > number:
             number, position = other, at
         row = int(t.target[bind])
-        if number == 0 or number < m.found[row]:
+        if number == 0 or number < m.found_number[row]:
             continue
         value = from_unit(t, bind, position)
         if int(t.source[bind]) == VELOCITY:
@@ -139,21 +141,7 @@ def find_values_native(midi_at: Any, tables_at: Any, channel: int, key: float) -
                 value += bend_of(m, t, bind, master)
             if other_channel not in (NONE, master):
                 value += bend_of(m, t, bind, other_channel)
-        m.found[row], m.found_value[row] = number, value
-
-
-_find_values = find_values_native.symbol
-
-
-@compiled_exactly
-def find_values(m: Any, t: Any, channel: int, key: float) -> None:
-    """Find the values of all targets that were ever moved, for a note of a channel.
-
-    The latest counts of the write to a target, the channel's own moves, and the moves for all
-    notes. A note in an MPE zone has its master's moves where its channel has none. Bends add up:
-    that of the note's channel, of the master, and for all notes.
-    """
-    _find_values(address_of(m), address_of(t), channel, key)
+        m.found_number[row], m.found_value[row] = number, value
 
 
 @compiled_exactly
@@ -175,7 +163,7 @@ def bend_of(m: Any, t: Any, bind: int, channel: int) -> float:
     position = 0.5
     if is_midi(channel):
         first = int(t.first[bind])
-        if m.moved[channel, first] != 0:
+        if m.move_number[channel, first] != 0:
             position = m.position[channel, first]
     unit = along_curve(t, bind, inverted(t, bind, position), 0.0, 1.0)
     return (2.0 * unit - 1.0) * bend_range(m, channel)
@@ -184,5 +172,5 @@ def bend_of(m: Any, t: Any, bind: int, channel: int) -> float:
 @compiled_exactly
 def remember_last(m: Any, channel: int, key: float) -> None:
     """Record the key whose note sounds, or will; it is held."""
-    m.last_struck, m.last_velocity = struck_by(m, channel, key)
+    m.last_strike_number, m.last_velocity = struck_by(m, channel, key)
     m.has_last, m.last_channel, m.last_key = 1, channel, key

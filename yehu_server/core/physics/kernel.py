@@ -8,10 +8,9 @@ part.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from yehu_server.compile.jit import compiled, native
-from yehu_server.compile.memory import carray
 from yehu_server.core.physics.bow import (
     advance_hair,
     choose_string,
@@ -115,15 +114,14 @@ def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
     return model
 
 
-@native("void(voidptr)")
-def derive(model: Any) -> None:
+@native
+def derive(m: Annotated[Model, MODEL]) -> None:
     """Write what follows from quantities and grids: as compiled code does when a string is retuned.
 
     Parameters
     ----------
-    model : pointer to a record of dtype MODEL, otherwise prepared
+    m : record of dtype MODEL, otherwise prepared
     """
-    m = carray(model, (1,), MODEL)[0]
     place_bridge(m)
     for i in range(STRINGS):
         set_string_weights(m, i, m.T[i], m.sigma_0[i], m.sigma_1[i])

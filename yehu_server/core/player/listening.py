@@ -9,14 +9,14 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.hands import vibrato_at
-from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.controls.record import Controls
 from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
 from yehu_server.core.player.articulating import articulate
 from yehu_server.core.player.bowing_by_ear import correct_pressure
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
 from yehu_server.core.player.ear import BEHIND, EAR_SAMPLES, hear
 from yehu_server.core.player.notes import reverse_bow_at_end, sounding_pitch
-from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.record import Player
 from yehu_server.core.player.rows import LISTENING
 from yehu_server.core.player.tuning_by_ear import tune
 
@@ -55,20 +55,16 @@ def vibrato_semitones(p: Any, c: Any) -> float:
     return float(vibrato_at(c, phase) * c.vibrato_width * c.value[DEPTH] / 100.0)
 
 
-@native("void(voidptr, voidptr, voidptr)")
-def attend(player: Any, controls: Any, sound: Any) -> None:
+@native
+def attend(p: Player, c: Controls, sound: Any) -> None:
     """Do what is to be done at the frames of ``ear.next``.
 
     Parameters
     ----------
-    player : pointer to a record of dtype PLAYER
-    controls : pointer to a record of dtype CONTROLS
     sound : pointer to what `ear.remember` keeps
 
     Real time: safe.
     """
-    p = carray(player, (1,), PLAYER)[0]
-    c = carray(controls, (1,), CONTROLS)[0]
     p.ear.next += p.ear.hop
     advance_drift(p, c)
     vary_vibrato(p, c)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -109,6 +109,7 @@ PLAYER = np.dtype(
     ],
     align=True,
 )
+Player = Annotated[Any, PLAYER]
 
 UP = -1.0  # the direction before the first stroke, which is a down-bow, v_b > 0
 SILENT, ENDING = -1, -2  # ENDING: the key is released, and more of them follow

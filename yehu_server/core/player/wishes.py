@@ -23,14 +23,13 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.compile.memory import carray
 from yehu_server.core.controls.ramps import take
-from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.controls.record import Controls
 from yehu_server.core.player import left_hand, notes
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.core.player.ownership import USUAL_MS, forget, ramp_to, release, write_directly
 from yehu_server.core.player.phrasing import begin_sequence
-from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.record import Player
 from yehu_server.core.player.rows import (
     ASSIST,
     BEND,
@@ -79,23 +78,16 @@ WISH = np.dtype(
 )
 
 
-@native("void(voidptr, voidptr, int64, int64, int64, float64, float64)")
+@native
 def fulfil(
-    player: Any, controls: Any, frame: int, kind: int, index: int, value: float, other: float
+    p: Player, c: Controls, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
     """Fulfil a wish, given by its fields, within the ranges of what it moves.
 
     One of no kind, for no parameter, or with a number that is not finite changes nothing.
 
-    Parameters
-    ----------
-    player : pointer to a record of dtype PLAYER
-    controls : pointer to a record of dtype CONTROLS
-
     Real time: safe.
     """
-    p = carray(player, (1,), PLAYER)[0]
-    c = carray(controls, (1,), CONTROLS)[0]
     if not (math.isfinite(value) and math.isfinite(other)):
         return
     if kind == RAMP:

@@ -220,12 +220,17 @@ def _position(record: Any, bind: Bind, number: int, first: int) -> float | None:
         channels = channels[np.isin(channels % IN_PORT + 1, bind.channels)]
     if bind.source in (VELOCITY, NOTE):
         places = channels if bind.channels else np.arange(CHANNELS + 1)
-        numbers = record["struck"][places]
-        name = "struck_velocity" if bind.source == VELOCITY else "struck_key"
+        numbers = record["strike_number"][places]
+        name = "strike_velocity" if bind.source == VELOCITY else "strike_key"
         positions = record[name][places] / (1.0 if bind.source == VELOCITY else STEPS)
     elif bind.source == POLY_PRESSURE:
-        numbers, positions = (record[name][channels].ravel() for name in ("pressed", "pressure"))
+        numbers, positions = (
+            record[name][channels].ravel() for name in ("pressure_number", "pressure")
+        )
     else:
-        numbers, positions = record["moved"][channels, first], record["position"][channels, first]
+        numbers, positions = (
+            record["move_number"][channels, first],
+            record["position"][channels, first],
+        )
     latest = int(np.argmax(numbers)) if len(numbers) else 0
     return float(positions[latest]) if len(numbers) and numbers[latest] else None

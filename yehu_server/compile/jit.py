@@ -28,6 +28,11 @@ R = TypeVar("R")
 FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
 
 
+def uncompiled(function: Callable[P, R]) -> Callable[P, R]:
+    """The Python function that a compiled one was made of, for use without numba."""
+    return cast("Callable[P, R]", getattr(function, "py_func", function))
+
+
 class Deferred:
     """Stands for something of numba's, made when it is first needed.
 

@@ -22,11 +22,6 @@ from yehu_server.playing.tuning import KEYS, RangePolicy, Tuning
 Array = Any
 
 CURVES = {Curve.LIN: tables.LINEAR, Curve.EXP: tables.EXPONENTIAL, Curve.S: tables.S}
-POLICIES = {
-    RangePolicy.TRANSPOSE: tables.TRANSPOSE,
-    RangePolicy.CLAMP: tables.CLAMP,
-    RangePolicy.SKIP: tables.SKIP,
-}
 WORDS = {
     sources.BEND: tables.BEND, sources.PRESSURE: tables.PRESSURE,
     sources.POLY_PRESSURE: tables.POLY_PRESSURE, sources.VELOCITY: tables.VELOCITY,
@@ -87,7 +82,7 @@ def make_tables(
     t["is_equal"] = float(tuning.keys is None)
     pitches = (tuning.pitch(float(key), a4) for key in KEYS)
     t["pitch"] = [math.nan if pitch is None else pitch for pitch in pitches]
-    t["policy"] = POLICIES[policy]
+    t["policy"] = policy.code
     t["received"] = -1 if received is None else sum(1 << channel for channel in set(received))
     _write_programs(t, programs)
     return made

@@ -12,7 +12,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
 
-from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
+from yehu_server.compile.jit import uncompiled
+from yehu_server.core.midi import tables
+from yehu_server.core.midi.notes import fitted, pitch_of_key
 from yehu_server.errors import ParameterError
 from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, shipped_folder
 
@@ -24,23 +26,18 @@ class RangePolicy(Enum):
     CLAMP = "clamp"
     SKIP = "skip"
 
+    @property
+    def code(self) -> int:
+        """What it is called in ``midi.tables``."""
+        return int(getattr(tables, self.name))
+
     def fit(self, note: float) -> float | None:
-        """Return the note to play for `note`, or None for none.
-
-        A note that a tuning puts less than a quarter tone out of range is moved to its end.
-        """
-        if LOWEST_NOTE - OPEN_WITHIN < note < HIGHEST_NOTE + OPEN_WITHIN:
-            return min(max(note, LOWEST_NOTE), HIGHEST_NOTE)
-        if self is RangePolicy.SKIP:
-            return None
-        if self is RangePolicy.CLAMP:
-            return min(max(note, LOWEST_NOTE), HIGHEST_NOTE)
-        if note < LOWEST_NOTE:
-            return note + 12 * -(-(LOWEST_NOTE - note) // 12)
-        return note - 12 * -(-(note - HIGHEST_NOTE) // 12)
+        """Return the note to play for `note`, or None for none."""
+        playable = uncompiled(fitted)(self.code, note)
+        return None if math.isnan(playable) else playable
 
 
-KEYS = range(128)
+KEYS = range(tables.KEYS)
 MIDDLE_C, A4 = 60, 69
 # Hz; the pitches of a tuning that is fixed in Hz are stored relative to this A4.
 STANDARD_A4 = 440.0
@@ -96,20 +93,11 @@ class Tuning:
         """
         if self.keys is None:
             return note
-        if not KEYS[0] <= note <= KEYS[-1]:  # also refuses NaN
+        pitches = [math.nan if key is None else key for key in self.keys]
+        pitch = uncompiled(pitch_of_key)(pitches, note)
+        if math.isnan(pitch):
             return None
-        below, above = math.floor(note), math.ceil(note)
-        if below != above:
-            while below > KEYS[0] and self.keys[below] is None:
-                below -= 1
-            while above < KEYS[-1] and self.keys[above] is None:
-                above += 1
-        low, high = self.keys[below], self.keys[above]
-        if low is None or high is None:
-            return None
-        if below != above:
-            low += (high - low) * (note - below) / (above - below)
-        return low - 12.0 * math.log2(a4 / STANDARD_A4) if self.fixed else low
+        return pitch - 12.0 * math.log2(a4 / STANDARD_A4) if self.fixed else pitch
 
 
 EQUAL = Tuning("12-tone equal temperament")

@@ -24,10 +24,16 @@ from yehu_server.core.midi.controllers import (
 )
 from yehu_server.core.midi.emit_wishes import stop_sound
 from yehu_server.core.midi.held_keys import list_key
-from yehu_server.core.midi.note_ends import end_all, end_notes, list_channel
+from yehu_server.core.midi.note_ends import (
+    SUSTAIN,
+    end_all,
+    end_notes,
+    hold_by_pedal,
+    lift_pedal,
+    list_channel,
+)
 from yehu_server.core.midi.notes import end_channel, note_off, note_on
 from yehu_server.core.midi.packing import BYTE, LENGTH_AT, PORT_AT
-from yehu_server.core.midi.pedals import SUSTAIN, hold_by_pedal, lift_pedal
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE, PORTS, Midi
 from yehu_server.core.midi.registered_parameters import (
     DATA_ENTRY,

@@ -10,41 +10,40 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import forget_channel, is_midi
 from yehu_server.core.midi.controllers import set_directly
-from yehu_server.core.midi.emit_wishes import (
-    begin_key,
-)
+from yehu_server.core.midi.emit_wishes import begin_key
 from yehu_server.core.midi.held_keys import find_key
-from yehu_server.core.midi.note_ends import end_notes, express_key, list_channel
-from yehu_server.core.midi.pedals import lift_pedal, release_key
+from yehu_server.core.midi.note_ends import (
+    end_notes,
+    express_key,
+    lift_pedal,
+    list_channel,
+    release_key,
+)
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE, Midi
 from yehu_server.core.midi.tables import CLAMP, KEYS, NOTE, SKIP, VELOCITY, Tables
-from yehu_server.core.midi.values import (
-    keep_targets_of,
-)
+from yehu_server.core.midi.values import keep_targets_of
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
 from yehu_server.core.player.rows import ARTICULATION
 from yehu_server.params.articulations import ARTICULATIONS
 
-# -- pitches --------------------------------------------------------------------------------------
+# -- pitches, which Python asks for as well, uncompiled (``playing.tuning``) -----------------------
 
 
 @compiled_exactly
-def tuned(t: Any, key: float) -> float:
-    """The pitch of a key (fractional MIDI note) by the tuning; NaN for none.
+def pitch_of_key(pitches: Any, key: float) -> float:
+    """The pitch of a key, of those of all keys; NaN for none.
 
     A fractional key lies between the mapped keys below and above.
     """
-    if t.is_equal != 0.0:
-        return key
     if not 0.0 <= key <= KEYS - 1.0:  # also refuses NaN
         return math.nan
     below, above = math.floor(key), math.ceil(key)
     if below != above:
-        while below > 0 and math.isnan(t.pitch[below]):
+        while below > 0 and math.isnan(pitches[below]):
             below -= 1
-        while above < KEYS - 1 and math.isnan(t.pitch[above]):
+        while above < KEYS - 1 and math.isnan(pitches[above]):
             above += 1
-    low, high = t.pitch[below], t.pitch[above]
+    low, high = pitches[below], pitches[above]
     if below != above:  # NaN where one is not mapped
         low += (high - low) * (key - below) / (above - below)
     return float(low)
@@ -66,10 +65,9 @@ def fitted(policy: int, note: float) -> float:
     return note - 12.0 * math.ceil((note - HIGHEST_NOTE) / 12.0)
 
 
+# -- keys ------------------------------------------------------------------------------------------
+
 SWITCHES = len(ARTICULATIONS)  # keys that choose an articulation, where a mapping has them
-
-
-# -- keys -----------------------------------------------------------------------------------------
 
 
 @compiled_exactly
@@ -100,7 +98,7 @@ def note_on(
         m.held_by[n] = NONE
     wanted = pitch
     if math.isnan(pitch):
-        wanted = tuned(t, key)
+        wanted = key if t.is_equal != 0.0 else pitch_of_key(t.pitch, key)
         if is_midi(channel):
             wanted += m.coarse_tuning[channel] + m.fine_tuning[channel]
     playable = fitted(int(t.policy), wanted)

@@ -53,7 +53,7 @@ class Player:
         playing = replace(PlayingOptions(), programs=True)
         self._ensemble = Ensemble([playing.spec(RATE, calibration_for(RATE))], is_live=True)
         self._first = self._ensemble.first
-        self._first.lead(playing.tables(Controls()))
+        self._first.begin_part(playing.tables(Controls()))
         self._first.post(START)
         self._out = np.zeros((BLOCK, 2), np.float32)
 

@@ -35,7 +35,7 @@ class Leader:
     def midi(self) -> Any:
         return self._midi[0]
 
-    def lead(self, tables: Any, people: int = 1) -> None:
+    def begin_part(self, tables: Any, people: int = 1) -> None:
         is_mpe = bool(tables["mpe"][0])
         prepare_midi(self._midi, self.rate, DEFAULTS, people=people, mpe=is_mpe)
         self.tables[0] = tables[0]

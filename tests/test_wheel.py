@@ -37,7 +37,7 @@ swept = yehu.sweep(
     {"bow_position": [0.25, 0.26], "bow_force": [0.2, 0.8]},
 )
 print("sweep", swept.grid("regime").shape)
-print("Player", len(yehu.Player(tune.sound, tune.sample_rate).wav()) > 1000)
+print("AudioWidget", len(yehu.AudioWidget(tune.sound, tune.sample_rate).wav()) > 1000)
 for act in (lambda: yehu.plot.level(tune), swept.to_xarray, lambda: yehu.render("none.mid")):
     try:
         act()
@@ -92,7 +92,7 @@ DONE = [
     "Instrument (4410,) (4410,)",
     "simulate True True",
     "sweep (2, 2)",
-    "Player True",
+    "AudioWidget True",
 ]
 
 

@@ -24,17 +24,17 @@ if TYPE_CHECKING:
     from yehu_server.api.followed import Followed, follow
     from yehu_server.api.instrument import Instrument
     from yehu_server.api.notes import Note
-    from yehu_server.api.playback import Player, play
+    from yehu_server.api.playback import AudioWidget, play
     from yehu_server.api.rendered import Rendering, render
     from yehu_server.api.simulated import Simulation, simulate
     from yehu_server.api.swept import Sweep, sweep
     from yehu_server.errors import YehuError
 
 __all__ = [
+    "AudioWidget",
     "Followed",
     "Instrument",
     "Note",
-    "Player",
     "Rendering",
     "Simulation",
     "Sweep",
@@ -49,10 +49,11 @@ __all__ = [
 ]
 
 _MODULES = {
+    "AudioWidget": "api.playback",
     "Followed": "api.followed",
     "Instrument": "api.instrument",
     "Note": "api.notes",
-    "Player": "api.playback",
+    "Player": "api.playback",  # what AudioWidget was called before
     "Rendering": "api.rendered",
     "Simulation": "api.simulated",
     "Sweep": "api.swept",

@@ -36,7 +36,7 @@ int main(int count, char **words) {
         uint8_t bytes[] = {0x90, 65 + wish % 24, 90, 0xB0, 1, wish % 128};
         yehu_midi(yehu, done, bytes, sizeof bytes);
         yehu_control(yehu, done, wish % 3, 0.5);
-        taken += yehu_map(yehu, done, &tables, sizeof tables) == 1;
+        taken += yehu_use_tables(yehu, done, &tables, sizeof tables) == 1;
         yehu_process(yehu, out, BLOCK);
         yehu_look(yehu, &seen);
         yehu_value(yehu, wish % 40);

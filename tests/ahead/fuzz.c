@@ -54,7 +54,7 @@ static double wild(void) {
     return way == 0 ? some[below(sizeof some / sizeof *some)] : (double)below(way == 1 ? 5 : 3000);
 }
 
-/* Gives one of some tables, mostly with wrong numbers; returns what yehu_map does. */
+/* Gives one of some tables, mostly with wrong numbers; returns what yehu_use_tables does. */
 static int64_t map(void *yehu, int64_t frame, FILE *tables, long count) {
     fseek(tables, below(count) * (long)sizeof given, SEEK_SET);
     if (fread(&given, sizeof given, 1, tables) != 1) exit(6);
@@ -64,7 +64,7 @@ static int64_t map(void *yehu, int64_t frame, FILE *tables, long count) {
         ((double *)&given)[place] = wild();
     }
     given.received = -1.0;
-    return yehu_map(yehu, frame, &given, sizeof given);
+    return yehu_use_tables(yehu, frame, &given, sizeof given);
 }
 
 static void play(void *yehu, long blocks) {

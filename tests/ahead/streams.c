@@ -25,7 +25,7 @@ static int step(void *yehu, const char *name, int64_t frame, FILE *steps, FILE *
     if (*name == 'm' && name[1] == 'a') {
         if (fscanf(steps, "%lld", &n) != 1) return 0;
         if (fread(&tables, sizeof tables, 1, all_tables) != 1) return 0;
-        return yehu_map(yehu, frame, &tables, sizeof tables) == 1;
+        return yehu_use_tables(yehu, frame, &tables, sizeof tables) == 1;
     }
     if (*name == 'm') {
         if (fscanf(steps, "%lld", &n) != 1 || n > MOST) return 0;

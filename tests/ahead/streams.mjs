@@ -30,7 +30,7 @@ function step(name, frame, ...numbers) {
   if (name === "map") {
     const first = size * Number(numbers[0]);
     given.set(tables.subarray(first, first + size));
-    return wasm.yehu_map(kernel.rig, at, kernel.outAt, BigInt(size));
+    return wasm.yehu_use_tables(kernel.rig, at, kernel.outAt, BigInt(size));
   }
   if (name === "midi") {
     const [count, ...bytes] = numbers.map(Number);

@@ -236,7 +236,7 @@ def stream_of(seed: int, parts: int) -> Stream:
 def interpreted(stream: Stream) -> list[list[Event]]:
     """What each event of a stream comes to, interpreted alone."""
     leader = Leader()
-    leader.lead(PlayingOptions().tables(Controls()))
+    leader.begin_part(PlayingOptions().tables(Controls()))
     found = [leader.interpret(0, events.START, 0, 0.0, 0.0)]
     tables = iter(stream.tables)
     for step in stream.steps:
@@ -251,7 +251,7 @@ def played(stream: Stream) -> np.ndarray:
     """Play a stream by the server's instrument; return its record [shape=(1,), dtype=RIG]."""
     ensemble = Ensemble([PlayingOptions().spec(RATE, calibration_for(RATE))], is_live=True)
     first = ensemble.first
-    first.lead(PlayingOptions().tables(Controls()))
+    first.begin_part(PlayingOptions().tables(Controls()))
     first.report_wishes()
     assert first.post(events.START)
     tables = iter(stream.tables)

@@ -61,7 +61,7 @@ def spoilt(chance: random.Random, tables: np.ndarray) -> np.ndarray:
 
 
 def are_right(tables: np.ndarray) -> bool:
-    """Whether `yehu_map` takes tables."""
+    """Whether `yehu_use_tables` takes tables."""
     return all(check.call(tables.ctypes.data) for check in CHECKS)
 
 
@@ -77,7 +77,7 @@ def play(count: int) -> dict[str, int]:
     """Play messages through one after another of random tables; count what came of it."""
     chance, leader, told = random.Random(2), Leader(), {"taken": 0, "refused": 0, "wishes": 0}
     right = some_tables(3, 30)
-    leader.lead(right[0])
+    leader.begin_part(right[0])
     for _ in range(count):
         tables = spoilt(chance, chance.choice(right))
         if not are_right(tables):

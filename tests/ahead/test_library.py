@@ -14,7 +14,7 @@ from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
 from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED
 from ahead.programs import compiled
 
-from yehu_server.ahead.source_hash import sources_hash
+from yehu_server.ahead.build_hash import build_hash
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.player.wishes import KINDS
 from yehu_server.params.table import TABLE, find
@@ -69,7 +69,7 @@ def test_one_channel_has_the_mean_of_left_and_right(by_c):
 def test_it_tells_sources_frame_losses_rate_and_values(by_c):
     told = by_c(STOPPED, frames=1000)[1].stdout.split()
     default = find("/playing/bow_position").default
-    assert told == [sources_hash().lstrip("0"), "1000", "0", "48000", f"{default:.17g}"]
+    assert told == [build_hash().lstrip("0"), "1000", "0", "48000", f"{default:.17g}"]
 
 
 def test_a_rate_that_it_was_not_built_for_is_refused(by_c):
@@ -88,7 +88,7 @@ def test_it_needs_the_c_library_alone(library):
 def test_it_allocates_nothing_neither_as_it_is_prepared_nor_as_it_plays(library, tmp_path):
     program = compiled(library, tmp_path / "allocate", "allocate.c", "counted.c")
     (tmp_path / "tables").write_bytes(PlayingOptions().tables(Controls()).tobytes())
-    kinds = len(KINDS) + len(EVENTS) - 1  # but for TABLES_TO, which `yehu_map` posts
+    kinds = len(KINDS) + len(EVENTS) - 1  # but for TABLES_TO, which `yehu_use_tables` posts
     command = [program, str(200_000), str(kinds), tmp_path / "tables"]
     told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
     own, preparing, playing, frames, taken = map(int, told)

@@ -10,7 +10,7 @@ import pytest
 from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
 from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED, played
 
-from yehu_server.ahead.source_hash import section_of, sources_hash
+from yehu_server.ahead.build_hash import build_hash, section_of
 from yehu_server.core.engine.look import LOOK, look
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.player.wishes import KINDS
@@ -68,8 +68,8 @@ def test_it_tells_values_and_looks_as_here(by_node):
 
 
 def test_it_names_the_sources_that_it_was_built_from(by_node, wasm):
-    assert section_of(wasm.read_bytes()).split()[-1] == sources_hash()
-    assert by_node([], frames=BLOCK)[1]["sources"] == sources_hash()
+    assert section_of(wasm.read_bytes()).split()[-1] == build_hash()
+    assert by_node([], frames=BLOCK)[1]["sources"] == build_hash()
 
 
 def test_a_rate_that_it_was_not_built_for_is_refused(node, tmp_path):

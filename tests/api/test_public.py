@@ -45,7 +45,7 @@ def test_matplotlib_waits_for_a_picture():
 def test_the_public_names_are_these():
     assert sorted(yehu.__all__) == dir(yehu)
     assert set(yehu.__all__) == {
-        *("Followed", "Instrument", "Note", "Player", "Rendering", "Simulation", "Sweep"),
+        *("AudioWidget", "Followed", "Instrument", "Note", "Rendering", "Simulation", "Sweep"),
         *("YehuError", "__version__", "follow", "play", "plot", "render", "simulate", "sweep"),
     }
     assert set(plot.__all__) == {

@@ -8,13 +8,13 @@ from hands import Checked, Watched, ideal
 
 from yehu_server.params.spec import Curve
 from yehu_server.playing.mapping import Bind, Mapping
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 
 
 class Midi:
     """A keyboard: methods send messages, by default on channel 1."""
 
-    def __init__(self, player: MidiPlayer) -> None:
+    def __init__(self, player: MidiPoster) -> None:
         self._player = player
 
     def send(self, kind: str, **fields) -> None:
@@ -71,4 +71,4 @@ def mapping() -> Mapping:
 
 @pytest.fixture
 def midi(player, mapping) -> Midi:
-    return Midi(MidiPlayer(player, mapping))
+    return Midi(MidiPoster(player, mapping))

@@ -12,7 +12,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.pitch_and_level import a_weighted_db
 from yehu_server.playing.wishes import Key, WishPoster
 
@@ -171,13 +171,13 @@ def test_a_slide_by_hand_is_evened_out_without_a_click():
 # ---------------------------------------------------------------- several ports
 
 
-def on(player: MidiPlayer, note: int, port: int) -> None:
+def on(player: MidiPoster, note: int, port: int) -> None:
     player.receive(mido.Message("note_on", note=note, velocity=80), port=port)
 
 
 @pytest.fixture
-def ports(player, mapping) -> MidiPlayer:
-    return MidiPlayer(player, mapping)
+def ports(player, mapping) -> MidiPoster:
+    return MidiPoster(player, mapping)
 
 
 def test_the_same_key_on_two_ports_is_two_notes(ports, player, listener):

@@ -21,7 +21,7 @@ from yehu_server.playing import calibration_store
 from yehu_server.playing.calibration import calibration_key
 from yehu_server.playing.calibration_store import SHIPPED, calibration_for
 from yehu_server.playing.mapping import load
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import WishPoster
 
@@ -87,7 +87,7 @@ def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 
     """The pitch (Hz) of a note, from 0.1 s after it began."""
     tuned = calibration_for(rate, a4=a4)
     instrument = Instrument(PlayingOptions().spec(rate, tuned))
-    midi = MidiPlayer(WishPoster(instrument), load("keyboard"))
+    midi = MidiPoster(WishPoster(instrument), load("keyboard"))
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=16, value=wheel), frame=0)
     midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)
@@ -126,7 +126,7 @@ def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None
     player = WishPoster(instrument)
     if evenness is not None:
         player.write("/body/evenness", evenness)
-    midi = MidiPlayer(player, load("keyboard"))
+    midi = MidiPoster(player, load("keyboard"))
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=16, value=wheel), frame=0)
     midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)

@@ -12,7 +12,7 @@ from curves import from_unit
 from yehu_server.errors import MappingError
 from yehu_server.params.spec import Curve
 from yehu_server.playing.mapping import Bind, load, mapping_folder
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 
 ROOT = Path(__file__).resolve().parents[2]
 BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'
@@ -220,20 +220,20 @@ def test_a_preset_bears_its_own_name_and_is_explained(name):
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_preset_is_audible_before_any_controller_moves(name, player, listener):
-    midi = MidiPlayer(player, load(name))
+    midi = MidiPoster(player, load(name))
     midi.receive(mido.Message("note_on", note=74, velocity=80, channel=1))
     assert abs(listener["/bow/speed"]) > 0.1
     assert listener["/output/level"] > 0.3
 
 
 def test_a_mapping_says_where_parameters_begin(read, player):
-    MidiPlayer(player, read('[start]\n"/playing/dynamics" = 0.4\n'))
+    MidiPoster(player, read('[start]\n"/playing/dynamics" = 0.4\n'))
     assert player.value("/playing/dynamics") == 0.4
 
 
 def test_what_is_held_begins_elsewhere(read, player):
     player.write("/playing/dynamics", 0.9, hold=True)
-    MidiPlayer(player, read('[start]\n"/playing/dynamics" = 0.4\n'))
+    MidiPoster(player, read('[start]\n"/playing/dynamics" = 0.4\n'))
     assert player.value("/playing/dynamics") == 0.9
 
 
@@ -254,7 +254,7 @@ def test_a_wrong_start_is_refused_with_a_reason(read, text, reason):
 
 
 def test_a_mapping_may_give_the_sustain_pedal_another_meaning(read, player, listener):
-    midi = MidiPlayer(player, read('[[bind]]\nsource = "cc 64"\ntarget = "/playing/tremolo"\n'))
+    midi = MidiPoster(player, read('[[bind]]\nsource = "cc 64"\ntarget = "/playing/tremolo"\n'))
     midi.receive(mido.Message("note_on", note=74, velocity=80))
     midi.receive(mido.Message("control_change", control=64, value=127))
     assert listener["/bow/tremolo"] == 20.0
@@ -263,7 +263,7 @@ def test_a_mapping_may_give_the_sustain_pedal_another_meaning(read, player, list
 
 
 def test_key_switches_choose_articulations_and_sound_no_notes(player, listener):
-    midi = MidiPlayer(player, load("keyboard-articulations"))
+    midi = MidiPoster(player, load("keyboard-articulations"))
     chosen = []
     for key in (36, 39, 59):
         midi.receive(mido.Message("note_on", note=key, velocity=80))
@@ -278,7 +278,7 @@ def test_key_switches_choose_articulations_and_sound_no_notes(player, listener):
 
 
 def test_without_key_switches_low_keys_play_and_a_bank_number_changes_nothing(player, listener):
-    midi = MidiPlayer(player, load("keyboard"))
+    midi = MidiPoster(player, load("keyboard"))
     midi.receive(mido.Message("control_change", control=32, value=5))
     midi.receive(mido.Message("note_on", note=39, velocity=80))
     assert player.value("/playing/articulation") == 0.0

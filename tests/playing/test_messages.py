@@ -6,7 +6,7 @@ import mido
 import pytest
 from hands import Checked
 
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.playing.wishes import Key
 
@@ -62,7 +62,7 @@ def test_the_tenth_channel_moves_nothing(midi, listener):
 
 
 def test_only_the_channels_chosen_play(player, mapping):
-    chosen = MidiPlayer(player, mapping, {2, 9})
+    chosen = MidiPoster(player, mapping, {2, 9})
     for channel in range(16):
         chosen.receive(mido.Message("note_on", note=75, channel=channel))
         chosen.receive(mido.Message("note_off", note=75, channel=channel))
@@ -71,14 +71,14 @@ def test_only_the_channels_chosen_play(player, mapping):
 
 
 def test_notes_are_counted_by_channel(player, mapping):
-    midi = MidiPlayer(player, mapping)
+    midi = MidiPoster(player, mapping)
     for channel, note in ((0, 66), (4, 70), (0, 20), (4, 71), (4, 71)):
         midi.receive(mido.Message("note_on", note=note, channel=channel))
     assert midi.notes_by_channel == {0: 2, 4: 3}
 
 
 def test_messages_that_are_none_of_the_players_business_change_nothing(player, listener, mapping):
-    midi = MidiPlayer(player, mapping)
+    midi = MidiPoster(player, mapping)
     heard = len(listener.moves)
     for message in (
         mido.Message("program_change", program=40),
@@ -93,7 +93,7 @@ def test_messages_that_are_none_of_the_players_business_change_nothing(player, l
 
 
 def test_a_message_acts_at_its_frame(player, listener, mapping):
-    midi = MidiPlayer(player, mapping)
+    midi = MidiPoster(player, mapping)
     heard = len(listener.moves)
     midi.receive(mido.Message("note_on", note=75), frame=321)
     midi.receive(mido.Message("control_change", control=120), frame=321)
@@ -103,7 +103,7 @@ def test_a_message_acts_at_its_frame(player, listener, mapping):
 
 def test_a_skipped_note_leaves_the_sounding_one_alone(listener, mapping):
     player = Checked(listener, RangePolicy.SKIP)
-    midi = MidiPlayer(player, mapping)
+    midi = MidiPoster(player, mapping)
     midi.receive(mido.Message("note_on", note=75, velocity=30))
     heard = list(listener.moves)
     midi.receive(mido.Message("note_on", note=40, velocity=127))

@@ -7,25 +7,25 @@ import pytest
 
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 
 
-def cc(house: MidiPlayer, control: int, value: int, channel: int = 1) -> None:
+def cc(house: MidiPoster, control: int, value: int, channel: int = 1) -> None:
     house.receive(mido.Message("control_change", control=control, value=value, channel=channel - 1))
 
 
-def key(house: MidiPlayer, kind: str, channel: int = 1) -> None:
+def key(house: MidiPoster, kind: str, channel: int = 1) -> None:
     house.receive(mido.Message(kind, note=70, velocity=127, channel=channel - 1))
 
 
 @pytest.fixture
-def house(player) -> MidiPlayer:
+def house(player) -> MidiPoster:
     binds = (
         Bind("cc 20", "/output/gain", (-12.0, 12.0), smoothing_ms=300.0),
         Bind("cc 21", "/string/inner/tuning"),
         Bind("velocity", "/body/blend"),
     )
-    return MidiPlayer(player, Mapping("house", binds))
+    return MidiPoster(player, Mapping("house", binds))
 
 
 def test_what_the_player_does_not_move_is_bound_as_well(house, listener, player):

@@ -23,7 +23,7 @@ from yehu_server.playing import preset_folders as folders
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import load
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import (
     MOST_BYTES,
@@ -361,7 +361,7 @@ def test_loading_while_a_note_sounds_makes_no_click(instrument):
 
 
 def test_what_velocity_moves_is_spread_around_what_was_put(player):
-    midi = MidiPlayer(player, load("keyboard"))
+    midi = MidiPoster(player, load("keyboard"))
     key = mido.Message("note_on", note=77, velocity=127)
 
     def pressed() -> float:

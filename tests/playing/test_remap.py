@@ -11,14 +11,14 @@ from yehu_server.errors import MappingError
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping, load
 from yehu_server.playing.mapping_watch import MappingWatch
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 
 VOLUME, EXPRESSION = "/playing/volume", "/playing/expression"
 
 
 @pytest.fixture
 def make(player):
-    return lambda *binds, **options: MidiPlayer(player, Mapping("test", binds, **options))
+    return lambda *binds, **options: MidiPoster(player, Mapping("test", binds, **options))
 
 
 def cc(midi, control: int, value: int, channel: int = 1) -> None:

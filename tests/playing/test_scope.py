@@ -8,7 +8,7 @@ import pytest
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.live_player import ELSEWHERE
 from yehu_server.playing.mapping import Mapping, load
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.wishes import Key
 
 VOLUME, PRESS, BEND = "/playing/volume", "/playing/press", "/playing/bend"
@@ -18,7 +18,7 @@ KEYS, BREATH = 0, 1  # ports
 class Studio:
     """Several controllers at one instrument; channels are counted from 1."""
 
-    def __init__(self, player: MidiPlayer) -> None:
+    def __init__(self, player: MidiPoster) -> None:
         self.player = player
 
     def send(self, kind: str, port: int, channel: int = 1, **fields: int) -> None:
@@ -44,7 +44,7 @@ class Studio:
 
 @pytest.fixture
 def make(player):
-    return lambda *binds, **options: Studio(MidiPlayer(player, Mapping("test", binds, **options)))
+    return lambda *binds, **options: Studio(MidiPoster(player, Mapping("test", binds, **options)))
 
 
 @pytest.fixture
@@ -63,7 +63,7 @@ def learned(make) -> Studio:
 
 
 def test_a_breath_controller_at_a_port_of_its_own_plays_the_keyboards_note(player, listener):
-    studio = Studio(MidiPlayer(player, load("wind")))
+    studio = Studio(MidiPoster(player, load("wind")))
     studio.on(75)
     studio.cc(2, 0)
     assert listener["/bow/side"] == 0.0

@@ -22,7 +22,7 @@ from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.section_instruments import section_specs
 from yehu_server.playing.wishes import Key, WishPoster
@@ -58,7 +58,7 @@ class Told:
         self.all: list[Posted] = []
         self.sounding_pitch = np.nan
 
-    def lead(self, tables, people: int = 1) -> None:
+    def begin_part(self, tables, people: int = 1) -> None:
         defaults = {param.address: param.default for param in TABLE}
         is_mpe = bool(tables["mpe"][0])
         prepare_midi(self._midi, RATE, defaults, people=people, mpe=is_mpe)
@@ -304,7 +304,7 @@ MPE = Mapping("mpe", (Bind("bend", "/playing/bend"), Bind("cc 1", "/playing/vibr
 
 
 def test_in_mpe_each_note_of_a_chord_is_bent_by_itself(four):
-    midi = MidiPlayer(four.wishes, MPE)
+    midi = MidiPoster(four.wishes, MPE)
     for channel, note in ((1, 76), (2, 67)):
         midi.receive(mido.Message("note_on", note=note, channel=channel), frame=0)
     midi.receive(mido.Message("pitchwheel", pitch=8191, channel=1), frame=BEAT)
@@ -319,7 +319,7 @@ def test_in_mpe_each_note_of_a_chord_is_bent_by_itself(four):
 
 
 def test_on_one_channel_a_chord_is_bent_as_a_whole(four):
-    midi = MidiPlayer(four.wishes, replace(MPE, mpe=False))
+    midi = MidiPoster(four.wishes, replace(MPE, mpe=False))
     for note in CHORD:
         midi.receive(mido.Message("note_on", note=note), frame=0)
     midi.receive(mido.Message("pitchwheel", pitch=8191), frame=BEAT)

@@ -9,7 +9,7 @@ from curves import from_unit
 from yehu_server.params.spec import Curve
 from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 
 VOLUME = "/playing/volume"
 SOFT = Bind("cc 1", VOLUME, is_soft=True)
@@ -17,7 +17,7 @@ SOFT = Bind("cc 1", VOLUME, is_soft=True)
 
 @pytest.fixture
 def make(player):
-    return lambda *binds, **options: MidiPlayer(player, Mapping("test", binds, **options))
+    return lambda *binds, **options: MidiPoster(player, Mapping("test", binds, **options))
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.sources import canonical
 
 VOLUME = "/playing/volume"
@@ -21,7 +21,7 @@ def playing(player):
     """Send MIDI to a player with these binds; return the volume."""
 
     def make(*binds: Bind, **options):
-        midi = MidiPlayer(player, Mapping("test", binds, **options))
+        midi = MidiPoster(player, Mapping("test", binds, **options))
 
         def cc(*moves: tuple[int, int], channel: int = 1) -> float:
             for control, value in moves:

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.playing.wishes import Key
 
@@ -89,7 +89,7 @@ def test_no_note_sticks_once_all_keys_and_pedals_are_up(policy):
         listener = calibrated(seed)
         player = Checked(listener, policy)
         player.write("/playing/variation", 1.0)
-        midi = MidiPlayer(player, load("keyboard"))
+        midi = MidiPoster(player, load("keyboard"))
         listener.write("/bow/speed", 0.0)
         listener.write("/bow/side", 0.0)
         for message in stream:
@@ -162,7 +162,7 @@ class Keyboard:
 def test_the_last_key_struck_of_those_hand_or_pedal_hold_is_the_one_that_sounds():
     for seed in range(60):
         player = Checked(calibrated())
-        midi = MidiPlayer(player, load("keyboard"))
+        midi = MidiPoster(player, load("keyboard"))
         expected = Keyboard()
         for number, message in enumerate(few_keys(seed)):
             midi.receive(message)
@@ -199,7 +199,7 @@ class Boxes(Keyboard):
 def test_the_pedals_of_a_box_hold_the_notes_of_all_keyboards_until_they_are_up():
     for seed in range(30):
         player = Checked(calibrated())
-        midi = MidiPlayer(player, load("keyboard"))
+        midi = MidiPoster(player, load("keyboard"))
         expected = Boxes()
         for number, (port, message) in enumerate(boxes(seed)):
             if message is None:

@@ -10,7 +10,7 @@ from yehu_server.core.midi.channels import bend_range, configure_zone, master_of
 from yehu_server.core.midi.record import MIDI, NONE, prepare_midi
 from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import load
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.wishes import Key
 
 # ---------------------------------------------------------------- zones
@@ -86,7 +86,7 @@ def test_other_channels_configure_nothing():
 class Surface:
     """Sends messages as an MPE controller does, channels counted from 1."""
 
-    def __init__(self, player: MidiPlayer) -> None:
+    def __init__(self, player: MidiPoster) -> None:
         self.player = player
 
     def send(self, kind: str, channel: int, **fields: int) -> None:
@@ -111,7 +111,7 @@ class Surface:
 
 @pytest.fixture
 def surface(player, mapping) -> Surface:
-    surface = Surface(MidiPlayer(player, mapping))
+    surface = Surface(MidiPoster(player, mapping))
     surface.rpn(1, 6, 15)
     return surface
 
@@ -194,7 +194,7 @@ def test_another_port_has_zones_of_its_own(surface, player):
 
 
 def test_the_mpe_preset_begins_as_a_zone(player):
-    surface = Surface(MidiPlayer(player, load("mpe")))
+    surface = Surface(MidiPoster(player, load("mpe")))
     surface.on(2, 70)
     surface.bend(2, 0.25)
     assert player.pitch == pytest.approx(82.0, abs=0.01)

@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.ahead import interface, link
+from yehu_server.ahead.build_hash import build_hash, with_section
 from yehu_server.ahead.header import header
 from yehu_server.ahead.interpreter import INTERPRETER
 from yehu_server.ahead.memory_images import image
 from yehu_server.ahead.module import PAGE, Target, here, joined
-from yehu_server.ahead.source_hash import sources_hash, with_section
 from yehu_server.errors import OutputError, ParameterError, YehuError
 from yehu_server.util import __version__
 from yehu_server.util.files import replacing
@@ -62,7 +62,7 @@ def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str =
 def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> list[Path]:
     """Build in this process, which compiles for the processor wanted; see `build`."""
     linker = link.linker_of(what)
-    functions = interface.functions(rates, [image(rate) for rate in rates], sources_hash())
+    functions = interface.functions(rates, [image(rate) for rate in rates], build_hash())
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory() as scratch:
@@ -71,12 +71,12 @@ def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> lis
                 functions += INTERPRETER
                 code.write_bytes(compiled(functions, PAGE))
                 link.link_page(linker, code, [function.name for function in functions], linked)
-                module = with_section(linked.read_bytes(), f"{__version__} {sources_hash()}")
+                module = with_section(linked.read_bytes(), f"{__version__} {build_hash()}")
                 return [_written(folder / PAGE_FILE, module)]
             code.write_bytes(compiled(functions, here(cpu)))
             linked = linked.with_name(LIBRARY_FILE)
             link.link_library(linker, code, linked)
-            text = header(functions, version=__version__, sources=sources_hash(), rates=rates)
+            text = header(functions, version=__version__, sources=build_hash(), rates=rates)
             return [
                 _written(folder / LIBRARY_FILE, linked.read_bytes()),
                 _written(folder / HEADER_FILE, text.encode()),

@@ -11,7 +11,7 @@ from yehu_server.util.source_key import key_of
 
 
 @cache
-def sources_hash() -> str:
+def build_hash() -> str:
     """Hash of the sources, calibrations and practice that builds are made from (16 hex digits)."""
     learnt = [
         (PACKAGE / "playing" / name).read_text(encoding="utf-8")

@@ -58,8 +58,8 @@ extern "C" {{
 /* Kinds of events. Some say what the player is to do: what their index, value and other are.
 {wishes}
  *
- * The others are interpreted, by mapping and tuning. yehu_midi, yehu_control and yehu_map post
- * MESSAGE (of port 0; see YEHU_PACKED), CONTROL and TABLES_TO.
+ * The others are interpreted, by mapping and tuning. yehu_midi, yehu_control and yehu_use_tables
+ * post MESSAGE (of port 0; see YEHU_PACKED), CONTROL and TABLES_TO.
 {events} */
 enum yehu_event {{
 {kinds}
@@ -82,8 +82,8 @@ enum yehu_code {{
 {codes}
 }};
 
-/* What yehu_map takes: a mapping, a tuning, presets. `yehu-server build tables` writes it for
- * files; parameters have the numbers of its own version. It has {table_bytes} bytes. */
+/* What yehu_use_tables takes: a mapping, a tuning, presets. `yehu-server build tables` writes it
+ * for files; parameters have the numbers of its own version. It has {table_bytes} bytes. */
 struct yehu_tables {{
 {tables}
 }};

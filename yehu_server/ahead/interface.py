@@ -2,8 +2,8 @@
 
 A C program, or a page, gives the memory of an instrument (`size` bytes, aligned to 64), prepares
 it, posts events, and computes blocks; nothing is allocated. `post` may run beside `process`, on
-one other thread, and on that one `midi`, `control` and `map`, which post too; so may `frame`,
-`value`, `pitch`, `look` and `lost`, which only read.
+one other thread, and on that one `midi`, `control` and `use_tables`, which post too; so may
+`frame`, `value`, `pitch`, `look` and `lost`, which only read.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from yehu_server.ahead.table_checks import (
     check_values,
 )
 from yehu_server.compile.jit import Native, native
-from yehu_server.compile.memory import carray
+from yehu_server.compile.memory import WORD, carray
 from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.engine import native as engine
 from yehu_server.core.engine import rig as memory
@@ -44,11 +44,10 @@ from yehu_server.core.stage.record import STAGE, TAPE_AT
 
 Array = Any
 
-WORD = 8  # bytes
 BYTES = memory.RIG_BYTES + TAPE_AT  # without a tape
 TABLES_BYTES = TABLES.itemsize
-# Numbers of the tables in use, and of those that `map` posted last: the latter lies beside the
-# cursor of the thread that posts, in the same cache line.
+# Numbers of the tables in use, and of those that `use_tables` posted last: the latter lies beside
+# the cursor of the thread that posts, in the same cache line.
 _midi_fields: Any = MIDI.fields
 IN_USE_AT = memory.MIDI_AT + _midi_fields["tables"][1]
 LAST_AT = memory.POSTED_AT + SERVER * memory.CURSOR_BYTES + WORD
@@ -171,11 +170,8 @@ def use_tables(rig: Any, frame: int, tables: Any, size: int) -> int:
     return 1
 
 
-use_tables.name = "yehu_map"
-
-
 # What is written before it is read. Pages that nothing writes take no memory.
-UNREAD = ("midi_ring", "page_ring", "events", "heap", "reports")
+UNCLEARED = ("midi_ring", "page_ring", "events", "heap", "reports")
 
 
 def _cleared() -> Array:
@@ -190,7 +186,7 @@ def _cleared() -> Array:
     ends["tables"] = (memory.TABLES_AT, memory.TABLES_AT + TABLES_BYTES)  # the first of its slots
     stage: Any = STAGE.fields
     line = memory.RIG_BYTES + stage["room"][1] + stage["room"][0].fields["line"][1]
-    others = [name for name in ends if name not in {"midi", "tables", *UNREAD}]
+    others = [name for name in ends if name not in {"midi", "tables", *UNCLEARED}]
     ordered = [*(ends[name] for name in ("midi", "tables", *others)), (memory.RIG_BYTES, line)]
     return np.array(ordered) // WORD
 

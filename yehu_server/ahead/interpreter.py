@@ -14,7 +14,7 @@ import numpy as np
 
 from yehu_server.ahead.memory_images import runs
 from yehu_server.compile.jit import Native, native
-from yehu_server.compile.memory import carray
+from yehu_server.compile.memory import WORD, carray
 from yehu_server.core.engine.atomics import at
 from yehu_server.core.engine.look import LOOK
 from yehu_server.core.midi.interpret_events import interpret
@@ -24,7 +24,6 @@ from yehu_server.params.table import TABLE
 
 Array = Any
 
-WORD = 8  # bytes
 TABLES_AT = MIDI.itemsize
 BYTES = TABLES_AT + SLOTS * TABLES.itemsize
 ANY_RATE = 48000.0  # Hz; only sections ask for theirs

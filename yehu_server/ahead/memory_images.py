@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.compile.memory import WORD
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import HEAP_AT, MIDI_AT, RIG_BYTES, memory_bytes
 from yehu_server.core.midi.events import START
@@ -20,8 +21,6 @@ from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
 Array = Any
-
-WORD = 8  # bytes
 
 # A run is worth its two words of heading only beyond a gap as long as that.
 SHORTEST_GAP = 3
@@ -44,7 +43,7 @@ def image(rate: float) -> Array:
     memory, playing = bytearray(memory_bytes(1)), PlayingOptions()
     spec = playing.spec(rate, calibration_for(rate))
     first = Ensemble([spec], memory=memory, is_live=True).first
-    first.lead(playing.tables(Controls()))
+    first.begin_part(playing.tables(Controls()))
     first.tables["program_row"] = 0.0  # not read, as there are no programs
     first.post(START)
     np.frombuffer(memory, STAGE, offset=RIG_BYTES)["taping"] = 0

@@ -6,8 +6,8 @@ import logging
 from pathlib import Path
 
 from yehu_server.ahead.build import PAGE_FILE, build
+from yehu_server.ahead.build_hash import build_hash, section_of
 from yehu_server.ahead.link import page_linker
-from yehu_server.ahead.source_hash import section_of, sources_hash
 from yehu_server.compile.cache_folder import data_folder
 from yehu_server.errors import YehuError
 from yehu_server.util.processes import machine_lock
@@ -28,7 +28,7 @@ def page_module() -> Path:
     YehuError
         Where it cannot be built.
     """
-    folder = data_folder() / f"page-{sources_hash()}"
+    folder = data_folder() / f"page-{build_hash()}"
     if found := _found(folder):
         return found
     if page_linker() is None:
@@ -43,7 +43,7 @@ def page_module() -> Path:
 def _found(folder: Path) -> Path | None:
     """The module of the present sources, as shipped or in a folder."""
     for path in (SHIPPED, folder / PAGE_FILE):
-        if path.is_file() and _made(path)[-1:] == [sources_hash()]:
+        if path.is_file() and _made(path)[-1:] == [build_hash()]:
             return path
     return None
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import native
-from yehu_server.compile.memory import carray
+from yehu_server.compile.memory import WORD, carray
 from yehu_server.core.midi.record import IN_PORT
 from yehu_server.core.midi.tables import (
     BEND,
@@ -31,7 +31,6 @@ from yehu_server.core.midi.tables import (
 )
 from yehu_server.core.player.rows import HIGHEST, LOWEST, ROWS
 
-WORD = 8  # bytes
 PAIRS, NRPNS = 32, 1 << 14
 MOST = 1e9
 TINY = 1e-200  # what a number of the tables divides by is larger

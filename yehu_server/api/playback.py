@@ -14,7 +14,7 @@ import numpy as np
 from yehu_server.errors import DeviceError, OutputError, ParameterError
 from yehu_server.lab.plot.sounds import is_pressure, sound_of
 from yehu_server.live.audio.devices import load_portaudio
-from yehu_server.util.sound_file import check_format, format_of, sound_file
+from yehu_server.util.sound_file import SUBTYPES, check_format, format_of, sound_file
 
 Array = Any
 
@@ -24,7 +24,7 @@ PEAK = 10.0 ** (-1.0 / 20.0)  # of a sound that is normalized
 MOST_BYTES = 200 * 2**20  # of a sound within a page
 
 
-class Player:
+class AudioWidget:
     """A sound that a notebook shows as a player.
 
     The page holds the sound itself, as 16 bit WAV: it plays without this program.
@@ -41,7 +41,7 @@ class Player:
         self.sound, self.sample_rate = sound, sample_rate
 
     def __repr__(self) -> str:
-        return f"<yehu_server.Player of {len(self.sound) / self.sample_rate:.2f} s>"
+        return f"<yehu_server.AudioWidget of {len(self.sound) / self.sample_rate:.2f} s>"
 
     def wav(self) -> bytes:
         """Return the sound as a WAV file.
@@ -49,7 +49,7 @@ class Player:
         Examples
         --------
         >>> import numpy as np, yehu_server as yehu
-        >>> len(yehu.Player(np.zeros(100), 44100).wav())
+        >>> len(yehu.AudioWidget(np.zeros(100), 44100).wav())
         244
         """
         samples = np.clip(np.asarray(self.sound, np.float64), -1.0, 1.0)
@@ -68,7 +68,12 @@ class Player:
         return f'<audio controls src="data:audio/wav;base64,{data}"></audio>'
 
 
-def play(sound: Any, sample_rate: float | None = None, *, normalize: bool = False) -> Player | None:
+Player = AudioWidget
+
+
+def play(
+    sound: Any, sample_rate: float | None = None, *, normalize: bool = False
+) -> AudioWidget | None:
     """Let a sound be heard.
 
     In a notebook it returns a player. Elsewhere it plays through the default sound device, and
@@ -85,7 +90,7 @@ def play(sound: Any, sample_rate: float | None = None, *, normalize: bool = Fals
 
     Returns
     -------
-    Player
+    AudioWidget
         In a notebook, else None.
 
     Raises
@@ -105,7 +110,7 @@ def play(sound: Any, sample_rate: float | None = None, *, normalize: bool = Fals
     if (normalize or is_pressure(sound)) and peak > 0.0:
         samples = samples * (PEAK / peak)
     if is_notebook():
-        return Player(samples, round(rate))
+        return AudioWidget(samples, round(rate))
     _play_aloud(samples, rate)
     return None
 
@@ -143,8 +148,8 @@ def write_sound(sound: Array, sample_rate: int, target: Path, subtype: str) -> N
     ParameterError
         Where there is no such subtype.
     """
-    if subtype not in ("16", "24", "float"):
-        raise ParameterError(f"subtype: {subtype!r} is not one of 16, 24, float")
+    if subtype not in SUBTYPES:
+        raise ParameterError(f"subtype: {subtype!r} is not one of {', '.join(SUBTYPES)}")
     form, channels = format_of(target), 1 if sound.ndim == 1 else sound.shape[1]
     check_format(form, subtype, channels)
     if not target.parent.is_dir():

@@ -11,7 +11,7 @@ import numpy as np
 
 from yehu_server.api.checks import PathLike, get_ready, number, path_of, whole
 from yehu_server.api.notes import Note, score_of
-from yehu_server.api.playback import Player, write_sound
+from yehu_server.api.playback import AudioWidget, write_sound
 from yehu_server.api.playing_options import playing_setup_of
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
@@ -96,7 +96,7 @@ class Rendering:
         write_sound(self.sound, self.sample_rate, path_of(path, "path"), subtype)
 
     def _repr_html_(self) -> str:
-        return Player(self.sound, self.sample_rate)._repr_html_()
+        return AudioWidget(self.sound, self.sample_rate)._repr_html_()
 
 
 @dataclass(frozen=True)

@@ -86,7 +86,9 @@ def build_plugin(arguments: argparse.Namespace) -> int:
 def _add_tables(command: Parser) -> None:
     """Add `build tables` to the parser of `build`."""
     parser = command.add_word(
-        "tables", write_tables, "write a mapping, tuning and presets as numbers, for yehu_map"
+        "tables",
+        write_tables,
+        "write a mapping, tuning and presets as numbers, for yehu_use_tables",
     )
     add_tables(parser)
     add_options(

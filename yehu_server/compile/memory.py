@@ -12,6 +12,8 @@ import numpy as np
 
 from yehu_server.compile.jit import IS_PLAIN, Deferred, imported
 
+WORD = 8  # bytes of a number in records and between threads
+
 
 class Record(np.record):  # type: ignore[misc]  # NumPy's stubs call it final
     """A record whose fields are attributes, as they are in compiled code.

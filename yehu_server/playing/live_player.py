@@ -156,7 +156,7 @@ class LivePlayer:
             self._midi.load(values, frame=self._at(frame))
 
     def sound(self) -> dict[str, float]:
-        """The parameters that a preset keeps: see `MidiPlayer.sound`.
+        """The parameters that a preset keeps: see `MidiPoster.sound`.
 
         Those that all parts share are in the sound of the first.
         """
@@ -194,7 +194,7 @@ class LivePlayer:
         return self._midi.mapping
 
     def remap(self, mapping: Mapping, *, frame: int) -> None:
-        """See `MidiPlayer.remap`."""
+        """See `MidiPoster.remap`."""
         with self._lock:
             self._midi.remap(mapping, frame=self._at(frame))
 

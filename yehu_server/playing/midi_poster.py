@@ -33,7 +33,7 @@ from yehu_server.playing.wishes import Key, WishPoster
 PATIENCE_S = 1.0  # to wait until the audio side uses other tables
 
 
-class MidiPlayer:
+class MidiPoster:
     """Sends MIDI channel messages to a part: notes directly, controllers through a mapping.
 
     Parameters

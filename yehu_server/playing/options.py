@@ -14,7 +14,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
@@ -101,7 +101,7 @@ class PlayingOptions:
             programs=self.presets.programs() if self.programs else None,
         )
 
-    def midi(self, wishes: WishPoster, channels: set[int] | None = None) -> MidiPlayer:
-        """A MIDI player with these options; `channels` as in `MidiPlayer`."""
+    def midi(self, wishes: WishPoster, channels: set[int] | None = None) -> MidiPoster:
+        """A MIDI player with these options; `channels` as in `MidiPoster`."""
         programs = self.presets.programs() if self.programs else None
-        return MidiPlayer(wishes, self.mapping, channels, start=self.start, programs=programs)
+        return MidiPoster(wishes, self.mapping, channels, start=self.start, programs=programs)

@@ -76,9 +76,9 @@ class WishPoster:
         self.policy, self._tuning, self._a4 = policy, tuning, a4
         self.controls = Controls()
         self._pending: dict[str, Pending] = {}
-        self._instrument.lead(self.tables(UNMAPPED), len(self._all))
+        self._instrument.begin_part(self.tables(UNMAPPED), len(self._all))
         for other in self._all[1:]:
-            other.lead(plain_tables(), 0)
+            other.begin_part(plain_tables(), 0)
 
     def tables(self, mapping: Binds, **more: Any) -> Any:
         """Tables of a mapping with this part's tuning and range; `more` as of `make_tables`."""

@@ -14,9 +14,9 @@ from pathlib import Path
 
 from yehu_server.ahead import interface
 from yehu_server.ahead.build import RATES, compiled
+from yehu_server.ahead.build_hash import build_hash
 from yehu_server.ahead.header import header
 from yehu_server.ahead.memory_images import image
-from yehu_server.ahead.source_hash import sources_hash
 from yehu_server.errors import YehuError
 from yehu_server.plugin.targets import ANY, WIDE, System, systems_of
 from yehu_server.util import __version__
@@ -51,14 +51,14 @@ def make_objects(folder: Path, name: str) -> None:
 def make_here(folder: Path, cpu: str, systems: Sequence[System]) -> None:
     """Make objects of one version in this process, which compiles for that processor."""
     images = [image(rate) for rate in RATES]
-    functions = interface.functions(RATES, images, sources_hash())
+    functions = interface.functions(RATES, images, build_hash())
     wide = cpu == WIDE
     for system in systems:
         if wide and not system.has_wide:
             continue
         code = compiled(functions, system.target(wide=wide))
         object_file(folder, system, wide=wide).write_bytes(code)
-    text = header(functions, version=__version__, sources=sources_hash(), rates=RATES)
+    text = header(functions, version=__version__, sources=build_hash(), rates=RATES)
     (folder / ENGINE_HEADER).write_text(text)
 
 

@@ -32,7 +32,7 @@ class PartPlayer:
     part : Part
     instruments : sequence of Instrument
     wishes : WishPoster
-    midi : MidiPlayer
+    midi : MidiPoster
     """
 
     def __init__(self, part: Part, instruments: Sequence[Instrument]) -> None:

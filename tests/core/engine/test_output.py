@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from sound import bow, run
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.mixing import limit
+from yehu_server.core.engine.limiter import limit
 from yehu_server.core.engine.spec import InstrumentSpec
 
 RATE = 44100

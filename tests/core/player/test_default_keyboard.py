@@ -9,7 +9,7 @@ import pytest
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
-from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import WishPoster
 
@@ -23,7 +23,7 @@ def steady(mapping: str, *controls: tuple[int, int]) -> np.ndarray:
     instrument = Instrument(PlayingOptions().spec(float(RATE), calibration_for(float(RATE))))
     wishes = WishPoster(instrument)
     wishes.write("/playing/variation", 0.0, frame=0, hold=True)
-    midi = MidiPlayer(wishes, load(mapping))
+    midi = MidiPoster(wishes, load(mapping))
     for control, value in controls:
         midi.receive(mido.Message("control_change", control=control, value=value), frame=0)
     midi.receive(mido.Message("note_on", note=NOTE, velocity=80), frame=0)

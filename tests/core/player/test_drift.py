@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
-from yehu_server.core.controls.drift import CENTS, FORCE, PLACE, PRESS, SPEED
+from yehu_server.core.controls.record import (
+    CENTS_DRIFT,
+    FORCE_DRIFT,
+    PLACE_DRIFT,
+    PRESS_DRIFT,
+    SPEED_DRIFT,
+)
 from yehu_server.core.controls.slots import SLOT
 from yehu_server.core.player.drift import DRIFT, TOGETHER, TREMOR, TREMOR_HZ
 
@@ -38,7 +44,7 @@ def test_they_drift_as_far_as_they_are_said_to(drifts):
 
 
 def test_the_drift_is_the_stronger_the_slower_and_the_tremor_is_about_ten_hertz(drifts):
-    for which in (SPEED, FORCE, CENTS, PRESS):
+    for which in (SPEED_DRIFT, FORCE_DRIFT, CENTS_DRIFT, PRESS_DRIFT):
         hz, found = power(drifts[:, which])
         slow, medium = (found[(hz > lo) & (hz < hi)].mean() for lo, hi in ((0.2, 0.6), (1.5, 4.0)))
         # About 1/f: power falls as the frequency rises, by its first power more or less.
@@ -51,11 +57,15 @@ def test_the_drift_is_the_stronger_the_slower_and_the_tremor_is_about_ten_hertz(
 def test_what_one_hand_does_goes_together(drifts):
     together = np.corrcoef(drifts.T)
     # Of the drifts TOGETHER, and the tremor is one; the tremor alone would make 0.25 to 0.36.
-    for one, other in ((SPEED, FORCE), (SPEED, PLACE), (CENTS, PRESS)):
+    for one, other in (
+        (SPEED_DRIFT, FORCE_DRIFT),
+        (SPEED_DRIFT, PLACE_DRIFT),
+        (CENTS_DRIFT, PRESS_DRIFT),
+    ):
         parts = TOGETHER * DRIFT[one] * DRIFT[other] + TREMOR[one] * TREMOR[other]
         sizes = np.hypot(DRIFT, TREMOR)
         assert together[one, other] == pytest.approx(parts / (sizes[one] * sizes[other]), abs=0.2)
-    assert abs(together[SPEED, CENTS]) < 0.35
+    assert abs(together[SPEED_DRIFT, CENTS_DRIFT]) < 0.35
 
 
 def test_without_variation_they_are_still():
@@ -83,13 +93,14 @@ def test_hands_that_rest_come_to_rest():
     playing.play(0.5)
     assert np.abs(playing.controls["drift"]).min() > 0.0
     playing.off(74)
-    steps = np.abs(np.diff(playing.play(0.5, "drift")[0][:, CENTS]))
+    steps = np.abs(np.diff(playing.play(0.5, "drift")[0][:, CENTS_DRIFT]))
     assert steps.max() < 2.5  # cents in 5 ms: no leap
     assert (playing.controls["drift"] == 0.0).all()
 
 
 @pytest.mark.parametrize(
-    ("address", "which"), [("/bow/speed", SPEED), ("/bow/force", FORCE), ("/bow/position", PLACE)]
+    ("address", "which"),
+    [("/bow/speed", SPEED_DRIFT), ("/bow/force", FORCE_DRIFT), ("/bow/position", PLACE_DRIFT)],
 )
 def test_what_somebody_else_moves_is_steady(address, which):
     playing = Playing(variation=1.0)
@@ -97,7 +108,7 @@ def test_what_somebody_else_moves_is_steady(address, which):
     playing.wishes.write(address, 0.2)
     drift = playing.play(0.5, "drift")[0][40:]
     assert (drift[:, which] == 0.0).all()
-    assert np.abs(drift[:, CENTS]).max() > 0.0
+    assert np.abs(drift[:, CENTS_DRIFT]).max() > 0.0
 
 
 def test_turns_of_the_vibrato_differ_in_width_and_length():

@@ -7,7 +7,13 @@ import pytest
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.layout import new_record
-from yehu_server.core.stage.seat import SEAT, clear_filters, prepare_seat, reflect, set_reflections
+from yehu_server.core.stage.seat import (
+    SEAT,
+    mute_when_closed,
+    prepare_seat,
+    reflect,
+    set_reflections,
+)
 
 SOUND = 343.0
 PLACES = [
@@ -36,7 +42,7 @@ def _place(
 
 @compiled_exactly
 def _silence(seat: Any) -> None:
-    clear_filters(seat[0])
+    mute_when_closed(seat[0])
 
 
 class Player:

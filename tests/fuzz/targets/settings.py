@@ -206,7 +206,7 @@ def check_controls(binds: tuple[Bind, ...]) -> None:
     leader, controls = Leader(), Controls()
     options = {"tuning": EQUAL, "a4": STANDARD_A4, "policy": RangePolicy.TRANSPOSE}
     with contextlib.suppress(ParameterError):  # more points than there is room for
-        leader.lead(make_tables(Mapping("", binds), controls, **options))
+        leader.begin_part(make_tables(Mapping("", binds), controls, **options))
         for address in addresses:
             for argument in (0.0, 0.5, 1e30, -1e30):
                 leader.interpret(0, CONTROL, controls.number(address), argument, 0.0)

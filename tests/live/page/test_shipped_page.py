@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from yehu_server.ahead import module_cache
-from yehu_server.ahead.source_hash import sources_hash, with_section
+from yehu_server.ahead.build_hash import build_hash, with_section
 from yehu_server.errors import YehuError
 from yehu_server.live.page import module_process, site
 from yehu_server.live.page.site import Site, write_page
@@ -59,10 +59,10 @@ def test_a_page_is_written_whole_as_it_was_shipped_and_its_version_told(tmp_path
 def test_a_shipped_module_of_these_sources_goes_with_the_page_of_now(
     shipped, tmp_path, caplog
 ) -> None:
-    (shipped / "yehu.wasm").write_bytes(with_section(EMPTY, f"9.9 {sources_hash()}"))
+    (shipped / "yehu.wasm").write_bytes(with_section(EMPTY, f"9.9 {build_hash()}"))
     write_page(tmp_path / "page")
-    assert sources_hash() in (tmp_path / "page" / "facts.js").read_text("utf-8")
-    assert (tmp_path / "page" / "yehu.wasm").read_bytes().endswith(sources_hash().encode())
+    assert build_hash() in (tmp_path / "page" / "facts.js").read_text("utf-8")
+    assert (tmp_path / "page" / "yehu.wasm").read_bytes().endswith(build_hash().encode())
     assert b"the page of then" not in (tmp_path / "page" / "index.html").read_bytes()
     assert not caplog.records
 
@@ -82,12 +82,12 @@ def test_a_server_offers_no_module_of_other_sources(monkeypatch) -> None:
 
 
 def test_a_server_offers_a_shipped_module_of_these_sources(shipped, monkeypatch) -> None:
-    (shipped / "yehu.wasm").write_bytes(with_section(EMPTY, f"9.9 {sources_hash()}"))
+    (shipped / "yehu.wasm").write_bytes(with_section(EMPTY, f"9.9 {build_hash()}"))
     assert told(monkeypatch)[-1] == {"event": "module", "path": str(shipped / "yehu.wasm")}
 
 
 @pytest.mark.usefixtures("shipped")
 def test_a_servers_page_reads_looks_by_the_facts_of_the_server() -> None:
     answer = Site().answer(SimpleNamespace(path="/facts.js", headers={}))
-    assert sources_hash().encode() in answer.body
+    assert build_hash().encode() in answer.body
     assert b"of then" not in answer.body

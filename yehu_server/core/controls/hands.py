@@ -6,9 +6,16 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.controls import drift
 from yehu_server.core.controls.ramps import one_pole, take
-from yehu_server.core.controls.record import FORWARD
+from yehu_server.core.controls.record import (
+    CENTS_DRIFT,
+    DRIFTS,
+    FORCE_DRIFT,
+    FORWARD,
+    PLACE_DRIFT,
+    PRESS_DRIFT,
+    SPEED_DRIFT,
+)
 from yehu_server.core.controls.slots import (
     ASSIST,
     DEPTH,
@@ -55,6 +62,23 @@ ONSET_FROM = 0.4  # of /vibrato/onset, below which there is no vibrato
 TURN = 3.0
 LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction when tremolo ends
 ARRIVED = 1e-6  # m; as near as this to where the sounding length ends, the bow's place is there
+# A contact that moves costs more than one that stands, so places drift every so many samples, by
+# steps of some thousandths of a cent.
+PLACES_EVERY = 16
+PER_CENT = math.log(2.0) / 1200.0
+
+
+@compiled
+def advance_drifts(c: Any) -> None:
+    """Advance what drifts by one sample; the player sets the slopes (``player.drift``)."""
+    if c.drifting == 0:
+        return
+    for i in range(DRIFTS):
+        c.drift[i] += c.drift_slope[i]
+    if c.frame % PLACES_EVERY == 0:
+        raised = c.drift[CENTS_DRIFT] * PER_CENT
+        c.sounding_drift = 1.0 - raised + 0.5 * raised * raised
+        c.place_drift = 1.0 + c.drift[PLACE_DRIFT]
 
 
 @compiled
@@ -123,7 +147,7 @@ def stop_strings(c: Any, control: Array) -> None:
                 press *= harder
             if c.drifting != 0:
                 x_f = c.bridge_x - (c.bridge_x - x_f) * c.sounding_drift
-                press *= 1.0 + c.drift[drift.PRESS]
+                press *= 1.0 + c.drift[PRESS_DRIFT]
         else:
             c.finger_up[j] += 1
             if c.finger_up[j] >= c.park_after:
@@ -166,14 +190,14 @@ def write_controls(c: Any, control: Array) -> None:
     control : ndarray [shape=(columns,)]
         See ``physics.layout``.
     """
-    drift.advance(c)
+    advance_drifts(c)
     stop_strings(c, control)
     speed, side = c.value[SPEED] * turn_bow(c), c.value[SIDE]
     beta, firmness = c.value[POSITION], 1.0
     if c.drifting != 0:
-        speed *= 1.0 + c.drift[drift.SPEED]
+        speed *= 1.0 + c.drift[SPEED_DRIFT]
         beta *= c.place_drift
-        firmness += c.drift[drift.FORCE]
+        firmness += c.drift[FORCE_DRIFT]
     string = 0 if side >= 0.0 else 1
     sounding = c.bridge_x - c.sounding_from
     control[F_N] = side * bow_force(c, string, speed) * firmness

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from yehu_server.core.controls.drift import DRIFTS
 from yehu_server.core.controls.ramps import DECIBELS, pole_of_time
 from yehu_server.core.controls.slots import (
     FINGER_POSITION,
@@ -28,6 +27,11 @@ FOLLOW_S = 0.01  # time constant with which the bow follows the sounding length
 FADE_S = 0.005
 CHUNK = 64  # most frames whose controls are computed before the kernel computes them
 FORWARD = 0.25  # phase of the tremolo (turns) at which the bow has its own direction
+
+# Drifts of the hands: factors less 1 on the bow's speed, its force and its distance from the
+# bridge; cents by which the fingers are too high; a factor less 1 on their force.
+SPEED_DRIFT, FORCE_DRIFT, PLACE_DRIFT, CENTS_DRIFT, PRESS_DRIFT = range(5)
+DRIFTS = 5
 
 CONTROLS = np.dtype(
     [

@@ -11,13 +11,11 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import Deferred, imported, intrinsic
-from yehu_server.compile.memory import carray
+from yehu_server.compile.memory import WORD, carray
 
 # Imported where something is compiled.
 ir = Deferred(lambda: imported("llvmlite.ir"))
 types = Deferred(lambda: imported("numba").types)
-
-WORD = 8  # bytes
 
 
 def _plain_at(base: int, offset: int) -> int:

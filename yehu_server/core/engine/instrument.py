@@ -122,10 +122,10 @@ class Instrument:
 
         Nothing may post or compute meanwhile.
         """
-        self.lead(plain_tables())
+        self.begin_part(plain_tables())
 
-    def lead(self, tables: Array, people: int = 1) -> None:
-        """Play a part as the first of some instruments, the next ones on the stage.
+    def begin_part(self, tables: Array, people: int = 1) -> None:
+        """Begin a part anew, as the first of the instruments that play it: the next on the stage.
 
         Nothing may post or compute meanwhile.
 
@@ -142,7 +142,7 @@ class Instrument:
         self._rig["tables"][0, 0] = tables[0]
 
     def set_tables(self, tables: Array) -> None:
-        """Use other tables from the beginning on, in place of those of `lead`.
+        """Use other tables from the beginning on, in place of those of `begin_part`.
 
         Nothing may compute meanwhile.
         """

@@ -12,9 +12,8 @@ import numpy as np
 
 from yehu_server.compile.jit import native
 from yehu_server.compile.memory import carray
-from yehu_server.core.controls import drift
 from yehu_server.core.controls.hands import bow_force, turned
-from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.controls.record import CONTROLS, FORCE_DRIFT, SPEED_DRIFT
 from yehu_server.core.controls.slots import (
     FINGER_POSITION,
     FINGER_PRESS,
@@ -109,8 +108,8 @@ def look(rig: Any, into: Any) -> None:
     side = c.value[SIDE]
     string = 0 if side >= 0.0 else 1
     out.string = string if side != 0.0 else NO_STRING
-    out.speed = c.value[SPEED] * turned(c) * (1.0 + c.drift[drift.SPEED])
-    out.force = abs(side) * bow_force(c, string, out.speed) * (1.0 + c.drift[drift.FORCE])
+    out.speed = c.value[SPEED] * turned(c) * (1.0 + c.drift[SPEED_DRIFT])
+    out.force = abs(side) * bow_force(c, string, out.speed) * (1.0 + c.drift[FORCE_DRIFT])
     out.beta = c.value[POSITION] * c.place_drift
     out.bow_x = c.bridge_x - out.beta * (c.bridge_x - c.sounding_from)
     out.hair_place, out.hair_length = c.place, p.value[BOW_LENGTH]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled, compiled_with_aliasing, native
+from yehu_server.compile.jit import compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.controls.slots import (
@@ -20,6 +20,7 @@ from yehu_server.core.controls.slots import (
     WIDTH_NOW,
 )
 from yehu_server.core.engine.atomics import at
+from yehu_server.core.engine.limiter import is_valid, limit
 from yehu_server.core.engine.output import SOUNDED, SOUNDED_BYTES
 from yehu_server.core.engine.processor import flush_denormals, restore_denormals
 from yehu_server.core.engine.rig import METERS_AT, PARTS_AT, RIG_BYTES, SEAT_AT
@@ -41,31 +42,13 @@ from yehu_server.core.stage.seat import (
     LEFT,
     RIGHT,
     SEAT,
-    clear_filters,
+    mute_when_closed,
     reflect,
     set_direct,
     set_reflections,
 )
 
-
-@compiled
-def limit(x: float, soft: float) -> float:
-    """Soft clipping: above `soft` (0 to 1) peaks are bent, so that none exceeds full scale.
-
-    Odd, memoryless, and smooth where `soft` is below 1. Real time: safe.
-    """
-    size = abs(x)
-    if size <= soft:
-        return x
-    room = 1.0 - soft
-    bent = 1.0 if room <= 0.0 else soft + room * math.tanh((size - soft) / room)
-    return bent if x > 0.0 else -bent
-
-
 Array = Any
-
-# A sample beyond these is an error: rounding takes the limiter's hardly beyond 1.
-LARGEST, LARGEST_LIMITED = 1e14, 2.0
 
 
 @native
@@ -160,7 +143,7 @@ def take_up(rigs: Any, sounded: Any, apart: int, part: int, first: int, frames: 
         s.direct[LEFT] += s.direct_step[LEFT]
         s.direct[RIGHT] += s.direct_step[RIGHT]
         if n == o.silenced_at:
-            clear_filters(s)
+            mute_when_closed(s)
             stage.silenced_at = min(stage.silenced_at, n)
 
 
@@ -232,12 +215,6 @@ def finish(rigs: Any, stage: Any, soft: float, frame: int, n: int, out: Any) -> 
         limited_left / left if left != 0.0 else 1.0,
         limited_right / right if right != 0.0 else 1.0,
     )
-
-
-@compiled
-def is_valid(sample: float, limited: float) -> bool:
-    """Whether a sample, and what the limiter made of it, are numbers of any use; NaN is not."""
-    return abs(sample) <= LARGEST and abs(limited) <= LARGEST_LIMITED
 
 
 @compiled_with_aliasing

@@ -14,7 +14,14 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.drift import CENTS, DRIFTS, FORCE, PLACE, PRESS, SPEED
+from yehu_server.core.controls.record import (
+    CENTS_DRIFT,
+    DRIFTS,
+    FORCE_DRIFT,
+    PLACE_DRIFT,
+    PRESS_DRIFT,
+    SPEED_DRIFT,
+)
 from yehu_server.core.physics.elementary import chance
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.rows import (
@@ -27,12 +34,13 @@ from yehu_server.core.player.rows import (
     VARIATION,
 )
 
-# Standard deviations at full variation, of SPEED, FORCE, PLACE, CENTS, PRESS. By ear.
+# Standard deviations at full variation, in the order of ``controls.record``. By ear.
 DRIFT = np.array((0.06, 0.06, 0.04, 4.8, 0.06))
 TREMOR = np.array((0.04, 0.05, 0.02, 2.5, 0.04))
 RIGHT, LEFT = 0, 1
 HAND = np.array((RIGHT, RIGHT, RIGHT, LEFT, LEFT))
-LEADER = np.array((SPEED, SPEED, SPEED, CENTS, CENTS))  # what the rest of each hand goes with
+# What the rest of each hand goes with.
+LEADER = np.array((SPEED_DRIFT, SPEED_DRIFT, SPEED_DRIFT, CENTS_DRIFT, CENTS_DRIFT))
 TOGETHER = 0.6  # correlation with it
 
 # A vibrato's turns differ: standard deviations of rate and width at full variation. By ear.
@@ -103,7 +111,7 @@ def advance_drift(p: Any, c: Any) -> None:
         c.sounding_drift = c.place_drift = 1.0
     for k in range(LATE, 0, -1):
         u.cents[k] = u.cents[k - 1]
-    u.cents[0] = c.drift[CENTS]
+    u.cents[0] = c.drift[CENTS_DRIFT]
 
 
 @compiled_exactly
@@ -134,13 +142,13 @@ def is_playing(p: Any, drift: int) -> bool:
     if p.sounding < 0:
         return False
     row = BOW_SPEED
-    if drift == FORCE:
+    if drift == FORCE_DRIFT:
         row = BOW_PRESSURE if p.taken[BOW_FORCE] == 0 and p.is_held[BOW_FORCE] == 0 else BOW_FORCE
-    elif drift == PLACE:
+    elif drift == PLACE_DRIFT:
         row = BOW_POSITION
-    elif drift == CENTS:
+    elif drift == CENTS_DRIFT:
         row = FINGER_POSITION[p.finger]
-    elif drift == PRESS:
+    elif drift == PRESS_DRIFT:
         row = FINGER_PRESS[p.finger]
     return bool(p.taken[row] == 0 and p.is_held[row] == 0)
 

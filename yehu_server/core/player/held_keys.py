@@ -1,4 +1,7 @@
-"""The keys that are held, in the order pressed, and the one that sounds. Compiled."""
+"""The keys that one instrument holds, in the order pressed, and the one that sounds. Compiled.
+
+Those of the part, which may be a section's, are in ``midi.held_keys``.
+"""
 
 from __future__ import annotations
 

@@ -162,8 +162,8 @@ def add_reflections(s: Any, frame: int, which: int, amplitude: float, add: float
 
 
 @compiled_exactly
-def clear_filters(s: Any) -> None:
-    """Discard the delayed samples once the room has faded out. Real time: safe."""
+def mute_when_closed(s: Any) -> None:
+    """Let nothing that was kept be reflected once the room has closed. Real time: safe."""
     s.mute = -int(CLOSE_S * s.rate) - 2
 
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.ahead.build import RATES
+from yehu_server.ahead.build_hash import build_hash
 from yehu_server.ahead.interpreter import interpreter_layout, look_layout, look_length
-from yehu_server.ahead.source_hash import sources_hash
 from yehu_server.core.midi import registered_parameters, tables
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.midi.tables import MOST_BINDS, TABLES
@@ -196,7 +196,7 @@ def facts() -> dict[str, Any]:
         "look": look_layout(),
         "lookLength": look_length(),
         "rates": list(RATES),
-        "builtFrom": sources_hash(),
+        "builtFrom": build_hash(),
     }
 
 

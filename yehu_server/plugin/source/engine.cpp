@@ -5,7 +5,7 @@
 
 #define VERSION_OF(prefix)                                                                         \
     {prefix##yehu_size, prefix##yehu_prepare, prefix##yehu_reset,   prefix##yehu_post,             \
-     prefix##yehu_midi, prefix##yehu_map,     prefix##yehu_process, prefix##yehu_frame,            \
+     prefix##yehu_midi, prefix##yehu_use_tables, prefix##yehu_process, prefix##yehu_frame,         \
      prefix##yehu_pitch,   prefix##yehu_look}
 
 #ifdef __x86_64__
@@ -17,7 +17,7 @@ decltype(yehu_prepare) wide_yehu_prepare;
 decltype(yehu_reset) wide_yehu_reset;
 decltype(yehu_post) wide_yehu_post;
 decltype(yehu_midi) wide_yehu_midi;
-decltype(yehu_map) wide_yehu_map;
+decltype(yehu_use_tables) wide_yehu_use_tables;
 decltype(yehu_process) wide_yehu_process;
 decltype(yehu_frame) wide_yehu_frame;
 decltype(yehu_pitch) wide_yehu_pitch;

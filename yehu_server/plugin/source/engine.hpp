@@ -12,7 +12,7 @@ struct Engine {
     decltype(&yehu_reset) reset;
     decltype(&yehu_post) post;
     decltype(&yehu_midi) midi;
-    decltype(&yehu_map) map;
+    decltype(&yehu_use_tables) use_tables;
     decltype(&yehu_process) process;
     decltype(&yehu_frame) frame;
     decltype(&yehu_pitch) pitch;

@@ -157,7 +157,7 @@ void Instrument::use_tables() {
             memcpy(words + first, runs->word + at + 2, (size_t)count * sizeof *words);
             at += 2 + (int32_t)count;
         }
-    if (code.map(rig, code.frame(rig), tables, sizeof *tables) == 0) return;
+    if (code.use_tables(rig, code.frame(rig), tables, sizeof *tables) == 0) return;
     wants_tables = false;
     set_zone(); /* which other tables may have taken away */
 }

@@ -24,7 +24,7 @@ from yehu_server.compile.memory import WORD, carray
 from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.engine import native as engine
 from yehu_server.core.engine import rig as memory
-from yehu_server.core.engine.atomics import at, load_acquire
+from yehu_server.core.engine.atomics import at, load_acquire, record_at
 from yehu_server.core.engine.look import look
 from yehu_server.core.engine.mailbox import SERVER
 from yehu_server.core.engine.native import post_to
@@ -72,7 +72,7 @@ def process(rig: Any, out: Any, frames: int) -> None:
 @native
 def frame(rig: Any) -> int:
     """Number of the next frame."""
-    return int(carray(at(rig, memory.CONTROLS_AT), (1,), CONTROLS)[0].frame)
+    return int(record_at(rig, memory.CONTROLS_AT, CONTROLS).frame)
 
 
 @native
@@ -81,23 +81,23 @@ def value(rig: Any, parameter: int) -> float:
     if not 0 <= parameter < ROWS:
         return np.nan
     if SLOT_OF[parameter] >= 0:
-        controls = carray(at(rig, memory.CONTROLS_AT), (1,), CONTROLS)[0]
+        controls = record_at(rig, memory.CONTROLS_AT, CONTROLS)
         return float(controls.target[SLOT_OF[parameter]])
-    return float(carray(at(rig, memory.PLAYER_AT), (1,), PLAYER)[0].value[parameter])
+    return float(record_at(rig, memory.PLAYER_AT, PLAYER).value[parameter])
 
 
 @native
 def pitch(rig: Any) -> float:
     """The pitch that sounds (fractional MIDI note), or NaN in silence."""
-    return sounding_pitch(carray(at(rig, memory.PLAYER_AT), (1,), PLAYER)[0])
+    return sounding_pitch(record_at(rig, memory.PLAYER_AT, PLAYER))
 
 
 @native
 def lost(rig: Any) -> int:
     """How often the state was lost, and put back to rest; it should stay 0."""
-    state = carray(at(rig, memory.STATE_AT), (1,), STATE)[0]
-    output = carray(at(rig, memory.OUTPUT_AT), (1,), OUTPUT)[0]
-    mix = carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0]
+    state = record_at(rig, memory.STATE_AT, STATE)
+    output = record_at(rig, memory.OUTPUT_AT, OUTPUT)
+    mix = record_at(rig, memory.RIG_BYTES, STAGE)
     return int(state.lost + output.invalid_samples + mix.invalid_samples)
 
 
@@ -228,7 +228,7 @@ def putting(rates: Sequence[float], images: Sequence[Array]) -> Native:
                         for word in range(count):
                             words_of[first + word] = words[start + 2 + word]
                     start += 2 + count
-                stage = carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0]
+                stage = record_at(rig, memory.RIG_BYTES, STAGE)
                 stage.channels = channels
                 for line in range(LINES):
                     for place in range(stage.room.mask + 1):
@@ -251,9 +251,9 @@ def reset(rig: Any) -> None:
     Parameters, positions of controllers, pedals and tables stay. For the thread of process, while
     nothing is posted.
     """
-    m = carray(at(rig, memory.MIDI_AT), (1,), MIDI)[0]
-    t = carray(at(rig, memory.TABLES_AT + m.tables * TABLES_BYTES), (1,), TABLES)[0]
-    stage = carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0]
+    m = record_at(rig, memory.MIDI_AT, MIDI)
+    t = record_at(rig, memory.TABLES_AT + m.tables * TABLES_BYTES, TABLES)
+    stage = record_at(rig, memory.RIG_BYTES, STAGE)
     last = carray(at(rig, LAST_AT), (1,), np.int64)
     tables = last[0]
     if put(rig, m.rate, stage.channels, 1) == 0:
@@ -272,7 +272,7 @@ def reset(rig: Any) -> None:
     last[0] = tables
     if tables != m.tables:
         post_to(rig, SERVER, 0, TABLES_TO, tables, 0.0, 0.0)
-    p = carray(at(rig, memory.PLAYER_AT), (1,), PLAYER)[0]
+    p = record_at(rig, memory.PLAYER_AT, PLAYER)
     for row in range(ROWS):
         wished, is_held = m.value[row], m.is_held[row] != 0
         if is_held:

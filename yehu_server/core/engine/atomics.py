@@ -22,6 +22,10 @@ def _plain_at(base: int, offset: int) -> int:
     return base + offset
 
 
+def _plain_record_at(base: int, offset: int, kind: Any) -> Any:
+    return carray(base + offset, (1,), kind)[0]
+
+
 def _plain_load(base: int, offset: int) -> int:
     return int(carray(base + offset, (1,), np.int64)[0])
 
@@ -42,6 +46,17 @@ def at(_context: Any, base: Any, offset: Any) -> Any:
         return builder.gep(arguments[0], [arguments[1]])
 
     return types.voidptr(types.voidptr, types.int64), generate
+
+
+@intrinsic(plain=_plain_record_at)
+def record_at(_context: Any, base: Any, offset: Any, kind: Any) -> Any:
+    """The record of a dtype `offset` bytes after `base`; nothing is copied."""
+
+    def generate(codegen: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        place = builder.gep(arguments[0], [arguments[1]])
+        return builder.bitcast(place, codegen.get_value_type(kind.dtype))
+
+    return kind.dtype(types.voidptr, types.int64, kind), generate
 
 
 @intrinsic(plain=_plain_load)

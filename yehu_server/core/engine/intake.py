@@ -10,12 +10,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from yehu_server.compile.jit import compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import CONTROLS
-from yehu_server.core.engine.atomics import at, load_acquire, store_release
+from yehu_server.core.engine.atomics import at, load_acquire, record_at, store_release
 from yehu_server.core.engine.mailbox import (
     HEAP,
     MAIL,
@@ -35,12 +33,12 @@ from yehu_server.core.engine.rig import (
     MAIL_AT,
     METERS_AT,
     MIDI_AT,
-    PARTS_AT,
     POSTED_AT,
     RIG_BYTES,
     RING_SIZES,
     RINGS_AT,
     TABLES_AT,
+    count_parts,
 )
 from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.midi.events import FINGER_ON, NOTE_OFF, NOTE_ON, RELEASE_ALL
@@ -65,10 +63,10 @@ def interpret_events(rigs: Any, end: int) -> int:
 
     Real time: safe.
     """
-    now = carray(at(rigs, CONTROLS_AT), (1,), CONTROLS)[0].frame
+    now = record_at(rigs, CONTROLS_AT, CONTROLS).frame
     done = end
-    for part in range(carray(at(rigs, PARTS_AT), (1,), np.int64)[0]):
-        if carray(at(rigs, part * RIG_BYTES + MIDI_AT), (1,), MIDI)[0].people > 0:
+    for part in range(count_parts(rigs)):
+        if record_at(rigs, part * RIG_BYTES + MIDI_AT, MIDI).people > 0:
             done = min(done, interpret_part_events(rigs, part, now, end))
     return int(max(done, now + 1))
 
@@ -77,8 +75,8 @@ def interpret_events(rigs: Any, end: int) -> int:
 def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
     """Interpret the events of the part with this first instrument; see `interpret_events`."""
     rig = at(rigs, part * RIG_BYTES)
-    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
-    m = carray(at(rig, MIDI_AT), (1,), MIDI)[0]
+    mail = record_at(rig, MAIL_AT, MAIL)
+    m = record_at(rig, MIDI_AT, MIDI)
     events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
     drain(rigs, rig, mail, now)
     while mail.pending_events > 0 and events[0].wish.frame < end:
@@ -138,7 +136,7 @@ def frame_of_arrival(rigs: Any, mail: Any, time_ns: int) -> int:
 
     Small corrections of the clock must not swap messages that arrive close together.
     """
-    t = carray(at(rigs, METERS_AT), (1,), METERS)[0]
+    t = record_at(rigs, METERS_AT, METERS)
     elapsed = (time_ns - t.loop.due_ns) / t.loop.ns_per_frame
     frame = t.frame + math.floor(elapsed) + mail.delay[0]
     if mail.arrived - frame > t.rate:  # no small correction
@@ -152,7 +150,7 @@ def have_room(rigs: Any, part: int, people: int) -> bool:
     """Whether all who play a part have room for the wishes of another event."""
     for who in range(people):
         rig = at(rigs, (part + who) * RIG_BYTES)
-        if HEAP - carray(at(rig, MAIL_AT), (1,), MAIL)[0].waiting < ROOM:
+        if HEAP - record_at(rig, MAIL_AT, MAIL).waiting < ROOM:
             return False
     return True
 
@@ -162,7 +160,7 @@ def hand_over(rigs: Any, part: int, m: Any) -> None:
     """Give those who play a part the wishes that an event came to."""
     for n in range(m.wishes):
         rig = at(rigs, (part + m.out_person[n]) * RIG_BYTES)
-        mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+        mail = record_at(rig, MAIL_AT, MAIL)
         if mail.waiting == HEAP:
             mail.dropped[0, 0] += 1
             continue

@@ -22,15 +22,15 @@ from yehu_server.core.controls.slots import (
     SLOTS,
     SPEED,
 )
-from yehu_server.core.engine.atomics import at
+from yehu_server.core.engine.atomics import record_at
 from yehu_server.core.engine.rig import (
     CONTROLS_AT,
     METERS_AT,
     MODEL_AT,
-    PARTS_AT,
     PLAYER_AT,
     RIG_BYTES,
     STATE_AT,
+    count_parts,
 )
 from yehu_server.core.engine.telemetry import METERS, SHAPE_POINTS, displacement
 from yehu_server.core.physics.layout import MAX_FINGERS, MODEL, STATE, STRINGS
@@ -88,19 +88,19 @@ def look(rig: Any, into: Any) -> None:
 
     Real time: safe.
     """
-    m = carray(at(rig, MODEL_AT), (1,), MODEL)[0]
-    s = carray(at(rig, STATE_AT), (1,), STATE)[0].motion
-    c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
-    p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
-    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    m = record_at(rig, MODEL_AT, MODEL)
+    s = record_at(rig, STATE_AT, STATE).motion
+    c = record_at(rig, CONTROLS_AT, CONTROLS)
+    p = record_at(rig, PLAYER_AT, PLAYER)
+    t = record_at(rig, METERS_AT, METERS)
     out = carray(into, (1,), LOOK)[0]
     out.frame, out.rate = c.frame, m.rate
     out.pitch = sounding_pitch(p)
     out.frequency = p.a4 * math.exp2((out.pitch - 69.0) / 12.0)
     out.certainty, out.error, out.slips = p.ear.certainty, p.ear.error, p.ear.slips
-    parts = carray(at(rig, PARTS_AT), (1,), np.int64)[0]
+    parts = count_parts(rig)
     if parts > 0:
-        mix = carray(at(rig, parts * RIG_BYTES), (1,), STAGE)[0]
+        mix = record_at(rig, parts * RIG_BYTES, STAGE)
         out.peak, out.rms = mix.peak, mix.rms
     else:
         out.peak, out.rms = t.peak, t.rms

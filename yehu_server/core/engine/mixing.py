@@ -19,11 +19,11 @@ from yehu_server.core.controls.slots import (
     SIZE_NOW,
     WIDTH_NOW,
 )
-from yehu_server.core.engine.atomics import at
+from yehu_server.core.engine.atomics import at, record_at
 from yehu_server.core.engine.limiter import is_valid, limit
 from yehu_server.core.engine.output import SOUNDED, SOUNDED_BYTES
 from yehu_server.core.engine.processor import flush_denormals, restore_denormals
-from yehu_server.core.engine.rig import METERS_AT, PARTS_AT, RIG_BYTES, SEAT_AT
+from yehu_server.core.engine.rig import METERS_AT, RIG_BYTES, SEAT_AT, count_parts
 from yehu_server.core.engine.telemetry import METERS, WINDOW_S
 from yehu_server.core.stage import late_field, seat
 from yehu_server.core.stage.directivity import side_signal
@@ -79,8 +79,8 @@ def mix(
 
     Real time: safe; no allocation, no exception, every sample finite.
     """
-    parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
-    stage = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0]
+    parts = count_parts(rigs)
+    stage = record_at(rigs, parts * RIG_BYTES, STAGE)
     stage.silenced_at = frames
     for n in range(frames):
         for bus in range(BUSES):
@@ -110,11 +110,11 @@ def mix(
 @compiled_with_aliasing
 def take_up(rigs: Any, sounded: Any, apart: int, part: int, first: int, frames: int) -> None:
     """Place what one instrument sounded: its direct sound (``own``), and what goes to the room."""
-    parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
-    stage = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0]
+    parts = count_parts(rigs)
+    stage = record_at(rigs, parts * RIG_BYTES, STAGE)
     shared = carray(sounded, (1,), SOUNDED)[0]
-    o = carray(at(sounded, part * apart), (1,), SOUNDED)[0]
-    s = carray(at(rigs, part * RIG_BYTES + SEAT_AT), (1,), SEAT)[0]
+    o = record_at(sounded, part * apart, SOUNDED)
+    s = record_at(rigs, part * RIG_BYTES + SEAT_AT, SEAT)
     for n in range(frames):
         own, room_inputs = o.stage_inputs[n], shared.stage_inputs[n]
         is_time = (first + n) % EVERY == 0
@@ -221,8 +221,8 @@ def finish(rigs: Any, stage: Any, soft: float, frame: int, n: int, out: Any) -> 
 def reset_state(rigs: Any, stage: Any) -> None:
     """Begin with an empty stage, after numbers were lost."""
     late_field.reset_state(stage.room)
-    for part in range(carray(at(rigs, PARTS_AT), (1,), np.int64)[0]):
-        seat.reset_state(carray(at(rigs, part * RIG_BYTES + SEAT_AT), (1,), SEAT)[0])
+    for part in range(count_parts(rigs)):
+        seat.reset_state(record_at(rigs, part * RIG_BYTES + SEAT_AT, SEAT))
 
 
 @compiled_with_aliasing
@@ -231,7 +231,7 @@ def add_to_level(rigs: Any, stage: Any, left: float, right: float) -> None:
     stage.window_peak = max(stage.window_peak, abs(left), abs(right))
     stage.window_power += 0.5 * (left * left + right * right)
     stage.window_frames += 1
-    if stage.window_frames >= WINDOW_S * carray(at(rigs, METERS_AT), (1,), METERS)[0].rate:
+    if stage.window_frames >= WINDOW_S * record_at(rigs, METERS_AT, METERS).rate:
         stage.peak = stage.window_peak
         stage.rms = math.sqrt(stage.window_power / stage.window_frames)
         stage.window_peak, stage.window_power, stage.window_frames = 0.0, 0.0, 0
@@ -240,7 +240,7 @@ def add_to_level(rigs: Any, stage: Any, left: float, right: float) -> None:
 @compiled_with_aliasing
 def at_tape(rigs: Any) -> Any:
     """Address of the tape."""
-    parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
+    parts = count_parts(rigs)
     return at(rigs, parts * RIG_BYTES + TAPE_AT)
 
 
@@ -259,8 +259,8 @@ def mix_block(
         As of `mix`.
     """
     mode = flush_denormals()
-    parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
-    channels = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0].channels
+    parts = count_parts(rigs)
+    channels = record_at(rigs, parts * RIG_BYTES, STAGE).channels
     apart = (frames + CHUNK - 1) // CHUNK * SOUNDED_BYTES
     done = 0
     while done < frames:

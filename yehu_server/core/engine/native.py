@@ -19,6 +19,7 @@ from yehu_server.core.engine.atomics import (
     fence_acquire,
     fence_release,
     load_acquire,
+    record_at,
     store_release,
 )
 from yehu_server.core.engine.intake import interpret_events
@@ -38,7 +39,6 @@ from yehu_server.core.engine.rig import (
     MAIL_AT,
     METERS_AT,
     OUTPUT_AT,
-    PARTS_AT,
     PLAYER_AT,
     POSTED_AT,
     PUBLISHED_AT,
@@ -52,6 +52,7 @@ from yehu_server.core.engine.rig import (
     STATE_AT,
     TAPED_AT,
     VERSION_AT,
+    count_parts,
 )
 from yehu_server.core.engine.sounding import sound
 from yehu_server.core.engine.telemetry import METERS, account, update_clock
@@ -71,7 +72,7 @@ def publish(rig: Any) -> None:
     version = load_acquire(rig, VERSION_AT)
     store_release(rig, VERSION_AT, version + 1)
     fence_release()
-    carray(at(rig, PUBLISHED_AT), (1,), METERS)[0] = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    carray(at(rig, PUBLISHED_AT), (1,), METERS)[0] = record_at(rig, METERS_AT, METERS)
     store_release(rig, VERSION_AT, version + 2)
 
 
@@ -92,10 +93,10 @@ def callback(
         return 0
     started_ns, cpu_ns = monotonic_ns(), thread_cpu_ns()
     mode = flush_denormals()
-    t = carray(at(rigs, METERS_AT), (1,), METERS)[0]
-    c = carray(at(rigs, CONTROLS_AT), (1,), CONTROLS)[0]
-    parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
-    channels = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0].channels
+    t = record_at(rigs, METERS_AT, METERS)
+    c = record_at(rigs, CONTROLS_AT, CONTROLS)
+    parts = count_parts(rigs)
+    channels = record_at(rigs, parts * RIG_BYTES, STAGE).channels
     t.running = 1
     block: Any = np.int64(frames)
     update_clock(t, c.frame, started_ns, block)
@@ -124,18 +125,18 @@ def callback(
 @compiled_with_aliasing
 def update_meters(rig: Any, frame: int, block: int) -> None:
     """Write what a block did to one instrument into its meters."""
-    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
-    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
-    state = carray(at(rig, STATE_AT), (1,), STATE)[0]
-    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
+    t = record_at(rig, METERS_AT, METERS)
+    mail = record_at(rig, MAIL_AT, MAIL)
+    state = record_at(rig, STATE_AT, STATE)
+    o = record_at(rig, OUTPUT_AT, OUTPUT)
     t.frame, t.block = frame, block
     t.unconverged, t.lost = state.unconverged, state.lost + o.invalid_samples
     t.late_events = 0
     for writer in range(WRITERS):
         t.late_events += mail.late[writer]
     t.applied, t.drained = mail.applied, mail.drained[SERVER, 0]
-    t.next_frame = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0].frame
-    t.pitch = sounding_pitch(carray(at(rig, PLAYER_AT), (1,), PLAYER)[0])
+    t.next_frame = record_at(rig, CONTROLS_AT, CONTROLS).frame
+    t.pitch = sounding_pitch(record_at(rig, PLAYER_AT, PLAYER))
     t.waiting, t.unreported = mail.pending_events + mail.waiting, mail.unreported
 
 
@@ -143,7 +144,7 @@ def update_meters(rig: Any, frame: int, block: int) -> None:
 def read_meters(rig: Any, into: Any) -> int:
     """Copy the published meters; return 0 where they were written meanwhile (try again)."""
     version = load_acquire(rig, VERSION_AT)
-    carray(into, (1,), METERS)[0] = carray(at(rig, PUBLISHED_AT), (1,), METERS)[0]
+    carray(into, (1,), METERS)[0] = record_at(rig, PUBLISHED_AT, METERS)
     fence_acquire()
     return 1 if version % 2 == 0 and load_acquire(rig, VERSION_AT) == version else 0
 
@@ -154,7 +155,7 @@ def frame_at(rig: Any, time_ns: int) -> float:
 
     Without further callbacks it stops `STALL_NS` after the last block.
     """
-    published = carray(at(rig, PUBLISHED_AT), (1,), METERS)[0]
+    published = record_at(rig, PUBLISHED_AT, METERS)
     frame, elapsed_ns, ns_per_frame = 0, 0, 1.0
     for _ in range(TRIES):
         version = load_acquire(rig, VERSION_AT)
@@ -189,7 +190,7 @@ def post_to(
     rig: Any, writer: int, frame: int, kind: int, index: int, value: float, other: float
 ) -> int:
     """See `post_from`."""
-    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+    mail = record_at(rig, MAIL_AT, MAIL)
     posted, size = mail.posted[writer, 0], RING_SIZES[writer]
     if posted - load_acquire(rig, DRAINED_AT + writer * CURSOR_BYTES) >= size:
         mail.dropped[writer, 0] += 1
@@ -204,7 +205,7 @@ def post_to(
 @native
 def read_reports(rig: Any, into: Any, room: int) -> int:
     """Move reports of wishes to an array of WISH [shape=(room,)]; return their number."""
-    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+    mail = record_at(rig, MAIL_AT, MAIL)
     reports = carray(at(rig, REPORTS_AT), (RING,), WISH)
     wishes = carray(into, (room,), WISH)
     read = mail.read[0]

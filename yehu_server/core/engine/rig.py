@@ -9,7 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.compile.jit import compiled_with_aliasing
+from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.engine.atomics import at
 from yehu_server.core.engine.mailbox import HEAP, LINE, MAIL, RING, SMALL_RING, WAITING
 from yehu_server.core.engine.output import OUTPUT
 from yehu_server.core.engine.telemetry import METERS
@@ -80,6 +83,12 @@ SEAT_AT = _offset("seat")
 POSTED_AT, DRAINED_AT = _offset("mail", "posted"), _offset("mail", "drained")
 CURSOR_BYTES = 8 * LINE  # from one writer's to the next
 REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")
+
+
+@compiled_with_aliasing
+def count_parts(rigs: Any) -> int:
+    """The number of rigs that play together, told by the first of them."""
+    return int(carray(at(rigs, PARTS_AT), (1,), np.int64)[0])
 
 
 def ring_place(writer: int, rig: int) -> dict[str, int]:

@@ -28,7 +28,7 @@ from yehu_server.core.controls.slots import (
     STAGE_INPUTS,
     TUNING,
 )
-from yehu_server.core.engine.atomics import at, load_acquire, store_release
+from yehu_server.core.engine.atomics import at, load_acquire, record_at, store_release
 from yehu_server.core.engine.mailbox import (
     APPLIED_AT_ONCE,
     HEAP,
@@ -124,12 +124,12 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
     """
     model = carray(at(rig, MODEL_AT), (1,), MODEL)
     state = carray(at(rig, STATE_AT), (1,), STATE)
-    c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
-    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
+    c = record_at(rig, CONTROLS_AT, CONTROLS)
+    o = record_at(rig, OUTPUT_AT, OUTPUT)
     sounded = carray(into, (1,), SOUNDED)[0]
-    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
-    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
-    p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
+    mail = record_at(rig, MAIL_AT, MAIL)
+    t = record_at(rig, METERS_AT, METERS)
+    p = record_at(rig, PLAYER_AT, PLAYER)
     wanted = min(wanted, CHUNK)
     sounded.silenced_at = NOT_SILENCED
     done = 0
@@ -176,8 +176,8 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
 @compiled_with_aliasing
 def write_output(rig: Any, dry: Array, first: int, start: int, end: int) -> None:
     """Make samples of some rows of the probes, which begin at frame `first`; tell the ear."""
-    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
-    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    o = record_at(rig, OUTPUT_AT, OUTPUT)
+    t = record_at(rig, METERS_AT, METERS)
     heard = carray(at(rig, EAR_BUFFER_AT), (2 * EAR_SAMPLES,), np.float64)
     for n in range(start, end):
         remember(heard, first + n - start, o.probes[n, RELATIVE_VELOCITY])

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from sound import alone, bow
 
+from yehu_server.ahead import interface
 from yehu_server.core.engine import native
 from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine.ensemble import TAPE_FRAMES, Ensemble
@@ -144,6 +145,8 @@ def test_what_a_function_calls_that_is_compiled_apart_is_read_of_its_code():
     for name, apart in APART.items():
         assert {call.function.__name__ for call in CALLS[name].calls} == apart, name
     assert len(CALLS) == len(all_functions())  # each has a name of its own
+    assert interface.frame.calls == []  # `frame` in its code is an attribute
+    assert interface.process.calls == [CALLS["callback"]]
 
 
 def test_no_call_reaches_python_an_allocation_or_a_lock():

@@ -1,6 +1,6 @@
 /** Finds and makes elements of the page. */
 
-import { onLanguage } from "./i18n.js";
+import { onLanguage, translate } from "./i18n.js";
 
 /** @typedef {string | (() => string)} Words A function is asked again in another language. */
 
@@ -77,4 +77,30 @@ export function download(blob, name) {
   const link = make("a", { href: URL.createObjectURL(blob), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000); // long after it was read
+}
+
+/**
+ * A button that is on or off, and says which.
+ * @param {string} off key of its text
+ * @param {string} on
+ * @param {(isOn: boolean) => void | Promise<void>} changed
+ */
+export function toggle(off, on, changed) {
+  let isOn = false;
+  const button = make("button", { type: "button" });
+  const tell = () => {
+    button.setAttribute("aria-pressed", String(isOn));
+    button.textContent = translate(isOn ? on : off);
+  };
+  const set = (/** @type {boolean} */ isOnNow) => {
+    isOn = isOnNow;
+    tell();
+  };
+  onLanguage(tell);
+  button.addEventListener("click", () => {
+    isOn = !isOn;
+    tell();
+    changed(isOn);
+  });
+  return { button, set };
 }

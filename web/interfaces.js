@@ -56,6 +56,8 @@
  * @property {AnalyserNode | null} analyser null: the page hears nothing
  * @property {{start: () => void, stop: () => Blob | Promise<Blob>}} [record] writes WAV
  * @property {{start: () => void, stop: () => Promise<CapturedWishes>}} [keep] what is fulfilled
+ * @property {{start: () => Promise<void>, stop: () => void}} [voice] follows a microphone
+ * @property {number} [heard] pitch of the voice; NaN for none
  * @property {(address: string) => number | undefined} [target] where a parameter of bow and
  *   fingers moves to
  * @property {(address: string) => number | undefined} [reported] the value of any other parameter, where

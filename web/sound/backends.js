@@ -36,7 +36,7 @@ export async function openBackend(context, bytes, lookLength, hear) {
 async function openWorklet(context, bytes, lookLength, hear) {
   await context.audioWorklet.addModule(new URL("./processor.js", import.meta.url));
   const node = new AudioWorkletNode(context, "yehu", {
-    numberOfInputs: 0,
+    numberOfInputs: 1, // a voice
     outputChannelCount: [CHANNELS],
     processorOptions: { bytes, lookLength },
   });

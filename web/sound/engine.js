@@ -3,7 +3,7 @@
  * It takes messages and tells others.
  */
 
-import { CHANNELS, Kernel, WISH } from "./kernel.js";
+import { CHANNELS, Kernel, NOW, VOICE_WISH, WISH } from "./kernel.js";
 
 const LOOKS_A_SECOND = 60;
 const CHUNK = 4096; // recorded frames that are told at a time
@@ -17,9 +17,11 @@ const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
  * @property {boolean} [record] begins or ends a recording
  * @property {boolean} [keep] begins or ends keeping the wishes that are fulfilled
  * @property {Float64Array} [seen] a look, given back
+ * @property {boolean} [voice] begins or ends following a voice
  *
  * @typedef {object} Told
  * @property {Float64Array} [seen] a look
+ * @property {number} [heard] pitch of the voice, where one is followed; NaN for none
  * @property {boolean} [sleeps] whether it has just gone to sleep
  * @property {number} [load] share of the time that computing takes
  * @property {Float32Array} [recorded] samples, left and right in turn
@@ -53,22 +55,18 @@ export class Engine {
     /** @type {number[] | null} */
     this.kept = null;
     this.keptFrom = 0;
+    this.follows = false;
   }
 
   /** @param {Take} message */
-  take({ wishes, record, keep, seen }) {
+  take({ wishes, record, keep, seen, voice }) {
     if (seen) this.free.push(seen);
+    if (voice !== undefined) this.#follow(voice);
     if (wishes) {
       this.sleeps = false;
       this.restless = this.frame;
       for (let i = 0; i < wishes.length; i += WISH) {
-        const isTaken = this.kernel.post(
-          wishes[i], wishes[i + 1], wishes[i + 2], wishes[i + 3], wishes[i + 4],
-        ); // prettier-ignore
-        this.restless = Math.max(this.restless, wishes[i]);
-        if (isTaken && this.kept) {
-          this.kept.push(Math.max(wishes[i], this.frame), ...wishes.subarray(i + 1, i + WISH));
-        }
+        this.#post(wishes[i], wishes.subarray(i + 1, i + WISH));
       }
     }
     if (keep === true) [this.kept, this.keptFrom] = [[], this.frame];
@@ -80,6 +78,39 @@ export class Engine {
       this.chunk = new Float32Array(CHANNELS * CHUNK);
       this.filled = 0;
     } else if (record === false) this.#endRecording();
+  }
+
+  /**
+   * @param {number} frame or NOW
+   * @param {Float64Array} wish kind, index, value, other
+   */
+  #post(frame, wish) {
+    const isTaken = this.kernel.post(frame, wish[0], wish[1], wish[2], wish[3]);
+    this.restless = Math.max(this.restless, frame);
+    if (isTaken && this.kept) this.kept.push(Math.max(frame, this.frame), ...wish);
+  }
+
+  /** @param {boolean} isSung whether there is a voice to follow from now on */
+  #follow(isSung) {
+    if (isSung) this.kernel.prepareVoice(this.rate);
+    else if (this.follows) this.hear(new Float32Array(0));
+    this.follows = isSung;
+  }
+
+  /**
+   * Follow a voice, where one is followed.
+   * @param {Float32Array} samples at most a block
+   */
+  hear(samples) {
+    if (!this.follows) return;
+    const wishes = this.kernel.follow(samples);
+    if (wishes.length) {
+      this.sleeps = false;
+      this.restless = this.frame;
+    }
+    for (let i = 0; i < wishes.length; i += VOICE_WISH) {
+      this.#post(NOW, wishes.subarray(i, i + VOICE_WISH));
+    }
   }
 
   /**
@@ -123,6 +154,7 @@ export class Engine {
     seen.set(this.kernel.look());
     /** @type {Told} */
     const told = { seen };
+    if (this.follows) told.heard = this.kernel.voicePitch;
     const measured = this.frame - this.measuredFrom;
     if (measured >= this.rate) {
       told.load = (1e-3 * this.busyMs * this.rate) / measured;

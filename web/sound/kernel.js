@@ -9,6 +9,10 @@ const PAGE_BYTES = 65536; // of WebAssembly's memory
 const ALIGNED = 64; // bytes
 const SECOND_NS = 1_000_000_000n;
 
+/** Numbers of a wish of a voice: kind, index, value, other; and room for those of a block. */
+export const VOICE_WISH = 4;
+const VOICE_WISHES = 64;
+
 /** Wishes for the frame that is computed next, whichever it is, have this one. */
 export const NOW = -1;
 
@@ -78,15 +82,27 @@ export class Kernel {
     }).exports;
     this.exported = exported;
     this.most = most;
-    const sizes = [Number(exported.yehu_size()), 4 * CHANNELS * most, 8 * lookLength];
-    const [rig, outAt, lookAt] = room(exported, ...sizes);
+    const [rig, outAt, lookAt, voice, sungAt, sungWishesAt] = room(
+      exported,
+      Number(exported.yehu_size()),
+      4 * CHANNELS * most,
+      8 * lookLength,
+      Number(exported.yehu_voice_size()),
+      4 * most,
+      8 * VOICE_WISH * VOICE_WISHES,
+    );
     this.rig = rig;
     this.outAt = outAt;
     this.lookAt = lookAt;
+    this.voice = voice;
+    this.sungAt = sungAt;
+    this.sungWishesAt = sungWishesAt;
     const memory = exported.memory.buffer; // it grows no more
     this.view = new DataView(memory);
     this.out = new Float32Array(memory, this.outAt, CHANNELS * most);
     this.seen = new Float64Array(memory, this.lookAt, lookLength);
+    this.sung = new Float32Array(memory, this.sungAt, most);
+    this.sungWishes = new Float64Array(memory, this.sungWishesAt, VOICE_WISH * VOICE_WISHES);
     this.lengths = Array.from({ length: most + 1 }, (_, frames) => BigInt(frames));
     if (exported.yehu_prepare(this.rig, rate, BigInt(CHANNELS)) === 0n) {
       throw new RangeError(`the instrument was not built for ${rate} Hz`);
@@ -135,6 +151,35 @@ export class Kernel {
    */
   compute(frames) {
     this.exported.yehu_process(this.rig, this.outAt, this.lengths[frames]);
+  }
+
+  /**
+   * Follow a voice from now on, at a rate in Hz.
+   * @param {number} rate
+   */
+  prepareVoice(rate) {
+    const bytes = Number(this.exported.yehu_voice_size());
+    new Uint8Array(this.exported.memory.buffer, this.voice, bytes).fill(0);
+    this.exported.yehu_voice_prepare(this.voice, rate, NaN);
+  }
+
+  /**
+   * What the next samples of a voice come to: VOICE_WISH numbers for each wish. None at all end
+   * its note.
+   * @param {Float32Array} samples at most `most`
+   */
+  follow(samples) {
+    this.sung.set(samples);
+    const { voice, sungAt, sungWishesAt } = this;
+    const count = this.exported.yehu_follow(
+      voice, sungAt, BigInt(samples.length), sungWishesAt, BigInt(VOICE_WISHES),
+    ); // prettier-ignore
+    return this.sungWishes.subarray(0, VOICE_WISH * Number(count));
+  }
+
+  /** The pitch of the voice, or NaN. */
+  get voicePitch() {
+    return this.exported.yehu_voice_pitch(this.voice);
   }
 
   /** Look at the instrument: fills `seen`. */

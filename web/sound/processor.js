@@ -21,13 +21,15 @@ class Processor extends AudioWorkletProcessor {
   }
 
   /**
-   * @param {Float32Array[][]} _inputs
+   * @param {Float32Array[][]} inputs a voice, where there is one
    * @param {Float32Array[][]} outputs
    */
-  process(_inputs, outputs) {
+  process(inputs, outputs) {
     const [left, right] = outputs[0];
+    const voice = inputs[0]?.[0];
     for (let done = 0; done < left.length; done += MOST_FRAMES) {
       const end = done + MOST_FRAMES;
+      if (voice) this.engine.hear(voice.subarray(done, end));
       this.engine.fill(left.subarray(done, end), right.subarray(done, end));
     }
     return this.isOpen;

@@ -57,6 +57,10 @@ export class Sound extends EventTarget {
     this.record = { start: () => this.#startRecording(), stop: () => this.#stopRecording() };
     /** @type {((kept: NonNullable<Told["kept"]>) => void) | null} */
     this.kept = null;
+    this.heard = NaN; // pitch of a voice that is followed
+    this.voice = { start: () => this.#startVoice(), stop: () => this.#stopVoice() };
+    /** @type {MediaStreamAudioSourceNode | null} */
+    this.microphone = null;
     this.keep = {
       start: () => this.backend?.take({ keep: true }),
       stop: () => this.#stopKeeping(),
@@ -124,6 +128,7 @@ export class Sound extends EventTarget {
   }
 
   close() {
+    this.#stopVoice();
     clearInterval(this.watching);
     const end = this.context.currentTime + FADE_S;
     this.gain.gain.linearRampToValueAtTime(0, end);
@@ -134,7 +139,8 @@ export class Sound extends EventTarget {
   }
 
   /** @param {Told} told */
-  #hear({ seen, sleeps, load, recorded, isLast, kept }) {
+  #hear({ seen, sleeps, load, recorded, isLast, kept, heard = NaN }) {
+    this.heard = heard;
     if (sleeps) this.#sleep();
     if (kept) this.kept?.(kept);
     if (recorded && this.chunks) {
@@ -151,6 +157,24 @@ export class Sound extends EventTarget {
       this.backend?.take({ seen }, [/** @type {ArrayBuffer} */ (seen.buffer)]);
       this.dispatchEvent(new Event("state"));
     }
+  }
+
+  /** Follow a microphone, once whoever sings has agreed; what browsers do to speech is of no use. */
+  async #startVoice() {
+    const stream = await navigator.mediaDevices.getUserMedia({
+      audio: { echoCancellation: false, noiseSuppression: false, autoGainControl: false },
+    });
+    this.microphone = this.context.createMediaStreamSource(stream);
+    if (this.backend) this.microphone.connect(this.backend.node);
+    this.backend?.take({ voice: true });
+    await this.resume();
+  }
+
+  #stopVoice() {
+    this.microphone?.disconnect();
+    for (const track of this.microphone?.mediaStream.getTracks() ?? []) track.stop();
+    this.microphone = null;
+    this.backend?.take({ voice: false });
   }
 
   #startRecording() {

@@ -197,6 +197,13 @@ export default {
   "tune.mpe_phrase": "MPE phrase",
   "tune.mpe_phrase.about": "A study: slides and presses of single fingers.",
 
+  "voice": "Hum, and it plays",
+  "voice.about":
+    "What you sing, hum or whistle is bowed as you do it: slides, vibrato, swells. The sound stays on this device.",
+  "voice.begin": "Use the microphone",
+  "voice.headphones": "It listens. Wear headphones, or it follows itself.",
+  "voice.refused": "There is no microphone that this page may use.",
+  "voice.picture": "Pitches in the last seconds: of your voice, and of what is played",
   "keep.sound": "Record the sound",
   "keep.sound.about": "A stereo WAV file of all that is heard.",
   "keep.record": "Record",

@@ -195,6 +195,12 @@ export default {
   "tune.mpe_phrase": "MPE 乐句",
   "tune.mpe_phrase.about": "练习：单个手指的滑动与按压。",
 
+  "voice": "哼唱即可演奏",
+  "voice.about": "您唱、哼或吹口哨，琴弓随之而动：滑音、揉弦、强弱。声音不会离开本机。",
+  "voice.begin": "使用麦克风",
+  "voice.headphones": "正在聆听。请戴耳机，否则它会跟随自己的声音。",
+  "voice.refused": "没有本页可用的麦克风。",
+  "voice.picture": "最近几秒的音高：您的声音，与所演奏的",
   "keep.sound": "录制声音",
   "keep.sound.about": "录下听到的一切，存为立体声 WAV 文件。",
   "keep.record": "录音",

@@ -3,40 +3,19 @@
 /** @typedef {import('../main.js').Page} Page */
 /** @typedef {import('../instrument.js').Instrument} Instrument */
 
-import { allow, find, make, download } from "../elements.js";
+import { allow, find, make, download, toggle } from "../elements.js";
 import { CaptureWriter, Replayer, fileOf, readCapture } from "../capture.js";
 import { linkOf, readLink } from "../link.js";
 import { onLanguage, translate } from "../i18n.js";
+import { makeVoice } from "./voice.js";
 
 /** @param {Page} page */
 export function showRecording(page) {
-  find("panel-keep", HTMLElement).append(performances(page), recording(page.instrument));
-}
-
-/**
- * A button that is on or off, and says which.
- * @param {string} off key of its text
- * @param {string} on
- * @param {(isOn: boolean) => void | Promise<void>} changed
- */
-function toggle(off, on, changed) {
-  let isOn = false;
-  const button = make("button", { type: "button" });
-  const tell = () => {
-    button.setAttribute("aria-pressed", String(isOn));
-    button.textContent = translate(isOn ? on : off);
-  };
-  const set = (/** @type {boolean} */ isOnNow) => {
-    isOn = isOnNow;
-    tell();
-  };
-  onLanguage(tell);
-  button.addEventListener("click", () => {
-    isOn = !isOn;
-    tell();
-    changed(isOn);
-  });
-  return { button, set };
+  find("panel-keep", HTMLElement).append(
+    performances(page),
+    makeVoice(page),
+    recording(page.instrument),
+  );
 }
 
 /**

@@ -22,6 +22,7 @@ from yehu_server.ahead.table_checks import (
 from yehu_server.compile.jit import Native, native
 from yehu_server.compile.memory import WORD, carray
 from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.engine import following
 from yehu_server.core.engine import native as engine
 from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine.atomics import at, load_acquire, record_at
@@ -171,7 +172,7 @@ def use_tables(rig: Any, frame: int, tables: Any, size: int) -> int:
 
 
 # What is written before it is read. Pages that nothing writes take no memory.
-UNCLEARED = ("midi_ring", "page_ring", "events", "heap", "reports")
+UNCLEARED = ("midi_ring", "page_ring", "sound_ring", "events", "heap", "reports")
 
 
 def _cleared() -> Array:
@@ -296,6 +297,9 @@ def telling(sources: str) -> Native:
     return made
 
 
+FOLLOWING = [following.voice_size, following.voice_prepare, following.follow, following.voice_pitch]
+
+
 def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> list[Native]:
     """List all functions of the interface, for the images and the hash of sources given."""
     put, told = putting(rates, images), telling(sources)
@@ -304,4 +308,5 @@ def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> 
         Native(reset, calls=[put, find_values]),
     ]
     posting = [engine.post, midi, control, use_tables]
-    return [told, size, *beginning, *posting, process, frame, value, pitch, look, lost]
+    reading = [frame, value, pitch, look, lost]
+    return [told, size, *beginning, *posting, process, *reading, *FOLLOWING]

@@ -28,8 +28,8 @@ def add_to(commands: Any) -> None:
         commands,
         "devices",
         run=run,
-        help="list audio outputs and MIDI inputs",
-        description="List the audio outputs and MIDI inputs that serve can use.",
+        help="list audio outputs, audio inputs and MIDI inputs",
+        description="List the audio outputs, audio inputs and MIDI inputs that serve can use.",
         epilog=EXAMPLES,
     )
     add_options(parser, "--json: print one JSON object")
@@ -38,54 +38,67 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.errors import DeviceError
-    from yehu_server.live.audio.devices import load_portaudio, outputs, quiet
+    from yehu_server.live.audio.devices import INPUT, OUTPUT, devices, load_portaudio, quiet
     from yehu_server.live.midi.input_process import list_inputs
 
-    audio, audio_problem = [], ""
+    outputs, inputs, problem = [], [], ""
     with quiet():
         try:
-            audio = outputs(load_portaudio())
+            sounddevice = load_portaudio()
+            outputs, inputs = devices(sounddevice, OUTPUT), devices(sounddevice, INPUT)
         except DeviceError as error:
-            audio_problem = str(error)
+            problem = str(error)
         api, midi, midi_problem = list_inputs()
     if arguments.json:
-        fields = ("full_name", "name", "host_api", "channels", "rate", "latency_ms", "is_default")
-        rows = [{field: getattr(device, field) for field in fields} for device in audio]
-        found = {"audio": rows, "audio_problem": audio_problem}
+        found = {"audio": _rows(outputs), "audio_inputs": _rows(inputs), "audio_problem": problem}
         print(json.dumps({**found, "midi": midi, "midi_api": api, "midi_problem": midi_problem}))
     else:
-        devices_report(audio, audio_problem, api, midi, midi_problem)
+        devices_report(outputs, inputs, problem, api, midi, midi_problem)
     return 0
 
 
+def _rows(devices: Sequence[AudioDevice]) -> list[dict[str, Any]]:
+    fields = ("full_name", "name", "host_api", "channels", "rate", "latency_ms", "is_default")
+    return [{field: getattr(device, field) for field in fields} for device in devices]
+
+
 def devices_report(
-    audio: Sequence[AudioDevice],
-    audio_problem: str,
+    outputs: Sequence[AudioDevice],
+    inputs: Sequence[AudioDevice],
+    problem: str,
     midi_api: str,
     midi: Sequence[str],
     midi_problem: str,
 ) -> None:
-    """Print tables of audio outputs and MIDI inputs."""
+    """Print tables of audio outputs and inputs, and of MIDI inputs."""
     from rich.console import Console
     from rich.table import Table
 
     from yehu_server.live.audio.devices import ADVICE
 
     console = Console(markup=False, emoji=False)
-    table = Table(title="audio outputs", title_justify="left")
-    for column in ("name", "host API", "channels", "rate", "latency", ""):
-        table.add_column(column, overflow="fold")
-    for device in audio:
-        numbers = (str(device.channels), f"{device.rate:g} Hz", f"{device.latency_ms:.1f} ms")
-        mark = "default" if device.is_default else ""
-        table.add_row(one_line(device.name), one_line(device.host_api), *numbers, mark)
-    nothing = f"no audio outputs{_because(audio_problem)}; {ADVICE}"
-    console.print(table if audio else one_line(nothing))
+    nothing = f"no audio outputs{_because(problem)}; {ADVICE}"
+    console.print(_audio_table("audio outputs", outputs) if outputs else one_line(nothing))
+    nothing = f"no audio inputs{_because(problem)}"
+    console.print(_audio_table("audio inputs", inputs) if inputs else one_line(nothing))
     table = Table(title=f"MIDI inputs ({midi_api})", title_justify="left")
     table.add_column("name", overflow="fold")
     for name in midi:
         table.add_row(one_line(name))
     console.print(table if midi else one_line(f"no MIDI inputs{_because(midi_problem)}"))
+
+
+def _audio_table(title: str, devices: Sequence[AudioDevice]) -> Any:
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left")
+    for column in ("name", "host API", "channels", "rate", "latency", ""):
+        table.add_column(column, overflow="fold")
+    for device in devices:
+        numbers = (str(device.channels), f"{device.rate:g} Hz", f"{device.latency_ms:.1f} ms")
+        mark = "default" if device.is_default else ""
+        table.add_row(one_line(device.name), one_line(device.host_api), *numbers, mark)
+    return table
 
 
 def _because(problem: str) -> str:

@@ -25,6 +25,7 @@ from yehu_server.params.table import PREFIX
 
 HERE = ("127.0.0.0/8", "::1")
 FIRST_NOTE = "first-note"
+ANY_INPUT = ""
 
 
 def add_arguments(parser: Parser) -> None:
@@ -40,10 +41,16 @@ def add_arguments(parser: Parser) -> None:
         --latency low|high|SECONDS: latency requested from the device (default: low)
         --channels N: number of channels, left and right in turn; 1 has the mean of both (default:
             2, or as the device has)
+        --follow NAME: play what a voice sings into an audio input, named as the output is (default
+            name: the system's input)
+        --follow-transpose SEMITONES: how far from the voice it is played (default: by octaves, so
+            that the first note is in the middle)
         """,
         rate=_rate,
         blocksize={"type": whole_within(1, 8192, "is not within 1 to 8192 frames"), "default": 128},
         latency={"type": _latency, "default": "low"},
+        follow={"nargs": "?", "const": ANY_INPUT},
+        follow_transpose=number_within(-60.0, 60.0, "semitones"),
         channels={"type": positive, "default": 2},
     )
     add_options(
@@ -168,6 +175,7 @@ def options_of(arguments: argparse.Namespace) -> Any:
             channels=arguments.channels,
         ),
         midi=midi,
+        follow=_follow_of(arguments),
         osc=parse_address(arguments.osc, *OSC_ADDRESS),
         allowed=Allowed(arguments.osc_allow),
         http=WebOptions(parse_address(arguments.http, *HTTP_ADDRESS), Allowed(arguments.http_allow))
@@ -186,6 +194,18 @@ def options_of(arguments: argparse.Namespace) -> Any:
     if arguments.recordings is not None:
         options.recordings = arguments.recordings
     return options
+
+
+def _follow_of(arguments: argparse.Namespace) -> Any:
+    """The input that is followed; None for none."""
+    from yehu_server.errors import ParameterError
+    from yehu_server.live.audio.voice_input import FollowOptions
+
+    if arguments.follow is None:
+        if arguments.follow_transpose is not None:
+            raise ParameterError("--follow-transpose: nothing is followed; add --follow")
+        return None
+    return FollowOptions(arguments.follow or None, arguments.follow_transpose)
 
 
 def _page_of(arguments: argparse.Namespace) -> Any:

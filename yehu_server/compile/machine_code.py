@@ -82,10 +82,12 @@ def keep(folder: Path, sources: str, functions: Iterable[Any]) -> None:
         payload = read_sealed(function.file)
         if payload is None:
             return
-        _, kind, parts = pickle.load(io.BytesIO(payload))  # noqa: S301 - it is sealed
+        read = io.BytesIO(payload)  # `function_cache.payload_of`
+        (_, kind, parts), (described, *_) = pickle.load(read), pickle.load(read)  # noqa: S301 - sealed
         if kind != "object":
             return
-        entry = function.compiled._wrapper_name  # noqa: SLF001 - there is no other way
+        # Not as it is called in this process: another one may have put its own in the cache.
+        entry = described.llvm_cfunc_wrapper_name
         sizes.append([function.name, entry, len(parts[0])])
         objects.append(parts[0])
     head = {"format": FORMAT, "made for": [*processor(), sources], "functions": sizes}
@@ -171,6 +173,8 @@ def _load(functions: list[list[Any]], code: bytes) -> dict[str, int]:
         engine.add_object_file(binding.object_file.ObjectFileRef.from_data(data))
         engine.finalize_object()
         found[name] = engine.get_function_address(symbol)
+        if found[name] == 0:
+            raise ValueError(f"has no {symbol}")
         binding.add_symbol(name, found[name])
         begin += size
     return found

@@ -13,6 +13,7 @@ from typing import Any
 import mido
 import numpy as np
 
+from yehu_server.core.following.deciding import dynamics_of
 from yehu_server.core.player.fingering import (
     HIGHEST_NOTE,
     HIGHEST_ON_F,
@@ -37,10 +38,6 @@ INNER = 1.0
 STILL, MOSTLY = 0.12, 0.8
 QUARTER_S = 0.5  # of the beats that the score counts
 VELOCITY = 80  # neutral: loudness is in the dynamics
-# Level by dynamics, as `player.notes` and `player.right_hand` have it: this power of them, and the
-# bow speed, from a part of the full one up.
-EXPONENT, SOFTEST = 1.5, 0.45
-LEAST_DYNAMICS = 0.03  # at which a note still speaks
 LOUD_SHARE = 0.98  # of the voiced frames: the level of full dynamics
 STEP_FRAMES = 2  # between two bends
 NEAR_CENTS, NEAR_DB = 1.5, 0.4  # closer to what it was, nothing is sent
@@ -140,13 +137,6 @@ def _octaves(notes: list[HeardNote], sharper: float) -> float:
 
 def _is_in_range(pitches: Array) -> Array:
     return (pitches > LOWEST_NOTE - 0.5) & (pitches < HIGHEST_NOTE + 0.5)
-
-
-def dynamics_of(level_db: Array) -> Array:
-    """The dynamics that are so many dB below full ones."""
-    dynamics = np.geomspace(LEAST_DYNAMICS, 1.0, 400)
-    levels = 20.0 * np.log10(dynamics**EXPONENT * (SOFTEST + (1.0 - SOFTEST) * dynamics))
-    return np.interp(level_db, levels, dynamics)
 
 
 class _Maker:

@@ -10,6 +10,7 @@ from platformdirs import user_music_path
 
 from yehu_server.live.addresses import OSC_ADDRESS, Address, Allowed
 from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.audio.voice_input import FollowOptions
 from yehu_server.live.midi.ports import MidiOptions
 from yehu_server.live.page.pages import PageOptions
 from yehu_server.live.web.server import WebOptions
@@ -33,6 +34,7 @@ class ServeOptions:
 
     output: OutputOptions = field(default_factory=OutputOptions)
     midi: MidiOptions | None = field(default_factory=MidiOptions)  # None: no MIDI
+    follow: FollowOptions | None = None  # None: no voice is followed
     osc: Address = OSC_ADDRESS
     allowed: Allowed = field(default_factory=Allowed)
     http: WebOptions | None = None  # None: no OSCQuery

@@ -19,6 +19,7 @@ from yehu_server.errors import YehuError
 from yehu_server.live.announce import Announcer, announced
 from yehu_server.live.audio.output import Output
 from yehu_server.live.audio.recordings import Recordings
+from yehu_server.live.audio.voice_input import VoiceInput
 from yehu_server.live.housekeeper import Housekeeper, MappingFollower
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
@@ -37,6 +38,7 @@ from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.files import anything, check_free, check_target, nothing, shipped_folder
 
 log = logging.getLogger(__name__)
+Input = OscPorts | WebServer | Announcer | MidiPorts | Pages | VoiceInput
 FADE_MS = 50.0  # waited for after the notes' release
 # Python's threads take short turns, so that a busy one does not delay the others.
 SWITCH_INTERVAL_S = 0.0001
@@ -130,8 +132,9 @@ class Server:
         self.services.web, self.services.midi = self.web, self.midi
         services = announced(self.osc, self.web, options.announce)
         self._announcer = Announcer(services, on_message) if services else None
-        self._inputs: list[OscPorts | WebServer | Announcer | MidiPorts | Pages] = [self.osc]
-        others = (self.web, self._announcer, self.midi, self.pages)
+        self.voice = self._voice()
+        self._inputs: list[Input] = [self.osc]
+        others = (self.web, self._announcer, self.midi, self.pages, self.voice)
         self._inputs += [service for service in others if service is not None]
         self._hurry = threading.Event()
         self._housekeeper = self._make_housekeeper()
@@ -180,6 +183,12 @@ class Server:
             return None
         memory = self.output.memory.descriptor
         return MidiPorts(self.players, self.options.midi, memory, self._rigs, self._on_message)
+
+    def _voice(self) -> VoiceInput | None:
+        follow, output = self.options.follow, self.options.output
+        if follow is None:
+            return None
+        return VoiceInput(self.player, follow, output, self.output.memory, self._on_message)
 
     @property
     def _rigs(self) -> list[int]:

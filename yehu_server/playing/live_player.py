@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from collections.abc import Mapping as Values
 
 import mido
@@ -310,6 +310,11 @@ class LivePlayer:
         with self._lock:
             self._midi.reset_to_start_values(frame=self._after_all(frame))
             self.panic(frame=frame)
+
+    def end_keys(self, keys: Sequence[Key], *, frame: int) -> None:
+        """End the notes of keys that somebody else has wished for, and who is gone."""
+        with self._lock:
+            self._wishes.notes_off(keys, frame=self._after_all(frame))
 
     def end_channel_notes(self, first: int, channels: int, *, frame: int) -> None:
         """End what is held on channels whose owner is gone, and lift a bow drawn by hand."""

@@ -99,7 +99,7 @@ SECONDS = 4
 # what the callback counted in each.
 SAME_PROCESS = f"""
 import ctypes, json, mmap, os
-from yehu_server.live.audio.devices import choose, load_portaudio, outputs
+from yehu_server.live.audio.devices import choose, devices, load_portaudio
 from yehu_server.live.audio.output import SharedMemory
 from yehu_server.live.audio.stream import Stream
 from yehu_server.core.engine.ensemble import Ensemble
@@ -112,7 +112,7 @@ stage = Ensemble(
 )
 instrument = stage.first
 sounddevice = load_portaudio()
-device = choose(outputs(sounddevice), "system, JACK")
+device = choose(devices(sounddevice), "system, JACK")
 order = {{"memory": memory.descriptor, "size": memory.size, "rate": {RATE:.1f},
          "blocksize": {BLOCK}, "channels": 1, "latency": "low"}}
 stream = Stream(sounddevice, device, order)

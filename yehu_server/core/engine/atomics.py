@@ -26,6 +26,10 @@ def _plain_record_at(base: int, offset: int, kind: Any) -> Any:
     return carray(base + offset, (1,), kind)[0]
 
 
+def _plain_pointer(address: int) -> int:
+    return address
+
+
 def _plain_load(base: int, offset: int) -> int:
     return int(carray(base + offset, (1,), np.int64)[0])
 
@@ -57,6 +61,16 @@ def record_at(_context: Any, base: Any, offset: Any, kind: Any) -> Any:
         return builder.bitcast(place, codegen.get_value_type(kind.dtype))
 
     return kind.dtype(types.voidptr, types.int64, kind), generate
+
+
+@intrinsic(plain=_plain_pointer)
+def pointer(_context: Any, address: Any) -> Any:
+    """The pointer to an address that a record has as a number."""
+
+    def generate(_codegen: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        return builder.inttoptr(arguments[0], ir.IntType(8).as_pointer())
+
+    return types.voidptr(types.int64), generate
 
 
 @intrinsic(plain=_plain_load)

@@ -19,6 +19,7 @@ from yehu_server.core.engine.mailbox import (
     MAIL,
     MIDI_INPUTS,
     ROOM,
+    SOUND_INPUT,
     WAITING,
     WRITERS,
     pop,
@@ -110,7 +111,7 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
         while drained < last and mail.pending_events < HEAP:
             event = ring[drained & (size - 1)]
             frame = event.frame
-            if writer == MIDI_INPUTS:
+            if writer in (MIDI_INPUTS, SOUND_INPUT):
                 frame = frame_of_arrival(rigs, mail, frame)
             mail.late[writer] += 1 if frame < now else 0
             mail.most_late[writer] = max(mail.most_late[writer], now - frame)

@@ -24,9 +24,9 @@ ROOM = 1 << 12  # entries that a heap of wishes has room for before another even
 # Limits on the work of a callback: events moved to the heap for each 64 frames, and wishes
 # fulfilled at one frame. The rest waits for the next.
 LIVE_BUDGET, APPLIED_AT_ONCE = 1 << 8, 64
-# The writers of events. Those of MIDI have the time of their arrival (ns) in place of a frame.
-SERVER, MIDI_INPUTS, PAGES = range(3)
-WRITERS = 3
+# The writers of events. Those of inputs have the time of their arrival (ns) in place of a frame.
+SERVER, MIDI_INPUTS, PAGES, SOUND_INPUT = range(4)
+WRITERS = 4
 
 WAITING = np.dtype([("wish", WISH), ("order", np.int64)])
 LINE = 8  # words of a cache line: the two sides' cursors lie in different ones

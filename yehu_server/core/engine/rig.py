@@ -46,6 +46,7 @@ RIG = lined_up(
         ("ring", WISH, RING),
         ("midi_ring", WISH, SMALL_RING),
         ("page_ring", WISH, SMALL_RING),
+        ("sound_ring", WISH, SMALL_RING),
         ("events", WAITING, HEAP),
         ("midi", MIDI),
         ("tables", TABLES, SLOTS),
@@ -75,8 +76,8 @@ PLAYER_AT, EAR_BUFFER_AT = _offset("player"), _offset("ear_buffer")
 OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
 SOUNDED_AT = _offset("output", "sounded")
 VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
-RINGS_AT = np.array([_offset("ring"), _offset("midi_ring"), _offset("page_ring")])  # by writer
-RING_SIZES = np.array([RING, SMALL_RING, SMALL_RING])
+RINGS_AT = np.array([_offset(f"{of}ring") for of in ("", "midi_", "page_", "sound_")])  # by writer
+RING_SIZES = np.array([RING, SMALL_RING, SMALL_RING, SMALL_RING])
 EVENTS_AT, MIDI_AT, TABLES_AT = _offset("events"), _offset("midi"), _offset("tables")
 HEAP_AT, REPORTS_AT = _offset("heap"), _offset("reports")
 SEAT_AT = _offset("seat")

@@ -1,4 +1,4 @@
-"""List audio outputs, and choose one by name."""
+"""List audio outputs and inputs, and choose one by name."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from typing import Any
 
 from yehu_server.errors import DeviceError
 
-CLIENT_NAME = b"yehu-server"  # in JACK
+OUTPUT, INPUT = "output", "input"  # kinds
+CLIENTS = {OUTPUT: b"yehu-server", INPUT: b"yehu-server voice"}  # their names in JACK
 NO_PORTAUDIO = "PortAudio is not installed (Debian: sudo apt-get install libportaudio2)"
 
 
 @dataclass(frozen=True)
 class AudioDevice:
-    """An audio output, as PortAudio lists it."""
+    """An audio output, or an input, as PortAudio lists it."""
 
     index: int  # PortAudio's; it may change at each start
     name: str
@@ -49,7 +50,7 @@ def quiet() -> Iterator[None]:
         os.close(nowhere)
 
 
-def load_portaudio() -> Any:
+def load_portaudio(kind: str = OUTPUT) -> Any:
     """Import sounddevice, which starts PortAudio.
 
     Raises
@@ -60,7 +61,7 @@ def load_portaudio() -> Any:
     name = ctypes.util.find_library("portaudio")
     if name is not None:
         with contextlib.suppress(OSError, AttributeError):  # without JACK
-            ctypes.CDLL(name).PaJack_SetClientName(CLIENT_NAME)
+            ctypes.CDLL(name).PaJack_SetClientName(CLIENTS[kind])
     try:
         import sounddevice
     except OSError as error:
@@ -68,44 +69,45 @@ def load_portaudio() -> Any:
     return sounddevice
 
 
-def outputs(sounddevice: Any) -> list[AudioDevice]:
-    """List all outputs, the default one marked."""
+def devices(sounddevice: Any, kind: str = OUTPUT) -> list[AudioDevice]:
+    """List all outputs, or inputs, the default one marked."""
     apis = sounddevice.query_hostapis()
-    default = default_index(sounddevice)
+    default = default_index(sounddevice, kind)
     return [
         AudioDevice(
             index=device["index"],
             name=device["name"],
             host_api=apis[device["hostapi"]]["name"],
-            channels=device["max_output_channels"],
+            channels=device[f"max_{kind}_channels"],
             rate=device["default_samplerate"],
-            latency_ms=1e3 * device["default_low_output_latency"],
+            latency_ms=1e3 * device[f"default_low_{kind}_latency"],
             is_default=device["index"] == default,
         )
         for device in sounddevice.query_devices()
-        if device["max_output_channels"] > 0
+        if device[f"max_{kind}_channels"] > 0
     ]
 
 
-def default_index(sounddevice: Any) -> int:
-    """Index of PortAudio's default output, or of the first host API that has one; -1 for none."""
-    index = int(sounddevice.default.device[1])
+def default_index(sounddevice: Any, kind: str = OUTPUT) -> int:
+    """Index of PortAudio's default device, or of the first host API that has one; -1 for none."""
+    index = int(sounddevice.default.device[kind == OUTPUT])
     apis = sounddevice.query_hostapis()
-    candidates = [index, *(api["default_output_device"] for api in apis)]
+    candidates = [index, *(api[f"default_{kind}_device"] for api in apis)]
     return next((candidate for candidate in candidates if candidate >= 0), -1)
 
 
-NO_OUTPUT = "there is no audio output"
+NOTHING = "there is no audio {}"
+NO_OUTPUT = NOTHING.format(OUTPUT)
 ADVICE = "connect one and start its sound server, or listen in the page: serve --open"
 
 
-def choose(devices: Sequence[AudioDevice], wanted: str | None) -> AudioDevice:
-    """Choose an output by its full name, its name, or words in these.
+def choose(devices: Sequence[AudioDevice], wanted: str | None, kind: str = OUTPUT) -> AudioDevice:
+    """Choose a device by its full name, its name, or words in these.
 
     Parameters
     ----------
     wanted : str, optional
-        Such as ``"hifi"`` or ``"system, JACK"``; by default the default output.
+        Such as ``"hifi"`` or ``"system, JACK"``; by default the default one.
 
     Raises
     ------
@@ -115,7 +117,7 @@ def choose(devices: Sequence[AudioDevice], wanted: str | None) -> AudioDevice:
     if wanted is None:
         fitting = [device for device in devices if device.is_default]
         if not fitting:
-            raise DeviceError(NO_OUTPUT)
+            raise DeviceError(NOTHING.format(kind))
         return fitting[0]
     by_full_name = [device for device in devices if device.full_name == wanted]
     by_name = [device for device in devices if device.name == wanted]
@@ -126,7 +128,8 @@ def choose(devices: Sequence[AudioDevice], wanted: str | None) -> AudioDevice:
     fitting = [d for d in devices if all(word in d.full_name.lower() for word in words)]
     if len(fitting) == 1:
         return fitting[0]
-    names = "; ".join(device.full_name for device in fitting or devices) or f"none; {ADVICE}"
+    advice = f"none; {ADVICE}" if kind == OUTPUT else "none"
+    names = "; ".join(device.full_name for device in fitting or devices) or advice
     if fitting:
-        raise DeviceError(f"several audio outputs match {wanted!r}: {names}")
-    raise DeviceError(f"no audio output matches {wanted!r} (there are: {names})")
+        raise DeviceError(f"several audio {kind}s match {wanted!r}: {names}")
+    raise DeviceError(f"no audio {kind} matches {wanted!r} (there are: {names})")

@@ -24,6 +24,7 @@ import numpy as np
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import memory_bytes
 from yehu_server.errors import DeviceError
+from yehu_server.live.audio.devices import OUTPUT
 from yehu_server.util.processes import Child, Message
 from yehu_server.util.retry import SHORTAGES, AwakeTime, Backoff, run_forever, why
 
@@ -207,7 +208,7 @@ class Output:
         except SHORTAGES as error:
             self._give_up(f"the audio process cannot be started: {why(error)}", self._short)
             return
-        self._child.send("look", device=self._options.device)
+        self._child.send("look", kind=OUTPUT, device=self._options.device)
 
     def _open(self, found: Message) -> None:
         ensemble = self._ensemble
@@ -216,6 +217,7 @@ class Output:
         channels = min(self._options.channels, found["channels"])
         self._child.send(
             "open",
+            kind=OUTPUT,
             memory=self.memory.descriptor,
             size=self.memory.size,
             rate=ensemble.rate,

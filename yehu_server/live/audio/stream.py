@@ -1,8 +1,9 @@
-"""The process that holds the audio stream: ``python -m yehu_server.live.audio.stream``.
+"""The process that holds an audio stream: ``python -m yehu_server.live.audio.stream``.
 
-It looks for the device until it is found, opens a stream with the compiled callback, and reports
+It looks for the device until it is found, opens a stream with a compiled callback, and reports
 when the device is lost. The instruments lie in memory shared with the parent, so that another such
-process, or the silent clock, continues where this one stopped.
+process, or the silent clock, continues where this one stopped. An output computes their sound; an
+input follows a voice, and posts events to them.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import time
 from typing import Any
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.audio.devices import AudioDevice, choose, load_portaudio, outputs
+from yehu_server.live.audio.devices import OUTPUT, AudioDevice, choose, devices, load_portaudio
 from yehu_server.util.processes import Message, Parent
 
 LOOK_EVERY_S, LATER_EVERY_S = 0.5, 2.0
@@ -27,18 +28,17 @@ MOST_CHANNELS = 64
 
 
 class Stream:
-    """A PortAudio output stream."""
+    """A PortAudio stream, of the kind that an order asks for."""
 
     def __init__(self, sounddevice: Any, device: AudioDevice, order: Message) -> None:
         import numpy as np
 
-        from yehu_server.core.engine import native
-
         self._memory = mmap.mmap(order["memory"], order["size"])
         address = np.frombuffer(self._memory, np.uint8).ctypes.data
+        callback, self._own = (_playing if order["kind"] == OUTPUT else _following)(address, order)
         foreign = sounddevice._ffi  # noqa: SLF001 - the documented way for C callbacks
         self._stream = sounddevice._StreamBase(  # noqa: SLF001
-            kind="output",
+            kind=order["kind"],
             device=device.index,
             samplerate=order["rate"],
             blocksize=order["blocksize"],
@@ -47,8 +47,8 @@ class Stream:
             dtype="float32",
             clip_off=True,
             dither_off=True,
-            callback=foreign.cast("PaStreamCallback*", native.callback.address),
-            userdata=foreign.cast("void*", address),
+            callback=foreign.cast("PaStreamCallback*", callback.address),
+            userdata=foreign.cast("void*", address if self._own is None else self._own.ctypes.data),
             wrap_callback=None,
         )
 
@@ -59,7 +59,7 @@ class Stream:
 
     @property
     def latency_ms(self) -> float:
-        """Latency from callback to output, as PortAudio reports it."""
+        """Latency between callback and device, as PortAudio reports it."""
         return 1e3 * float(self._stream.latency)
 
     def start(self) -> None:
@@ -71,6 +71,26 @@ class Stream:
         closing = threading.Thread(target=self._stream.close, daemon=True)
         closing.start()
         closing.join(CLOSE_WITHIN_S)
+
+
+def _playing(_address: int, _order: Message) -> tuple[Any, Any]:
+    """The callback of an output, whose data are the instruments themselves."""
+    from yehu_server.core.engine import native
+
+    return native.callback, None
+
+
+def _following(address: int, order: Message) -> tuple[Any, Any]:
+    """The callback of an input, and its data: the record of a follower."""
+    import numpy as np
+
+    from yehu_server.core.engine.following import follow_input, voice_prepare
+    from yehu_server.core.following.deciding import FOLLOWER
+
+    voice = np.zeros(1, FOLLOWER)
+    voice_prepare.call(voice.ctypes.data, order["rate"], order["transpose"])
+    voice["rig"] = address
+    return follow_input, voice
 
 
 def main() -> None:
@@ -98,8 +118,8 @@ def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None
     order = orders.get()
     if order is None:
         return None
-    sounddevice = load_portaudio()
-    device = _look(parent, orders, sounddevice, order["device"])
+    sounddevice = load_portaudio(order["kind"])
+    device = _look(parent, orders, sounddevice, order)
     if device is None:
         return None
     order = orders.get()
@@ -107,7 +127,7 @@ def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None
         return None
     from yehu_server.core.engine.warming import is_warm
 
-    if not is_warm():
+    if order["kind"] == OUTPUT and not is_warm():
         parent.tell("compiling")
     try:
         stream = Stream(sounddevice, device, order)
@@ -125,14 +145,14 @@ def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None
 
 
 def _look(
-    parent: Parent, orders: queue.Queue[Message | None], sounddevice: Any, wanted: str | None
+    parent: Parent, orders: queue.Queue[Message | None], sounddevice: Any, order: Message
 ) -> AudioDevice | None:
     """Wait for the device. PortAudio lists new devices only after it is started again."""
     missing = ""
     for look in itertools.count():
         try:
-            devices = outputs(sounddevice)
-            device = choose(devices, wanted)
+            there = devices(sounddevice, order["kind"])
+            device = choose(there, order["device"], order["kind"])
         except DeviceError as error:
             if str(error) != missing:
                 missing = str(error)

@@ -1,0 +1,199 @@
+"""What a voice comes to as it is sung: pitches, notes, strokes; how soon, and with which errors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from yehu_server.core.engine.following import OF_WISH, follow, voice_prepare
+from yehu_server.core.following.deciding import FOLLOWER
+from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.core.player.rows import DYNAMICS
+from yehu_server.core.player.wishes import BEGIN, END, SLIDE, WRITE
+
+RATE = 48000.0
+BLOCK = 128
+LOUDER = -1  # stands for WRITE of the dynamics
+PERIOD_OF_F4_S = 1.0 / 349.2
+
+
+@dataclass
+class Followed:
+    """Wishes (kind, pitch or value) with their times (s), and pitch and level of each block."""
+
+    wishes: list[tuple[float, int, float]]
+    times: np.ndarray
+    pitch: np.ndarray  # NaN: no note sounds
+
+    def of(self, *kinds: int) -> list[tuple[float, float]]:
+        return [(time, value) for time, kind, value in self.wishes if kind in kinds]
+
+
+def followed(sound: np.ndarray, rate: float = RATE, transpose: float = math.nan) -> Followed:
+    voice, into = np.zeros(1, FOLLOWER), np.zeros((256, OF_WISH))
+    voice_prepare.call(voice.ctypes.data, rate, transpose)
+    sound = np.ascontiguousarray(sound, np.float32)
+    wishes, times, pitch = [], [], []
+    for start in range(0, len(sound) + 1, BLOCK):
+        block = sound[start : start + BLOCK]
+        count = follow.call(voice.ctypes.data, block.ctypes.data, len(block), into.ctypes.data, 256)
+        time = (start + len(block)) / rate
+        for kind, index, value, other in into[:count].tolist():
+            is_louder = (int(kind), int(index)) == (WRITE, DYNAMICS)
+            pitch_or_value = other if int(kind) == BEGIN else value
+            wishes.append((time, LOUDER if is_louder else int(kind), pitch_or_value))
+        times.append(time)
+        pitch.append(voice["heard"][0] if voice["is_open"][0] else math.nan)
+    return Followed(wishes, np.array(times), np.array(pitch))
+
+
+def vowel(pitch: np.ndarray, rate: float = RATE) -> np.ndarray:
+    """A sung vowel: pulses through three formants, at most 1."""
+    hz = 440.0 * 2.0 ** ((pitch - 69.0) / 12.0)
+    phase, sound = 2.0 * np.pi * np.cumsum(hz) / rate, np.zeros(len(pitch))
+    for k in range(1, int(0.45 * rate / hz.max()) + 1):
+        gain = sum(1.0 / (1.0 + ((k * hz - f) / 90.0) ** 2) + 0.03 for f in (700.0, 1200.0, 2600.0))
+        sound += gain / k * np.sin(k * phase + 0.3 * k * k)
+    return sound / np.abs(sound).max()
+
+
+def sung(
+    pitch: Callable[[np.ndarray], np.ndarray],
+    seconds: float = 1.0,
+    *,
+    rate: float = RATE,
+    level: float = 0.1,
+    noise_db: float = 40.0,
+    seed: int = 3,
+) -> np.ndarray:
+    """A voice after 0.3 s of its room's noise, and that again."""
+    time = np.arange(int(seconds * rate)) / rate
+    ramp = np.clip(np.minimum(time, time[::-1]) / 0.015, 0.0, 1.0)
+    voice = level * ramp * vowel(pitch(time), rate)
+    rms = math.sqrt(np.square(voice).mean())
+    rest = np.zeros(int(0.3 * rate))
+    whole = np.concatenate((rest, voice, rest))
+    random = np.random.default_rng(seed)
+    return whole + random.normal(0.0, rms * 10.0 ** (-noise_db / 20.0), len(whole))
+
+
+def test_each_voice_is_heard_at_each_rate():
+    wrong = []
+    for rate in (8000.0, 22050.0, 44100.0, 48000.0, 96000.0, 192000.0):
+        for pitch in (42.0, 50.3, 57.0, 64.6, 72.0, 81.4, 90.0):
+            heard = followed(sung(lambda t, p=pitch: np.full(len(t), p), 0.6, rate=rate), rate)
+            steady = heard.pitch[(heard.times > 0.4) & (heard.times < 0.85)]
+            cents = 100.0 * np.abs(steady - pitch)
+            if not (np.isfinite(steady).all() and np.quantile(cents, 0.9) < 6.0):
+                wrong.append((rate, pitch, np.isfinite(steady).mean(), np.median(cents)))
+    assert wrong == []
+
+
+def test_a_note_begins_within_two_periods_of_f4_and_20_ms():
+    late = {}
+    for pitch in (60.0, 65.0, 69.0, 74.0):
+        [(time, _)] = followed(sung(lambda t, p=pitch: np.full(len(t), p))).of(BEGIN)
+        late[pitch] = 1e3 * (time - 0.3)
+    bound = 1e3 * (2.0 * PERIOD_OF_F4_S + 0.02)
+    assert max(late.values()) < bound, late
+
+
+def test_noise_and_silence_play_nothing():
+    random = np.random.default_rng(5)
+    hum = 0.02 * np.sin(2.0 * np.pi * 50.0 * np.arange(96000) / RATE)
+    for sound in (np.zeros(96000), random.normal(0.0, 0.1, 96000), hum):
+        assert followed(sound).wishes == []
+
+
+def test_what_is_no_number_ends_nothing():
+    sound = sung(lambda t: np.full(len(t), 62.0))
+    sound[30000:30100], sound[31000] = np.nan, np.inf
+    heard = followed(sound)
+    assert len(heard.of(BEGIN)) == 1
+    assert all(math.isfinite(value) for _, _, value in heard.wishes)
+
+
+def test_vibrato_and_slides_are_one_note_that_slides():
+    def pitch(time: np.ndarray) -> np.ndarray:
+        slide = 5.0 * np.clip((time - 0.8) / 0.4, 0.0, 1.0)
+        return 57.0 + slide + 0.5 * np.sin(2.0 * np.pi * 5.5 * time)
+
+    heard = followed(sung(pitch, 1.6))
+    assert len(heard.of(BEGIN)) == len(heard.of(END)) == 1
+    times, played = np.array(heard.of(SLIDE)).T
+    late = 0.014  # half of what is compared, and a block
+    error = 100.0 * (played - 12.0 - pitch(times - 0.3 - late))
+    inside = (times > 0.4) & (times < 1.85)
+    assert np.quantile(np.abs(error[inside]), 0.9) < 25.0
+    assert abs(np.median(error[inside])) < 5.0
+
+
+def test_leaps_are_slurred_notes():
+    notes = [60.0, 64.0, 67.0, 65.0, 72.0, 60.0]
+    heard = followed(sung(lambda t: np.repeat(notes, len(t) // 6 + 1)[: len(t)], 1.8))
+    begun = heard.of(BEGIN)
+    assert [round(value) for _, value in begun] == [round(note) + 12 for note in notes]
+    gaps = [time for time, _ in heard.of(END)]
+    for (_, _), (time, _) in pairwise(begun):
+        assert time in gaps  # the note before ends as the next begins: no new stroke
+
+
+def test_an_octave_that_is_not_sung_is_not_played():
+    """A voice whose second partial comes and goes: no wrong octave for longer than 50 ms."""
+    time = np.arange(2 * 48000) / RATE
+    strong = 0.5 - 0.5 * np.sign(np.sin(2.0 * np.pi * 3.0 * time + 0.1))
+    phase = 2.0 * np.pi * 196.0 * time
+    sound = 0.1 * ((1.0 - 0.8 * strong) * np.sin(phase) + strong * np.sin(2.0 * phase + 1.0))
+    heard = followed(sound + np.random.default_rng(1).normal(0.0, 1e-4, len(sound)))
+    off = np.abs(heard.pitch - 55.0) > 1.0
+    longest = max(len(run) for run in "".join("x" if one else " " for one in off).split(" "))
+    assert longest * BLOCK / RATE < 0.05
+
+
+def test_the_same_note_sung_again_is_a_new_stroke():
+    def level(time: np.ndarray) -> np.ndarray:
+        return np.where((time % 0.5) < 0.03, 0.15, 1.0)
+
+    sound = sung(lambda t: np.full(len(t), 60.0), 2.0)
+    time = np.arange(len(sound)) / RATE - 0.3
+    struck = followed(sound * np.where((time > 0.2) & (time < 1.9), level(time), 1.0))
+    assert len(struck.of(BEGIN)) == 4  # at 0, 0.5, 1.0 and 1.5 s
+    swelled = followed(sound * (0.4 + 0.3 * np.sin(2.0 * np.pi * 1.5 * time)))
+    assert len(swelled.of(BEGIN)) == 1
+
+
+def test_dynamics_follow_the_level_but_not_that_of_the_microphone():
+    time = np.arange(int(2.6 * RATE)) / RATE
+    swell = 10.0 ** (-np.abs(time - 1.3) / 1.0)  # 20 dB a second
+    for level in (0.01, 0.5):
+        heard = followed(swell * sung(lambda t: np.full(len(t), 60.0), 2.0, level=level))
+        times, dynamics = np.array(heard.of(LOUDER)).T
+        assert dynamics[np.argmin(np.abs(times - 1.35))] > 0.9
+        assert 0.2 < dynamics[-1] < 0.5
+
+
+@pytest.mark.parametrize("pitch", [36.5, 50.0, 88.0])
+def test_all_is_played_within_the_range_of_the_instrument(pitch):
+    def climbing(time: np.ndarray) -> np.ndarray:
+        return pitch + 6.0 * np.sin(2.0 * np.pi * 0.7 * time)
+
+    heard = followed(sung(climbing, 3.0))
+    played = [value for _, value in heard.of(BEGIN, SLIDE)]
+    assert played
+    assert LOWEST_NOTE <= min(played) <= max(played) <= HIGHEST_NOTE
+
+
+def test_a_transposition_is_kept():
+    [(_, key)] = followed(sung(lambda t: np.full(len(t), 62.0)), transpose=7.0).of(BEGIN)
+    assert key == pytest.approx(69.0, abs=0.05)
+
+
+def test_what_is_no_longer_followed_ends():
+    sound = sung(lambda t: np.full(len(t), 62.0))[: int(0.8 * RATE) // BLOCK * BLOCK]
+    heard = followed(sound)  # the last block is empty
+    assert [kind for _, kind, _ in heard.wishes][-1] == END

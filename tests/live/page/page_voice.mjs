@@ -1,0 +1,44 @@
+/**
+ * Hums into the page, by a file that stands for a microphone, and keeps what it plays.
+ *
+ *   node page_voice.mjs URL CHROMIUM HUM.wav FOLDER
+ */
+
+import { FLAGS, open, run } from "./browser.mjs";
+
+const [, , , , hum, folder] = process.argv;
+const MICROPHONE = [
+  "--use-fake-device-for-media-stream",
+  "--use-fake-ui-for-media-stream",
+  `--use-file-for-fake-audio-capture=${hum}%noloop`,
+];
+
+await run(
+  async (browser, url) => {
+    const { page, errors } = await open(browser, url);
+    await page.click("#start");
+    await page.click("#tab-keep");
+    await page.getByRole("button", { name: "Keep", exact: true }).click();
+    await page.getByRole("button", { name: "Record", exact: true }).click();
+    await page.getByRole("button", { name: "Use the microphone" }).click();
+    const word = page.getByText("Wear headphones");
+    await word.waitFor();
+    await page.waitForTimeout(4000);
+    await page.locator("#panel-keep canvas").scrollIntoViewIfNeeded();
+    await page.screenshot({ path: `${folder}/voice.png` });
+    const pressed = page.locator("#panel-keep button[aria-pressed=true]");
+    const names = await pressed.allTextContents();
+    await pressed.nth(1).click(); // the microphone's
+    await pressed.first().click(); // what was kept
+    for (const [button, name] of [
+      [page.getByRole("button", { name: "Save as a file" }), "hum.jsonl"],
+      [pressed.first(), "hum.wav"],
+    ]) {
+      const download = page.waitForEvent("download");
+      await button.click();
+      await (await download).saveAs(`${folder}/${name}`);
+    }
+    return { errors, names, still: await word.count() };
+  },
+  { args: [...FLAGS, ...MICROPHONE] },
+);

@@ -1,0 +1,58 @@
+"""A voice at an audio input is followed: over JACK, by another program that sings."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+RATE = 48000
+SINGER = Path(__file__).with_name("singer.py")
+NOTES = (57, 60, 64)
+
+pytestmark = pytest.mark.slow
+
+
+def voice() -> np.ndarray:
+    """Notes of half a second, with rests between them."""
+    time = np.arange(RATE // 2) / RATE
+    fade = np.clip(np.minimum(time, time[::-1]) / 0.01, 0.0, 1.0)
+    rest = np.zeros(RATE // 2)
+    parts = [rest]
+    for note in NOTES:
+        phase = 2.0 * np.pi * 440.0 * 2.0 ** ((note - 69.0) / 12.0) * time
+        parts += [0.1 * fade * sum(np.sin(k * phase) / k for k in range(1, 9)), rest]
+    return np.concatenate(parts)
+
+
+def sing(jackd, folder: Path) -> None:
+    np.save(folder / "voice.npy", voice())
+    words = [jackd.name, "yehu-server voice:in_0", str(folder / "voice.npy")]
+    subprocess.run(
+        [sys.executable, SINGER, *words], env=jackd.environment, check=True, timeout=60.0
+    )
+
+
+def test_what_is_sung_is_played_and_ends_with_the_input(jackd, serve, tmp_path):
+    jackd.start(128)
+    take = tmp_path / "take.jsonl"
+    server = serve("--follow", "--midi-api", "none", "--capture", take)
+    server.said("following system")
+    sing(jackd, tmp_path)
+    server.close()
+    wishes = [json.loads(line) for line in take.read_text().splitlines()[1:]]
+    begun = [wish for wish in wishes if "begin" in wish]
+    assert [round(pitch) for *_, pitch in begun] == [note + 12 for note in NOTES]
+    assert sum("end" in wish for wish in wishes if isinstance(wish, list)) >= len(NOTES)
+
+
+def test_an_input_that_is_not_there_is_told_and_the_rest_plays(jackd, serve):
+    jackd.start(128)
+    server = serve("--follow", "no such microphone", "--midi-api", "none")
+    server.said("no voice to follow: no audio input matches 'no such microphone'")
+    server.osc().send("/note", 69, 80)
+    server.close()

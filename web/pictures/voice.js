@@ -1,0 +1,75 @@
+/** What is heard of a voice that is followed, over what is played: their pitches in the last seconds. */
+
+/** @typedef {import('./picture.js').Moment} Moment */
+
+import { nameOf } from "../hands/scale.js";
+import { Picture, font } from "./picture.js";
+import { soundingPitch } from "./regime.js";
+
+const LASTS = 6; // s
+const LEAST = 5; // semitones that are shown
+const OCTAVE = 12;
+
+export class Voice extends Picture {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {() => number} heard pitch of the voice; NaN for none
+   */
+  constructor(canvas, heard) {
+    super(canvas);
+    this.heard = heard;
+    /** @type {{time: number, heard: number, played: number}[]} */
+    this.trace = [];
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {Moment} moment
+   */
+  draw(context, { state, isNew, now }) {
+    if (state && isNew) {
+      const played = soundingPitch(state);
+      const octaves = Math.round((played - this.heard()) / OCTAVE); // as it is played
+      this.trace.push({ time: now, heard: this.heard() + OCTAVE * octaves, played });
+    }
+    while (this.trace.length && this.trace[0].time < now - LASTS) this.trace.shift();
+    const pitches = this.trace.flatMap(({ heard, played }) => [heard, played]);
+    const there = pitches.filter((pitch) => !Number.isNaN(pitch));
+    if (!there.length) return;
+    const middle = (Math.min(...there) + Math.max(...there)) / 2;
+    const span = Math.max(Math.max(...there) - Math.min(...there) + 1, LEAST);
+    const y = (/** @type {number} */ pitch) => (0.5 - (pitch - middle) / span) * this.height;
+    const x = (/** @type {number} */ time) => (1 - (now - time) / LASTS) * this.width;
+    context.font = font(11);
+    context.textBaseline = "bottom";
+    for (let note = Math.ceil(middle - span / 2); note <= middle + span / 2; note++) {
+      context.fillStyle = this.colours.line;
+      context.fillRect(0, y(note), this.width, 1);
+      context.fillStyle = this.colours.soft;
+      if (span < 2 * OCTAVE) context.fillText(nameOf(note), 2, y(note));
+    }
+    this.#line(context, "heard", this.colours.accent, 3, x, y);
+    this.#line(context, "played", this.colours.inner, 1.5, x, y);
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {'heard' | 'played'} which
+   * @param {string} colour
+   * @param {number} width px
+   * @param {(time: number) => number} x
+   * @param {(pitch: number) => number} y
+   */
+  #line(context, which, colour, width, x, y) {
+    context.strokeStyle = colour;
+    context.lineWidth = width;
+    context.beginPath();
+    let last = NaN;
+    for (const { time, [which]: pitch } of this.trace) {
+      if (Math.abs(pitch - last) < 1) context.lineTo(x(time), y(pitch));
+      else context.moveTo(x(time), y(pitch));
+      last = pitch;
+    }
+    context.stroke();
+  }
+}

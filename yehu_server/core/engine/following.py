@@ -1,0 +1,106 @@
+"""Follows a voice: a sound goes in, wishes for the instrument come out. Compiled.
+
+The callback of an audio input calls it, in whatever process that is; a page calls it as well.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import Int32, UInt64, compiled_with_aliasing, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.engine.atomics import pointer, record_at
+from yehu_server.core.engine.mailbox import SOUND_INPUT
+from yehu_server.core.engine.native import post_to
+from yehu_server.core.engine.processor import flush_denormals, monotonic_ns, restore_denormals
+from yehu_server.core.following.deciding import FOLLOWER, decide, end, prepare_follower
+from yehu_server.core.following.hearing import take
+
+FOLLOWER_BYTES = FOLLOWER.itemsize
+OF_WISH = 4  # numbers of a wish for others: kind, index, value, other
+
+
+@native
+def voice_size() -> int:
+    """Bytes that the follower of a voice takes."""
+    return FOLLOWER_BYTES
+
+
+@native
+def voice_prepare(voice: Any, rate: float, transpose: float) -> None:
+    """Make a follower of a voice at a rate (Hz), in memory that is all 0.
+
+    What is played is so many semitones above the voice; where that is NaN, by octaves, so that the
+    first note is in the middle of the range.
+    """
+    prepare_follower(record_at(voice, 0, FOLLOWER), rate, transpose)
+
+
+@native
+def voice_pitch(voice: Any) -> float:
+    """The pitch of the voice that is followed (fractional MIDI note); NaN for none."""
+    f = record_at(voice, 0, FOLLOWER)
+    return float(f.heard if f.is_open != 0 else np.nan)
+
+
+@native
+def follow(voice: Any, sound: Any, frames: int, into: Any, most: int) -> int:
+    """Follow float samples of a voice; return how many wishes they come to, to be posted.
+
+    Each is four numbers: kind, index, value, other. Of a voice that is followed no more, the note
+    ends where no samples are given (frames 0).
+
+    Real time: safe.
+    """
+    f = record_at(voice, 0, FOLLOWER)
+    samples = carray(sound, (frames,), np.float32)
+    wishes = carray(into, (most, OF_WISH), np.float64)
+    found = 0
+    if frames == 0:
+        f.wishes = 0
+        end(f)
+        found = copy_wishes(f, wishes, 0)
+    for i in range(frames):
+        if take(f.hearing, samples[i]):
+            decide(f)
+            found = copy_wishes(f, wishes, found)
+    return found
+
+
+@compiled_with_aliasing
+def copy_wishes(f: Any, wishes: Any, found: int) -> int:
+    """Add the wishes of a hearing to those found, as far as there is room; return their number."""
+    count = min(f.wishes, len(wishes) - found)
+    for n in range(count):
+        wish = wishes[found + n]
+        wish[0], wish[1], wish[2], wish[3] = f.kind[n], f.index[n], f.value[n], f.other[n]
+    return int(found + count)
+
+
+@native
+def follow_input(
+    sound: Any, _output: Any, frames: UInt64, _times: Any, _flags: UInt64, voice: Any
+) -> Int32:
+    """Follow a block of an audio input of one channel (a PaStreamCallback).
+
+    Parameters
+    ----------
+    sound : pointer to float32 [shape=(frames,)]
+    voice : pointer to a record of dtype FOLLOWER, whose `rig` is the instrument's address
+
+    Real time: safe; no Python, no lock, no allocation, no exception.
+    """
+    mode = flush_denormals()
+    now = monotonic_ns()
+    f = record_at(voice, 0, FOLLOWER)
+    rig = pointer(f.rig)
+    samples = carray(sound, (np.int64(frames),), np.float32)
+    for i in range(len(samples)):
+        if take(f.hearing, samples[i]):
+            decide(f)
+            for n in range(f.wishes):
+                post_to(rig, SOUND_INPUT, now, f.kind[n], f.index[n], f.value[n], f.other[n])
+    restore_denormals(mode)
+    return 0

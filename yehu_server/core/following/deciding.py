@@ -1,0 +1,243 @@
+"""Decides what a voice that is heard comes to: notes, slides and dynamics, as wishes. Compiled.
+
+A note begins where two hearings agree, goes on through a short doubt, and ends with the voice. Its
+pitch slides with the voice; a leap is another note, slurred; a level that falls and rises again is
+a new stroke.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.following.hearing import HEARING, HOP_S, prepare_hearing
+from yehu_server.core.player.fingering import HIGHEST_NOTE, HIGHEST_ON_F, LOWEST_NOTE
+from yehu_server.core.player.notes import DYNAMICS_EXPONENT
+from yehu_server.core.player.right_hand import SOFTEST
+from yehu_server.core.player.rows import DYNAMICS, STRING
+from yehu_server.core.player.wishes import BEGIN, END, SLIDE, WRITE
+
+# -- when it is sure ------------------------------------------------------------------------------
+SURE, UNSURE = 0.88, 0.7  # certainty from which a note begins, and below which it is in doubt
+AGREED = 0.6  # semitones: hearings that agree
+# Hearings that agree on a note; a leap, where both pitches are compared at first; an octave.
+BEGINS, LEAPS, LEAPS_OCTAVES = 2, 4, 5
+SETTLED = 10  # hearings, up to which an octave is corrected like any leap
+DOUBTED = 6  # hearings without a voice that end a note
+LEAP = 0.8  # semitones from one hearing to the next that no voice slides
+# -- the gate, dB of full scale: the level over the noise between notes at which a note begins.
+# The noise is what is heard there, quickly if it is less, slowly if more.
+OVER_NOISE_DB, CLOSES_DB, LEAST_DB = 10.0, 5.0, -65.0
+FALLS, RISES = 0.1, 0.01  # parts of the difference, by hearing
+# -- dynamics: full ones are at the highest level, which is forgotten slowly.
+QUIETEST_FULL_DB, FORGOTTEN_DB = -55.0, 0.5 * HOP_S
+FELT_DB = 0.4  # dynamics less apart are the same
+LEAST_DYNAMICS = 0.03  # at which a note still speaks
+# -- struck again: the level falls and rises so much, faster than it swells.
+FALL_DB, RISE_DB, SWELL_DB, PEAK_DB = 3.0, 5.0, 90.0 * HOP_S, 40.0 * HOP_S
+STROKE = 12  # hearings that a stroke lasts at least
+# -- pitch
+MIDDLE = 0.5 * (LOWEST_NOTE + HIGHEST_NOTE) - 3.0  # where the first note comes near to: D5
+FELT = 0.01  # semitones: pitches less apart are the same
+ON_INNER, ON_OUTER = 74.5, HIGHEST_ON_F - 0.3  # up to, and from: the string asked for
+INNER, EITHER = 1.0, 0.0
+VOICE = -2  # the channel of its notes
+KEYS = (0.0, 1.0)  # which it has in turn: of two that are slurred, both are held for a moment
+MOST_WISHES = 8
+
+
+def dynamics_of(level_db: Any) -> Any:
+    """The dynamics that are so many dB below full ones, as ``player`` plays them."""
+    dynamics = np.geomspace(LEAST_DYNAMICS, 1.0, 400)
+    speed = SOFTEST + (1.0 - SOFTEST) * dynamics
+    return np.interp(level_db, 20.0 * np.log10(dynamics**DYNAMICS_EXPONENT * speed), dynamics)
+
+
+QUIETEST_DB, STEPS = -60, 4  # by dB
+BY_LEVEL = dynamics_of(np.arange(0, STEPS * QUIETEST_DB, -1) / STEPS)
+
+FOLLOWER = np.dtype(
+    [
+        ("rig", np.int64),  # address of the instrument that plays, where the input posts to it
+        ("hearing", HEARING),
+        ("transpose", np.float64),  # semitones; NaN: by octaves, as the first note wants
+        ("is_open", np.int64),  # whether a note sounds
+        ("agreed", np.int64),  # hearings
+        ("doubted", np.int64),
+        ("age", np.int64),  # of the stroke and of the note, in hearings
+        ("note_age", np.int64),
+        ("last", np.float64),  # pitch that was heard last, and the one that is followed
+        ("heard", np.float64),
+        ("octaves", np.float64),  # semitones, of this note
+        ("key", np.float64),  # of the note that sounds, of KEYS
+        ("played", np.float64),  # its pitch
+        ("string", np.float64),
+        ("dynamics_db", np.float64),
+        ("noise_db", np.float64),
+        ("full_db", np.float64),
+        ("peak_db", np.float64),
+        ("valley_db", np.float64),  # NaN: the level has not fallen
+        # What it has come to, in this hearing.
+        ("wishes", np.int64),
+        ("kind", np.int64, MOST_WISHES),
+        ("index", np.int64, MOST_WISHES),
+        ("value", np.float64, MOST_WISHES),
+        ("other", np.float64, MOST_WISHES),
+    ],
+    align=True,
+)
+
+
+@compiled_exactly
+def prepare_follower(f: Any, rate: float, transpose: float) -> None:
+    """Set up a record that is all 0 for a sound's rate (Hz); see its fields."""
+    prepare_hearing(f.hearing, rate)
+    f.transpose = transpose
+    f.noise_db, f.full_db = LEAST_DB, QUIETEST_FULL_DB
+    f.dynamics_db = f.string = math.nan
+
+
+@compiled_exactly
+def send(f: Any, kind: int, index: int, value: float, other: float) -> None:
+    """Add a wish to those of this hearing."""
+    n = f.wishes
+    f.kind[n], f.index[n], f.value[n], f.other[n] = kind, index, value, other
+    f.wishes = n + 1
+
+
+@compiled_exactly
+def decide(f: Any) -> None:
+    """Decide what the last hearing comes to. Real time: safe."""
+    f.wishes = 0
+    h = f.hearing
+    f.full_db = max(f.full_db - FORGOTTEN_DB, h.level_db, QUIETEST_FULL_DB)
+    if f.is_open == 0:
+        await_note(f, h)
+    elif h.certainty < UNSURE or h.level_db < gate_db(f) - CLOSES_DB:
+        f.doubted += 1
+        if f.doubted >= DOUBTED:
+            end(f)
+    else:
+        f.doubted = 0
+        follow(f, h)
+    h.expected = f.heard if f.is_open != 0 else math.nan
+
+
+@compiled_exactly
+def gate_db(f: Any) -> float:
+    """The level at which a note begins."""
+    return float(max(f.noise_db + OVER_NOISE_DB, LEAST_DB))
+
+
+@compiled_exactly
+def await_note(f: Any, h: Any) -> None:
+    """Begin a note where a voice is heard."""
+    if h.certainty < SURE or h.level_db < gate_db(f):
+        share = FALLS if h.level_db < f.noise_db else RISES
+        f.noise_db += share * (h.level_db - f.noise_db)
+        f.agreed = 0
+        return
+    f.agreed = f.agreed + 1 if f.agreed > 0 and abs(h.pitch - f.last) < AGREED else 1
+    f.last = h.pitch
+    if f.agreed >= BEGINS:
+        f.is_open, f.age, f.doubted = 1, 0, 0
+        f.peak_db, f.valley_db = h.level_db, math.nan
+        set_dynamics(f, h)
+        begin(f, h.pitch)
+
+
+@compiled_exactly
+def begin(f: Any, pitch: float) -> None:
+    """Begin a note of a pitch, in range."""
+    if math.isnan(f.transpose):
+        f.transpose = 12.0 * np.rint((MIDDLE - pitch) / 12.0)
+    played = pitch + f.transpose
+    f.octaves = 0.0
+    while played + f.octaves < LOWEST_NOTE - 0.5:
+        f.octaves += 12.0
+    while played + f.octaves > HIGHEST_NOTE + 0.5:
+        f.octaves -= 12.0
+    f.heard, f.agreed, f.note_age = pitch, 0, 0
+    f.key, f.played = KEYS[1] - f.key, playable(f, pitch)
+    choose_string(f)
+    send(f, BEGIN, VOICE, f.key, f.played)
+
+
+@compiled_exactly
+def playable(f: Any, pitch: float) -> float:
+    """The pitch that is played for one that is heard."""
+    return float(min(max(pitch + f.transpose + f.octaves, LOWEST_NOTE), HIGHEST_NOTE))
+
+
+@compiled_exactly
+def choose_string(f: Any) -> None:
+    """Ask for the inner string where the open outer one would not follow a pitch."""
+    string = INNER if f.played < (ON_OUTER if f.string == INNER else ON_INNER) else EITHER
+    if string != f.string:
+        f.string = string
+        send(f, WRITE, STRING, string, 0.0)
+
+
+@compiled_exactly
+def follow(f: Any, h: Any) -> None:
+    """Go on with a note as the voice does."""
+    f.age += 1
+    f.note_age += 1
+    set_dynamics(f, h)
+    if is_struck_again(f, h.level_db):
+        end(f)
+        f.is_open, f.age = 1, 0
+        begin(f, h.pitch)
+        return
+    moved = abs(h.pitch - f.heard)
+    if moved < LEAP:
+        f.heard, f.agreed = h.pitch, 0
+        played = playable(f, h.pitch)
+        if abs(played - f.played) > FELT:
+            f.played = played
+            choose_string(f)
+            send(f, SLIDE, 0, played, 0.0)
+        return
+    f.agreed = f.agreed + 1 if f.agreed > 0 and abs(h.pitch - f.last) < AGREED else 1
+    f.last = h.pitch
+    by_octaves = abs(moved - 12.0 * np.rint(moved / 12.0)) < AGREED and f.note_age > SETTLED
+    if f.agreed >= (LEAPS_OCTAVES if by_octaves else LEAPS):
+        before = f.key
+        begin(f, h.pitch)
+        send(f, END, VOICE, before, 0.0)
+
+
+@compiled_exactly
+def set_dynamics(f: Any, h: Any) -> None:
+    """Play as loud as the voice is, against its loudest."""
+    level = h.level_db - f.full_db
+    if not abs(level - f.dynamics_db) < FELT_DB:
+        f.dynamics_db = level
+        step = min(int(-STEPS * level), len(BY_LEVEL) - 1)
+        send(f, WRITE, DYNAMICS, BY_LEVEL[step], 0.0)
+
+
+@compiled_exactly
+def is_struck_again(f: Any, level_db: float) -> bool:
+    """Whether the level falls and rises as where a note is struck again."""
+    f.peak_db = max(level_db, f.peak_db - PEAK_DB)
+    if math.isnan(f.valley_db):
+        if level_db < f.peak_db - FALL_DB:
+            f.valley_db = level_db
+        return False
+    f.valley_db = min(level_db, f.valley_db + SWELL_DB)
+    if level_db < f.valley_db + RISE_DB:
+        return False
+    f.valley_db, f.peak_db = math.nan, level_db
+    return bool(f.age >= STROKE)
+
+
+@compiled_exactly
+def end(f: Any) -> None:
+    """End the note."""
+    if f.is_open != 0:
+        send(f, END, VOICE, f.key, 0.0)
+    f.is_open = f.agreed = 0

@@ -1,0 +1,116 @@
+"""Play by a voice at an audio input, which is followed as it sings (``core.following``)."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from yehu_server.core.following.deciding import KEYS, VOICE
+from yehu_server.core.player.velocity import NEUTRAL
+from yehu_server.live.audio.devices import INPUT
+from yehu_server.live.audio.output import OutputOptions, SharedMemory
+from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.wishes import Key
+from yehu_server.util.processes import Child, Message, Supervisor
+
+ADVICE = "wear headphones, or it follows itself"
+# A voice varies by itself: so hands do not. Its attacks are the bow's.
+STEADY = {
+    "/playing/variation": 0.0,
+    "/playing/vibrato": 0.0,
+    "/playing/attack": 20.0,
+    "/playing/velocity": NEUTRAL,
+}
+
+
+@dataclass
+class FollowOptions:
+    """The input to follow; see ``yehu-server serve --help``."""
+
+    device: str | None = None  # None: the system's default
+    transpose: float | None = None  # semitones; None: by octaves, as the first note wants
+
+
+class VoiceInput:
+    """Keeps the process that holds an audio input, and plays the first part by it.
+
+    Parameters
+    ----------
+    on_message : callable
+        Called with a line when the input is found or lost; from another thread.
+    """
+
+    def __init__(
+        self,
+        player: LivePlayer,
+        options: FollowOptions,
+        output: OutputOptions,
+        memory: SharedMemory,
+        on_message: Callable[[str], None],
+    ) -> None:
+        self._player, self._options = player, options
+        self._output, self._memory = output, memory
+        self._on_message = on_message
+        self._child: Child | None = None
+        self._name = ""
+        self._problem = ""
+        self._supervisor = Supervisor(
+            "yehu_server.live.audio.stream",
+            "voice",
+            on_event=self._on_event,
+            attend=self._attend,
+            on_exit=self._ended,
+            on_error=on_message,
+            share=[memory.descriptor],
+        )
+
+    def start(self) -> None:
+        """Start to follow."""
+        for address, value in STEADY.items():
+            self._player.write(address, value, frame=self._player.frame_of())
+        self._supervisor.start()
+
+    def stop(self) -> None:
+        """Stop following."""
+        self._supervisor.stop()
+
+    def _attend(self, child: Child, gone: threading.Event) -> None:
+        self._child = child
+        child.send("look", kind=INPUT, device=self._options.device)
+        gone.wait()
+
+    def _on_event(self, event: Message) -> None:
+        kind, child, options = event["event"], self._child, self._options
+        if child is None:
+            return
+        if kind == "found":
+            self._name = event["name"]
+            child.send(
+                "open",
+                kind=INPUT,
+                memory=self._memory.descriptor,
+                size=self._memory.size,
+                rate=event["rate"],
+                blocksize=self._output.blocksize,
+                latency=self._output.latency,
+                channels=1,
+                transpose=math.nan if options.transpose is None else options.transpose,
+            )
+        elif kind == "ready":
+            child.send("start")
+        elif kind == "started":
+            self._problem = ""
+            self._on_message(f"following {self._name}: {ADVICE}")
+        elif kind in ("missing", "failed") and event["reason"] != self._problem:
+            self._problem = event["reason"]
+            self._on_message(f"no voice to follow: {self._problem}")
+
+    def _ended(self, by_itself: bool) -> None:
+        """End the note that the input has begun."""
+        player, name = self._player, self._name
+        self._child, self._name = None, ""
+        player.end_keys([Key(VOICE, key) for key in KEYS], frame=player.frame_of())
+        if by_itself and name:
+            self._on_message(f"{name} is gone; it is followed again once it is back")

@@ -92,7 +92,10 @@ def test_what_was_made_for_something_else_is_left_alone(kept, tmp_path, caplog):
 
 def test_a_damaged_file_is_told_and_left_alone(kept, tmp_path, caplog):
     file = machine_code.file_in(tmp_path)
-    for damaged in (b"", kept[: len(kept) // 2], b"not ours", changed(kept, functions=None)):
+    sizes = json.loads(kept.partition(b"\n")[0])["functions"]
+    renamed = changed(kept, functions=[[name, "another", size] for name, _, size in sizes])
+    cut, nothing = kept[: len(kept) // 2], changed(kept, functions=None)
+    for damaged in (b"", cut, b"not ours", nothing, renamed):
         caplog.clear()
         assert written(tmp_path, damaged) == {}
         assert caplog.messages[0].startswith(f"{file}: ")

@@ -15,9 +15,11 @@ from clusters import cluster_in, wait_until
 from commands import results_in
 from forks import start
 
+from yehu_server.errors import ParameterError
 from yehu_server.lab.dataset import making
 from yehu_server.lab.dataset.description import read_description
 from yehu_server.rendering import cluster_worker
+from yehu_server.util import __version__
 from yehu_server.util.files import shipped_folder
 
 # Where a whole command starts them, its workers are new Pythons.
@@ -62,14 +64,36 @@ def test_the_manifest_tells_all_files_and_their_hashes(made):
     found = results_in(made / "out")
     told = lines(made / "out")
     assert [line["number"] for line in told] == list(range(COUNT))
-    assert set(found) == {line[name] for line in told for name in ("file", "arrays")} | {
-        "manifest.jsonl"
-    }
+    of_sounds = {line[name] for line in told for name in ("file", "arrays")}
+    assert set(found) == of_sounds | {"README.md", "dataset.json", "manifest.jsonl"}
     for line in told:
         assert line["hash"] == hashlib.sha256(found[line["file"]]).hexdigest()
         assert line["arrays_hash"] == hashlib.sha256(found[line["arrays"]]).hexdigest()
         assert line["file"].startswith(f"{line['split']}/")
         assert 0.1 <= line["drawn"]["bow_force"] <= 2.0
+
+
+def test_the_card_tells_licence_version_and_units(made):
+    facts = json.loads((made / "out" / "dataset.json").read_text())
+    line = lines(made / "out")[3]
+    assert set(facts["arrays"]) == set(np.load(made / "out" / line["arrays"]).files)
+    assert all(each["unit"] and each["what"] for each in facts["arrays"].values())
+    assert (facts["sounds"], facts["seed"], facts["license"]) == (COUNT, 5, "MIT")
+    assert facts["made_by"] == f"yehu-server {__version__}"
+    assert facts["description"]["draw"]["duration"] == 0.1
+    card = (made / "out" / "README.md").read_text()
+    for told in ('license: "mit"', facts["made_by"], "| `bow_velocity` | m s-1 |", "torsion"):
+        assert told in card
+
+
+def test_a_licence_changes_no_sound(made):
+    (made / "other.toml").write_text('license = "CC-BY-4.0"\n' + TEXT)
+    other = read_description(made / "other.toml")
+    assert other.license == "CC-BY-4.0"
+    assert other.key == read_description(made / "d.toml").key
+    (made / "other.toml").write_text("license = 4\n" + TEXT)
+    with pytest.raises(ParameterError, match="license"):
+        read_description(made / "other.toml")
 
 
 def test_sound_and_arrays_are_of_one_stroke(made):

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.util import __version__
 
 if TYPE_CHECKING:
-    from yehu_server import plot
+    from yehu_server import body, plot
     from yehu_server.api.followed import Followed, follow
     from yehu_server.api.instrument import Instrument
     from yehu_server.api.notes import Note
@@ -40,6 +40,7 @@ __all__ = [
     "Sweep",
     "YehuError",
     "__version__",
+    "body",
     "follow",
     "play",
     "plot",
@@ -58,6 +59,7 @@ _MODULES = {
     "Simulation": "api.simulated",
     "Sweep": "api.swept",
     "YehuError": "errors",
+    "body": "body",
     "follow": "api.followed",
     "play": "api.playback",
     "plot": "plot",
@@ -72,7 +74,7 @@ def __getattr__(name: str) -> Any:
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module = import_module(f"{__name__}.{_MODULES[name]}")
-    value = module if name == "plot" else getattr(module, name)
+    value = module if name in ("body", "plot") else getattr(module, name)
     globals()[name] = value
     return value
 

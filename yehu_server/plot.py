@@ -1,10 +1,12 @@
 """Pictures of sounds, simulations and sweeps, for ``yehu.plot``.
 
-Each function draws into the matplotlib axes `ax`, by default the current ones, and returns them.
+Each function draws into the matplotlib axes `ax`, by default the current ones, and returns them;
+`signals` makes a figure.
 It needs matplotlib: ``pip install yehu-server[plots]``.
 """
 
 from yehu_server.lab.plot.energies import energy
+from yehu_server.lab.plot.overview import signals, sweep
 from yehu_server.lab.plot.shapes import strings
 from yehu_server.lab.plot.sounds import level, pitch, spectrogram
 from yehu_server.lab.plot.sweep_maps import guettler, regimes, schelleng
@@ -16,6 +18,8 @@ __all__ = [
     "pitch",
     "regimes",
     "schelleng",
+    "signals",
     "spectrogram",
     "strings",
+    "sweep",
 ]

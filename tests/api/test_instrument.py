@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -305,3 +306,18 @@ def test_an_instrument_of_other_strings_is_tuned(tmp_path):
     assert from_file.quantities.string_1.sigma_0 == 3.0
     from_file.note_on("G4")
     assert heard(from_file.play(0.6), 67) == pytest.approx(0.0, abs=12.0)
+
+
+@pytest.mark.parametrize("stereo", [False, True])
+def test_a_pickled_instrument_goes_on_in_mid_note(stereo):
+    fiddle = yehu.Instrument(stereo=stereo, preset="vibrato", seed=2)
+    fiddle.note_on("A4")
+    fiddle.play(0.2)
+    fiddle.slide("C5", at=0.25)
+    fiddle.set("/playing/vibrato", 20.0)
+    copy = pickle.loads(pickle.dumps(fiddle))  # noqa: S301 - our own
+    assert (copy.time, copy.get("/playing/vibrato")) == (fiddle.time, 20.0)
+    np.testing.assert_array_equal(copy.play(0.3), fiddle.play(0.3))
+    assert copy.pitch == fiddle.pitch
+    copy.reset()
+    assert copy.time == 0.0

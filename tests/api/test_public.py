@@ -46,10 +46,21 @@ def test_the_public_names_are_these():
     assert sorted(yehu.__all__) == dir(yehu)
     assert set(yehu.__all__) == {
         *("AudioWidget", "Followed", "Instrument", "Note", "Rendering", "Simulation", "Sweep"),
-        *("YehuError", "__version__", "follow", "play", "plot", "render", "simulate", "sweep"),
+        *(
+            "YehuError",
+            "__version__",
+            "body",
+            "follow",
+            "play",
+            "plot",
+            "render",
+            "simulate",
+            "sweep",
+        ),
     }
     assert set(plot.__all__) == {
-        *("energy", "guettler", "level", "pitch", "regimes", "schelleng", "spectrogram", "strings")
+        *("energy", "guettler", "level", "pitch", "regimes", "schelleng", "signals"),
+        *("spectrogram", "strings", "sweep"),
     }
 
 
@@ -64,7 +75,7 @@ def test_no_module_hides_a_public_name():
         "print(*(n for n in y.__all__ if not callable(getattr(y, n))))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout.split() == ["__version__", "plot"]
+    assert run.stdout.split() == ["__version__", "body", "plot"]
 
 
 def test_a_wrong_name_is_told_as_python_does():
@@ -112,6 +123,8 @@ def with_examples() -> Iterator[tuple[str, object]]:
             yield name, found
     for name in plot.__all__:
         yield f"plot.{name}", getattr(plot, name)
+    for name in ("fit", "load"):
+        yield f"body.{name}", getattr(yehu.body, name)
 
 
 @pytest.mark.parametrize(("name", "function"), list(with_examples()))

@@ -61,7 +61,69 @@ def test_a_run_is_saved_by_any_path_and_told_in_a_line(tmp_path):
     run = yehu.simulate(GESTURE)
     run.save(str(tmp_path / "run.npz"))
     assert np.load(tmp_path / "run.npz")["time"].shape == run.arrays["time"].shape
-    assert repr(run).startswith("<yehu_server.Simulation of 0.2 s: time, ")
+    assert repr(run) == f"<yehu_server.Simulation of 0.2 s at 44100 Hz, {len(run.arrays)} arrays>"
+    again = yehu.Simulation.load(str(tmp_path / "run.npz"))
+    assert again.meta == run.meta
+    assert set(again.arrays) == set(run.arrays)
+    np.testing.assert_array_equal(again.arrays["pressure"], run.arrays["pressure"])
+
+
+def test_another_archive_is_no_simulation(tmp_path):
+    np.savez(tmp_path / "other.npz", time=np.zeros(3))
+    (tmp_path / "text.npz").write_text("none")
+    for name, why in (("other", "not the result"), ("text", "not the result"), ("none", "No such")):
+        with pytest.raises(YehuError, match=rf"{name}\.npz: .*{why}"):
+            yehu.Simulation.load(tmp_path / f"{name}.npz")
+
+
+def test_a_run_is_a_data_set_with_units_coordinates_and_where_it_came_from():
+    run = yehu.simulate(GESTURE, energy=True, strings_every=100)
+    found = run.to_xarray()
+    assert set(found.variables) == set(run.arrays) | {"string"}
+    assert [name for name in found.variables if not found[name].attrs.get("units")] == ["string"]
+    assert found.string_2.dims == ("strings_time", "x_2")
+    assert found.contact_force.dims == ("time", "string")
+    assert found.bridge_velocity.attrs["units"] == "m s-1"
+    told = found.attrs
+    assert told["source"] == f"yehu-server {yehu.__version__}"
+    assert (told["sample_rate"], told["seed"]) == (44100.0, 0)
+    assert json.loads(told["instrument"])["bow"]["mu_S"] == 1.0207
+    assert json.loads(told["gesture"])["controls"].keys() == GESTURE["controls"].keys()
+    assert all(isinstance(value, str | int | float) for value in told.values())
+    assert (
+        told["sha256"] == yehu.simulate(GESTURE, energy=True, strings_every=100).to_xarray().sha256
+    )
+    other = yehu.simulate(GESTURE | {"instrument": {"bow": {"mu_S": 1.02}}})
+    assert other.to_xarray().sha256 != told["sha256"]
+
+
+def test_what_fingers_do_has_an_axis_of_its_own():
+    fiddle = yehu.Instrument(stereo=True, seed=7)
+    found = fiddle.record(0.02).to_xarray()
+    assert found.contact_force.dims == ("time", "finger", "string")
+    assert found.press_force.dims == ("time", "finger")
+    assert found.sound.dims == ("time", "channel")
+    assert (found.finger.values.tolist(), found.attrs["seed"]) == ([1, 2, 3, 4], 7)
+
+
+@pytest.mark.parametrize(
+    ("controls", "duration", "names"),
+    [
+        ({"bow_force": np.ones(100)}, 0.05, "bow_force: 100 samples, but 0.05 s .* are 2205"),
+        ({"bow_force": np.ones(4410)}, 0.05, "bow_force: 4410 samples"),
+        (
+            {"bow_force": np.ones(90), "bow_velocity": np.ones(91)},
+            None,
+            "91 samples, but bow_force",
+        ),
+        ({"bow_force": np.ones(90)}, "long", "duration"),
+    ],
+)
+def test_an_array_of_another_length_is_refused(controls, duration, names):
+    gesture = {"controls": controls} | ({} if duration is None else {"duration": duration})
+    for act in (yehu.simulate, lambda each: yehu.sweep(each, {"press_force": [0.0, 1.0]})):
+        with pytest.raises(YehuError, match=names):
+            act(gesture)
 
 
 @pytest.mark.parametrize(
@@ -130,6 +192,33 @@ def test_a_labelled_dataset_has_names_values_and_units(swept):
     assert float(at.pitch_hz) == swept.grid("pitch_hz")[1, 1]
     assert found.bow_position.attrs["units"] == "m"
     assert found.regime.attrs["flag_meanings"].split()[2] == "helmholtz"
+    assert found.attrs["source"] == f"yehu-server {yehu.__version__}"
+    assert found.attrs["sample_rate"] == 44100.0
+    assert json.loads(found.attrs["instrument"])["bow"]["mu_S"] == 1.0207
+    assert repr(swept) == "<yehu_server.Sweep of 6 strokes over bow_force (2), bow_position (3)>"
+
+
+def test_every_format_can_hold_a_data_set(swept, tmp_path):
+    run = yehu.simulate(GESTURE, strings_every=100)
+    for number, found in enumerate((swept.to_xarray(), run.to_xarray())):
+        found.to_netcdf(tmp_path / f"{number}.nc", engine="scipy")
+        with xarray.open_dataset(tmp_path / f"{number}.nc", engine="scipy") as again:
+            assert again.attrs["sha256"] == found.attrs["sha256"]
+            assert set(again.variables) == set(found.variables)
+
+
+def test_the_axes_of_a_sweep_have_units():
+    vary = {"instrument.bow.K_h": [1e4, 5e4], "bow_acceleration": [1.0]}
+    gesture = {"duration": 0.06, "controls": {"bow_velocity": 0.2, "bow_force": 0.5}}
+    found = yehu.sweep(gesture, vary).to_xarray()
+    units = {name: found[name].attrs["units"] for name in vary}
+    assert units == {"instrument.bow.K_h": "N/m", "bow_acceleration": "m s-2"}
+
+
+def test_a_sweep_is_kept_by_any_path(swept, tmp_path):
+    swept.save(str(tmp_path / "found.npz"))
+    again = yehu.Sweep.load(str(tmp_path / "found.npz"))
+    assert again.to_xarray().attrs == swept.to_xarray().attrs
 
 
 def test_without_xarray_one_line_says_what_to_install(swept, monkeypatch):

@@ -15,7 +15,7 @@ from markdown_it import MarkdownIt
 from pages import PAGES, ROOT, Page
 
 import yehu_server as yehu
-from yehu_server import plot
+from yehu_server import body, plot
 from yehu_server.ahead.link import page_linker
 from yehu_server.live.page.site import server_of, url_of
 
@@ -119,7 +119,7 @@ def test_links_to_sounds_have_players_below(site, content):
         assert (site / link).read_bytes() == (ROOT / "docs" / link).read_bytes()
 
 
-@pytest.mark.parametrize("module", [yehu, plot])
+@pytest.mark.parametrize("module", [yehu, body, plot])
 def test_every_public_name_has_a_place_on_the_pages_of_the_interface(content, site, module):
     names = {f"{module.__name__}.{name}" for name in module.__all__ if not name.startswith("_")}
     for path in (site / "api").glob("*.html"):

@@ -14,6 +14,7 @@ from yehu_server.compile.cache_folder import cache_folder
 from yehu_server.compile.jit import IS_PLAIN
 from yehu_server.core.physics.quantities import Quantities, override, read_quantities
 from yehu_server.errors import ParameterError
+from yehu_server.lab.body.body_file import Fit
 from yehu_server.params.table import find
 
 log = logging.getLogger("yehu_server")
@@ -36,6 +37,7 @@ def get_ready(*, plays: bool) -> None:
 
 
 PathLike = str | os.PathLike[str]
+InstrumentLike = Quantities | Mapping[str, Any] | PathLike | Fit
 
 
 def number(value: Any, name: str, lo: float = -math.inf, hi: float = math.inf) -> float:
@@ -90,14 +92,14 @@ def settings_of(settings: Mapping[str, float] | None) -> tuple[tuple[str, float]
     return tuple(setting(address, value) for address, value in (settings or {}).items())
 
 
-def quantities_of(instrument: Quantities | Mapping[str, Any] | PathLike | None) -> Quantities:
+def quantities_of(instrument: InstrumentLike | None) -> Quantities:
     """Return the physical quantities of an instrument.
 
     Parameters
     ----------
-    instrument : Quantities, mapping, path or None
-        A mapping of quantities to change, or an instrument file (docs/physics.md); None: the
-        measured instrument.
+    instrument : Quantities, mapping, path, Body or None
+        A mapping of quantities to change, an instrument file (docs/physics.md), or a body of
+        ``yehu.body``; None: the measured instrument.
 
     Raises
     ------
@@ -108,6 +110,8 @@ def quantities_of(instrument: Quantities | Mapping[str, Any] | PathLike | None) 
         return Quantities()
     if isinstance(instrument, Quantities):
         return instrument
+    if isinstance(instrument, Fit):
+        return Quantities(body=instrument.body)
     if isinstance(instrument, Mapping):
         return override(Quantities(), instrument)
     return read_quantities(path_of(instrument, "instrument"))

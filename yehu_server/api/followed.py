@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from yehu_server.api.checks import PathLike, number, path_of, whole
 from yehu_server.api.playing_options import HIGHEST_A4, LOWEST_A4
@@ -24,7 +25,8 @@ from yehu_server.following.recording import (
 from yehu_server.playing.tuning import EQUAL, read_tuning
 from yehu_server.scores.score import Score
 
-Array = Any
+Floats = NDArray[np.float64]
+Style = Literal["exact", "gentle", "even"]
 
 MOST_SEMITONES = 60.0
 
@@ -51,10 +53,10 @@ class Followed:
         What makes it unsure.
     """
 
-    times: Array
-    pitch: Array
-    level: Array
-    onsets: Array
+    times: Floats
+    pitch: Floats
+    level: Floats
+    onsets: Floats
     transposed: float
     score: Score
     warnings: tuple[str, ...]
@@ -69,13 +71,13 @@ class Followed:
 
 
 def follow(
-    recording: PathLike | Array,
+    recording: PathLike | NDArray[Any],
     sample_rate: float | None = None,
     *,
     transpose: float | None = None,
     correct: float = 0.0,
     keep_vibrato: bool = False,
-    style: str = "exact",
+    style: Style = "exact",
     a4: float = 440.0,
     tuning: PathLike | None = None,
 ) -> Followed:

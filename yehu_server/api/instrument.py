@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Mapping
 from typing import Any
 
-from yehu_server.api.checks import PathLike, get_ready, number, setting, whole
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from yehu_server.api.checks import InstrumentLike, PathLike, get_ready, number, setting, whole
 from yehu_server.api.observing import Run, curves_of
 from yehu_server.api.pitches import pitch_of, playable
 from yehu_server.api.playing_options import playing_setup_of
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument as Engine
+from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError, YehuError
 from yehu_server.lab.simulation import Simulation
 from yehu_server.params.spec import Place
 from yehu_server.params.table import find
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.wishes import Key
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.util import __version__
 
-Array = Any
+Sound = NDArray[np.float32]
 
 LONGEST_S = 3600.0  # computed at once
 CHANNEL = 0
@@ -35,9 +42,9 @@ class Instrument:
     ----------
     sample_rate : float
         Hz, 22050 to 192000. 44100, 48000 and 96000 are calibrated; others take some seconds, once.
-    instrument : mapping, path or Quantities, optional
-        Physical quantities to change, such as ``{"string_1": {"T": 49.0}}``, or an instrument file
-        (docs/physics.md); by default the measured instrument.
+    instrument : mapping, path, Quantities or Body, optional
+        Physical quantities to change, such as ``{"string_1": {"T": 49.0}}``, an instrument file
+        (docs/physics.md), or a body of `yehu.body`; by default the measured instrument.
     preset : str or path, optional
         A sound to begin with (presets/README.md), such as ``"flautando"``; several are joined by a
         plus.
@@ -75,7 +82,7 @@ class Instrument:
         self,
         sample_rate: float = 44100,
         *,
-        instrument: Quantities | Mapping[str, Any] | PathLike | None = None,
+        instrument: InstrumentLike | None = None,
         preset: PathLike | None = None,
         settings: Mapping[str, float] | None = None,
         stereo: bool = False,
@@ -95,11 +102,16 @@ class Instrument:
             seed=seed,
         )
         get_ready(plays=True)
-        self._rate, self._playing = make.sample_rate, make.playing
-        self._channels = 2 if stereo else 1
-        calibration = calibration_for(float(self._rate), make.quantities, a4=self._playing.a4)
+        calibration = calibration_for(float(make.sample_rate), make.quantities, a4=make.playing.a4)
+        spec = make.playing.spec(float(make.sample_rate), calibration, make.quantities)
+        self._build(make.sample_rate, make.playing, spec, stereo=stereo)
 
-        spec = self._playing.spec(float(self._rate), calibration, make.quantities)
+    def _build(
+        self, rate: int, playing: PlayingOptions, spec: InstrumentSpec, *, stereo: bool
+    ) -> None:
+        self._rate, self._playing = rate, playing
+        self._channels = 2 if stereo else 1
+        self._wishes: WishPoster
         self._stage: Ensemble | Engine
         if stereo:
             self._stage = Ensemble([spec])
@@ -107,6 +119,29 @@ class Instrument:
         else:
             self._stage = self._engine = Engine(spec)
         self._begin()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All of it as it is now: a copy goes on as this one does."""
+        return {
+            "version": __version__,
+            "rate": self._rate,
+            "playing": self._playing,
+            "spec": self._engine.spec,
+            "stereo": self._channels > 1,
+            "dropped": self._dropped,
+            "pending": self._wishes.pending,
+            "memory": zlib.compress(memoryview(self._stage.memory), 1),  # most of it is zero
+        }
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        if state["version"] != __version__:
+            raise YehuError(f"this instrument was pickled by version {state['version']}")
+        get_ready(plays=True)
+        self._build(state["rate"], state["playing"], state["spec"], stereo=state["stereo"])
+        self._wishes.pending = state["pending"]
+        self._dropped = state["dropped"]
+        memory = np.frombuffer(zlib.decompress(state["memory"]), np.uint8)
+        np.frombuffer(self._stage.memory, np.uint8, count=len(memory))[:] = memory
 
     def __repr__(self) -> str:
         return f"<yehu_server.Instrument at {self._rate} Hz, {self.time:g} s played>"
@@ -267,7 +302,7 @@ class Instrument:
 
     # -- sound ---------------------------------------------------------------------------------
 
-    def play(self, seconds: float, *, controls: Mapping[str, Any] | None = None) -> Array:
+    def play(self, seconds: float, *, controls: Mapping[str, ArrayLike] | None = None) -> Sound:
         """Compute the next sound.
 
         Parameters
@@ -305,7 +340,11 @@ class Instrument:
         return sound
 
     def record(
-        self, seconds: float, *, controls: Mapping[str, Any] | None = None, strings_every: int = 0
+        self,
+        seconds: float,
+        *,
+        controls: Mapping[str, ArrayLike] | None = None,
+        strings_every: int = 0,
     ) -> Simulation:
         """Compute the next sound, and keep every force, velocity and displacement.
 

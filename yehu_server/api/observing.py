@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from yehu_server.api.checks import setting
 from yehu_server.core.controls.record import CHUNK
@@ -18,9 +19,8 @@ from yehu_server.errors import ParameterError
 from yehu_server.lab.simulation import MAX_BYTES, Simulation, about, shape_of, signals
 from yehu_server.params.table import SLOT
 from yehu_server.playing.wishes import WishPoster
-from yehu_server.util import __version__
 
-Array = Any
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Curve:
     """
 
     address: str
-    values: Array
+    values: Floats
 
     def at(self, share: float) -> float:
         """Return the value at a share of the time."""
@@ -39,7 +39,7 @@ class Curve:
         return float(np.interp(share, places, self.values))
 
 
-def curves_of(controls: Mapping[str, Any] | None) -> list[Curve]:
+def curves_of(controls: Mapping[str, ArrayLike] | None) -> list[Curve]:
     """Return what moves during a run.
 
     Raises
@@ -85,7 +85,7 @@ class Run:
         self._curves = curves
         self._rig = np.frombuffer(instrument.memory, RIG, count=1)[0]
 
-    def sound(self, frames: int, channels: int) -> Array:
+    def sound(self, frames: int, channels: int) -> NDArray[np.float32]:
         """Compute samples, ndarray [shape=(frames,) or (frames, 2), float32]."""
         out = np.zeros(frames if channels == 1 else (frames, channels), np.float32)
         if not self._curves:
@@ -119,7 +119,7 @@ class Run:
         out = np.zeros(frames if channels == 1 else (frames, channels), np.float32)
         probes = np.zeros((frames, probe_columns(MAX_FINGERS)))
         controls = np.zeros((frames, control_columns(MAX_FINGERS)))
-        kept: list[list[Array]] = [[] for _ in range(STRINGS)]
+        kept: list[list[Floats]] = [[] for _ in range(STRINGS)]
         self._take_over()
         start = 0
         while start < frames:
@@ -133,13 +133,17 @@ class Run:
             probes[start:end] = output["probes"][: end - start]
             controls[start:end] = output["controls"][: end - start]
             start = end
-        arrays: dict[str, Array] = {"sound": out} | signals(probes, controls, self._instrument.rate)
+        arrays: dict[str, NDArray[Any]] = {"sound": out} | signals(
+            probes, controls, self._instrument.rate
+        )
         if strings_every:
             arrays["strings_time"] = arrays["time"][::strings_every]
             for i, string in enumerate(self._instrument.spec.quantities.strings):
                 arrays[f"string_{i + 1}"] = np.array(kept[i])
                 arrays[f"x_{i + 1}"] = np.linspace(0.0, string.L, int(model["N"][i]) + 1)
-        return Simulation(arrays, {"version": __version__} | about(model, state, frames))
+        instrument = self._instrument
+        told = about(model, state, frames, instrument.spec.quantities)
+        return Simulation(arrays, {"seed": instrument.seed} | told)
 
     def _take_over(self) -> None:
         """Take the parameters of the curves from the player, and put them to their first values."""

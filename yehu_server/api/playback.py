@@ -7,17 +7,19 @@ import io
 import sys
 import wave
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from yehu_server.errors import DeviceError, OutputError, ParameterError
 from yehu_server.lab.plot.sounds import is_pressure, sound_of
 from yehu_server.live.audio.devices import load_portaudio
 from yehu_server.util.sound_file import SUBTYPES, check_format, format_of, sound_file
 
-Array = Any
+Sound = NDArray[Any]
 
+Subtype = Literal["16", "24", "float"]
 FULL_SCALE = 32767  # of 16 bits
 SHELL_OF_NOTEBOOKS = "ZMQInteractiveShell"
 PEAK = 10.0 ** (-1.0 / 20.0)  # of a sound that is normalized
@@ -37,7 +39,7 @@ class AudioWidget:
         Hz.
     """
 
-    def __init__(self, sound: Array, sample_rate: int) -> None:
+    def __init__(self, sound: Sound, sample_rate: int) -> None:
         self.sound, self.sample_rate = sound, sample_rate
 
     def __repr__(self) -> str:
@@ -121,7 +123,7 @@ def is_notebook() -> bool:
     return type(shell).__name__ == SHELL_OF_NOTEBOOKS
 
 
-def _play_aloud(samples: Array, rate: float) -> None:
+def _play_aloud(samples: Sound, rate: float) -> None:
     """Play through the default device, to the end.
 
     Raises
@@ -138,7 +140,7 @@ def _play_aloud(samples: Array, rate: float) -> None:
         ) from None
 
 
-def write_sound(sound: Array, sample_rate: int, target: Path, subtype: str) -> None:
+def write_sound(sound: Sound, sample_rate: int, target: Path, subtype: Subtype) -> None:
     """Write a sound file, WAV or FLAC by its ending.
 
     Raises

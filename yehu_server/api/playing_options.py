@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Literal
 
 from yehu_server.api.checks import (
+    InstrumentLike,
     PathLike,
     name_of,
     number,
@@ -25,6 +26,7 @@ from yehu_server.playing.practice_files import read_practice
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 
+OutOfRange = Literal["transpose", "clamp", "skip"]
 LOWEST_A4, HIGHEST_A4 = 390.0, 480.0  # Hz; as of --a4
 
 
@@ -39,7 +41,7 @@ class PlayingSetup:
 
 def playing_setup_of(
     sample_rate: float,
-    instrument: Quantities | Mapping[str, Any] | PathLike | None,
+    instrument: InstrumentLike | None,
     *,
     preset: PathLike | None = None,
     settings: Mapping[str, float] | None = None,
@@ -48,7 +50,7 @@ def playing_setup_of(
     practice: PathLike | None = None,
     seed: int = 0,
     mapping: PathLike = DEFAULT,
-    out_of_range: str = "transpose",
+    out_of_range: OutOfRange = "transpose",
 ) -> PlayingSetup:
     """Check options, and read the files that they name; see `render`.
 

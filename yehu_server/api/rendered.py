@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from yehu_server.api.checks import PathLike, get_ready, number, path_of, whole
+from yehu_server.api.checks import InstrumentLike, PathLike, get_ready, number, path_of, whole
 from yehu_server.api.notes import Note, score_of
-from yehu_server.api.playback import AudioWidget, write_sound
-from yehu_server.api.playing_options import playing_setup_of
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.api.playback import AudioWidget, Subtype, write_sound
+from yehu_server.api.playing_options import OutOfRange, playing_setup_of
 from yehu_server.errors import ParameterError
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT
@@ -26,7 +26,8 @@ from yehu_server.scores.phrasing import is_fingered, phrased
 from yehu_server.scores.reading import How, read_any
 from yehu_server.scores.score import Score
 
-Array = Any
+Sound = NDArray[np.float32]
+Floats = NDArray[np.float64]
 
 BLOCK = 512  # frames between two readings of the pitch that is asked for; the sound is the same
 PHRASING = 0.5  # of files, as of the command
@@ -59,12 +60,12 @@ class Rendering:
         Reference pitch (Hz).
     """
 
-    sound: Array
+    sound: Sound
     sample_rate: int
     name: str
     warnings: tuple[str, ...]
     summary: Summary
-    asked: tuple[Array, Array]
+    asked: tuple[Floats, Floats]
     a4: float = 440.0
 
     def __repr__(self) -> str:
@@ -75,7 +76,7 @@ class Rendering:
         """How long the sound lasts (s)."""
         return len(self.sound) / self.sample_rate
 
-    def save(self, path: PathLike, *, subtype: str = "24") -> None:
+    def save(self, path: PathLike, *, subtype: Subtype = "24") -> None:
         """Write a sound file, WAV or FLAC by its ending; it replaces what is there.
 
         Parameters
@@ -109,10 +110,10 @@ class _Written:
 
 
 def render(
-    score: PathLike | Score | Iterable[Note | Sequence[Any]] | Array,
+    score: PathLike | Score | Iterable[Note | Sequence[str | float]] | NDArray[Any],
     *,
     sample_rate: float = 44100,
-    instrument: Quantities | Mapping[str, Any] | PathLike | None = None,
+    instrument: InstrumentLike | None = None,
     preset: PathLike | None = None,
     settings: Mapping[str, float] | None = None,
     phrasing: float | None = None,
@@ -125,7 +126,7 @@ def render(
     tuning: PathLike | None = None,
     mapping: PathLike = DEFAULT,
     practice: PathLike | None = None,
-    out_of_range: str = "transpose",
+    out_of_range: OutOfRange = "transpose",
     channels: Iterable[int] | None = None,
     song: int | None = None,
     part: str | None = None,
@@ -240,7 +241,7 @@ def render(
 
 def _played(
     score: Score, options: Options, progress: Callable[[float, float], None] | None
-) -> tuple[Array, tuple[Array, Array], Summary]:
+) -> tuple[Sound, tuple[Floats, Floats], Summary]:
     """Play a score; return its sound, the pitches that were asked for, and a summary."""
     start = time.perf_counter()
     performance = Performance(score, options)

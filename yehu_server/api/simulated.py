@@ -7,12 +7,13 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from yehu_server.api.checks import PathLike, get_ready, path_of, whole
+from yehu_server.api.checks import PathLike, get_ready, number, path_of, whole
 from yehu_server.errors import ParameterError
 from yehu_server.lab.simulation import Simulation
 from yehu_server.lab.simulation import simulate as run
-from yehu_server.scores.gesture import Gesture, gesture_from, read_gesture
+from yehu_server.scores.gesture import Gesture, gesture_from, read_gesture, sample_rate
 
 __all__ = ["Simulation", "gesture_of", "plain_gesture", "simulate"]
 
@@ -32,8 +33,8 @@ def simulate(
     ----------
     gesture : mapping or path
         What a gesture file has (docs/simulate.md), or such a file. A control may be a number, a
-        list of (time in s, value), or an array with a value for each sample; without a
-        ``duration``, the longest of these arrays tells it.
+        list of (time in s, value), or an array with a value for each sample. All such arrays have
+        the same length; without a ``duration``, it is theirs.
     energy : bool
         Keep the energy ledger too.
     strings_every : int
@@ -87,7 +88,7 @@ def plain_gesture(gesture: Mapping[str, Any]) -> dict[str, Any]:
     Raises
     ------
     ParameterError
-        Where an array is no curve.
+        Where an array is no curve, or has another length than the gesture.
     """
     data = {name: _plain(value) for name, value in gesture.items() if name != "controls"}
     controls = gesture.get("controls", {})
@@ -95,13 +96,27 @@ def plain_gesture(gesture: Mapping[str, Any]) -> dict[str, Any]:
         raise ParameterError("controls: expected names and values")
     rate = data.get("sample_rate", RATE)
     sampled = {name: value for name, value in controls.items() if _is_sampled(value)}
-    if sampled and "duration" not in data:
-        data["duration"] = max(map(len, sampled.values())) / rate
+    if sampled:
+        data["duration"] = _duration(sampled, data.get("duration"), rate)
     data["controls"] = {
         name: _curve(value, rate) if name in sampled else _plain(value)
         for name, value in controls.items()
     }
     return data
+
+
+def _duration(sampled: Mapping[str, NDArray[Any]], told: Any, rate: Any) -> float:
+    """How long a gesture lasts (s) whose controls have a value for each sample."""
+    rate = sample_rate(rate)
+    first, expected = next(iter(sampled)), len(next(iter(sampled.values())))
+    which = f"{first} has {expected}"
+    if told is not None:
+        expected = round(number(told, "duration") * rate)
+        which = f"{told:g} s at {rate:g} Hz are {expected}"
+    for name, values in sampled.items():
+        if len(values) != expected:
+            raise ParameterError(f"{name}: {len(values)} samples, but {which}")
+    return float(told) if told is not None else expected / rate
 
 
 def _is_sampled(value: Any) -> bool:

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from numpy.typing import NDArray
+
 from yehu_server.api.checks import PathLike, get_ready, number, whole
 from yehu_server.api.simulated import gesture_of, plain_gesture
 from yehu_server.errors import ParameterError
@@ -16,14 +18,13 @@ from yehu_server.scores.gesture import Gesture
 
 __all__ = ["Sweep", "sweep"]
 
-Array = Any
 MOST_WORKERS = 1024
 MOST_RUNS = 1_000_000
 
 
 def sweep(
     gesture: Mapping[str, Any] | PathLike | Gesture,
-    vary: Mapping[str, Sequence[float] | Array],
+    vary: Mapping[str, Sequence[float] | NDArray[Any]],
     *,
     workers: int | None = None,
     progress: Callable[[float, float], None] | None = None,

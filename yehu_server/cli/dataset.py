@@ -68,6 +68,7 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return the exit code: 1 where some sounds failed."""
     from yehu_server.lab.dataset import making
+    from yehu_server.lab.dataset.card import write_card
     from yehu_server.lab.dataset.description import read_description
     from yehu_server.rendering import build_records
     from yehu_server.rendering.build_records import check_manifest
@@ -106,6 +107,7 @@ def run(arguments: argparse.Namespace) -> int:
         finally:
             build_records.clear_work([folder])
             making.write_lines(folder, lines)
+            write_card(folder, description, lines)
     return _report(arguments, lines, current)
 
 

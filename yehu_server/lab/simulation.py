@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,10 +19,16 @@ from yehu_server.core.physics.bow import friction_bound
 from yehu_server.core.physics.energy import stored_energy
 from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
 from yehu_server.core.physics.pluck import pluck_string
-from yehu_server.errors import OutputError
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.errors import OutputError, ScoreError
+from yehu_server.lab.labels import as_data, as_json, attributes, dimensions, hash_of, label_of
 from yehu_server.scores.gesture import CONTROLS, Gesture
 from yehu_server.util import __version__
+from yehu_server.util.extras import need
 from yehu_server.util.files import replacing
+
+if TYPE_CHECKING:
+    import xarray
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -39,7 +45,8 @@ class Simulation:
     arrays : mapping of ndarray
         By name, with a value for each sample; docs/simulate.md lists them.
     meta : mapping
-        The gesture, the sample rate, the grid, and counts of what went wrong.
+        The gesture, all quantities of the instrument, the version, the sample rate, the grid, and
+        counts of what went wrong.
     """
 
     arrays: Mapping[str, Floats]
@@ -47,7 +54,82 @@ class Simulation:
 
     def __repr__(self) -> str:
         seconds = self.meta["frames"] / self.meta["sample_rate"]
-        return f"<yehu_server.Simulation of {seconds:g} s: {', '.join(self.arrays)}>"
+        rate = self.meta["sample_rate"]
+        return (
+            f"<yehu_server.Simulation of {seconds:g} s at {rate:g} Hz, {len(self.arrays)} arrays>"
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Everything as a data set with units, coordinates, and where it came from.
+
+        Its attributes are text and numbers, so that any format holds them: the version, all
+        quantities of the instrument and the gesture as JSON, the rate, and the hash of the values.
+
+        Raises
+        ------
+        ParameterError
+            Where xarray is missing.
+
+        Examples
+        --------
+        >>> import yehu_server as yehu
+        >>> controls = {"bow_force": 0.7, "bow_velocity": 0.3}
+        >>> data = yehu.simulate({"duration": 0.1, "controls": controls}).to_xarray()
+        >>> data.bridge_force.attrs["units"], data.sel(time=0.05, method="nearest").sizes
+        ('N', Frozen({'string': 2}))
+        """
+        need("xarray", "to_xarray", "lab")
+        import xarray
+
+        found = {
+            name: (dimensions(name, values), values, attributes(label_of(name)))
+            for name, values in self.arrays.items()
+        }
+        coordinates = {name: each for name, each in found.items() if each[0] == (name,)}
+        sizes = {
+            name: n
+            for dims, values, _ in found.values()
+            for name, n in zip(dims, values.shape, strict=True)
+        }
+        coordinates |= {
+            name: ((name,), np.arange(1, sizes[name] + 1), {})
+            for name in ("finger", "string")
+            if name in sizes
+        }
+        told = dict(self.meta)
+        version = told.pop("version", __version__)
+        plain = {
+            name: value if isinstance(value, str | int | float) else as_json(value)
+            for name, value in told.items()
+        }
+        source = {"source": f"yehu-server {version}", "sha256": hash_of(self.arrays)}
+        others = {name: each for name, each in found.items() if name not in coordinates}
+        return xarray.Dataset(others, coords=coordinates, attrs=source | plain)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Simulation:
+        """Read a file that `save`, or the command, wrote.
+
+        Raises
+        ------
+        ScoreError
+            Where it cannot be read, or is none.
+        """
+        target = Path(path)
+        try:
+            with target.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
+                return cls._of({name: file[name] for name in file.files})
+        except OSError as error:
+            raise ScoreError(f"{target}: {error.strerror or error}") from error
+        except Exception as error:  # damaged archives raise whatever they lead to
+            raise ScoreError(f"{target}: is not the result of a simulation") from error
+
+    @classmethod
+    def _of(cls, arrays: dict[str, Floats]) -> Simulation:
+        meta = json.loads(str(arrays.pop("meta")))
+        if len(arrays["time"]) != meta["frames"] or not meta["sample_rate"] > 0.0:
+            raise ValueError("something is missing")
+        return cls(arrays, meta)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write an uncompressed ``.npz``; ``meta`` is JSON text within it.
@@ -131,8 +213,8 @@ def simulate(
             arrays[f"string_{i + 1}"] = np.array(kept[i])
             length = gesture.quantities.strings[i].L
             arrays[f"x_{i + 1}"] = np.linspace(0.0, length, int(m["N"][i]) + 1)
-    meta = {"version": __version__, "gesture": dict(gesture.source)} | about(m, state[0], frames)
-    return Simulation(arrays, meta)
+    told = {"gesture": dict(gesture.source), "seed": int(gesture.quantities.bow.hair)}
+    return Simulation(arrays, told | about(m, state[0], frames, gesture.quantities))
 
 
 def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, Floats]:
@@ -173,9 +255,11 @@ def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, F
     return arrays
 
 
-def about(m: Any, state: Any, frames: int) -> dict[str, Any]:
+def about(m: Any, state: Any, frames: int, quantities: Quantities) -> dict[str, Any]:
     """What a run's metadata tell of the model (MODEL) and its state (STATE) at the end."""
     return {
+        "version": __version__,
+        "instrument": as_data(quantities),
         "sample_rate": float(m["rate"]),
         "frames": frames,
         "grid_intervals": [int(N) for N in m["N"]],

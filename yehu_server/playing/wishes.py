@@ -75,7 +75,7 @@ class WishPoster:
             raise ValueError("the instruments of a section lie one after another on a stage")
         self.policy, self._tuning, self._a4 = policy, tuning, a4
         self.controls = Controls()
-        self._pending: dict[str, Pending] = {}
+        self.pending: dict[str, Pending] = {}
         self._instrument.begin_part(self.tables(UNMAPPED), len(self._all))
         for other in self._all[1:]:
             other.begin_part(plain_tables(), 0)
@@ -133,7 +133,7 @@ class WishPoster:
 
     def _waiting(self, param: Param) -> Pending | None:
         """The last direct write to a parameter, while the audio side does not have it."""
-        pending = self._pending.get(param.address)
+        pending = self.pending.get(param.address)
         if pending is None:
             return None
         meters = self._instrument.meters()
@@ -141,7 +141,7 @@ class WishPoster:
         # An instrument that is not live interprets due events whenever its record is read.
         is_read = not self._instrument.is_live and pending.frame <= self._instrument.frame
         if is_done or (is_read and not param.owned):
-            del self._pending[param.address]
+            del self.pending[param.address]
             return None
         return pending
 
@@ -209,11 +209,11 @@ class WishPoster:
         self, address: str, value: float, frame: int | None, *, is_held: bool = False
     ) -> None:
         at = self._instrument.frame if frame is None else frame
-        self._pending[address] = Pending(value, self._instrument.posted, at, is_held)
+        self.pending[address] = Pending(value, self._instrument.posted, at, is_held)
 
     def release(self, *, frame: int | None = None) -> None:
         """Return every parameter that was taken over to the player."""
-        self._pending.clear()
+        self.pending.clear()
         self.post(wishes.RELEASE, frame)
 
     def keeps(self, address: str) -> bool:

@@ -8,7 +8,8 @@ from yehu_server.lab.body.body_file import Fit
 from yehu_server.lab.body.curve import Curve
 from yehu_server.lab.body.fitting import fit
 from yehu_server.lab.body.measurement import Measurement, average, read
+from yehu_server.lab.body.modes import Modes
 from yehu_server.lab.body.synthetic import made_taps
 from yehu_server.lab.body.tap import Tap
 
-__all__ = ["Curve", "Fit", "Measurement", "Tap", "average", "fit", "made_taps", "read"]
+__all__ = ["Curve", "Fit", "Measurement", "Modes", "Tap", "average", "fit", "made_taps", "read"]

@@ -7,6 +7,7 @@ and how the fit went, which `yehu-server body show` draws.
 from __future__ import annotations
 
 import json
+import os
 import re
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
@@ -69,18 +70,20 @@ class Fit:
         damping = np.array(self.body.damping) / (2.0 * mass * omega)
         return Modes(np.array(self.body.frequency_hz), damping, 1.0 / mass)
 
-    def admittance(self, frequency_hz: Floats) -> Complexes:
-        """Velocity per force (s/kg) of the fitted modes at frequencies [shape=(lines,)]."""
-        return self.modes.admittance(np.asarray(frequency_hz, np.float64))
+    def admittance(self, frequency_hz: Floats | float) -> Complexes:
+        """Velocity per force (s/kg) of the fitted modes at frequencies, in their shape."""
+        at_hz = np.asarray(frequency_hz, np.float64)
+        return self.modes.admittance(at_hz.reshape(-1)).reshape(at_hz.shape)
 
-    def radiation(self, frequency_hz: Floats) -> Complexes:
-        """Pressure per force (Pa/N) of the fitted sections at frequencies [shape=(lines,)]."""
+    def radiation(self, frequency_hz: Floats | float) -> Complexes:
+        """Pressure per force (Pa/N) of the fitted sections at frequencies, in their shape."""
         body, at_hz = self.body, np.asarray(frequency_hz, np.float64)
         sections = np.array(body.sections).reshape(-1, 4)
         gains = np.array([body.direct_gain])
-        return np.asarray(response(sections, gains, body.radiation_rate, at_hz))
+        found = response(sections, gains, body.radiation_rate, at_hz.reshape(-1))
+        return np.asarray(found).reshape(at_hz.shape)
 
-    def save(self, target: Path, *, overwrite: bool = False) -> tuple[Path, ...]:
+    def save(self, target: str | os.PathLike[str], *, overwrite: bool = False) -> tuple[Path, ...]:
         """Write a body file (.json), or an instrument file (.toml) and its body file beside it.
 
         An instrument file that names the body already is left as it is.
@@ -199,10 +202,10 @@ def read_fit(path: Path) -> Fit:
     if path.suffix.lower() == ".toml":
         named = _document(path).toml().data.get("body")
         if named is None:
-            return _bare(measured_body())
+            return bare_fit(measured_body())
         path = path.parent / str(named)
     data: Any = _document(path).json().data
-    fitted = _bare(read_body(path))
+    fitted = bare_fit(read_body(path))
     if "measured" not in data or "fit" not in data:
         return fitted
     try:
@@ -229,7 +232,8 @@ def _document(path: Path) -> Document:
     return Document(path, "an instrument or body file", MeasurementError).read(path)
 
 
-def _bare(body: Body) -> Fit:
+def bare_fit(body: Body) -> Fit:
+    """A body of which nothing was measured."""
     band = (100.0, min(8000.0, body.radiation_rate / 2.0))
     return Fit(body, Measurement(None, None), band, None, None, ())
 

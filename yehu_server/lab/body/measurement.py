@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -48,9 +49,9 @@ class Measurement:
 
 
 def read(
-    paths: Sequence[Path],
+    paths: Sequence[str | os.PathLike[str]],
     *,
-    radiation: Sequence[Path] = (),
+    radiation: Sequence[str | os.PathLike[str]] = (),
     channels: str | None = None,
     radiation_channels: str | None = None,
     kind: str | None = None,
@@ -59,9 +60,9 @@ def read(
 
     Parameters
     ----------
-    paths : sequence of Path
+    paths : sequence of path
         Sound files of taps, tables (CSV) of taps or responses, universal files.
-    radiation : sequence of Path
+    radiation : sequence of path
         More of them, of which only the sound pressure is used.
     channels, radiation_channels : str, optional
         What the channels of sound files are, and their SI units at full scale, such as
@@ -76,11 +77,12 @@ def read(
     """
     if kind is not None and kind not in (*KINDS, RADIATION):
         raise MeasurementError(f"kind: {kind!r} is none of {', '.join((*KINDS, RADIATION))}")
-    taps, responses = _read_all(paths, channels, kind)
+    if any(isinstance(each, str | os.PathLike) for each in (paths, radiation)):
+        raise MeasurementError("give a list of paths, such as ['tap1.wav', 'tap2.wav']")
+    files, others = list(map(Path, paths)), list(map(Path, radiation))
+    taps, responses = _read_all(files, channels, kind)
     radiation_kind = RADIATION if radiation else None
-    other_taps, other_responses = _read_all(
-        radiation, radiation_channels or channels, radiation_kind
-    )
+    other_taps, other_responses = _read_all(others, radiation_channels or channels, radiation_kind)
     measured = average(taps, responses)
     if radiation:
         other = average([_pressure_alone(tap) for tap in other_taps], other_responses)
@@ -90,7 +92,7 @@ def read(
             highest_hz=min(measured.highest_hz, other.highest_hz),
             warnings=(*measured.warnings, *(f"radiation: {line}" for line in other.warnings)),
         )
-    return replace(measured, sources=tuple(path.name for path in (*paths, *radiation)))
+    return replace(measured, sources=tuple(path.name for path in (*files, *others)))
 
 
 def _read_all(

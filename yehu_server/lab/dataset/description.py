@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +23,11 @@ from yehu_server.playing.calibration import calibration_key
 from yehu_server.scores.gesture import CONTROLS, sample_rate
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import PLAIN_NAME
-from yehu_server.util.values import choice, choices, number, whole
+from yehu_server.util.values import brief, choice, choices, number, whole
 
 A4 = 440.0  # Hz
+LICENCE = "MIT"  # where none is told: that of this program, and of the body it was measured with
+LONGEST_LINE = 1000
 KINDS = ("strokes", "notes")
 MOST_SOUNDS = 10_000_000
 LONGEST_S = 60.0  # of one sound
@@ -88,6 +90,10 @@ class Description:
         Of SIGNALS, kept at each sample.
     quantities : Quantities
         The instrument before it is tuned.
+    about, license : str
+        A sentence for people, and the licence of the sounds (its SPDX name).
+    data : mapping
+        The entries of its file.
     key : str
         Hash of all that a sound depends on beside the code; how many there are is no part of it.
     """
@@ -102,6 +108,9 @@ class Description:
     signals: tuple[str, ...]
     quantities: Quantities
     key: str
+    about: str = ""
+    license: str = LICENCE
+    data: Mapping[str, Any] = field(default_factory=dict)
 
     def drawn(self, number: int) -> dict[str, float]:
         """The values of a sound, by name."""
@@ -144,7 +153,9 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
     keep = table.table("keep")
     quantities = override(Quantities(), table.table("instrument"), folder)
     body = calibration_key(rate, quantities, A4)  # files that are named may change
-    text = json.dumps({**table.data, "count": 0, "about": ""}, sort_keys=True, default=str)
+    told = {"count": 0, "about": ""}  # of no matter to a sound
+    kept = {name: entry for name, entry in table.data.items() if name != "license"}
+    text = json.dumps(kept | told, sort_keys=True, default=str)
     description = Description(
         kind=kind,
         count=table.read("count", whole, 100, 1, MOST_SOUNDS),
@@ -156,10 +167,20 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
         signals=tuple(keep.read("signals", choices, [], SIGNALS)),
         quantities=quantities,
         key=hashlib.sha256(f"{text}{body}".encode()).hexdigest(),
+        about=table.read("about", _line, ""),
+        license=table.read("license", _line, LICENCE),
+        data=table.data,
     )
     keep.only()
-    table.only("about")
+    table.only()
     return description
+
+
+def _line(value: Any) -> str:
+    """A line of text."""
+    if not isinstance(value, str) or len(value) > LONGEST_LINE or not value.isprintable():
+        raise ParameterError(f"expected a line of text, got {brief(value)}")
+    return value
 
 
 def _draws(table: Fields, kind: str) -> dict[str, Distribution]:

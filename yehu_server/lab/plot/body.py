@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,10 @@ from yehu_server.lab.body.curve import Curve, as_db
 from yehu_server.lab.body.report import lines_of
 from yehu_server.lab.plot import png
 from yehu_server.lab.plot.axes import ABOVE
+from yehu_server.util.extras import need
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SIZE = (15.0, 9.5)  # inches
 MEASURED, FITTED, LEFT = "0.55", "#c03a2b", "#1f5fa8"
@@ -36,6 +40,23 @@ def write_picture(fit: Fit, target: Path, *, overwrite: bool = False) -> None:
     """
     png.check_picture(target, "a picture", overwrite=overwrite)
     png.write_picture(target, SIZE, lambda figure: _draw(figure, fit), overwrite=overwrite)
+
+
+def draw(fit: Fit, figure: Figure | None = None) -> Figure:
+    """Draw a fit into a figure, by default a new one.
+
+    Raises
+    ------
+    ParameterError
+        Where matplotlib is missing.
+    """
+    need("matplotlib", "the picture of a body", "plots")
+    if figure is None:
+        import matplotlib.pyplot as plt
+
+        figure = plt.figure(figsize=SIZE, layout="constrained")
+    _draw(figure, fit)
+    return figure
 
 
 def _draw(figure: Any, fit: Fit) -> None:

@@ -3,43 +3,32 @@
 from __future__ import annotations
 
 import json
+import math
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.lab.labels import as_data, as_json, attributes, hash_of, label_of
 from yehu_server.lab.regimes.judge import FINDING
 from yehu_server.lab.regimes.names import HELMHOLTZ, REGIMES
-from yehu_server.lab.sweeps.gesture_strokes import ACCELERATION
 from yehu_server.lab.sweeps.refining import fill
 from yehu_server.lab.sweeps.study import Study, study_of
-from yehu_server.scores.gesture import CONTROLS
 from yehu_server.util import __version__
 from yehu_server.util.extras import need
 from yehu_server.util.files import anything, replacing
+
+if TYPE_CHECKING:
+    import xarray
 
 Array = Any
 
 FORMAT, VERSION = "yehu-server sweep", 1
 COLUMNS = tuple(FINDING.names or ())
-UNITS = {
-    "slips": "a period",
-    "first_slip_s": "s",
-    "helmholtz_s": "s",
-    "pitch_hz": "Hz",
-    "level_db": "dB re 1 Pa",
-    "brightness_hz": "Hz",
-}
-
-
-def unit_of(axis: str) -> str:
-    """The unit of an axis; of an entry of the instrument, none is known."""
-    if axis == ACCELERATION:
-        return "m/s²"
-    return CONTROLS[axis].unit if axis in CONTROLS else ""
 
 
 @dataclass(frozen=True)
@@ -49,8 +38,9 @@ class Result:
     Attributes
     ----------
     meta : dict
-        ``format``, ``version``, ``regimes``, ``study`` (the data of its file), ``gesture``,
-        ``refine``, ``levels``.
+        ``format``, ``version``, ``made_by``, ``regimes``, ``study`` (the data of its file),
+        ``gesture``, ``refine``, ``levels``; ``sample_rate`` and ``instrument`` (all quantities) of
+        the first stroke.
     axes : dict
         The values of the finest grid along each axis, by name.
     numbers : ndarray [dtype=int64]
@@ -116,10 +106,16 @@ class Result:
         """
         return study_of(dict(self.meta["study"]), Path())
 
-    def to_xarray(self) -> Any:
-        """Everything as an ``xarray.Dataset`` on the finest grid, by the names of the axes.
+    def __repr__(self) -> str:
+        axes = ", ".join(f"{name} ({len(values)})" for name, values in self.axes.items())
+        return f"<yehu_server.Sweep of {len(self)} strokes over {axes}>"
 
-        ``computed`` tells which points were; see `grid` for the others.
+    def to_xarray(self) -> xarray.Dataset:
+        """Everything as a data set on the finest grid, by the names of the axes.
+
+        ``computed`` tells which points were; see `grid` for the others. Its attributes are text and
+        numbers, so that any format holds them: the version, the study as JSON, the rate, and the
+        hash of the values.
 
         Raises
         ------
@@ -132,20 +128,29 @@ class Result:
         names = tuple(self.axes)
         computed = np.zeros(self.shape, bool)
         computed.reshape(-1)[self.numbers] = True
+        grids = {name: self.grid(name) for name in self.columns} | {"computed": computed}
         found: dict[str, Any] = {
-            name: (names, self.grid(name), {"units": UNITS.get(name, "")}) for name in self.columns
+            name: (names, grid, attributes(label_of(name))) for name, grid in grids.items()
         }
-        found["computed"] = (names, computed, {})
         axes = {
-            name: (name, values, {"units": unit_of(name)}) for name, values in self.axes.items()
+            name: (name, values, attributes(label_of(name))) for name, values in self.axes.items()
         }
         # As CF conventions have it: names of the numbers, without spaces.
         found["regime"][2]["flag_values"] = list(range(len(self.regimes)))
         meanings = " ".join(name.replace(" ", "_") for name in self.regimes)
         found["regime"][2]["flag_meanings"] = meanings
-        return xarray.Dataset(found, coords=axes)
+        study = self.meta["study"]
+        told = {
+            "title": str(study.get("about", "")),
+            "source": str(self.meta["made_by"]),
+            "sample_rate": float(self.meta.get("sample_rate", math.nan)),  # none in older files
+            "instrument": as_json(self.meta.get("instrument", {})),
+            "study": as_json(study),
+            "sha256": hash_of({**self.axes, "numbers": self.numbers, **self.columns}),
+        }
+        return xarray.Dataset(found, coords=axes, attrs=told)
 
-    def save(self, target: Path) -> None:
+    def save(self, target: str | os.PathLike[str]) -> None:
         """Write one compressed ``.npz`` file; the same result makes the same bytes.
 
         Raises
@@ -153,7 +158,7 @@ class Result:
         OutputError
             Where it cannot be written.
         """
-        with replacing(target, anything) as partial, partial.open("wb") as file:
+        with replacing(Path(target), anything) as partial, partial.open("wb") as file:
             np.savez_compressed(file, allow_pickle=False, **self.arrays())
 
     def arrays(self) -> dict[str, Array]:
@@ -163,14 +168,15 @@ class Result:
         return {"meta": meta, **axes, "numbers": self.numbers, **self.columns}
 
     @classmethod
-    def load(cls, path: Path) -> Result:
-        """Read a file that `save` wrote.
+    def load(cls, path: str | os.PathLike[str]) -> Result:
+        """Read a file that `save` or the command wrote.
 
         Raises
         ------
         ScoreError
             Where it cannot be read, or is none.
         """
+        path = Path(path)
         try:
             with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
                 return cls.of({name: file[name] for name in file.files})
@@ -212,6 +218,7 @@ def result_of(study: Study, numbers: Array, findings: Array) -> Result:
     """The result of the points of a study, in any order."""
     order = np.argsort(numbers, kind="stable")
     data = {name: entry for name, entry in study.data.items() if name != "folder"}
+    first = study.bow.gesture(study.axes, [0] * len(study.axes))
     meta = {
         "format": FORMAT,
         "version": VERSION,
@@ -221,6 +228,8 @@ def result_of(study: Study, numbers: Array, findings: Array) -> Result:
         "spreads": [axis.spread for axis in study.axes],
         "refine": list(study.refine),
         "levels": study.levels,
+        "sample_rate": first.sample_rate,
+        "instrument": as_data(first.quantities),
         "study": data,
         "gesture": data.get("gesture", {}),
     }

@@ -1,0 +1,66 @@
+"""``yehu.body``: bodies are looked at, fitted, kept and played."""
+
+from __future__ import annotations
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import soundfile
+from lab.body import bodies
+
+import yehu_server as yehu
+from yehu_server import YehuError
+
+CHANNELS = "force=40,velocity=1"
+
+
+def test_the_measured_body_is_known_in_closed_form():
+    body = yehu.body.load()
+    hz = np.geomspace(100.0, 6000.0, 50)
+    np.testing.assert_allclose(body.admittance(hz), bodies.admittance(hz), rtol=1e-9)
+    np.testing.assert_allclose(body.radiation(hz), bodies.radiation(hz), rtol=1e-9)
+    np.testing.assert_allclose(body.modes.mass, bodies.MASS)
+    np.testing.assert_allclose(body.modes.resistance, bodies.DAMPING)
+    assert body.admittance(440.0) == pytest.approx(bodies.admittance([440.0])[0])
+    assert np.shape(body.radiation(np.full((2, 3), 440.0))) == (2, 3)
+    assert repr(body) == "<yehu_server.body.Body of 11 modes and 25 sections>"
+
+
+def test_a_body_of_files_is_fitted_drawn_kept_and_played(tmp_path):
+    mpl.use("Agg")
+    taps = yehu.body.made_taps(count=3, noise_db=60.0, seconds=0.4)
+    names = [str(tmp_path / f"{number}.wav") for number in range(len(taps))]
+    for name, tap in zip(names, taps, strict=True):
+        columns = np.stack([tap.force / 40.0, tap.velocity], axis=1)
+        soundfile.write(name, columns, round(tap.rate), subtype="FLOAT")
+    measured = yehu.body.read(names, channels=CHANNELS)
+    found = yehu.body.fit(measured, band_hz=(300.0, 1000.0), modes=np.int64(4))
+    assert (len(found.modes.mass), found.band_hz) == (4, (300.0, 1000.0))
+    assert found.admittance(439.0) == pytest.approx(bodies.admittance([439.0])[0], rel=0.02)
+    assert any("radiation" in line for line in found.warnings)
+    assert {ax.get_ylabel() for ax in found.plot().axes} >= {"admittance\ndB of 1 s/kg"}
+    written = found.save(str(tmp_path / "mine.toml"))
+    again = yehu.body.load(str(tmp_path / "mine.toml"))
+    assert (again.body, again.warnings) == (found.body, found.warnings)
+    assert len(written) == 2
+    assert yehu.Instrument(instrument=found).quantities.body == found.body
+    assert yehu.body.load(yehu.Instrument(instrument=found).quantities).body == found.body
+
+
+@pytest.mark.parametrize(
+    ("act", "names"),
+    [
+        (lambda: yehu.body.load("/no/such.toml"), "such.toml"),
+        (lambda: yehu.body.load(7), "source"),
+        (lambda: yehu.body.fit("tap1.wav"), "measurement"),
+        (lambda: yehu.body.read("tap1.wav"), "list of paths"),
+        (lambda: yehu.body.fit(yehu.body.load().measurement), "nothing was measured"),
+        (lambda: yehu.body.fit(yehu.body.load().measurement, modes=17), "modes"),
+        (lambda: yehu.body.fit(yehu.body.load().measurement, band_hz=(1.0, np.nan)), "band_hz"),
+    ],
+)
+def test_what_is_wrong_is_told_in_one_line(act, names):
+    with pytest.raises(YehuError) as refused:
+        act()
+    assert names in str(refused.value)
+    assert "\n" not in str(refused.value)

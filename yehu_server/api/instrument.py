@@ -164,7 +164,8 @@ class Instrument:
     @property
     def pitch(self) -> float | None:
         """The pitch that is played (fractional MIDI note); None in silence."""
-        return self._wishes.pitch
+        pitch = self._wishes.pitch
+        return None if pitch is None else pitch + self._playing.higher
 
     # -- notes ---------------------------------------------------------------------------------
 
@@ -176,7 +177,7 @@ class Instrument:
         Parameters
         ----------
         note : str or float
-            Such as ``"A4"``, ``"F#5+25"`` (cents) or 69; F4 (65) to F6 (89).
+            Such as ``"A4"``, ``"F#5+25"`` (cents) or 69; of a yehu F4 (65) to F6 (89).
         velocity : float
             How hard it is struck, 0 to 127 as in MIDI.
         at : float, optional
@@ -187,7 +188,7 @@ class Instrument:
         ParameterError
             Where one is out of range, or the time is over.
         """
-        pitch = playable(note)
+        pitch = playable(note, self._playing.higher)
         struck = number(velocity, "velocity", 0.0, 127.0) / 127.0
         values = {"/playing/velocity": struck}
         self._wishes.note_on(Key(CHANNEL, pitch), values, frame=self._frame(at))
@@ -209,7 +210,8 @@ class Instrument:
 
     def slide(self, note: str | float, *, at: float | None = None) -> None:
         """Slide the finger to a pitch: that of the sounding note, or of a bow drawn by hand."""
-        self._wishes.slide(playable(note), frame=self._frame(at))
+        higher = self._playing.higher
+        self._wishes.slide(playable(note, higher) - higher, frame=self._frame(at))
         self._check()
 
     def bend(self, semitones: float, *, at: float | None = None) -> None:

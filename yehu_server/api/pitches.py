@@ -8,7 +8,7 @@ from numbers import Real
 
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
 from yehu_server.errors import ParameterError
-from yehu_server.playing.pitch_and_level import note_name
+from yehu_server.playing.stringing import range_text
 
 SEMITONES = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
 ACCIDENTALS = {"#": 1, "♯": 1, "b": -1, "♭": -1}
@@ -51,8 +51,13 @@ def pitch_of(note: str | float) -> float:
     return pitch
 
 
-def playable(note: str | float) -> float:
+def playable(note: str | float, higher: int = 0) -> float:
     """Return the pitch of a note of the instrument; see `pitch_of`.
+
+    Parameters
+    ----------
+    higher : int
+        Semitones by which its strings are tuned higher than a yehu's.
 
     Raises
     ------
@@ -60,9 +65,8 @@ def playable(note: str | float) -> float:
         Where it is out of the instrument's range.
     """
     pitch = pitch_of(note)
-    if not LOWEST_NOTE - OPEN_WITHIN < pitch < HIGHEST_NOTE + OPEN_WITHIN:
-        ends = f"{note_name(LOWEST_NOTE)} to {note_name(HIGHEST_NOTE)}"
-        raise ParameterError(
-            f"{note}: the instrument plays {ends} ({LOWEST_NOTE} to {HIGHEST_NOTE})"
-        )
+    lowest, highest = LOWEST_NOTE + higher, HIGHEST_NOTE + higher
+    if not lowest - OPEN_WITHIN < pitch < highest + OPEN_WITHIN:
+        ends = f"{range_text(higher)} ({lowest} to {highest})"
+        raise ParameterError(f"{note}: the instrument plays {ends}")
     return pitch

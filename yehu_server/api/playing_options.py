@@ -83,4 +83,5 @@ def playing_setup_of(
         bowing=None if practice is None else read_practice(path_of(practice, "practice")),
         practice=None if practice is None else path_of(practice, "practice"),
     )
-    return PlayingSetup(rate, quantities_of(instrument), playing)
+    quantities = quantities_of(instrument)
+    return PlayingSetup(rate, quantities, playing.for_instrument(quantities))

@@ -160,7 +160,7 @@ def render(
     mapping : str
         What controllers of a MIDI file move: the name of a mapping, or a file.
     out_of_range : "transpose", "clamp" or "skip"
-        What happens to notes outside F4 to F6.
+        What happens to notes outside the two octaves from the lower string, F4 to F6 of a yehu.
     channels : iterable of int, optional
         The MIDI channels to play, 1 to 16; by default all but 10.
     song : int, optional
@@ -222,6 +222,7 @@ def render(
         all_parts=channels is not None,
         in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
         is_mpe=playing.mapping.mpe,
+        higher=playing.higher,
     )
     if isinstance(score, Score):
         read = score
@@ -276,7 +277,7 @@ def _remarks(summary: Summary) -> list[str]:
         )
     if summary.notes_out_of_range:
         notes = counted(summary.notes_out_of_range, "note")
-        lines.append(f"{notes} outside F4 to F6, {FATE[summary.policy]}")
+        lines.append(f"{notes} outside {summary.range}, {FATE[summary.policy]}")
     if summary.lost_states:
         lines.append(f"the state was lost and set to rest: {counted(summary.lost_states, 'time')}")
     return lines

@@ -91,7 +91,7 @@ def rendered(
         is_mono=arguments.mono,
         jobs=arguments.jobs,
     )
-    scores = _scores(arguments, playing)
+    scores = _scores(arguments, options.playing)
     players = _players(arguments, scores, options, phrasing)
     read = [*arguments.midi, *playing.files, *instrument, *players.files]
     stems = _stems(arguments, options, players)
@@ -242,6 +242,7 @@ def _scores(arguments: argparse.Namespace, playing: PlayingOptions) -> list[Scor
         all_parts=arguments.ensemble is not None or arguments.channel is not None,
         in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
         is_mpe=playing.mapping.mpe,
+        higher=playing.higher,
     )
     scores = []
     for path in arguments.midi:

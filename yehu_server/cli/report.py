@@ -48,7 +48,7 @@ def render_report(target: Path, summary: Summary) -> str:
         lines.append(f"channel 10 is percussion: {notes} not played; --channel 10 plays them")
     if summary.notes_out_of_range:
         notes = counted(summary.notes_out_of_range, "note")
-        lines.append(f"{notes} outside F4 to F6, {FATE[summary.policy]}")
+        lines.append(f"{notes} outside {summary.range}, {FATE[summary.policy]}")
     if summary.unknown_programs:
         programs = ", ".join(map(str, summary.unknown_programs))
         lines.append(f"no preset for the programs {programs}: ignored")

@@ -29,6 +29,7 @@ from yehu_server.playing.calibration import (
     starting_tension,
 )
 from yehu_server.playing.pitch_and_level import cents
+from yehu_server.playing.stringing import as_for_a_yehu, players_a4
 from yehu_server.util.files import read_text, why
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
@@ -55,7 +56,8 @@ def calibration_for(
     rate : float
         Sample rate (Hz).
     a4 : float
-        Reference pitch (Hz).
+        Reference pitch (Hz) of the music; that of the player's tables is another where the strings
+        are tuned elsewhere than a yehu's (`stringing`).
     progress : callable, optional
         Called with the number of notes done and of all notes, where it is measured.
     """
@@ -66,7 +68,8 @@ def calibration_for(
     path = data_folder() / f"calibration-{key}.json"
     found = _kept(path, quantities, a4)
     if found is None:
-        found = calibrate(rate, quantities, a4=a4, progress=progress)
+        strung, own_a4 = as_for_a_yehu(quantities), players_a4(quantities, a4)
+        found = calibrate(rate, strung, a4=own_a4, progress=progress)
         try:
             write_sealed(path, json.dumps(as_data(found)).encode())
         except OSError as error:
@@ -99,14 +102,15 @@ def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibratio
         levels = _tables(data["levels"], 1, -MOST_LEVEL_DB, MOST_LEVEL_DB)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise ParameterError("is not a calibration") from error
-    if found != a4:
+    own_a4 = players_a4(quantities, a4)
+    if found != own_a4:
         raise ParameterError(f"is for another A4, {found:g} Hz")
     for i, tension in enumerate((first, second)):
         usual = starting_tension(quantities, a4, i)
         off = cents(tension, usual) / 2.0 if tension > 0.0 else math.inf
         if not abs(off) <= MOST_CENTS:
             raise ParameterError(f"has a tension of {tension:g} N where {usual:.3g} is usual")
-    return Calibration(a4, (first, second), sharpening, levels)
+    return Calibration(own_a4, (first, second), sharpening, levels)
 
 
 def _tables(data: Any, more_rows: int, lo: float, hi: float) -> Tables:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping as Values
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.playing.preset_folders import Presets
+from yehu_server.playing.stringing import higher_of
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning
 from yehu_server.playing.wishes import WishPoster
@@ -34,6 +35,8 @@ class PlayingOptions:
         The values of the preset.
     preset : Path, optional
         The file of the preset.
+    higher : int
+        Semitones by which the instrument is tuned higher than a yehu; the tuning counts them.
     """
 
     mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
@@ -49,6 +52,13 @@ class PlayingOptions:
     preset: Path | None = None
     bowing: Any = field(default=None, compare=False)  # how notes are bowed; None: as shipped
     practice: Path | None = None  # the file of `bowing`
+    higher: int = 0
+
+    def for_instrument(self, quantities: Quantities) -> PlayingOptions:
+        """The same options for an instrument, whose strings may be tuned elsewhere."""
+        more = higher_of(quantities) - self.higher
+        moved = self.tuning.moved(-more)
+        return replace(self, tuning=moved, higher=self.higher + more) if more else self
 
     @property
     def files(self) -> tuple[Path, ...]:

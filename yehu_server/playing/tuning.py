@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
 
@@ -84,6 +84,12 @@ class Tuning:
         keys = self.keys or ()
         pairs = zip(keys, keys[12:], strict=False)
         return all(abs(b - a - 12.0) < 0.01 for a, b in pairs if a is not None and b is not None)
+
+    def moved(self, semitones: float) -> Tuning:
+        """The tuning whose keys all sound so many semitones higher."""
+        keys = self.keys or tuple(map(float, KEYS))
+        pitches = tuple(None if pitch is None else pitch + semitones for pitch in keys)
+        return replace(self, keys=pitches) if semitones else self
 
     def pitch(self, note: float, a4: float) -> float | None:
         """Return the pitch of a key as a fractional MIDI note relative to `a4` (Hz).

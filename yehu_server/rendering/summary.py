@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Protocol
 
+from yehu_server.playing.stringing import range_text
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.rendering.performance import PartPlayer, Performance
 
@@ -50,6 +51,7 @@ class Summary:
     rms: float
     notes_played: int
     notes_out_of_range: int
+    range: str  # lowest and highest note
     policy: RangePolicy
     unconverged_solves: int
     lost_states: int
@@ -85,6 +87,7 @@ def summary_of(performance: Performance, sound: Written, rate: int, elapsed_s: f
         rms=sound.rms,
         notes_played=sum(player.wishes.notes_played for player in players),
         notes_out_of_range=sum(player.wishes.notes_out_of_range for player in players),
+        range=range_text(players[0].part.playing.higher),
         policy=players[0].part.playing.policy,
         unconverged_solves=sum(each.unconverged_solves for each in instruments),
         lost_states=performance.ensemble.lost_states,

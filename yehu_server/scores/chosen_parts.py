@@ -90,16 +90,18 @@ def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
     return replace(score, events=tuple(events), parts=tuple(kept))
 
 
-def midi_in_range(score: Score, *, is_mpe: bool) -> Score:
+def midi_in_range(score: Score, *, is_mpe: bool, higher: int = 0) -> Score:
     """Return a score of MIDI with each part moved by octaves into range, and a remark of that.
 
     Parameters
     ----------
     is_mpe : bool
         Whether the notes of a part are on channels of their own: all are one part then.
+    higher : int
+        Semitones by which the instrument is tuned higher than a yehu.
     """
     notes = notes_of(score)
-    higher = transposed_keys(score)
+    transposed = transposed_keys(score)
     by_part: dict[str, list[int]] = {}
     for number, note in enumerate(notes):
         track = score.events[note.begins].track
@@ -111,10 +113,11 @@ def midi_in_range(score: Score, *, is_mpe: bool) -> Score:
         own = [notes[number] for number in numbers]
         octaves = octaves_of(
             [
-                Sounding(note.start_s, note.end_s, (note.key + higher.get(note.begins, 0.0),))
+                Sounding(note.start_s, note.end_s, (note.key + transposed.get(note.begins, 0.0),))
                 for note in own
             ],
             REST_S,
+            higher,
         )
         if octaves.told:
             told.append((name, octaves.told))
@@ -133,7 +136,7 @@ def midi_in_range(score: Score, *, is_mpe: bool) -> Score:
             events.append(replace(event, message=message))
         else:
             events.append(event)
-    line = line_of([("" if len(by_part) == 1 else name, how) for name, how in told])
+    line = line_of([("" if len(by_part) == 1 else name, how) for name, how in told], higher)
     remarks = (*score.remarks, *filter(None, (line.replace(":  ", ": "),)))
     return replace(score, events=tuple(events), remarks=remarks)
 

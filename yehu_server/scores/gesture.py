@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.physics import layout
-from yehu_server.core.physics.grid import check_rate
+from yehu_server.core.physics.grid import LOWEST_RATE, check_rate
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.util.documents import Document, Fields
@@ -20,6 +20,7 @@ from yehu_server.util.values import brief, number
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Curve = tuple[tuple[float, float], ...]
 
+HIGHEST_RATE = 1e6  # Hz, of the model alone, to see how it converges; players end at 192 kHz
 MAX_DURATION_S = 3600.0
 MOST_BYTES = 16 * 2**20
 
@@ -152,6 +153,11 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
 
 def sample_rate(value: Any) -> float:
     """A sample rate (Hz) that the model runs at; raises ParameterError."""
+    return number(value, LOWEST_RATE, HIGHEST_RATE, "Hz")
+
+
+def played_rate(value: Any) -> float:
+    """A sample rate (Hz) that a tuned instrument plays at; raises ParameterError."""
     rate = number(value)
     check_rate(rate)
     return rate

@@ -8,7 +8,7 @@ who moves each note by itself, as in live playing.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
 
@@ -61,7 +61,7 @@ class Octaves:
         return ", ".join(words)
 
 
-def octaves_of(notes: Sequence[Sounding], rest: float) -> Octaves:
+def octaves_of(notes: Sequence[Sounding], rest: float, higher: int = 0) -> Octaves:
     """Return by how many octaves each of some notes is moved.
 
     Parameters
@@ -70,7 +70,13 @@ def octaves_of(notes: Sequence[Sounding], rest: float) -> Octaves:
         In the order of their beginnings.
     rest : float
         How long a silence is that parts phrases, in the unit of the notes.
+    higher : int
+        Semitones by which the instrument is tuned higher than a yehu.
     """
+    if higher:
+        notes = [
+            replace(note, pitches=tuple(pitch - higher for pitch in note.pitches)) for note in notes
+        ]
     whole = _best(notes, 0)
     phrases = _phrases(notes, rest)
     of_notes: list[int] = []

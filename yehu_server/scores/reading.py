@@ -123,12 +123,15 @@ class How:
         Whether parts are moved by octaves as a whole, to fit the instrument.
     is_mpe : bool
         Whether the channels of a MIDI file are notes, and not parts.
+    higher : int
+        Semitones by which the instrument is tuned higher than a yehu.
     """
 
     parts: Sequence[str] = ()
     all_parts: bool = False
     in_range: bool = True
     is_mpe: bool = False
+    higher: int = 0
 
 
 USUAL = How()
@@ -188,7 +191,7 @@ def performed_part(written: Written, how: How = USUAL) -> Score:
         plays = usual_parts(written)
     remarks = [*written.remarks, told_others(written, plays)]
     if how.in_range:
-        written, line = moved(written, plays)
+        written, line = moved(written, plays, how.higher)
         remarks.append(line)
     remarks = [*filter(None, remarks)]
     return performed(replace(written, remarks=tuple(remarks)), plays)
@@ -204,7 +207,9 @@ def _midi_played(score: Score, how: How) -> Score:
     if not has_notes([score]):
         line = "has controllers and no note: nothing sounds"
         return replace(score, remarks=(*score.remarks, line))
-    return midi_in_range(score, is_mpe=how.is_mpe) if how.in_range else score
+    if not how.in_range:
+        return score
+    return midi_in_range(score, is_mpe=how.is_mpe, higher=how.higher)
 
 
 def read_written(path: Path, song: int | None = None) -> Written:

@@ -20,7 +20,8 @@ from yehu_server.lab.dataset.draws import (
 )
 from yehu_server.params.table import find
 from yehu_server.playing.calibration import calibration_key
-from yehu_server.scores.gesture import CONTROLS, sample_rate
+from yehu_server.playing.stringing import higher_of
+from yehu_server.scores.gesture import CONTROLS, played_rate
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import PLAIN_NAME
 from yehu_server.util.values import brief, choice, choices, number, whole
@@ -149,7 +150,7 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
     """
     table = Fields.of(data)
     kind = table.read("kind", choice, KINDS[0], KINDS)
-    rate = table.read("sample_rate", sample_rate, 44100.0)
+    rate = table.read("sample_rate", played_rate, 44100.0)
     keep = table.table("keep")
     quantities = override(Quantities(), table.table("instrument"), folder)
     body = calibration_key(rate, quantities, A4)  # files that are named may change
@@ -161,7 +162,7 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
         count=table.read("count", whole, 100, 1, MOST_SOUNDS),
         seed=table.read("seed", whole, 0, 0, 2**63 - 1),
         rate=rate,
-        draws=_draws(table.table("draw"), kind),
+        draws=_draws(table.table("draw"), kind, higher_of(quantities)),
         splits=_splits(table.table("split")),
         every=keep.read("every", whole, 64, 1, 1 << 20),
         signals=tuple(keep.read("signals", choices, [], SIGNALS)),
@@ -183,8 +184,8 @@ def _line(value: Any) -> str:
     return value
 
 
-def _draws(table: Fields, kind: str) -> dict[str, Distribution]:
-    known = STROKES if kind == "strokes" else NOTES
+def _draws(table: Fields, kind: str, higher: int) -> dict[str, Distribution]:
+    known = STROKES if kind == "strokes" else NOTES | {"pitch": _higher(NOTES["pitch"], higher)}
     draws: dict[str, Distribution] = {
         name: Uniform(default, default)
         for name, (default, _, _) in known.items()
@@ -209,6 +210,12 @@ def _draws(table: Fields, kind: str) -> dict[str, Distribution]:
         return found
 
     return draws | table.each(draw)
+
+
+def _higher(pitch: tuple[float, float, float], by: int) -> tuple[float, float, float]:
+    """Default and bounds of a pitch, on a fiddle that is tuned higher."""
+    usual, lo, hi = pitch
+    return usual + by, lo + by, hi + by
 
 
 def _splits(table: Fields) -> tuple[tuple[str, float], ...]:

@@ -11,10 +11,11 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.layout import MAX_FINGERS, control_columns, probe_columns
 from yehu_server.errors import ParameterError
-from yehu_server.lab.dataset.description import A4, Description
+from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.sound import Sound, calibrated, regimes
 from yehu_server.lab.simulation import signals
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.stringing import higher_of
 from yehu_server.playing.wishes import Key
 
 Array = Any
@@ -50,13 +51,14 @@ def melody(description: Description, number: int) -> Sound:
         begin, end = (instrument.frames(1e3 * note[name]) for name in ("begin", "end"))
         wishes.write("/playing/note_length", note["length"], frame=begin)
         struck = {"/playing/velocity": note["velocity"] / 127.0}
-        wishes.note_on(key, struck, frame=begin, tuned=note["pitch"])
+        played = note["pitch"] - higher_of(description.quantities)
+        wishes.note_on(key, struck, frame=begin, tuned=played)
         wishes.note_off(key, frame=end)
         end_s = max(end_s, note["end"])
     frames = instrument.frames(1e3 * (end_s + drawn["tail"]))
     if frames > LONGEST_S * rate:
         raise ParameterError(f"lasts {frames / rate:.0f} s, longer than {LONGEST_S:g}")
-    return _played(instrument, frames, drawn, rate)
+    return _played(instrument, frames, drawn, rate, calibration.a4)
 
 
 def _written(description: Description, number: int, count: int) -> list[dict[str, float]]:
@@ -72,7 +74,7 @@ def _written(description: Description, number: int, count: int) -> list[dict[str
     return notes
 
 
-def _played(instrument: Any, frames: int, drawn: dict[str, Any], rate: float) -> Sound:
+def _played(instrument: Any, frames: int, drawn: dict[str, Any], rate: float, a4: float) -> Sound:
     rig = np.frombuffer(instrument.memory, RIG, count=1)[0]
     audio = np.zeros(frames, np.float32)
     probes = np.zeros((frames, probe_columns(MAX_FINGERS)))
@@ -85,7 +87,7 @@ def _played(instrument: Any, frames: int, drawn: dict[str, Any], rate: float) ->
         controls[start:end] = rig["output"]["controls"][: end - start]
         pitch[start:end] = instrument.meters()["pitch"]
     arrays = signals(probes, controls, rate)
-    asked = A4 * np.exp2((pitch - 69.0) / 12.0)
+    asked = a4 * np.exp2((pitch - 69.0) / 12.0)
     return Sound(
         audio=audio,
         arrays=arrays,

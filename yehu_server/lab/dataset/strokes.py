@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.player.calibration import OPEN_NOTES, frequency_hz, wave_speed
-from yehu_server.lab.dataset.description import A4, Description
+from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.sound import Sound, calibrated, judged, regimes
 from yehu_server.lab.simulation import simulate
 from yehu_server.scores.gesture import Gesture
@@ -19,14 +19,14 @@ SIGN = {1: 1.0, 2: -1.0}  # of the bow's force, by the string
 def stroke(description: Description, number: int) -> Sound:
     """Make a sound of a description of kind "strokes"."""
     drawn = description.drawn(number)
-    quantities = calibrated(description)[0]
+    quantities, calibration = calibrated(description)
     string = int(drawn["string"])
     silk = quantities.strings[string - 1]
     pairs = {name: _ends(drawn, name) for name in ("stop", "bow_velocity", "bow_force")}
     places = _ends(drawn, "bow_position")
     lengths, hertz = [], []
     for stop in pairs["stop"]:
-        f = frequency_hz(OPEN_NOTES[string - 1] + stop, A4)
+        f = frequency_hz(OPEN_NOTES[string - 1] + stop, calibration.a4)
         hertz.append(f)
         lengths.append(min(wave_speed(quantities, string - 1) / (2.0 * f), quantities.bridge_x))
     is_open = max(pairs["stop"]) < OPEN_BELOW

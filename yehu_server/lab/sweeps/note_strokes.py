@@ -26,7 +26,7 @@ from yehu_server.lab.regimes.judge import check_length
 from yehu_server.lab.regimes.strokes import STROKE, ControlCurves, control_curves_of, prepared
 from yehu_server.lab.sweeps.axes import Axis
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.scores.gesture import CONTROLS, Gesture, sample_rate
+from yehu_server.scores.gesture import CONTROLS, Gesture, played_rate
 from yehu_server.util.documents import Fields
 from yehu_server.util.values import brief, number
 
@@ -100,7 +100,7 @@ class NoteBow:
         ParameterError
             Where one is wrong.
         """
-        rate = table.read("sample_rate", sample_rate, 44100.0)
+        rate = table.read("sample_rate", played_rate, 44100.0)
         duration = table.read("duration", number, 0.3, BOW_MOVES, LONGEST, "s")
         if duration == BOW_MOVES:
             table.wrong("duration", f"expected more than {BOW_MOVES} s")

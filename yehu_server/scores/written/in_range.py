@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from yehu_server.playing.stringing import range_text
 from yehu_server.scores.octaves import Octaves, Sounding, octaves_of
 from yehu_server.scores.written.mark_settings import harmonic_of
 from yehu_server.scores.written.notated import Grace, Note, Part, Written
@@ -12,9 +13,12 @@ from yehu_server.scores.written.notated import Grace, Note, Part, Written
 REST = 0.5  # quarters of silence that part phrases
 
 
-def moved_part(part: Part) -> tuple[Part, Octaves]:
-    """Return a part in range, and by how many octaves its notes were moved."""
-    octaves = octaves_of([_sounding(note) for note in part.notes], REST)
+def moved_part(part: Part, higher: int = 0) -> tuple[Part, Octaves]:
+    """Return a part in range, and by how many octaves its notes were moved.
+
+    `higher` counts semitones by which the instrument is tuned higher than a yehu.
+    """
+    octaves = octaves_of([_sounding(note) for note in part.notes], REST, higher)
     if not any(octaves.of_notes):
         return part, octaves
     notes = tuple(
@@ -23,7 +27,7 @@ def moved_part(part: Part) -> tuple[Part, Octaves]:
     return replace(part, notes=notes), octaves
 
 
-def moved(written: Written, plays: Sequence[int]) -> tuple[Written, str]:
+def moved(written: Written, plays: Sequence[int], higher: int = 0) -> tuple[Written, str]:
     """Return a score whose parts of some numbers, from 0, are in range, and a line that tells it.
 
     The line is empty where nothing is moved.
@@ -31,17 +35,18 @@ def moved(written: Written, plays: Sequence[int]) -> tuple[Written, str]:
     parts = list(written.parts)
     told = []
     for number in plays:
-        parts[number], octaves = moved_part(parts[number])
+        parts[number], octaves = moved_part(parts[number], higher)
         if octaves.told:
             told.append((written.names[number], octaves.told))
-    return replace(written, parts=tuple(parts)), line_of(told)
+    return replace(written, parts=tuple(parts)), line_of(told, higher)
 
 
-def line_of(told: Sequence[tuple[str, str]]) -> str:
+def line_of(told: Sequence[tuple[str, str]], higher: int = 0) -> str:
     """A line that tells which parts were moved, and how."""
     if not told:
         return ""
-    return f"moved to fit F4 to F6: {'; '.join(f'{name} {how}' for name, how in told)}"
+    moves = "; ".join(f"{name} {how}" for name, how in told)
+    return f"moved to fit {range_text(higher)}: {moves}"
 
 
 def _sounding(note: Note) -> Sounding:

@@ -48,6 +48,7 @@ LANGUAGES = {".c": "c", ".js": "js", ".mjs": "js", ".py": "python", ".sh": "bash
 
 _CODE = r"^(?P<fence>`{3,}).*?^(?P=fence)$|`[^`\n]+`"
 _LINK = r"(?P<words>\[[\w/.-]+\.md)?\]\((?P<link>[^)\s]+)\)"
+_FIGURE = re.compile(r"^!\[[^\]]*\]\((?P<link>[^)\s]+\.png)\)$", re.MULTILINE)
 _SOUND = re.compile(r"\[([^\]]+)\]\(([^)\s]+\.(?:flac|wav|ogg))\)")
 _LOADED = re.compile(r'<(?!a\b)[^>]*?\b(?:src|srcset|poster|data)="((?:\w+:)?//[^"]+)')
 # Kept until MkDocs ends, which may build many times (mkdocs serve).
@@ -111,6 +112,7 @@ def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: 
     uri = page.file.src_uri
     paths = {uri: path for path, uri in pages().items()}
     text = mended(markdown, paths.get(uri, f"examples/{uri}"), uri)  # or a notebook
+    text = _FIGURE.sub(r"[\g<0>](\g<link>)", text)  # a figure opens large
     return "\n\n".join(_with_players(block) for block in text.split("\n\n"))
 
 

@@ -109,6 +109,13 @@ def test_links_out_of_the_docs_lead_to_pages_of_the_site(site, content):
     assert "smith" in content("references.html").all("a", "id")
 
 
+def test_a_figure_opens_large(content):
+    page = content("playability.html")
+    figures = [name for name in page.all("img", "src") if name and name.endswith(".png")]
+    assert figures
+    assert set(figures) <= set(page.all("a", "href"))
+
+
 def test_links_to_sounds_have_players_below(site, content):
     links = re.findall(r"\((\S+\.flac)\)", (ROOT / "docs" / "playing.md").read_text("utf-8"))
     page = content("playing.html")

@@ -75,6 +75,7 @@ def _add_fit(actions: Any) -> None:
         --radiation-channels NAME=UNITS,...: what the channels of --radiation are, and their SI
             units at full scale: force, velocity, acceleration, displacement, pressure or none
         --kind: what the responses of a .csv or .uff are that does not tell
+        --sensor-mass GRAMS: of an accelerometer on the bridge, whose effect is taken off
         --band LO:HI: frequencies to fit, Hz (default: from 100 to where the hammer excites)
         --modes N: number of bridge modes, 1 to 16 (default: as many as show)
         --plot PNG: draw measured and fitted, too
@@ -85,6 +86,7 @@ def _add_fit(actions: Any) -> None:
         output={"required": True, "type": target},
         radiation={"nargs": "+", "type": Path, "default": []},
         kind={"choices": ("mobility", "receptance", "accelerance", "radiation")},
+        sensor_mass=number_within(0.0, 50.0, "g"),
         band=_band,
         modes=whole,
         plot=target,
@@ -140,6 +142,7 @@ def _read(arguments: argparse.Namespace) -> Measurement:
         channels=arguments.channels,
         radiation_channels=arguments.radiation_channels,
         kind=arguments.kind,
+        sensor_mass=None if arguments.sensor_mass is None else 1e-3 * arguments.sensor_mass,
     )
 
 

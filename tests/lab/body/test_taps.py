@@ -7,8 +7,11 @@ import pytest
 from lab.body.bodies import admittance, clipped, hit_twice, off_db, rms, with_velocity_only
 
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body import average, made_taps
-from yehu_server.lab.body.average import hammer_reach
+from yehu_server.lab.body import Curve, Modes, average, made_taps
+from yehu_server.lab.body.average import average_taps, hammer_reach
+from yehu_server.lab.body.body_file import Differences
+from yehu_server.lab.body.fitting import _doubts
+from yehu_server.lab.body.tables import Response
 from yehu_server.lab.body.tap import cut
 
 RATE = 44100.0
@@ -116,6 +119,72 @@ def test_strings_that_are_not_damped_are_told(taps):
     ringing = [looked_at(replace(tap, responses={"velocity": tap.velocity + ring})) for tap in taps]
     assert any("damp them" in line for line in average(ringing).warnings)
     assert not any("damp" in line for line in average(taps).warnings)
+
+
+def with_velocity(taps, more):
+    """Taps, as recordings of them are read, with something added to the velocity.
+
+    `more` is a function of time (s) and the peak of the velocity.
+    """
+    found = []
+    for tap in taps:
+        time = np.arange(len(tap.force)) / tap.rate
+        velocity = tap.velocity + more(time, np.abs(tap.velocity).max())
+        found.append(looked_at(replace(tap, responses={"velocity": velocity})))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("more", "told", "untold"),
+    [
+        (lambda t, peak: 0.3 * peak * np.expm1(-t / 0.3), "the sensor drifts", "rings"),
+        (lambda t, peak: 0.3 * peak * np.sin(950.0 * t), "swings before the hit", "rings"),
+    ],
+    ids=["drift", "hum"],
+)
+def test_drift_and_hum_are_no_strings(taps, more, told, untold):
+    lines = average_taps(with_velocity(taps, more)).warnings
+    assert any(told in line for line in lines)
+    assert not any(untold in line for line in lines)
+    assert not any(told in line for line in average(taps).warnings)
+
+
+def test_a_line_without_width_is_no_string():
+    """60 dB in 3 ln 10 / (damping omega): 47 s of hum at 150 Hz, 2 s of a string at 349 Hz."""
+    hz = np.array([60.0, 150.0, 349.0, 440.0])
+    damping = 3.0 * np.log(10.0) / (np.array([90.0, 47.0, 2.0, 0.1]) * 2.0 * np.pi * hz)
+    modes = Modes(hz, damping, damping * hz)
+    lines = _doubts(modes, Differences(0.1, 0.2, 0.1), (100.0, 5000.0))
+    assert [line.split(" Hz ")[0] for line in lines] == ["modes at 150", "modes at 349"]
+    assert "no width" in lines[0]
+    assert "2.0 s, as strings" in lines[1]
+
+
+@pytest.mark.parametrize("noise", [0.01, 0.03])
+def test_a_noisy_hammer_did_not_hit_twice(taps, noise):
+    random = np.random.default_rng(3)
+    for tap in taps:
+        force = tap.force + noise * tap.force.max() * random.standard_normal(len(tap.force))
+        (found, *_) = cut(tap.rate, {"force": force, "velocity": tap.velocity}, tap.name)
+        assert "the hammer hit twice" not in found.faults
+    assert "the hammer hit twice" in looked_at(hit_twice(taps[0], 0.1, 0.5)).faults
+
+
+def test_the_mass_of_an_accelerometer_is_taken_off():
+    """A mass on the bridge takes j omega m Y of each newton: Y/(1 + j omega m Y) is measured."""
+    hz = np.arange(100.0, 5000.0, 1.0)
+    turn = 2j * np.pi * hz
+    mass = 1e-3
+    loaded = admittance(hz) / (1.0 + turn * mass * admittance(hz))
+    assert np.abs(off_db(loaded, admittance(hz))).max() > 3.0
+    measured = [Response(Curve(hz, loaded * turn), "accelerance")]
+    curve = average([], measured, sensor_mass=mass).admittance
+    assert np.abs(off_db(curve.values, admittance(hz))).max() < 1e-6
+    told = "accelerometer's mass"
+    assert any(told in line for line in average([], measured).warnings)
+    assert not any(told in line for line in average([], measured, sensor_mass=0.0).warnings)
+    with pytest.raises(MeasurementError, match="sensor_mass"):
+        average([], measured, sensor_mass=1.0)
 
 
 def test_a_soft_hammer_is_told():

@@ -91,3 +91,16 @@ def test_a_browser_draws_the_page_from_the_file_alone(tmp_path, result):
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
     assert '<li><span style="background: rgb(47, 143, 91);"></span>helmholtz</li>' in done.stdout
     assert "upper (whole) and lower" in done.stdout
+
+
+def test_a_page_has_flattening_to_half_a_cent(result):
+    column = next(
+        c for c in facts_of(result, "position", "force")["columns"] if c.get("unit") == "cents"
+    )
+    assert column["step"] < 0.5
+    cells = np.frombuffer(zlib.decompress(base64.b64decode(column["data"])), np.uint8)
+    found = result.flattening().reshape(-1)
+    assert ((cells == 255) == np.isnan(found)).all()
+    inside = np.isfinite(found) & (found > column["low"]) & (found < 30.0)
+    shown = column["low"] + column["step"] * cells
+    assert np.abs(shown - found)[inside].max() <= 0.51 * column["step"]

@@ -67,3 +67,18 @@ def test_another_npz_is_no_result(tmp_path, result):
         Result.load(tmp_path / "off.npz")
     with pytest.raises(ScoreError, match="No such file"):
         Result.load(tmp_path / "none.npz")
+
+
+def test_flattening_is_told_against_the_median_of_the_same_note():
+    pitches = np.array([[440.0, 438.0, 436.0, 200.0], [880.0, 880.0, 870.0, 870.0]])
+    columns = {name: np.zeros(8) for name in COLUMNS}
+    columns |= {"pitch_hz": pitches.reshape(-1), "regime": np.array([2, 2, 2, 3, 2, 2, 2, 2])}
+    axes = {"note": np.array([69.0, 81.0]), "force": np.array([0.1, 0.2, 0.4, 0.8])}
+    meta = {"refine": [], "levels": 0}
+    found = Result(meta, axes, np.arange(8), columns).flattening()
+    expected = 1200.0 * np.log2([[440.0 / 438.0, 1.0, 436.0 / 438.0], [880.0 / 875.0] * 3])
+    expected[1, 2] = 1200.0 * np.log2(870.0 / 875.0)
+    np.testing.assert_allclose(found[:, :3], expected)
+    assert np.isnan(found[0, 3])
+    columns["regime"][:] = 3
+    assert np.isnan(Result(meta, axes, np.arange(8), columns).flattening()).all()

@@ -15,6 +15,8 @@ from yehu_server.lab.body.tap import BEFORE_S, Tap, pulse
 ENOUGH_TAPS = 3
 ROLLED_OFF_DB = 25.0  # below its largest: the hammer excites no more
 FADED = 0.1  # of the record, at its end
+DRIFTED = 0.02  # of the peak, between the rest before the hit and the end
+LOUD_BEFORE_DB = -25.0  # of what is there before the hit, against the hit
 RINGS_DB, RINGS_FROM_S = -40.0, 0.4  # a body is silent by then; strings are not
 KIND = {"velocity": "mobility", "displacement": "receptance", "acceleration": "accelerance"}
 
@@ -64,7 +66,7 @@ def average_taps(taps: Sequence[Tap]) -> Averaged:
     if len(good) < ENOUGH_TAPS:
         count = "one tap" if len(good) == 1 else f"{len(good)} taps"
         warnings.append(f"{count} only: with {ENOUGH_TAPS} or more, noise and mistakes show")
-    warnings += _strings_that_ring(good)
+    warnings += _strings_that_ring(good) + _drift(good)
     length = min(len(tap.force) for tap in good)
     forces = np.array([np.fft.rfft(_hit_alone(tap.force)[:length]) for tap in good])
     frequency_hz = np.fft.rfftfreq(length, 1.0 / first.rate)
@@ -120,7 +122,7 @@ def hammer_reach(frequency_hz: Any, power: Floats) -> float:
 
 
 def _strings_that_ring(taps: Sequence[Tap]) -> list[str]:
-    """A warning where the response lasts longer than a body's."""
+    """A warning where the response lasts longer than a body's, or was there before the hit."""
     for tap in taps:
         first, _ = pulse(tap.force)
         for what, values in tap.responses.items():
@@ -129,11 +131,37 @@ def _strings_that_ring(taps: Sequence[Tap]) -> list[str]:
             quiet = values[: max(0, first - round(1e-3 * tap.rate))]
             if what == "pressure" or late + part > len(values) or len(quiet) < 50:
                 continue
-            now, then, noise = (
-                float(np.std(piece))
-                for piece in (values[late : late + part], values[first : first + part], quiet)
+            now, then = (
+                float(np.std(_without_trend(values[start : start + part])))
+                for start in (late, first)
             )
+            noise = float(np.std(quiet))
+            if as_db(noise / then) > LOUD_BEFORE_DB:
+                told = "it swings before the hit, too"
+                return [f"{tap.name}: {told}: noise, or hum of the mains"]
             if now > 3.0 * noise and as_db(now / then) > RINGS_DB:
                 told = f"rings on {RINGS_FROM_S:g} s after the hit, as strings do"
                 return [f"{tap.name}: {told}: damp them with a strip of felt"]
     return []
+
+
+def _drift(taps: Sequence[Tap]) -> list[str]:
+    """A warning where a sensor does not come back to where it was before the hit."""
+    for tap in taps:
+        first, _ = pulse(tap.force)
+        part = round(0.1 * tap.rate)
+        for what, values in tap.responses.items():
+            quiet = values[: max(0, first - round(1e-3 * tap.rate))]
+            if what == "pressure" or len(quiet) < 50 or len(values) < first + 3 * part:
+                continue
+            drift = abs(values[-part:].mean() - quiet.mean()) / np.abs(values - quiet.mean()).max()
+            if drift > DRIFTED:
+                told = f"its {what} is {drift:.0%} of its peak off at the end"
+                return [f"{tap.name}: {told}: the sensor drifts; a high-pass filter mends it"]
+    return []
+
+
+def _without_trend(values: Floats) -> Floats:
+    """Values less the parabola through them: what swings, and not what drifts."""
+    time = np.linspace(-1.0, 1.0, len(values))
+    return np.asarray(values - np.polynomial.Polynomial.fit(time, values, 2)(time))

@@ -19,7 +19,8 @@ from yehu_server.lab.body.sections import fit_sections
 
 RATE = 44100.0  # of the radiation's sections; at others the model moves them
 FLOOR = 0.005  # relative error of an admittance that does not matter: 0.04 dB
-LONGEST_S = 0.8  # for 60 dB: what rings longer is a string
+LONGEST_S = 0.8  # for 60 dB: what rings longer is a string,
+SHARPEST_S = 10.0  # and longer than that a line of the mains
 POOR_DB = 1.0
 
 
@@ -71,7 +72,7 @@ def fit(
             damping=tuple(found.resistance.tolist()),
         )
         admittance_db = differences(within.admittance, found.admittance)
-        warnings += _doubts(found, admittance_db)
+        warnings += _doubts(found, admittance_db, band)
     else:
         warnings.append("no admittance was measured: the bridge is the shipped yehu's")
     if within.radiation is not None:
@@ -139,18 +140,26 @@ def _in_band(curve: Curve | None, band: tuple[float, float], what: str) -> Curve
     return found
 
 
-def _doubts(modes: Modes, off: Differences) -> list[str]:
-    """Warnings about fitted modes."""
+def _doubts(modes: Modes, off: Differences, band: tuple[float, float]) -> list[str]:
+    """Warnings about fitted modes; those outside the band stand for what is there."""
     found = []
     ring_s = 3.0 * np.log(10.0) / (2.0 * np.pi * modes.frequency_hz * modes.damping)
     strong = modes.inverse_mass / modes.damping / modes.frequency_hz
-    long = (ring_s > LONGEST_S) & (strong > 0.01 * strong.max())
-    if long.any():
-        places = ", ".join(f"{hz:.0f}" for hz in modes.frequency_hz[long])
-        longest_s = float(ring_s[long].max())
-        rings = f"modes at {places} Hz ring for {longest_s:.1f} s"
+    inside = (modes.frequency_hz >= band[0]) & (modes.frequency_hz <= band[1])
+    long = inside & (ring_s > LONGEST_S) & (strong > 0.01 * strong.max())
+    lines = long & (ring_s > SHARPEST_S)
+    if lines.any():
+        found.append(
+            f"modes at {_places(modes, lines)} Hz have no width: hum of the mains, or a fan"
+        )
+    if (strings := long & ~lines).any():
+        rings = f"modes at {_places(modes, strings)} Hz ring for {ring_s[strings].max():.1f} s"
         found.append(f"{rings}, as strings that are not damped do")
     return found + _poor(off, "admittance")
+
+
+def _places(modes: Modes, which: Any) -> str:
+    return ", ".join(f"{hz:.0f}" for hz in modes.frequency_hz[which])
 
 
 def _poor(off: Differences, what: str) -> list[str]:

@@ -20,6 +20,7 @@ from yehu_server.lab.body.tap import Tap
 
 LOWEST_HZ, HIGHEST_HZ = 100.0, 8000.0  # of the band that is used, where nothing else is told
 LEAST_COHERENCE, LEAST_SHARE = 0.8, 0.9
+MOST_SENSOR_KG = 0.05
 REACH_HZ = 4000.0  # a hammer that does not excite up to here misses modes that are heard
 
 
@@ -55,6 +56,7 @@ def read(
     channels: str | None = None,
     radiation_channels: str | None = None,
     kind: str | None = None,
+    sensor_mass: float | None = None,
 ) -> Measurement:
     """Read and average measurements of one body.
 
@@ -69,6 +71,8 @@ def read(
         ``force=100,acceleration=500``. Those of radiation are by default the same.
     kind : str, optional
         What responses are that do not tell: mobility, receptance, accelerance or radiation.
+    sensor_mass : float, optional
+        Of an accelerometer on the bridge (kg): its effect is taken off.
 
     Raises
     ------
@@ -83,7 +87,7 @@ def read(
     taps, responses = _read_all(files, channels, kind)
     radiation_kind = RADIATION if radiation else None
     other_taps, other_responses = _read_all(others, radiation_channels or channels, radiation_kind)
-    measured = average(taps, responses)
+    measured = average(taps, responses, sensor_mass=sensor_mass)
     if radiation:
         other = average([_pressure_alone(tap) for tap in other_taps], other_responses)
         measured = replace(
@@ -123,8 +127,17 @@ def _pressure_alone(tap: Tap) -> Tap:
 
 
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")  # they are refused later
-def average(taps: Sequence[Tap], responses: Sequence[Response] = ()) -> Measurement:
+def average(
+    taps: Sequence[Tap],
+    responses: Sequence[Response] = (),
+    *,
+    sensor_mass: float | None = None,
+) -> Measurement:
     """Average taps and responses that are in memory, and check what they give; see `read`."""
+    if sensor_mass is not None and not 0.0 <= sensor_mass <= MOST_SENSOR_KG:
+        raise MeasurementError(
+            f"sensor_mass: {sensor_mass:g} kg is not within 0 to {MOST_SENSOR_KG:g} kg"
+        )
     averaged = average_taps(taps) if taps else Averaged(None, None, HIGHEST_HZ, ())
     warnings = list(averaged.warnings)
     highest = averaged.highest_hz
@@ -142,6 +155,12 @@ def average(taps: Sequence[Tap], responses: Sequence[Response] = ()) -> Measurem
             kinds.add(response.kind)
     if len(kinds) > 1:
         raise MeasurementError(f"measured as {' and '.join(sorted(kinds))}: give one of them")
+    if admittance is not None and sensor_mass:
+        admittance, radiation = _unloaded(sensor_mass, admittance, radiation)
+    elif "accelerance" in kinds and sensor_mass is None:
+        warnings.append(
+            "an accelerometer's mass lowers the modes: tell it, and its effect is taken off"
+        )
     if taps and highest < REACH_HZ:
         warnings.append(
             f"the hammer excites up to {highest:.0f} Hz only: a harder tip reaches higher"
@@ -150,6 +169,22 @@ def average(taps: Sequence[Tap], responses: Sequence[Response] = ()) -> Measurem
         if found is not None:
             warnings += _checked(found, what, highest, next(iter(kinds), "mobility"))
     return Measurement(admittance, radiation, highest, tuple(warnings))
+
+
+def _unloaded(
+    mass: float, admittance: Curve, radiation: Curve | None
+) -> tuple[Curve, Curve | None]:
+    """Responses as they would be without a mass (kg) on the bridge.
+
+    The mass takes j omega m Y of each newton: what is left moves the bridge, and radiates.
+    """
+
+    def free(curve: Curve) -> Curve:
+        loaded = interpolated(curve.frequency_hz, admittance.frequency_hz, admittance.values)
+        share = 1.0 - 2j * np.pi * curve.frequency_hz * mass * loaded
+        return replace(curve, values=curve.values / share)
+
+    return free(admittance), None if radiation is None else free(radiation)
 
 
 def _checked(curve: Curve, what: str, highest_hz: float, kind: str) -> list[str]:

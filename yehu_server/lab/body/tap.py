@@ -18,7 +18,8 @@ HIT = 0.2  # of the largest force in a recording: what is above is a hit
 APART_S = 0.2  # between two taps of one recording; nearer, they are one that bounced
 BEFORE_S, LONGEST_S = 5e-3, 1.0  # kept before the hit, and in all
 OVER = 0.05  # of the peak: the hammer has left
-BOUNCE = 0.1  # of the peak: a force after it has left is another hit
+BOUNCE = 0.1  # of the peak: a force after it has left is another hit,
+OVER_NOISE = 8.0  # where it stands out of the noise by so many deviations
 FLAT, EQUAL = 3, 1e-5  # samples of equal height that a clipped peak has, and how equal
 SHORTEST_S = 0.05  # after the hit: less tells nothing of a body
 
@@ -131,4 +132,5 @@ def _bounced(force: Floats) -> bool:
     first, end = pulse(force)
     onset = max(0, first - (end - first))  # where the force rises
     others = np.concatenate([size[:onset], size[end:]])
-    return bool(others.max(initial=0.0) > BOUNCE * size.max())
+    noise = 1.4826 * float(np.median(others)) if len(others) else 0.0
+    return bool(others.max(initial=0.0) > max(BOUNCE * size.max(), OVER_NOISE * noise))

@@ -26,6 +26,8 @@ TEMPLATE = Path(__file__).with_name("study_page.html")
 MOST_CELLS = 20_000_000
 LEVELS = 254  # that a byte tells apart; 255 is none
 NONE = 255
+# Cents off the median: on the scale of all pitches, which has octaves, flattening is not seen.
+FLATTENING = (-60.0, 30.0)
 # Of the map of colours "viridis" (CC0), from dark to light.
 SCALE = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))
 
@@ -100,17 +102,18 @@ def _columns(result: Result, order: list[int]) -> list[dict[str, Any]]:
             "data": _packed(result.grid("regime").transpose(order)),
         }
     ]
-    kinds: tuple[tuple[str, str, Array, str, float | None], ...] = (
-        ("periods to Helmholtz motion", "never", result.onset_periods(), "", MOST_PERIODS),
-        ("slips a period", "none", result.grid("slips"), "", 6.0),
+    kinds: tuple[tuple[str, str, Array, str, tuple[float, float] | None], ...] = (
+        ("periods to Helmholtz motion", "never", result.onset_periods(), "", (0.0, MOST_PERIODS)),
+        ("pitch of Helmholtz motion", "other", result.flattening(), "cents", FLATTENING),
+        ("slips a period", "none", result.grid("slips"), "", (0.0, 6.0)),
         ("pitch", "none", result.grid("pitch_hz"), "Hz", None),
         ("level", "none", result.grid("level_db"), "dB re 1 Pa", None),
         ("brightness", "none", result.grid("brightness_hz"), "Hz", None),
     )
-    for label, none, values, unit, most in kinds:
+    for label, none, values, unit, ends in kinds:
         finite = values[np.isfinite(values)]
-        low = 0.0 if most is not None else float(finite.min()) if finite.size else 0.0
-        high = most if most is not None else float(finite.max()) if finite.size else 1.0
+        found_ends = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+        low, high = ends or found_ends
         step = max(high - low, 1e-9) / LEVELS
         scaled = np.clip(np.rint((np.nan_to_num(values) - low) / step), 0, LEVELS)
         bytes_ = np.where(np.isfinite(values), scaled, NONE).astype(np.uint8)

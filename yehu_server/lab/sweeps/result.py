@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +30,8 @@ Array = Any
 
 FORMAT, VERSION = "yehu-server sweep", 1
 COLUMNS = tuple(FINDING.names or ())
+OF_BOW = {"force", "position", "speed", "acceleration", "noise", "seed"}
+OF_BOW |= {"bow_force", "bow_position", "bow_velocity", "bow_acceleration", "bow_noise"}
 
 
 @dataclass(frozen=True)
@@ -95,6 +98,20 @@ class Result:
         """
         seconds = self.grid("helmholtz_s") - self.grid("first_slip_s")
         return np.where(self.grid("regime") == HELMHOLTZ, seconds * self.grid("pitch_hz"), np.nan)
+
+    def flattening(self) -> Array:
+        """Cents by which Helmholtz motion is off the usual pitch, on the grid; NaN elsewhere.
+
+        The usual pitch is the median over all that the bow does, and one for each value of the
+        other axes, such as the note: so it is zero in the middle, and below where force flattens.
+        """
+        is_helmholtz = self.grid("regime") == HELMHOLTZ
+        pitch = np.where(is_helmholtz, self.grid("pitch_hz").astype(np.float64), np.nan)
+        bow = tuple(i for i, name in enumerate(self.axes) if name in OF_BOW)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # where no motion is Helmholtz's
+            usual = np.nanmedian(pitch, axis=bow, keepdims=True)
+        return 1200.0 * np.log2(pitch / usual)
 
     def study(self) -> Study:
         """The study that found it.

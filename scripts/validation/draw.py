@@ -1,0 +1,97 @@
+"""The figures of docs/validation.md."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from pictures.saving import ROOT, save
+
+from validation import ideal
+from validation.tables import KINDS, exponents
+
+FIGURES = ROOT / "docs" / "figures"
+BETA = 0.117
+
+
+def draw(found: Mapping[str, Any]) -> None:
+    """Draw all of them."""
+    save(ideal_string(found["ideal"]), FIGURES / "validation_ideal.png", dpi=80)
+    save(convergence(found["convergence"]), FIGURES / "validation_convergence.png", dpi=80)
+
+
+def ideal_string(found: Mapping[str, Any]) -> Any:
+    """A steady note with its closed form; the limits with Schelleng's."""
+    figure, panels = plt.subplots(1, 3, figsize=(15.0, 4.6), layout="constrained")
+    quantities = ideal.instrument()
+    force = ideal.ORDINARY * ideal.greatest_force(quantities, BETA)
+    run = ideal.run(quantities, BETA, force, ideal.SETTLE_S)
+    cycle, wave = ideal.period(quantities), ideal.impedance(quantities)
+    time = run.arrays["time"]
+    part = time >= time[-1] - 4.0 * cycle
+    starts = ideal.slips_of(run, BETA)
+    periods = (time[part] - starts[starts >= time[-1] - 4.0 * cycle][0]) / cycle
+    velocity, bridge = run.arrays["relative_velocity"][part], run.arrays["bridge_force_1"][part]
+    panels[0].plot(periods, velocity, lw=0.9, label="model")
+    ideal_velocity = np.where(periods % 1.0 < BETA, -ideal.SPEED / BETA, 0.0)
+    panels[0].plot(periods, ideal_velocity, "k--", lw=1.0, label="Helmholtz")
+    panels[0].set(xlabel="periods", ylabel="string on hair, m/s", title="Rigid ends, β = 0.117")
+    panels[0].legend(frameon=False, loc="lower left")
+    jump = 2.0 * wave * ideal.SPEED / BETA
+    panels[1].plot(periods, bridge - bridge.mean(), lw=0.9, label="model")
+    saw = jump * (0.5 - (periods - _phase(periods, bridge)) % 1.0)
+    sign = np.sign(saw @ (bridge - bridge.mean()))
+    panels[1].plot(periods, sign * saw, "k--", lw=1.0, label="sawtooth 2 Z v/β")
+    panels[1].set(xlabel="periods", ylabel="force at the bridge, N", title="The same")
+    panels[1].legend(frameon=False, loc="lower left")
+    for name, colour in (("least", "#1f5fa8"), ("greatest", "#c03a2b")):
+        beta, measured, theory = (
+            np.array([row[key] for row in found[name]]) for key in ("beta", "limit", "schelleng")
+        )
+        power = exponents(found, name)
+        panels[2].loglog(beta, measured, "o", color=colour, label=f"{name} force: β^{power:.2f}")
+        panels[2].loglog(beta, theory, "--", color=colour)
+    panels[2].set(xlabel="β", ylabel="bow force, N", title="On a dashpot; lines: Schelleng")
+    panels[2].set_xticks(ideal.BETAS, [f"{beta:g}" for beta in ideal.BETAS])
+    panels[2].minorticks_off()
+    panels[2].legend(frameon=False, loc="center right")
+    return figure
+
+
+def _phase(periods: Any, force: Any) -> float:
+    """When the force jumps (periods)."""
+    return float(periods[1:][np.abs(np.diff(force)).argmax()])
+
+
+def convergence(found: Mapping[str, Any]) -> Any:
+    """Shares of regimes and cells alike, over the rate, with the bars of grid and hair."""
+    figure, panels = plt.subplots(1, 3, figsize=(15.0, 4.4), layout="constrained")
+    rates = [name for name in KINDS if name.startswith("rate")]
+    khz = [float(name.split()[1]) / 1e3 for name in rates]
+    for (note, maps), colour in zip(found.items(), ("C0", "C1", "C2", "C3"), strict=True):
+        by_name = {row["map"]: row for row in maps}
+        seeds = [row for row in maps if row["map"].startswith("seed")]
+        grids = [row for row in maps if row["map"].startswith("grid")]
+        for ax, key in zip(panels, ("helmholtz", "aperiodic", "cents"), strict=True):
+            ax.semilogx(khz, [by_name[name][key] for name in rates], "o-", color=colour, label=note)
+            for others, place in ((seeds, 38.0), (grids, 41.0)):
+                values = [row[key] for row in others]
+                if key == "cents":  # of the map at 44.1 kHz
+                    values = [value + by_name[rates[0]][key] for value in values]
+                ax.plot([place] * 2, [min(values), max(values)], color=colour, lw=3, alpha=0.5)
+    for ax, label in zip(
+        panels,
+        ("share of Helmholtz motion", "share of aperiodic motion", "cents off 352.8 kHz, median"),
+        strict=True,
+    ):
+        ax.set(xlabel="sample rate, kHz", ylabel=label)
+        ax.set_xticks(khz, [f"{each:g}" for each in khz])
+        ax.minorticks_off()
+    panels[0].legend(frameon=False)
+    return figure

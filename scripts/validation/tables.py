@@ -1,0 +1,177 @@
+"""The tables of docs/validation.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.ideal import exponent
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "validation.md"
+FINEST = "rate 352800"
+KINDS = {
+    "rate 44100": "44.1 kHz",
+    "rate 88200": "88.2 kHz",
+    "rate 176400": "176.4 kHz",
+    "rate 352800": "352.8 kHz",
+    "soft 44100": "44.1 kHz, bristles an eighth as stiff",
+}
+
+
+def page(found: Mapping[str, Any]) -> str:
+    """The page with its tables as they were measured."""
+    text = PAGE.read_text("utf-8")
+    made = {
+        "helmholtz": helmholtz(found["ideal"]),
+        "limits": limits(found["ideal"]),
+        "convergence": convergence(found["convergence"]),
+        "bars": bars(found["convergence"]),
+        "energy": energy(found["energy"]),
+    }
+    for name, rows in made.items():
+        mark = f"<!-- table {name} -->"
+        pattern = re.compile(f"{mark}\n.*?{mark}", re.DOTALL)
+        text = pattern.sub("\n".join([mark, *rows, mark]).replace("\\", r"\\"), text)
+    return text
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """A table in Markdown."""
+    lines = [list(head), ["---"] * len(head), *map(list, rows)]
+    return [f"| {' | '.join(line)} |" for line in lines]
+
+
+def helmholtz(found: Mapping[str, Any]) -> list[str]:
+    """A steady note on rigid ends, against Helmholtz's motion."""
+    head = ["β", "slips a period", "share of slipping, over β", "slipping velocity, over v/β"]
+    rows = [
+        [
+            f"{row['beta']:.3f}",
+            f"{row['slips']:.2f}",
+            f"{row['slip_share']:.3f}",
+            f"{row['slip_velocity']:.3f}",
+            f"{row['sawtooth']:.3f}",
+        ]
+        for row in found["helmholtz"]
+    ]
+    return table([*head, "sawtooth at the bridge, over 2 Z v/β"], rows)
+
+
+def limits(found: Mapping[str, Any]) -> list[str]:
+    """Where Helmholtz motion ends, against Schelleng's limits."""
+    head = ["β", "least force, N", "over its limit", "μ reached", "greatest force, N"]
+    rows = [
+        [
+            f"{least['beta']:.3f}",
+            f"{least['limit']:.3f}",
+            f"{least['limit'] / least['schelleng']:.2f}",
+            f"{least['reached']:.2f}",
+            f"{great['limit']:.2f}",
+            f"{great['limit'] / great['schelleng']:.2f}",
+            f"{great['reached']:.2f}",
+        ]
+        for least, great in zip(found["least"], found["greatest"], strict=True)
+    ]
+    powers = [exponents(found, name) for name in ("least", "greatest")]
+    rows.append(
+        [
+            "power of β",
+            f"{powers[0]:.2f} (theory: -2)",
+            "",
+            "",
+            f"{powers[1]:.2f} (theory: -1)",
+            "",
+            "",
+        ]
+    )
+    return table([*head, "over its limit", "μ reached"], rows)
+
+
+def exponents(found: Mapping[str, Any], name: str) -> float:
+    """The power of beta by which the forces at a limit go."""
+    return exponent(*([row[key] for row in found[name]] for key in ("beta", "limit")))
+
+
+def convergence(found: Mapping[str, Any]) -> list[str]:
+    """What a map is at each rate, and how far it is from that at 352.8 kHz."""
+    head = ["note", "at", "Helmholtz", "aperiodic", "cells alike", "pitch, cents", "onset, ms"]
+    rows = [
+        [
+            note if place == 0 else "",
+            KINDS[row["map"]],
+            f"{row['helmholtz']:.1%}",
+            f"{row['aperiodic']:.1%}",
+            *([""] * 3 if row["map"] == FINEST else _against_finest(row)),
+        ]
+        for note, maps in found.items()
+        for place, row in enumerate(each for each in maps if each["map"] in KINDS)
+    ]
+    return table(head, rows)
+
+
+def _against_finest(row: Mapping[str, Any]) -> list[str]:
+    return [
+        f"{row['same']:.0%}",
+        f"{row['cents']:+.1f} (90 % within {row['cents_90']:.0f})",
+        f"{row['onset_ms']:+.1f} (90 % within {row['onset_ms_90']:.0f})",
+    ]
+
+
+def bars(found: Mapping[str, Any]) -> list[str]:
+    """Error bars of a map at 44.1 kHz: of rate, grid and hair."""
+    rows = []
+    for what, name, of in (
+        ("sample rate: 352.8 kHz in place of 44.1", "rate", ("rate 44100",)),
+        ("grid: three other numbers of nodes at 44.1 kHz", "grid", None),
+        ("hair: three others, rough as the player's, at 44.1 kHz", "seed", None),
+    ):
+        all_of = [
+            [
+                row
+                for row in maps
+                if row["map"].startswith(name) and row["map"] in (of or [row["map"]])
+            ]
+            for maps in found.values()
+        ]
+        plain = [next(row for row in maps if row["map"] == "rate 44100") for maps in found.values()]
+        finest = [next(r for r in maps if r["map"] == "rate 352800") for maps in found.values()]
+        shares = [
+            abs(row["helmholtz"] - (finest[i] if name == "rate" else plain[i])["helmholtz"])
+            for i, each in enumerate(all_of)
+            for row in each
+        ]
+        other = [1.0 - row["same"] for each in all_of for row in each]
+        cents = [abs(row["cents"]) for each in all_of for row in each]
+        wide = [row["cents_90"] for each in all_of for row in each]
+        onset = [row["onset_ms_90"] for each in all_of for row in each]
+        rows.append(
+            [
+                what,
+                f"{np.mean(other):.0%} ({min(other):.0%} to {max(other):.0%})",
+                f"{100.0 * np.mean(shares):.1f} points, at most {100.0 * max(shares):.1f}",
+                f"{np.mean(cents):.1f}, 90 % within {np.mean(wide):.0f}",
+                f"90 % within {np.mean(onset):.0f}",
+            ]
+        )
+    head = ["changed", "cells of another regime", "share of Helmholtz motion", "pitch, cents"]
+    return table([*head, "onset, ms"], rows)
+
+
+def energy(found: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The worst energy error of ten seconds."""
+    rows = [
+        [
+            f"{row['rate'] / 1e3:g} kHz",
+            row["kind"],
+            str(row["runs"]),
+            f"{row['worst_w']:.1e} W",
+            f"{row['median_w']:.1e} W",
+            f"{row['power_w']:.1f} W",
+        ]
+        for row in found
+    ]
+    return table(["rate", "playing", "runs", "worst", "median", "greatest power"], rows)

@@ -5,7 +5,8 @@ responses (docs/body.md). It needs the extra ``yehu-server[body]``, and ``[plots
 """
 
 from yehu_server.api.bodies import Body, fit, load
-from yehu_server.lab.body import Curve, Measurement, Modes, Tap, average, made_taps, read
+from yehu_server.lab.body import Curve, Modes, Tap, made_taps
+from yehu_server.lab.body.measurement import Measurement, average, read
 
 __all__ = [
     "Body",

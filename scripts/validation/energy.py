@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,8 @@ from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics.quantities import Quantities
 
 SECONDS = 10.0
-SEEDS = 24
-RATE = 44100.0
+SEEDS, AT_OTHER_RATES = 24, 3
+RATES = (44100.0, 96000.0, 192000.0)
 KINDS = {
     "one finger, ordinary playing": (1, False),
     "four fingers that tap": (4, False),
@@ -20,16 +21,17 @@ KINDS = {
 
 
 def measure() -> list[dict[str, Any]]:
-    """The worst of some random runs, for each kind of playing."""
+    """The worst of some random runs, for each kind of playing and each rate."""
     rows = []
-    for kind, (fingers, jumps) in KINDS.items():
-        runs = [one(RATE, fingers, jumps=jumps, seed=seed) for seed in range(SEEDS)]
+    for rate, (kind, (fingers, jumps)) in product(RATES, KINDS.items()):
+        seeds = SEEDS if rate == RATES[0] else AT_OTHER_RATES
+        runs = [one(rate, fingers, jumps=jumps, seed=seed) for seed in range(seeds)]
         errors, powers, lost = (np.array(each) for each in zip(*runs, strict=True))
         rows.append(
             {
-                "rate": RATE,
+                "rate": rate,
                 "kind": kind,
-                "runs": SEEDS,
+                "runs": seeds,
                 "median_w": float(np.median(errors)),
                 "worst_w": float(errors.max()),
                 "power_w": float(powers.max()),

@@ -171,7 +171,7 @@ export class Kernel {
   follow(samples) {
     this.sung.set(samples);
     const { voice, sungAt, sungWishesAt } = this;
-    const count = this.exported.yehu_follow(
+    const count = this.exported.yehu_follow_voice(
       voice, sungAt, BigInt(samples.length), sungWishesAt, BigInt(VOICE_WISHES),
     ); // prettier-ignore
     return this.sungWishes.subarray(0, VOICE_WISH * Number(count));

@@ -297,7 +297,12 @@ def telling(sources: str) -> Native:
     return made
 
 
-FOLLOWING = [following.voice_size, following.voice_prepare, following.follow, following.voice_pitch]
+FOLLOWING = [
+    following.voice_size,
+    following.voice_prepare,
+    following.follow_voice,
+    following.voice_pitch,
+]
 
 
 def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> list[Native]:

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from yehu_server.core.engine.following import OF_WISH, follow, voice_prepare
+from yehu_server.core.engine.following import OF_WISH, follow_voice, voice_prepare
 from yehu_server.core.following.deciding import FOLLOWER
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.core.player.rows import DYNAMICS
@@ -41,7 +41,9 @@ def followed(sound: np.ndarray, rate: float = RATE, transpose: float = math.nan)
     wishes, times, pitch = [], [], []
     for start in range(0, len(sound) + 1, BLOCK):
         block = sound[start : start + BLOCK]
-        count = follow.call(voice.ctypes.data, block.ctypes.data, len(block), into.ctypes.data, 256)
+        count = follow_voice.call(
+            voice.ctypes.data, block.ctypes.data, len(block), into.ctypes.data, 256
+        )
         time = (start + len(block)) / rate
         for kind, index, value, other in into[:count].tolist():
             is_louder = (int(kind), int(index)) == (WRITE, DYNAMICS)

@@ -46,7 +46,7 @@ def voice_pitch(voice: Any) -> float:
 
 
 @native
-def follow(voice: Any, sound: Any, frames: int, into: Any, most: int) -> int:
+def follow_voice(voice: Any, sound: Any, frames: int, into: Any, most: int) -> int:
     """Follow float samples of a voice; return how many wishes they come to, to be posted.
 
     Each is four numbers: kind, index, value, other. Of a voice that is followed no more, the note

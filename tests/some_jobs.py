@@ -50,3 +50,20 @@ class SetUp:
         time.sleep(0.3)
         with (self.folder / f"set-up-{os.getpid()}").open("a") as file:
             file.write(f"{began} {time.monotonic()}\n")
+
+
+def poison(touched):
+    """Make a worker answer with an object that touches a file where it is unpickled."""
+    from yehu_server.rendering import cluster_worker
+
+    cluster_worker.do = lambda *_, **__: Touching(touched)
+
+
+class Touching:
+    """Touches a file where it is unpickled."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return Path.touch, (self.path,)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import signal
@@ -15,7 +16,7 @@ from clusters import cluster_in, wait_until
 from commands import results_in
 from forks import start
 
-from yehu_server.errors import ParameterError
+from yehu_server.errors import OutputError, ParameterError
 from yehu_server.lab.dataset import making
 from yehu_server.lab.dataset.description import read_description
 from yehu_server.rendering import cluster_worker
@@ -202,11 +203,32 @@ def test_sounds_travel_where_the_folder_is_not_seen(made, tmp_path):
     [part] = making.parts_of(description, tmp_path / "out", "key")
     far = replace(part, folder=Path("/nowhere/at/all"), mark=Path("/nowhere/mark"))
     told = making.perform(far, lambda _done, _total: None)
-    assert len(told.files) == 4
+    assert len(told["files"]) == 4
     assert list(making.received(part, told)) == lines(made / "out")[:2]
     for name, data in results_in(tmp_path / "out").items():
         assert data == results_in(made / "out")[name]
     assert making.split_up_to_date([part]) == ([], lines(made / "out")[:2])
+
+
+def test_an_answer_that_is_no_sounds_is_refused_and_nothing_written(made, tmp_path):
+    description = replace(read_description(made / "d.toml"), count=1)
+    [part] = making.parts_of(description, tmp_path / "out", "key")
+    [line] = lines(made / "out")[:1]
+    taken = []
+    for told in (
+        None,
+        {"lines": [line]},
+        {"lines": [], "files": {}},
+        {"lines": [{**line, "number": 2}], "files": {}},
+        {"lines": [{**line, "labels": {"regime": []}}], "files": {}},
+        {"lines": [line], "files": {"../away": b"x"}},
+        {"lines": [line], "files": {line["file"]: "text"}},
+    ):
+        with contextlib.suppress(OutputError):
+            making.received(part, told)
+            taken.append(told)
+    assert taken == []
+    assert not list(tmp_path.iterdir())
 
 
 # ---------------------------------------------------------------- what goes wrong

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
@@ -128,7 +129,7 @@ class Elsewhere:
                 result = perform(task, lambda _done, _total: None)
             finally:
                 away.rename(self._folder)
-            assert bool(result.made) != (self._seen or "error" in result.line)
+            assert bool(result["made"]) != (self._seen or "error" in result["line"])
             yield Event(job, 1.0, result=result)
 
 
@@ -147,6 +148,35 @@ def test_scores_and_sounds_travel_where_workers_do_not_see_them(
     assert results_in(home / "out") == alone
     code, out, _ = command("render", home / "in", "-o", home / "out", *DRY)
     assert f"0 rendered, {SCORES} up to date, 1 failed" in out
+
+
+def test_an_answer_that_is_no_result_is_an_error_of_its_score(songs, command, monkeypatch):
+    class Strange(Elsewhere):
+        def perform_all(self, perform, tasks):
+            for event in super().perform_all(perform, tasks):
+                good, job = event.result, event.job
+                line = good["line"]
+                strange = [
+                    None,
+                    {**good, "line": {**line, "file": "../0.mid"}},
+                    {**good, "line": {**line, "duration_s": "\x1b[2J"}},
+                    {**good, "line": {**line, "error": b"x"}},
+                    {**good, "made": ["text"]},
+                    {**good, "made": good["made"] * 2},
+                    {**good, "read": 5},
+                ]
+                yield replace(event, result=strange[job] if job < len(strange) else good)
+
+    monkeypatch.setattr("yehu_server.rendering.cluster.Cluster", lambda *_: Strange(songs / "in"))
+    (songs / "in" / "broken.mid").unlink()
+    code, _, err = command("render", songs / "in", "-o", songs / "out", *DRY, "--dask", "x")
+    assert code == 1
+    assert (
+        err.count("a worker answered with what is no result\n")
+        == SCORES - 1
+        == len(err.splitlines())
+    )
+    assert len(list((songs / "out").rglob("*.wav"))) == 1
 
 
 def test_a_file_of_the_users_own_is_not_replaced_by_what_has_travelled(songs, command, monkeypatch):

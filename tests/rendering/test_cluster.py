@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import shutil
 import subprocess
 import sys
@@ -130,6 +131,27 @@ def test_a_worker_that_comes_later_works_too(own):
         late = own.add_worker()
         pids |= {event.result for event in events}
     assert late.pid in pids
+
+
+# ---------------------------------------------------------------- what strangers answer
+
+
+@pytest.mark.slow
+def test_what_a_stranger_has_workers_and_scheduler_send_runs_nothing_here(own, tmp_path):
+    touched = tmp_path / "touched"
+    own.add_worker()
+    with Cluster(str(own.file)) as cluster:
+        connected = cluster._client
+        # What workers print and warn of reaches all clients, as a pickle.
+        for topic in ("warn", "print"):
+            told = {"message": pickle.dumps(some_jobs.Touching(touched)), "args": ("STRANGE",)}
+            connected.log_event(topic, told)
+        [found] = cluster.ask(some_jobs.Touching, touched).values()
+        assert type(found).__name__ != "Touching"
+        cluster.ask(some_jobs.poison, touched)
+        [event] = cluster.perform_all(some_jobs.double, [1])
+    assert event.died == "ended by an answer that is none", event
+    assert not touched.exists()
 
 
 # ---------------------------------------------------------------- what is no cluster

@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import replaceable
 from yehu_server.cli.folder_tasks import Done, Task, perform
@@ -41,11 +41,11 @@ class ClusterTask:
     score: bytes | None
 
 
-def perform_on_worker(far: ClusterTask, tell: ProgressCallback) -> Done:
-    """Render a score on a worker: in its place, or to a result that travels."""
+def perform_on_worker(far: ClusterTask, tell: ProgressCallback) -> dict[str, Any]:
+    """Render a score on a worker, in its place or to a result that travels: a `Done` as plain."""
     task = far.task
     if far.score is None or (far.mark.is_file() and task.entry.source.is_file()):
-        return perform(task, tell)
+        return perform(task, tell).as_plain()
     with tempfile.TemporaryDirectory(prefix="yehu-server-") as name:
         folder = Path(name)
         source = folder / "in" / task.entry.source.name
@@ -64,7 +64,7 @@ def perform_on_worker(far: ClusterTask, tell: ProgressCallback) -> Done:
         )
         done = perform(here, tell)
         made = () if "error" in done.line else tuple(path.read_bytes() for path in here.results)
-    return replace(done, made=made)
+    return replace(done, made=made).as_plain()
 
 
 def absolute(arguments: argparse.Namespace) -> argparse.Namespace:
@@ -100,7 +100,9 @@ def render_on_cluster(tasks: Sequence[Task], cluster: Cluster) -> Generator[Even
         sent = (_sent(task, arguments, mark) for task in tasks)
         with contextlib.closing(cluster.perform_all(perform_on_worker, sent)) as events:
             for event in events:
-                done = None if event.died else _received(tasks[event.job], event.result)
+                done = None
+                if event.is_end and not event.died:
+                    done = _received(tasks[event.job], event.result)
                 yield replace(event, result=done)
     finally:
         with contextlib.suppress(OSError):
@@ -109,10 +111,10 @@ def render_on_cluster(tasks: Sequence[Task], cluster: Cluster) -> Generator[Even
 
 def _check_settings(arguments: argparse.Namespace, cluster: Cluster) -> None:
     """Refuse files of settings that the workers do not have: only scores travel."""
-    files = hashes_of(_settings(arguments))
-    for worker, found in sorted(cluster.ask(hashes_of, tuple(files)).items()):
+    files = hashes_of([str(path) for path in _settings(arguments)])
+    for worker, found in cluster.ask(hashes_of, tuple(files)).items():
         for path, known in files.items():
-            if found[path] != known:
+            if not isinstance(found, dict) or found.get(str(path)) != known:
                 raise ParameterError(
                     f"{path}: the worker {worker} does not have this file; "
                     "keep it where all workers see it"
@@ -130,11 +132,11 @@ def _settings(arguments: argparse.Namespace) -> list[Path]:
     return [path for path in files if not path.is_relative_to(shipped)]
 
 
-def hashes_of(paths: Sequence[Path]) -> dict[Path, str]:
+def hashes_of(paths: Sequence[str]) -> dict[str, str]:
     """The hashes of files; workers are asked for theirs."""
     from yehu_server.rendering.build_records import hash_of
 
-    return {path: hash_of(path) for path in paths}
+    return {path: hash_of(Path(path)) for path in paths}
 
 
 def _sent(task: Task, arguments: argparse.Namespace, mark: Path) -> ClusterTask:
@@ -149,11 +151,12 @@ def _sent(task: Task, arguments: argparse.Namespace, mark: Path) -> ClusterTask:
     return ClusterTask(own, mark, score)
 
 
-def _received(task: Task, done: Done) -> Done:
-    """Put what has travelled in its place."""
-    if not done.made:
-        return done
+def _received(task: Task, told: Any) -> Done:
+    """Check what a worker told, and put what has travelled in its place."""
     try:
+        done = Done.of_plain(task, told)
+        if not done.made:
+            return done
         _put(task, done)
     except OutputError as error:
         return Done({"file": task.entry.name, "error": str(error)})

@@ -74,6 +74,34 @@ class Done:
     read: tuple[Path, ...] = ()
     made: tuple[bytes, ...] = ()
 
+    def as_plain(self) -> dict[str, Any]:
+        """It as what a cluster's worker may answer."""
+        return {**vars(self), "read": [str(path) for path in self.read]}
+
+    @classmethod
+    def of_plain(cls, task: Task, told: Any) -> Done:
+        """What a worker answered of a task; anybody who reaches the cluster may have made it.
+
+        Raises
+        ------
+        OutputError
+            Where it is something else.
+        """
+        from yehu_server.rendering.build_records import checked_line
+
+        try:
+            line = checked_line(told["line"], file=task.entry.name)
+            read = tuple(Path(path) for path in told["read"])
+            made = tuple(told["made"])
+            is_whole = "error" in line or isinstance(line["duration_s"], float)
+            if not is_whole or any(type(data) is not bytes for data in made):
+                raise TypeError  # noqa: TRY301 - as where entries are missing
+            if len(made) not in (0, len(task.results)):
+                raise ValueError  # noqa: TRY301
+        except (KeyError, TypeError, ValueError, RecursionError) as error:
+            raise OutputError("a worker answered with what is no result") from error
+        return cls(line, told.get("is_full") is True, read, made)
+
 
 def perform(task: Task, report_progress: ProgressCallback) -> Done:
     """Render a score to its place; return what became of it."""

@@ -28,6 +28,27 @@ def line_of(fields: Mapping[str, Any]) -> str:
     return json.dumps(fields)
 
 
+def checked_line(line: Any, **wanted: object) -> dict[str, Any]:
+    """A line of a manifest that came from elsewhere.
+
+    Parameters
+    ----------
+    **wanted
+        The entries that are known beforehand, such as ``file``.
+
+    Raises
+    ------
+    ValueError, TypeError
+        Where it is none: not of texts and numbers, about something else, an error without text.
+    """
+    if not isinstance(line, dict) or any(line.get(name) != known for name, known in wanted.items()):
+        raise ValueError("a line about something else")
+    if not isinstance(line.get("error", ""), str):
+        raise TypeError("an error without text")
+    json.dumps(line)  # not of bytes
+    return line
+
+
 def write_manifest(folder: Path, lines: Iterable[Mapping[str, Any]], order: str = "file") -> None:
     """Write the manifest, in the order of the names, or of another entry.
 

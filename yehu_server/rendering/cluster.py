@@ -21,6 +21,7 @@ from typing import Any, Self
 
 from yehu_server.errors import YehuError
 from yehu_server.rendering import cluster_worker
+from yehu_server.rendering.plain_unpickling import ForeignError, plain_client
 from yehu_server.rendering.workers import Event, Perform
 from yehu_server.util.extras import need
 from yehu_server.util.files import read_text, why
@@ -97,17 +98,15 @@ class Cluster:
         self.address = scheduler_address(address)
         self._setup, self._warn = cluster_worker.packed_setup(setup), warn
         self._client: Any = None
+        self._open = contextlib.ExitStack()
         self._code = cluster_worker.identity().code
 
     def __enter__(self) -> Self:
-        from distributed import Client
-
         _quiet_libraries()
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # of versions: `_check` tells what matters
-                connect: Any = Client
-                self._client = connect(self.address, timeout=CONNECT_S, set_as_default=False)
+                self._client = self._open.enter_context(plain_client(self.address, CONNECT_S))
         except (OSError, ValueError, TypeError, ImportError, TimeoutError) as error:
             raise YehuError(f"{self.address}: no Dask scheduler answers there") from error
         try:
@@ -118,8 +117,7 @@ class Cluster:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with contextlib.suppress(Exception):
-            self._client.close(timeout=CONNECT_S)
+        self._open.close()
 
     @property
     def threads(self) -> int:
@@ -127,7 +125,10 @@ class Cluster:
         return max(1, len(self._reached(self._client.nthreads)))
 
     def ask(self, question: Callable[..., Any], *arguments: Any) -> dict[str, Any]:
-        """Ask each worker something that it answers at once; its answers by their addresses."""
+        """Ask each worker something that it answers at once; its answers by their addresses.
+
+        They are plain values, whatever they hold: others may have made them.
+        """
         answers: dict[str, Any] = self._reached(self._client.run, question, *arguments)
         return answers
 
@@ -140,6 +141,12 @@ class Cluster:
             A function of a module, as of ``rendering.workers.perform_all``; its progress is lost.
         tasks : iterable
             They are taken one by one, as workers are free.
+
+        Yields
+        ------
+        Event
+            Its result is of plain values: None, numbers, texts, bytes, and lists and dicts of
+            them. Whoever takes it checks it: anybody who reaches the scheduler may have sent it.
 
         Raises
         ------
@@ -207,15 +214,17 @@ class Cluster:
         return ((future, next(results) if future.key in keys else None) for future in futures)
 
     def _event(self, future: Any, job: int, result: Any) -> Event:
-        if isinstance(result, cluster_worker.CodeMismatch):
-            raise YehuError(self._unlike("a worker that came later", result.identity))
         if future.status == "finished":
-            return Event(job, 1.0, result=result)
-        from distributed.scheduler import KilledWorker
-
+            kind, value = _unpacked(result)
+            if kind == cluster_worker.UNLIKE:
+                other = cluster_worker.identity_of(value)
+                raise YehuError(self._unlike("a worker that came later", other))
+            if kind == cluster_worker.FAILED:
+                return Event(job, 1.0, died=f"ended by {value}")
+            return Event(job, 1.0, result=value)
         error = future.exception()
-        if isinstance(error, KilledWorker):
-            return Event(job, 1.0, died=f"killed on {error.allowed_failures + 1} workers")
+        if type(error).__name__ == "KilledWorker" and len(error.args) == 3:
+            return Event(job, 1.0, died=f"killed on {error.args[2] + 1} workers")
         return Event(job, 1.0, died=f"ended by {type(error).__name__}: {error}")
 
     def _check(self) -> None:
@@ -227,14 +236,16 @@ class Cluster:
             time.sleep(0.2)
         try:
             self._client.run_on_scheduler(cluster_worker.no_setup)
-            found = self._client.run(cluster_worker.identity)
-        except ImportError as error:
-            raise YehuError(
-                f"{self.address}: yehu-server is not installed there ({error})"
-            ) from error
-        except (AttributeError, TypeError) as error:  # it is so old that it lacks the question
+            answers = self._client.run(cluster_worker.who)
+        except ForeignError as error:
+            if type(error).__name__ in ("ImportError", "ModuleNotFoundError"):
+                raise YehuError(
+                    f"{self.address}: yehu-server is not installed there ({error})"
+                ) from error
+            # It is so old that it lacks the question.
             raise YehuError(f"{self.address}: has another version of yehu-server") from error
         own = cluster_worker.identity()
+        found = {worker: cluster_worker.identity_of(answers[worker]) for worker in answers}
         for worker, other in sorted(found.items()):
             if other.code != own.code:
                 raise YehuError(self._unlike(worker, other))
@@ -260,6 +271,17 @@ class Cluster:
             return call(*arguments, **named)
         except (OSError, TimeoutError, CancelledError, RuntimeError) as error:
             raise YehuError(f"{self.address}: the scheduler is lost") from error
+
+
+def _unpacked(result: Any) -> tuple[Any, Any]:
+    """What `cluster_worker.do` packed; a failure where it is anything else."""
+    import msgpack
+
+    try:
+        kind, value = msgpack.unpackb(result)
+    except Exception:  # noqa: BLE001 - its errors have no common base
+        return cluster_worker.FAILED, "an answer that is none"
+    return kind, value
 
 
 def _quiet_libraries() -> None:

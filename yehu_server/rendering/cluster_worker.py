@@ -9,7 +9,7 @@ import pickle
 import platform
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cache
 from typing import Any
 
@@ -20,6 +20,8 @@ from yehu_server.util.source_key import key_of
 
 _turn = threading.Lock()  # threads of one process take turns: warnings are gathered by process
 _set_up: set[bytes] = set()  # of this process
+
+DONE, FAILED, UNLIKE = range(3)
 
 
 @dataclass(frozen=True)
@@ -60,27 +62,38 @@ def _processor() -> str:
     return f"{platform.machine()} {binding.get_host_cpu_name()}"
 
 
-@dataclass(frozen=True)
-class CodeMismatch:
-    """The answer of a worker whose code differs from the client's."""
+def identity_of(told: Any) -> Identity:
+    """The identity that another process told by `who`; one that is like none where it is none."""
+    if isinstance(told, (list, tuple)) and len(told) == 3 and all(type(x) is str for x in told):
+        return Identity(*told)
+    return Identity("?", "", "")
 
-    identity: Identity
+
+def who() -> tuple[str, str, str]:
+    """Tell version, code and processor of this process, as plain texts."""
+    return astuple(identity())
 
 
-def do(job: bytes, code: str) -> Any:
+def do(job: bytes, code: str) -> bytes:
     """Do a job that was pickled by `packed`, as the same code would elsewhere.
 
-    Returns what its function does, or a `CodeMismatch` where this process has another code.
+    Returns a pair, packed: one of `DONE`, `FAILED` and `UNLIKE`; then what its function returned,
+    what it raised, or `who` this process is, where it has another code.
     """
+    import msgpack
+
     if code != identity().code:
-        return CodeMismatch(identity())
+        return bytes(msgpack.packb((UNLIKE, who())))
     perform, task, setup = pickle.loads(job)  # noqa: S301 - workers do what their scheduler says
-    with _turn:
-        if setup not in _set_up:
-            with machine_lock():
-                pickle.loads(setup)()  # noqa: S301
-            _set_up.add(setup)
-        return perform(task, _tell_nobody)
+    try:
+        with _turn:
+            if setup not in _set_up:
+                with machine_lock():
+                    pickle.loads(setup)()  # noqa: S301
+                _set_up.add(setup)
+            return bytes(msgpack.packb((DONE, perform(task, _tell_nobody))))
+    except Exception as error:  # noqa: BLE001 - no exception travels: it would be unpickled
+        return bytes(msgpack.packb((FAILED, f"{type(error).__name__}: {error}")))
 
 
 def packed(perform: Perform, task: Any, setup: bytes) -> bytes:

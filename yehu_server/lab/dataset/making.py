@@ -6,9 +6,9 @@ import tempfile
 from collections.abc import Generator, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
-from yehu_server.errors import YehuError
+from yehu_server.errors import OutputError, YehuError
 from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.files import Line, names_of, write_sound
 from yehu_server.rendering import build_records
@@ -52,26 +52,24 @@ class Part:
         return [name for each in self.numbers for name in names_of(self.description, each)]
 
 
-@dataclass(frozen=True)
-class Made:
-    """What became of some sounds: lines of the manifest; and files by name, where they travel."""
+def perform(part: Part, report_progress: ProgressCallback) -> dict[str, Any]:
+    """Make some sounds, where the folder is; where it is not seen, they are sent back.
 
-    lines: tuple[Line, ...]
-    files: tuple[tuple[str, bytes], ...] = ()
-
-
-def perform(part: Part, report_progress: ProgressCallback) -> Made:
-    """Make some sounds, where the folder is; where it is not seen, they are sent back."""
+    Returns
+    -------
+    dict
+        ``lines`` of the manifest; ``files``, the bytes of each by its name, where they travel.
+    """
     if part.mark is None or part.mark.is_file():
-        return Made(_made(part, part.folder, report_progress))
+        return {"lines": _made(part, part.folder, report_progress), "files": {}}
     with tempfile.TemporaryDirectory(prefix="yehu-server-") as name:
         folder = Path(name)
         lines = _made(part, folder, report_progress)
         names = [line[each] for line in lines if "error" not in line for each in ("file", "arrays")]
-        return Made(lines, tuple((each, (folder / each).read_bytes()) for each in names))
+        return {"lines": lines, "files": {name: (folder / name).read_bytes() for name in names}}
 
 
-def _made(part: Part, folder: Path, report_progress: ProgressCallback) -> tuple[Line, ...]:
+def _made(part: Part, folder: Path, report_progress: ProgressCallback) -> list[Line]:
     from yehu_server.lab.dataset.notes import melody
     from yehu_server.lab.dataset.strokes import stroke
 
@@ -88,7 +86,7 @@ def _made(part: Part, folder: Path, report_progress: ProgressCallback) -> tuple[
         except MemoryError:
             lines.append({"file": name, "number": number, "error": "not enough memory"})
         report_progress(done, len(part.numbers))
-    return tuple(lines)
+    return lines
 
 
 def set_up(rate: float) -> None:
@@ -162,17 +160,45 @@ def make_all(
         yield sum(shares), lines
 
 
-def received(part: Part, made: Made) -> Sequence[Line]:
-    """Put files that have travelled in their places, and keep a record where all is well."""
-    for name, data in made.files:
+def received(part: Part, told: Any) -> Sequence[Line]:
+    """Put files that have travelled in their places, and keep a record where all is well.
+
+    Parameters
+    ----------
+    told : dict
+        What `perform` returned; anybody who reaches a cluster may have made it.
+
+    Raises
+    ------
+    OutputError
+        Where it is something else, or cannot be written.
+    """
+    lines, files = _checked(part, told)
+    for name, data in files.items():
         make_folder((part.folder / name).parent)
         with replacing(part.folder / name) as partial:
             partial.write_bytes(data)
-    if not any("error" in line for line in made.lines):
+    if not any("error" in line for line in lines):
         results = [part.folder / name for name in part.names]
         build_records.make_folder_for(part.target)
-        build_records.keep(part.target, part.key, (), results, {"lines": list(made.lines)})
-    return made.lines
+        build_records.keep(part.target, part.key, (), results, {"lines": lines})
+    return lines
+
+
+def _checked(part: Part, told: Any) -> tuple[list[Line], dict[str, bytes]]:
+    try:
+        lines = []
+        for number, line in zip(part.numbers, told["lines"], strict=True):
+            name = names_of(part.description, number)[0]
+            lines.append(build_records.checked_line(line, file=name, number=number))
+            if "error" not in line and not isinstance(line["labels"]["regime"], str):
+                raise TypeError  # noqa: TRY301 - as where entries are missing
+        files = dict(told["files"])
+        if not files.keys() <= set(part.names) or any(type(x) is not bytes for x in files.values()):
+            raise ValueError  # noqa: TRY301
+    except (KeyError, TypeError, ValueError, RecursionError) as error:
+        raise OutputError("a worker answered with what are no sounds") from error
+    return lines, files
 
 
 def write_lines(folder: Path, lines: Iterable[Line]) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.lab.regimes.judge import FINDING
-from yehu_server.lab.regimes.names import HELMHOLTZ
+from yehu_server.lab.regimes.names import HELMHOLTZ, REGIMES
 from yehu_server.lab.regimes.strokes import find
 from yehu_server.lab.sweeps.journal import Done, Journal, journal_of
 from yehu_server.lab.sweeps.refining import coarse_points, finer_points
@@ -181,7 +181,22 @@ def _on_cluster(study: Study, chunks: list[Array], cluster: Any) -> Iterator[tup
             raise YehuError(f"a chunk of strokes ended its workers: {event.died}")
         if isinstance(event.result, str):
             raise YehuError(event.result)
-        yield chunks[event.job], np.frombuffer(event.result, FINDING)
+        yield chunks[event.job], _received(event.result, len(chunks[event.job]))
+
+
+def _received(found: Any, count: int) -> Array:
+    """The findings that came back from a cluster; anybody who reaches it may have made them.
+
+    Raises
+    ------
+    YehuError
+        Where they are none.
+    """
+    if type(found) is bytes and len(found) == count * FINDING.itemsize:
+        findings = np.frombuffer(found, FINDING)
+        if findings["regime"].max(initial=0) < len(REGIMES):
+            return findings
+    raise YehuError("a worker answered with what are no findings")
 
 
 def perform(task: tuple[str, bytes], _tell: Any = None) -> bytes | str:

@@ -10,6 +10,8 @@ from yehu_server.cli.config import read_config
 from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import FIRST, LAST, YehuError
 from yehu_server.following.recording import recording_of_file
+from yehu_server.lab.body import read as measure
+from yehu_server.lab.sweeps.result import Result
 from yehu_server.playing.mapping import load
 from yehu_server.playing.preset_folders import read_preset
 from yehu_server.playing.tuning import read_tuning
@@ -33,6 +35,11 @@ READERS = {
     "s.mid": read_score,
     "s.musicxml": read_musicxml,
     "v.wav": recording_of_file,
+    "t.wav": lambda path: measure([path]),
+    "t.flac": lambda path: measure([path]),
+    "t.csv": lambda path: measure([path]),
+    "t.uff": lambda path: measure([path]),
+    "r.npz": Result.load,
 }
 CONTENTS = {
     "nothing": b"\0",

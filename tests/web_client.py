@@ -64,8 +64,8 @@ class Refused(Exception):  # noqa: N818 - it is no error
 class WebSocket:
     """One WebSocket."""
 
-    def __init__(self, port: int, path: str = "/", **headers: str) -> None:
-        self._socket = socket.create_connection((HOST, port), timeout=PATIENCE_S)
+    def __init__(self, port: int, path: str = "/", source: str = HOST, **headers: str) -> None:
+        self._socket = socket.create_connection((HOST, port), PATIENCE_S, (source, 0))
         key = base64.b64encode(os.urandom(16)).decode()
         asked = {
             "Host": f"{HOST}:{port}",

@@ -227,7 +227,7 @@ def _page_of(arguments: argparse.Namespace) -> Any:
     networks = list(arguments.http_allow)
     guests = None
     if arguments.lan:
-        host, networks = ANYWHERE, [*networks, str(lan_interface().network), *HERE]
+        host, networks = ANYWHERE, [*(networks or [str(lan_interface().network)]), *HERE]
         guests = Guests(arguments.lan)
     return PageOptions((host, number), networks, wished is not None, guests)
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import MAX_DURATION_H, check_duration
-from yehu_server.util.files import why
+from yehu_server.util.files import open_regular, why
 
 Array = Any
 
@@ -80,9 +80,7 @@ def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Rec
     import soundfile
 
     try:
-        if not path.is_file() and path.exists():  # a pipe may never end
-            raise ScoreError(f"{path}: not a file")
-        with path.open("rb") as data, soundfile.SoundFile(data) as file:
+        with open_regular(path) as data, soundfile.SoundFile(data) as file:
             rate, frames, channels = file.samplerate, file.frames, file.channels
     except OSError as error:
         raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
@@ -97,7 +95,7 @@ def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Rec
 
     def blocks() -> Iterator[Array]:
         try:
-            with path.open("rb") as data, soundfile.SoundFile(data) as file:
+            with open_regular(path) as data, soundfile.SoundFile(data) as file:
                 yield from file.blocks(round(BLOCK_S * rate), dtype="float32", always_2d=True)
         except OSError as error:
             raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error

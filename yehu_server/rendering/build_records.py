@@ -17,7 +17,15 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.errors import OutputError
-from yehu_server.util.files import make_folder, read_lines, read_text, why, write_text
+from yehu_server.util.files import (
+    make_folder,
+    open_at_once,
+    open_regular,
+    read_lines,
+    read_text,
+    why,
+    write_text,
+)
 
 NAME = "manifest.jsonl"
 MOST_BYTES = 2**30
@@ -94,9 +102,7 @@ def hash_of(path: Path) -> str:
     """Hash of a file's bytes (SHA-256, hexadecimal); empty where it cannot be read."""
     digest = hashlib.sha256()
     try:
-        if not path.is_file():  # a pipe may never end
-            return ""
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             while data := file.read(CHUNK):
                 digest.update(data)
     except OSError:
@@ -236,7 +242,7 @@ def alone_in(folder: Path) -> Iterator[None]:
     path = folder / HIDDEN / LOCK
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        file = path.open("w")
+        file = open(path, "w", opener=open_at_once)  # noqa: SIM115 - closed below
     except OSError as error:
         raise OutputError(f"{folder}: cannot write: {why(error)}") from error
     with file:

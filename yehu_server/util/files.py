@@ -26,21 +26,28 @@ PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
 MOST_SHOWN = 40  # characters of other names in errors
 
 
-def _open_at_once(path: str, flags: int) -> int:
-    """Open without blocking: opening a pipe would wait for its writer."""
+def open_at_once(path: str, flags: int) -> int:
+    """Open without blocking: opening a pipe would wait for its other end."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
-def _open_regular(path: Path, most_bytes: int) -> BinaryIO:
-    """Open a regular file up to a size; devices and pipes, which may never end, raise OSError."""
-    file = open(path, "rb", opener=_open_at_once)  # noqa: SIM115 - the caller closes it
+def open_regular(path: Path, most_bytes: int | None = None) -> BinaryIO:
+    """Open a regular file to read, whose size may be bounded; at once, whatever it is.
+
+    Raises
+    ------
+    OSError
+        Also where it is a device or a pipe, which may never begin or end, or is too large.
+    """
+    file = open(path, "rb", opener=open_at_once)  # noqa: SIM115 - the caller closes it
     status = os.fstat(file.fileno())
-    if stat.S_ISREG(status.st_mode) and status.st_size <= most_bytes:
-        return file
-    file.close()
-    if stat.S_ISREG(status.st_mode):
+    if not stat.S_ISREG(status.st_mode):
+        file.close()
+        raise OSError(errno.EINVAL, "Not a regular file")
+    if most_bytes is not None and status.st_size > most_bytes:
+        file.close()
         raise _too_large(most_bytes)
-    raise OSError(errno.EINVAL, "Not a regular file")
+    return file
 
 
 def _too_large(most_bytes: int) -> OSError:
@@ -56,7 +63,7 @@ def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
         Also where it is larger than `most_bytes`, or no regular file.
     """
     pieces, left = [], most_bytes + 1
-    with _open_regular(path, most_bytes) as file:
+    with open_regular(path, most_bytes) as file:
         # In pieces: a read sets aside all the memory that it may need.
         while piece := file.read(min(left, PIECE_BYTES)):
             pieces.append(piece)
@@ -76,7 +83,7 @@ def read_lines(path: Path, most_bytes: int) -> Iterator[str]:
     UnicodeDecodeError
         Where it is not UTF-8.
     """
-    with _open_regular(path, most_bytes) as file:
+    with open_regular(path, most_bytes) as file:
         while line := file.readline(MAX_LINE_BYTES + 1):
             if len(line) > MAX_LINE_BYTES:
                 raise OSError(errno.EFBIG, f"A line is longer than {MAX_LINE_BYTES // 1024} KiB")

@@ -13,7 +13,7 @@ import soundfile
 
 from yehu_server.errors import OutputError
 from yehu_server.util import flac_stream, wav_stream
-from yehu_server.util.files import anything, replacing, why
+from yehu_server.util.files import anything, open_regular, replacing, why
 from yehu_server.util.flac_stream import FlacStream
 from yehu_server.util.wav_stream import WavStream
 
@@ -189,7 +189,7 @@ def is_rendered(target: Path) -> bool:
     try:
         if target.stat().st_size == 0:
             return True
-        with target.open("rb") as data, soundfile.SoundFile(data) as file:  # of any name
+        with open_regular(target) as data, soundfile.SoundFile(data) as file:  # of any name
             return str(file.software).startswith(RENDERED)
     except (OSError, soundfile.LibsndfileError):
         return False

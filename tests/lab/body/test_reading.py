@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from lab.body.bodies import admittance, off_db, radiation, rms
 
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body import plausible, read
+from yehu_server.lab.body import plausible, read, tables
 from yehu_server.lab.body.tap_files import write_taps
 
 HZ = np.arange(100.0, 5000.0, 10.0)
@@ -89,6 +89,21 @@ def test_wrong_channels_are_told(taps, tmp_path, channels, told):
     files, _ = write_taps(taps[:1], tmp_path / "taps")
     with pytest.raises(MeasurementError, match=told):
         read(files, channels=channels)
+
+
+def test_files_that_claim_or_hold_too_much_are_refused_before_they_are_read(tmp_path, monkeypatch):
+    frames = 48000
+    silence = tmp_path / "tap.flac"
+    soundfile.write(silence, np.zeros((frames, 2)), 48000, format="FLAC")
+    data = bytearray(silence.read_bytes())
+    data[22:26] = (500 * 48000).to_bytes(4, "big")  # the number of frames that its header tells
+    silence.write_bytes(data)
+    with pytest.raises(MeasurementError, match="has 48000000 samples, more than"):
+        read([silence], channels="force=1,velocity=1")
+    monkeypatch.setattr(tables, "MOST_NUMBERS", 1000)
+    (tmp_path / "tap.csv").write_text("time_s,force_N,velocity_m/s\n" + "0,0,0\n" * 400)
+    with pytest.raises(MeasurementError, match="has more than 1000 numbers"):
+        read([tmp_path / "tap.csv"])
 
 
 def test_taps_are_not_overwritten(taps, tmp_path):

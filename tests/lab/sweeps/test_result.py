@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -55,6 +57,28 @@ def test_a_damaged_file_is_told_in_a_line(tmp_path, result, cut):
     (tmp_path / "mine.npz").write_bytes(whole[:cut])
     with pytest.raises(ScoreError, match=r"mine\.npz: is not the result of a sweep"):
         Result.load(tmp_path / "mine.npz")
+
+
+def test_a_small_file_that_claims_much_is_refused_before_it_is_read(tmp_path, result):
+    count = 2**24
+    arrays = result.arrays()
+    same = {name: np.zeros(count, arrays[name].dtype) for name in COLUMNS}
+    huge = {"numbers": np.zeros(count, np.int64)} | same
+    axes = [f"axis_{name}" for name in result.axes]
+    wide = dict(zip(axes, (np.arange(2**17), np.arange(2**9)), strict=True))
+    taken = []
+    for claim in (huge, wide):
+        np.savez_compressed(tmp_path / "mine.npz", **(arrays | claim))
+        tracemalloc.start()
+        try:
+            Result.load(tmp_path / "mine.npz")
+        except ScoreError:
+            if tracemalloc.get_traced_memory()[1] < 10**7:
+                continue
+        finally:
+            tracemalloc.stop()
+        taken.append(list(claim))
+    assert taken == []
 
 
 def test_another_npz_is_no_result(tmp_path, result):

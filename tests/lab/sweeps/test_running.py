@@ -10,9 +10,10 @@ import pytest
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.lab.regimes.names import HELMHOLTZ
 from yehu_server.lab.sweeps import running
-from yehu_server.lab.sweeps.journal import journal_of
+from yehu_server.lab.sweeps.journal import Journal, journal_of
 from yehu_server.lab.sweeps.running import findings_of, perform, sweep, sweep_to
 from yehu_server.lab.sweeps.study import study_of
+from yehu_server.rendering.workers import Event
 
 
 @pytest.fixture
@@ -108,6 +109,17 @@ def test_a_journal_of_another_study_is_kept(tmp_path, data):
     assert journal_of(target).read_text() == "my notes"
 
 
+def test_a_journal_whose_beginning_a_full_disk_cut_off_begins_anew(tmp_path, data, result):
+    study, target = study_of(data()), tmp_path / "mine.npz"
+    Journal(target, study).close()
+    begun = journal_of(target).read_bytes()
+    for size in (0, 1, len(begun) - 1):
+        journal_of(target).write_bytes(begun[:size])
+        found = sweep_to(study, target, overwrite=False)
+        assert found.numbers.tobytes() == result.numbers.tobytes()
+        target.unlink()
+
+
 def test_a_result_is_replaced_only_where_it_may_be(tmp_path, data):
     target = tmp_path / "mine.npz"
     target.write_text("mine")
@@ -133,6 +145,16 @@ def test_a_task_that_is_wrong_tells_in_a_line(data):
     told = perform((text, np.zeros(1, np.int64).tobytes()))
     assert isinstance(told, str)
     assert "note: 12" in told
+
+
+@pytest.mark.parametrize("strange", [None, b"", b"\xff" * 10**4, [1], 5])
+def test_what_a_stranger_answers_is_no_finding(data, strange):
+    class Strange:
+        def perform_all(self, _perform, _tasks):
+            yield Event(0, 1.0, result=strange)
+
+    with pytest.raises(YehuError, match="a worker answered with what are no findings"):
+        sweep(study_of(data()), cluster=Strange())
 
 
 class Dying:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import resource
 from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 import soundfile
 
 from yehu_server.errors import OutputError
-from yehu_server.live.audio import recorder
+from yehu_server.live.audio import recorder, recordings
 from yehu_server.scores.capture import read_capture
 
 
@@ -44,6 +46,34 @@ def test_no_client_ends_what_the_command_records(make_live, tmp_path):
     assert some.any()
     assert some.tobytes() in whole.tobytes()
     assert live.server.is_whole
+
+
+def test_recordings_are_bounded_in_rate_and_number_and_empty_ones_leave_no_file(
+    tmp_path, monkeypatch
+):
+    clock = SimpleNamespace(now=1.0, monotonic=lambda: clock.now)
+    monkeypatch.setattr(recordings, "time", clock)
+    monkeypatch.setattr(recordings, "MOST_TAKES", 12)
+    tape = SimpleNamespace(rate=44100.0, frame=0, taped=lambda at: (at, np.zeros((0, 2), "f4")))
+    takes = recordings.Recordings(tape, tmp_path, lambda _line: None)
+    for ending in (".wav", ".flac"):
+        takes.start(f"empty{ending}")
+        with pytest.raises(OutputError, match="there is nothing to write"):
+            takes.stop()
+    assert list(tmp_path.iterdir()) == []
+    tape.taped = lambda at: (at, np.zeros((64, 2), "f4"))
+    for number in range(8):
+        takes.start(f"{number}")
+        takes.stop()
+    with pytest.raises(OutputError, match="too often"):
+        takes.start("more")
+    for number in range(4):
+        clock.now += 1.0
+        takes.start(f"more {number}")
+        takes.stop()
+    clock.now += 1.0
+    with pytest.raises(OutputError, match="has 12 files; remove some first"):
+        takes.start("one too many")
 
 
 def test_a_recording_is_not_begun_on_a_full_disk(live, disk):

@@ -6,7 +6,8 @@ import mido
 import pytest
 from midi_input import receive
 
-from yehu_server.live.osc import learn_calls
+from yehu_server.live.osc import context, learn_calls
+from yehu_server.live.osc.context import SAVES_A_SECOND, SAVES_AT_ONCE
 from yehu_server.playing.mapping import load
 
 
@@ -58,6 +59,16 @@ def test_the_file_is_written_aside_so_that_a_slow_disk_holds_up_nothing(still, m
     heard = still.peer.received()
     assert told(heard, "/learned")[0][:2] == ["/yehu/playing/vibrato", "cc 20"]
     assert told(heard, "/unlearned")[0][:2] == ["/yehu/playing/vibrato", 1]
+
+
+def test_files_are_written_so_many_at_once_and_one_more_each_second(still, monkeypatch):
+    monkeypatch.setattr(context, "time", still.clock)
+    for _ in range(round(SAVES_AT_ONCE)):
+        assert told(still.ask("/unlearn", "/playing/vibrato"), "/unlearned")
+    assert told(still.ask("/unlearn", "/playing/vibrato"), "/error")
+    assert told(still.ask("/learn", "/playing/vibrato"), "/error")
+    still.clock.now += 1.0 / SAVES_A_SECOND
+    assert told(still.ask("/learn", "/playing/vibrato"), "/learning")
 
 
 def test_a_knob_of_another_box_moves_the_note_that_sounds(still):

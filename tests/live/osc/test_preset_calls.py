@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from wire import FakePeer
 
-from yehu_server.live.osc import preset_calls
+from yehu_server.live.osc import context
 from yehu_server.live.osc.context import SAVES_A_SECOND, SAVES_AT_ONCE
 from yehu_server.params.preset_file import POSSIBLE
 from yehu_server.playing.preset_folders import Presets
@@ -129,19 +129,38 @@ def test_one_of_ones_own_may_be_saved_over_and_deleted(still, own):
 
 
 def test_presets_are_saved_so_many_at_once_and_one_more_each_second(still, own, monkeypatch):
-    monkeypatch.setattr(preset_calls, "time", still.clock)
+    monkeypatch.setattr(context, "time", still.clock)
     for number in range(20):
         still.tell("/preset/save", f"mine {number}")
     assert len(list(own.iterdir())) == SAVES_AT_ONCE
     address, reason = still.ask("/preset/save", "another")[-1].arguments
     assert (address, reason) == (
         "/yehu/preset/save",
-        "presets are saved too often; try again in a second",
+        "files are written too often; try again in a second",
     )
     still.clock.now += 1.0 / SAVES_A_SECOND
     for name in ("another", "and another"):
         still.tell("/preset/save", name)
     assert len(list(own.iterdir())) == SAVES_AT_ONCE + 1
+
+
+def test_files_are_written_aside_and_read_in_order(still, own, monkeypatch):
+    waiting = []
+    monkeypatch.setattr(still.services, "run_in_background", waiting.append)
+    still.tell("/playing/vibrato", 33.0)
+    assert "/preset/saved" not in by_address(still.ask("/preset/save", "mine"))
+    still.tell("/playing/vibrato", 5.0)
+    for call in ("/preset/load", "/preset/delete", "/preset/load"):
+        still.tell(call, "mine")
+    assert list(own.iterdir()) == []  # a slow disk holds up nothing
+    while waiting:
+        waiting.pop(0)()
+    heard = [message.address for message in still.peer.received()]
+    told = [each for each in heard if each.startswith(("/yehu/preset", "/yehu/error"))]
+    assert told == [
+        f"/yehu{each}" for each in ("/preset/saved", "/preset/loaded", "/preset/deleted", "/error")
+    ]
+    assert still.player.value("/playing/vibrato") == 33.0
 
 
 def test_presets_are_listed_and_a_broken_one_is_told(still, own):

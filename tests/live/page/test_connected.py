@@ -7,6 +7,7 @@ import contextlib
 import json
 import os
 import signal
+import socket
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -17,6 +18,7 @@ import mido
 import numpy as np
 import pytest
 from midi_input import receive
+from web_client import Refused, WebSocket
 
 from yehu_server.ahead.interpreter import look_layout, look_length
 from yehu_server.core.player.rows import ROW
@@ -27,6 +29,7 @@ from yehu_server.live.page.pages import PageOptions
 from yehu_server.live.page.players import CHANNELS, LOWEST
 from yehu_server.live.page.sockets import LOOK, NOW, WISHES, WRONG
 from yehu_server.live.server import Server
+from yehu_server.live.web.connections import MOST_OF_A_HOST, MOST_SOCKETS_OF_A_HOST
 from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import TABLE
 
@@ -193,6 +196,26 @@ def test_pages_get_the_module_and_what_captures_begin_with_once_they_are_there(s
     until(lambda: get(server, "/yehu.wasm")[0] == 200, "no module")
     assert get(server, "/yehu.wasm")[1]["Content-Type"] == "application/wasm"
     assert json.loads(get(server, "/captures/48000.json", **IDENTITY)[2])["rate"] == 48000
+
+
+def test_the_connections_of_a_host_shut_no_other_out(server) -> None:
+    port = server.pages.port
+    crowd = [socket.create_connection((HOST, port)) for _ in range(MOST_OF_A_HOST + 50)]
+    try:
+        for connection in crowd:
+            with contextlib.suppress(OSError):  # the oldest were closed
+                connection.sendall(b"GET / HTTP/1.1\r\nHo")  # half a request
+        sockets = [
+            WebSocket(port, "/sound", source="127.0.0.7") for _ in range(MOST_SOCKETS_OF_A_HOST)
+        ]
+        with pytest.raises(Refused):
+            WebSocket(port, "/sound", source="127.0.0.7")
+        WebSocket(port, "/sound", source="127.0.0.8").vanish()
+        for one in sockets:
+            one.vanish()
+    finally:
+        for connection in crowd:
+            connection.close()
 
 
 def test_foreign_pages_are_refused(server) -> None:

@@ -56,6 +56,8 @@ def test_no_page_cannot_be_opened(words) -> None:
 def test_the_lan_is_this_machines_network_and_nobody_else() -> None:
     assert list(page_of("--lan").networks) == ["192.168.0.0/22", "127.0.0.0/8", "::1"]
     assert list(page_of("--http-allow", "10.0.0.0/8").networks) == ["10.0.0.0/8"]
+    narrow = page_of("--lan", "--http-allow", "192.168.1.64/26")
+    assert list(narrow.networks) == ["192.168.1.64/26", "127.0.0.0/8", "::1"]
 
 
 def test_what_is_said_tells_who_may_play() -> None:

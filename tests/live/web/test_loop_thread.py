@@ -10,7 +10,7 @@ import urllib.request
 
 import pytest
 
-from yehu_server.live.web import server
+from yehu_server.live.web.connections import Connections
 from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.server import WebOptions
 from yehu_server.util.retry import Backoff
@@ -67,14 +67,14 @@ def test_a_loop_that_is_short_of_files_says_so_once_in_a_line(until, caplog):
 
 def test_oscquery_answers_again_after_its_server_failed(make_live, until, monkeypatch):
     fails = [TOO_MANY, None]
-    sleep = asyncio.sleep
+    bound = Connections.bound
 
-    async def failing(seconds: float) -> None:
-        await sleep(min(seconds, 0.01))
+    def failing(connections: Connections, of: object) -> None:
         if fails and (error := fails.pop(0)) is not None:
             raise error
+        bound(connections, of)
 
-    monkeypatch.setattr(server.asyncio, "sleep", failing)
+    monkeypatch.setattr(Connections, "bound", failing)
     live = make_live(http=WebOptions(("127.0.0.1", 0)))
     until(lambda: not fails, "a failure, and another try")
     with urllib.request.urlopen(f"http://127.0.0.1:{live.server.web.port}/?HOST_INFO") as answer:

@@ -15,7 +15,8 @@ from yehu_server.errors import DeviceError
 from yehu_server.live.addresses import Allowed
 from yehu_server.live.osc.call_table import CALLS
 from yehu_server.live.osc.status import STATUS, Kind
-from yehu_server.live.web.server import IDLE_S, MOST_CONNECTIONS, PARAMETERS, WebOptions
+from yehu_server.live.web.connections import MOST_OF_A_HOST
+from yehu_server.live.web.server import IDLE_S, PARAMETERS, WebOptions
 from yehu_server.params.table import TABLE
 from yehu_server.util.files import shipped_folder
 
@@ -296,7 +297,7 @@ def test_a_request_with_too_much_to_it_is_refused(port):
 
 
 def test_those_who_connect_and_say_nothing_are_bounded(port, until):
-    silent = [socket.create_connection((HOST, port)) for _ in range(MOST_CONNECTIONS + 50)]
+    silent = [socket.create_connection((HOST, port)) for _ in range(MOST_OF_A_HOST + 50)]
     try:
         gone = []
 

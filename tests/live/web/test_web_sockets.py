@@ -13,7 +13,13 @@ from web_client import BINARY, CLOSE, TEXT, Refused, WebSocket, ask
 from wire import Message, Wire
 
 from yehu_server.live.osc.answering import MOST_UNSENT_BYTES, WebTraffic
-from yehu_server.live.web.server import MOST_CONNECTIONS, MOST_WEB_SOCKETS, SWEEP_S, WebOptions
+from yehu_server.live.web.connections import (
+    MOST_CONNECTIONS,
+    MOST_OF_A_HOST,
+    MOST_SOCKETS_OF_A_HOST,
+    MOST_WEB_SOCKETS,
+)
+from yehu_server.live.web.server import WebOptions
 from yehu_server.live.web.web_sockets import FRAME_BYTES, WebPeer
 from yehu_server.params.table import TABLE
 
@@ -67,7 +73,6 @@ def test_the_many_who_connect_and_say_nothing_shut_nobody_out(connect, port):
         web.tell(FORCE, 1.0)
         assert web.next() == Message(FORCE, [1.0])
         silent += [socket.create_connection((HOST, port)) for _ in range(50)]
-        time.sleep(2.0 * SWEEP_S)
         web.tell(FORCE, 1.5)
         assert web.next() == Message(FORCE, [1.5])
     finally:
@@ -270,12 +275,41 @@ def test_a_frame_may_be_as_long_as_a_datagram(web):
     assert len(web.wait_for("/yehu/pong")[0]) == 60_000
 
 
-def test_there_is_room_for_so_many_and_no_more(connect):
-    for _ in range(MOST_WEB_SOCKETS):
-        connect()
-    with pytest.raises(Refused) as refused:
-        connect()
-    assert refused.value.status == 503
+def test_there_is_room_for_so_many_of_a_host_and_no_more(connect):
+    hosts = [f"127.0.0.{2 + i}" for i in range(MOST_WEB_SOCKETS // MOST_SOCKETS_OF_A_HOST)]
+    for host in hosts:
+        for _ in range(MOST_SOCKETS_OF_A_HOST):
+            connect(source=host)
+        with pytest.raises(Refused) as refused:
+            connect(source=host)
+        assert refused.value.status == 503
+    with pytest.raises(Refused):  # all are taken
+        connect(source="127.0.0.100")
+
+
+def test_the_connections_of_a_host_shut_no_other_out(port, connect):
+    first = socket.create_connection((HOST, port), source_address=("127.0.0.9", 0))
+    crowd = [socket.create_connection((HOST, port)) for _ in range(MOST_CONNECTIONS + 50)]
+    try:
+        connect(source="127.0.0.8").sync()
+        first.sendall(b"GET /yehu/bow/force?TYPE HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        first.settimeout(20.0)
+        assert first.recv(1 << 16).startswith(b"HTTP/1.1 200")
+        held = sum(is_open(one) for one in crowd)
+        assert held <= MOST_OF_A_HOST
+    finally:
+        for connection in (first, *crowd):
+            connection.close()
+
+
+def is_open(connection: socket.socket) -> bool:
+    connection.setblocking(False)
+    try:
+        return bool(connection.recv(1))
+    except BlockingIOError:
+        return True
+    except ConnectionError:
+        return False
 
 
 # ---------------------------------------------------------------- those who hold up, or leave

@@ -6,7 +6,8 @@ The first column is the time in seconds, for a tap, or the frequency in hertz, f
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from array import array
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,9 +24,10 @@ from yehu_server.lab.body.channels import (
 )
 from yehu_server.lab.body.curve import KINDS, OTHER_NAMES, RADIATION, Curve, Floats
 from yehu_server.lab.body.tap import Tap, cut
-from yehu_server.util.files import read_text, why
+from yehu_server.util.files import MAX_TEXT_BYTES, read_lines, why
 
 LEAST_LINES = 20
+MOST_NUMBERS = 2**23
 UNEVEN = 1e-3  # relative: how much steps of time may differ
 
 
@@ -68,33 +70,48 @@ def read_table(
 def _parsed(path: Path) -> tuple[list[str], Floats]:
     """The headings, and the numbers [shape=(lines, columns)]."""
     try:
-        text = read_text(path)
+        return _numbers(path, _lines(path))
     except OSError as error:
         raise MeasurementError(f"{path}: {why(error)}") from error
     except UnicodeDecodeError as error:
         raise MeasurementError(f"{path}: not a table of text") from error
-    lines = [line for line in text.lstrip("\ufeff").splitlines() if line.strip()]
-    lines = [line for line in lines if not line.lstrip().startswith("#")]
-    if len(lines) < LEAST_LINES:
-        raise MeasurementError(f"{path}: has {len(lines)} lines, too few for a measurement")
-    mark = next((mark for mark in ("\t", ";", ",") if mark in lines[0]), None)
-    headings = [cell.strip().strip('"') for cell in lines[0].split(mark)]
-    if re.fullmatch(r"[-+.\deE]+", headings[0]):
+
+
+def _lines(path: Path) -> Iterator[str]:
+    """The lines that hold something; one at a time, since all would take some times the file."""
+    for number, text in enumerate(read_lines(path, MAX_TEXT_BYTES)):
+        line = text.lstrip("\ufeff") if number == 0 else text
+        # A file of a system whose lines end in CR alone is one line to the reader.
+        for part in line.splitlines():
+            if part.strip() and not part.lstrip().startswith("#"):
+                yield part
+
+
+def _numbers(path: Path, lines: Iterator[str]) -> tuple[list[str], Floats]:
+    first = next(lines, "")
+    mark = next((mark for mark in ("\t", ";", ",") if mark in first), None)
+    headings = [cell.strip().strip('"') for cell in first.split(mark)]
+    if headings and re.fullmatch(r"[-+.\deE]+", headings[0]):
         raise MeasurementError(
             f"{path}: its first line names no columns, such as time_s,force_N,velocity_m/s"
         )
-    rows = []
-    for line in lines[1:]:
+    found = array("d")
+    for line in lines:
         cells = line.split(mark)
         if mark in ("\t", ";"):
             cells = [cell.replace(",", ".") for cell in cells]
         try:
-            rows.append([float(cell) for cell in cells])
+            found.extend([float(cell) for cell in cells])
         except ValueError:
             raise MeasurementError(f"{path}: no numbers in {line[:40]!r}") from None
         if len(cells) != len(headings):
             raise MeasurementError(f"{path}: {len(headings)} columns, but not in {line[:40]!r}")
-    numbers = np.array(rows)
+        if len(found) > MOST_NUMBERS:
+            raise MeasurementError(f"{path}: has more than {MOST_NUMBERS} numbers")
+    count = len(found) // max(1, len(headings)) + 1
+    if count < LEAST_LINES:
+        raise MeasurementError(f"{path}: has {count} lines, too few for a measurement")
+    numbers = np.frombuffer(found).reshape(-1, len(headings))
     if not np.isfinite(numbers).all():
         raise MeasurementError(f"{path}: holds a number that is not finite")
     return headings, numbers

@@ -11,9 +11,10 @@ import numpy as np
 from yehu_server.errors import MeasurementError
 from yehu_server.lab.body.channels import Channel, by_quantity
 from yehu_server.lab.body.tap import QUANTITIES, Tap, cut
-from yehu_server.util.files import anything, make_folder, nothing, replacing, why
+from yehu_server.util.files import anything, make_folder, nothing, open_regular, replacing, why
 
 LONGEST_S = 600.0
+MOST_SAMPLES = 2**24  # of all channels, in a file: three minutes of two channels at 48 kHz
 LOWEST_RATE, HIGHEST_RATE = 8000, 400_000
 ENDINGS = (".wav", ".wave", ".flac", ".aif", ".aiff")
 
@@ -34,23 +35,27 @@ def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
     import soundfile
 
     try:
-        with path.open("rb") as data, soundfile.SoundFile(data) as file:
+        with open_regular(path) as data, soundfile.SoundFile(data) as file:
             rate = file.samplerate
             if not LOWEST_RATE <= rate <= HIGHEST_RATE or file.frames > LONGEST_S * rate:
                 raise MeasurementError(f"{path}: not a recording of taps: {rate} Hz, or too long")
+            count = file.channels
+            if channels is None:
+                raise MeasurementError(
+                    f"{path}: say what its {count} channels are, such as "
+                    "--channels force=100,velocity=0.5: their SI units at full scale"
+                )
+            if len(channels) != count:
+                raise MeasurementError(f"{path}: has {count} channels, not {len(channels)} as told")
+            if file.frames * count > MOST_SAMPLES:
+                raise MeasurementError(
+                    f"{path}: has {file.frames * count} samples, more than {MOST_SAMPLES}"
+                )
             samples = file.read(dtype="float64", always_2d=True)
     except OSError as error:
         raise MeasurementError(f"{path}: {why(error)}") from error
     except soundfile.LibsndfileError as error:
         raise MeasurementError(f"{path}: not a sound file ({error.error_string})") from error
-    count = samples.shape[1]
-    if channels is None:
-        raise MeasurementError(
-            f"{path}: say what its {count} channels are, such as "
-            "--channels force=100,velocity=0.5: their SI units at full scale"
-        )
-    if len(channels) != count:
-        raise MeasurementError(f"{path}: has {count} channels, not {len(channels)} as told")
     return cut(float(rate), by_quantity(channels, samples), path.name)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from yehu_server.errors import OutputError, one_line
 from yehu_server.util.extras import need
-from yehu_server.util.files import anything, check_free, check_target, replacing, why
+from yehu_server.util.files import anything, check_free, check_target, open_regular, replacing, why
 
 SOFTWARE = "yehu-server"  # named in a picture, which may therefore be replaced
 BEGINNING = 4096  # bytes of a file in which it is named
@@ -41,7 +41,7 @@ def check_picture(target: Path, what: str, *, overwrite: bool = False) -> None:
 def is_ours(target: Path) -> bool:
     """Whether a file is a picture that `write_picture` made, or is empty."""
     try:
-        with target.open("rb") as file:
+        with open_regular(target) as file:
             data = file.read(BEGINNING)
     except OSError:
         return False

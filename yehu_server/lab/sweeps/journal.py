@@ -21,7 +21,7 @@ from yehu_server.errors import OutputError
 from yehu_server.lab.regimes.judge import FINDING
 from yehu_server.lab.sweeps.study import Study
 from yehu_server.util import __version__
-from yehu_server.util.files import why
+from yehu_server.util.files import open_regular, why
 
 Array = Any
 
@@ -38,6 +38,11 @@ def journal_of(target: Path) -> Path:
 def key_of_study(study: Study) -> str:
     """A key of a study and of the code that computes it."""
     return hashlib.sha256(f"{source_hash()} {study.as_text()}".encode()).hexdigest()[:32]
+
+
+def _header(key: str) -> bytes:
+    header = {"journal": "yehu-server sweep", "version": __version__, "key": key}
+    return json.dumps(header).encode() + b"\n"
 
 
 class Done:
@@ -90,8 +95,7 @@ class Journal(Done):
                 self._file.truncate(good)
                 self._file.seek(good)
             else:
-                header = {"journal": "yehu-server sweep", "version": __version__, "key": key}
-                self._file.write(json.dumps(header).encode() + b"\n")
+                self._file.write(_header(key))
                 self._file.flush()
         except OSError as error:
             raise OutputError(f"{self.path}: cannot write: {why(error)}") from error
@@ -120,8 +124,10 @@ class Journal(Done):
 
     def _read(self, key: str) -> int:
         """Read what is done; return how many bytes of the file are good."""
-        with self.path.open("rb") as file:
+        with open_regular(self.path) as file:
             line = file.readline(MOST_HEADER)
+            if not line.endswith(b"\n") and _header(key).startswith(line):
+                return 0  # a full disk, or a crash, cut it off
             try:
                 found = json.loads(line)["key"]
             except (ValueError, KeyError, TypeError):

@@ -6,10 +6,11 @@ import json
 import math
 import os
 import warnings
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from yehu_server.lab.sweeps.refining import fill
 from yehu_server.lab.sweeps.study import Study, study_of
 from yehu_server.util import __version__
 from yehu_server.util.extras import need
-from yehu_server.util.files import anything, replacing
+from yehu_server.util.files import anything, open_regular, replacing
 
 if TYPE_CHECKING:
     import xarray
@@ -30,6 +31,9 @@ Array = Any
 
 FORMAT, VERSION = "yehu-server sweep", 1
 COLUMNS = tuple(FINDING.names or ())
+# What a file may claim, so that a small one cannot fill the memory: results are noise, mostly.
+LEAST_CLAIM, MOST_RATIO = 2**26, 30  # bytes; times the bytes of the file
+LEAST_GRID, MOST_EMPTY = 2**23, 1024  # points of the finest grid; times the computed ones
 OF_BOW = {"force", "position", "speed", "acceleration", "noise", "seed"}
 OF_BOW |= {"bow_force", "bow_position", "bow_velocity", "bow_acceleration", "bow_noise"}
 
@@ -195,8 +199,10 @@ class Result:
         """
         path = Path(path)
         try:
-            with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-                return cls.of({name: file[name] for name in file.files})
+            with open_regular(path) as opened:
+                _check_sizes(opened)
+                with np.load(opened, allow_pickle=False) as file:
+                    return cls.of({name: file[name] for name in file.files})
         except OSError as error:
             raise ScoreError(f"{path}: {error.strerror or error}") from error
         except Exception as error:  # damaged archives raise whatever they lead to
@@ -222,6 +228,8 @@ class Result:
             raise ValueError("columns of other lengths")
         if numbers.dtype.kind not in "iu" or any(values.ndim != 1 for values in axes.values()):
             raise ValueError("axes or points of another kind")
+        if size > max(LEAST_GRID, MOST_EMPTY * len(numbers)):
+            raise ValueError("hardly anything on a huge grid")
         if columns["regime"].max(initial=0) >= len(meta["regimes"]):
             raise ValueError("a regime without a name")
         if not {"spreads", "refine", "levels", "study", "made_by"} <= meta.keys():
@@ -229,6 +237,21 @@ class Result:
         if len(numbers) == 0 or numbers.min() < 0 or numbers.max() >= size:
             raise ValueError("points off the grid")
         return cls(meta, axes, numbers, columns)
+
+
+def _check_sizes(file: BinaryIO) -> None:
+    """Refuse an archive that claims to hold much more than results in so many bytes do.
+
+    Raises
+    ------
+    ValueError, zipfile.BadZipFile
+    """
+    with zipfile.ZipFile(file) as archive:
+        claimed = sum(entry.file_size for entry in archive.infolist())
+    most = max(LEAST_CLAIM, MOST_RATIO * os.fstat(file.fileno()).st_size)
+    if claimed > most:
+        raise ValueError("it claims to hold more than it can")
+    file.seek(0)
 
 
 def result_of(study: Study, numbers: Array, findings: Array) -> Result:

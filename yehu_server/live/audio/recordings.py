@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,8 +11,11 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
 from yehu_server.live.audio.recorder import Recorder
 from yehu_server.util.files import inside
+from yehu_server.util.token_bucket import TokenBucket
 
 ENDINGS = (".wav", ".flac")
+# What clients may begin together, and what the folder may have in it.
+BEGINS_A_SECOND, BEGINS_AT_ONCE, MOST_TAKES = 1.0, 10.0, 1000
 
 
 class Recordings:
@@ -30,6 +35,7 @@ class Recordings:
         self._on_message = on_message
         self._everything: Recorder | None = None
         self._requested: Recorder | None = None
+        self._begins = TokenBucket(BEGINS_A_SECOND, BEGINS_AT_ONCE)
 
     def record_everything(
         self, target: Path, *, overwrite: bool = False, waits: bool = False
@@ -51,16 +57,20 @@ class Recordings:
         Raises
         ------
         OutputError
-            Where a requested recording runs, the name is not plain or already taken, or the file
-            cannot be written.
+            Where a requested recording runs, the name is not plain or already taken, too many were
+            begun of late or are there, or the file cannot be written.
         """
         target = inside(self._folder, name, "" if Path(name).suffix in ENDINGS else ".wav")
         if self._requested is not None and self._requested.is_running:
             raise OutputError(f"already recording {self._requested.target.name}")
+        if not self._begins.takes(time.monotonic()):
+            raise OutputError("recordings are begun too often; try again in a second")
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             if target.exists():
                 raise OutputError(f"{target.name} exists")
+            if len(os.listdir(self._folder)) >= MOST_TAKES:  # noqa: PTH208 - names are enough
+                raise OutputError(f"{self._folder} has {MOST_TAKES} files; remove some first")
         except OSError as error:
             raise OutputError(f"{self._folder}: {error.strerror}") from error
         self._requested = Recorder(self._tape, target, self._tape.frame, self._on_message)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Protocol
 
+from yehu_server.errors import OutputError, YehuError
 from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import pack
@@ -61,6 +64,7 @@ class CallContext:
     drop_scheduled: Callable[[str], None]  # the messages of a group that wait for their time
     tree_changed: Callable[[str], None]  # announces a change of the tree, below each group
     remap: Callable[[LivePlayer, ControllerMapping], None]  # a player and its like
+    writes: set[object] = field(default_factory=set)  # a mark for each file that is being written
     saves: TokenBucket = field(default_factory=lambda: TokenBucket(SAVES_A_SECOND, SAVES_AT_ONCE))
 
 
@@ -80,6 +84,39 @@ class PlayerCalls:
         self._context = context
         self._clients, self._services = context.clients, context.services
         self.by_address: dict[str, Act] = {}
+
+    def _check_rate(self) -> None:
+        """Refuse what writes a file where that is done too often."""
+        if not self._context.saves.takes(time.monotonic()):
+            raise OutputError("files are written too often; try again in a second")
+
+    def _write(self, peer: Peer, address: str, write: Callable[[], Callable[[], None]]) -> None:
+        """Write a file aside, as a disk may be slow; then call what `write` returns."""
+        mark = object()
+
+        def aside() -> None:
+            try:
+                then = write()
+            except YehuError as error:
+                then = partial(self._send_error, peer, address, str(error))
+            self._services.call_soon(partial(end, then))
+
+        def end(then: Callable[[], None]) -> None:
+            self._context.writes.discard(mark)
+            try:
+                then()
+            except YehuError as error:
+                self._send_error(peer, address, str(error))
+
+        self._context.writes.add(mark)
+        self._services.run_in_background(aside)
+
+    def _after_writes(self, call: Request, address: str, act: Act) -> None:
+        """Do what reads files: after those that are being written, where there are any."""
+        if self._context.writes:
+            self._write(call.peer, address, lambda: partial(act, call))
+        else:
+            act(call)
 
     def _send(self, peer: Peer, address: str, *arguments: float | str) -> None:
         """Send a peer an answer of the group."""

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 
-from yehu_server.errors import ParameterError, YehuError
+from yehu_server.errors import ParameterError
 from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.context import CallContext, PlayerCalls
 from yehu_server.live.osc.request import Request
@@ -46,6 +46,7 @@ class LearnCalls(PlayerCalls):
             return
         address, soft = call.word_and_flag()
         target = self._target(address, "learn one")
+        self._check_rate()
         wants, until = self._wants, time.monotonic() + PATIENCE_S
 
         def found(source: LearnedSource) -> None:
@@ -55,18 +56,6 @@ class LearnCalls(PlayerCalls):
 
         self._player.listen(found)
         self._send(call.peer, "/learning", self._prefix + target)
-
-    def _write(self, peer: Peer, address: str, write: Callable[[], Callable[[], None]]) -> None:
-        """Write the user's file aside, as a disk may be slow; then call what `write` returns."""
-
-        def aside() -> None:
-            try:
-                then = write()
-            except YehuError as error:
-                then = partial(self._send_error, peer, address, str(error))
-            self._services.call_soon(then)
-
-        self._services.run_in_background(aside)
 
     def _learned(
         self, peer: Peer, target: str, source: LearnedSource, *, soft: bool
@@ -84,6 +73,7 @@ class LearnCalls(PlayerCalls):
 
     def _unlearn(self, call: Request) -> None:
         target = self._target(call.word(), "forget one")
+        self._check_rate()
         self._write(call.peer, "/unlearn", partial(self._unlearned, call.peer, target))
 
     def _unlearned(self, peer: Peer, target: str) -> Callable[[], None]:

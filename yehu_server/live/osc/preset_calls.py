@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 
 from yehu_server.errors import PresetError, shortened
 from yehu_server.live.osc.context import CallContext, PlayerCalls
@@ -30,6 +30,9 @@ class PresetCalls(PlayerCalls):
             self.by_address |= {"/preset/delete": self._delete, "/preset/list": self._list}
 
     def _load(self, call: Request) -> None:
+        self._after_writes(call, "/preset/load", self._load_now)
+
+    def _load_now(self, call: Request) -> None:
         preset = self._presets.load(call.word())
         self._set(call, "/preset/load", preset.values)
         self._send(call.peer, "/preset/loaded", preset.name)
@@ -48,6 +51,9 @@ class PresetCalls(PlayerCalls):
             self._send_error(call.peer, address, f"{which}{PREFIX}{address} sets what all share")
 
     def _morph(self, call: Request) -> None:
+        self._after_writes(call, "/preset/morph", self._morph_now)
+
+    def _morph_now(self, call: Request) -> None:
         if len(call.arguments) != 3:
             raise PresetError("expected two names and a number from 0 to 1")
         one, other = self._named(call, 0), self._named(call, 1)
@@ -59,24 +65,34 @@ class PresetCalls(PlayerCalls):
 
     def _save(self, call: Request) -> None:
         name = call.word()
-        if not self._context.saves.takes(time.monotonic()):
-            raise PresetError("presets are saved too often; try again in a second")
-        self._presets.save(name, self._player.sound())
-        self._announce()
-        self._send(call.peer, "/preset/saved", name)
+        self._check_rate()
+        sound = self._player.sound()
 
-    def _announce(self) -> None:
-        """Announce that there are other presets."""
+        def save() -> Callable[[], None]:
+            self._presets.save(name, sound)
+            return partial(self._announce, call, "/preset/saved", name)
+
+        self._write(call.peer, "/preset/save", save)
+
+    def _announce(self, call: Request, answer: str, name: str) -> None:
+        """Answer, and announce that there are other presets."""
         self._player.know_programs()
         self._context.tree_changed("/preset")
+        self._send(call.peer, answer, name)
 
     def _delete(self, call: Request) -> None:
         name = call.word()
-        self._presets.delete(name)
-        self._announce()
-        self._send(call.peer, "/preset/deleted", name)
+
+        def delete() -> Callable[[], None]:
+            self._presets.delete(name)
+            return partial(self._announce, call, "/preset/deleted", name)
+
+        self._write(call.peer, "/preset/delete", delete)
 
     def _list(self, call: Request) -> None:
+        self._after_writes(call, "/preset/list", self._list_now)
+
+    def _list_now(self, call: Request) -> None:
         presets, errors = self._presets.all()
         for preset in presets:
             row = (preset.name, preset.program or 0, shortened(preset.about))

@@ -22,7 +22,8 @@ from yehu_server.live.addresses import Allowed
 from yehu_server.live.page.guests import Admission, Guests
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.page.site import HEADERS, Site
-from yehu_server.live.page.sockets import MOST_PAGES, PageSockets
+from yehu_server.live.page.sockets import PageSockets
+from yehu_server.live.web.connections import Connections
 from yehu_server.live.web.origin_check import check, own_names
 from yehu_server.util.processes import Child, Message, Parent
 
@@ -42,6 +43,7 @@ class Pages:
         guests = order["guests"]
         self._admission = Admission(None if guests is None else Guests(**guests))
         self._names = own_names()
+        self._connections = Connections()
         self._site = Site()
         self._sounds = PREPARING  # whether pages can sound themselves
         self._status: dict[str, Any] = {}
@@ -88,6 +90,8 @@ class Pages:
             app, access_log=None, logger=quiet, keepalive_timeout=IDLE_S, shutdown_timeout=ENDING_S
         )
         await runner.setup()
+        assert runner.server is not None  # noqa: S101 - setup makes it
+        self._connections.bound(runner.server)
         await web.SockSite(runner, self._listening).start()
         sockets = self._sockets
         await asyncio.gather(sockets.send_looks(), sockets.send_sound(), sockets.send_status())
@@ -106,10 +110,9 @@ class Pages:
             return self._site.answer(request)
         if request.headers.get("Upgrade", "").lower() != "websocket":
             raise web.HTTPUpgradeRequired(text="for WebSockets\n")
-        if self._sockets.count >= MOST_PAGES:
-            raise web.HTTPServiceUnavailable(text="there are too many pages\n")
-        role = self._admission.role_of(request.remote or "", request.query.get("pin", ""))
-        return await serve[request.path](request, role)
+        with self._connections.talking(request):
+            role = self._admission.role_of(request.remote or "", request.query.get("pin", ""))
+            return await serve[request.path](request, role)
 
 
 def main() -> None:

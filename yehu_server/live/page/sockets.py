@@ -23,6 +23,7 @@ from aiohttp import WSMsgType, web
 from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitted
 from yehu_server.live.page.shared_view import SharedView
+from yehu_server.live.web.connections import MOST_WEB_SOCKETS
 from yehu_server.params.table import TABLE
 from yehu_server.util.token_bucket import TokenBucket
 
@@ -58,7 +59,8 @@ NOW = -1.0
 SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is the row of a parameter
 LOOK_S, SOUND_S, STATUS_S = 1 / 60, 0.001, 1.0
 IDLE_S = 0.05  # between looks whether somebody listens
-MOST_PAGES, MOST_UNSENT = 64, 1 << 16  # bytes
+MOST_PAGES = MOST_WEB_SOCKETS
+MOST_UNSENT = 1 << 16  # bytes
 MOST_WISHES = 1024  # of a message
 MESSAGE_BYTES = 8 * WISH * MOST_WISHES
 WISHES_PER_S, WISHES_AT_ONCE = 2000.0, 4000.0
@@ -107,11 +109,6 @@ class PageSockets:
         # Of each part, the values that it has where its instrument has others: in a section, whose
         # players have seats of their own.
         self._own: dict[int, dict[int, float]] = {}
-
-    @property
-    def count(self) -> int:
-        """Number of open WebSockets."""
-        return len(self._pages) + len(self._listeners)
 
     # -- serving one -------------------------------------------------------------------------
 

@@ -10,7 +10,7 @@ import ipaddress
 import json
 import logging
 import socket
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.occupants import NAME, by_whom, serves_at
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web import query
+from yehu_server.live.web.connections import Connections
 from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.metrics import Metrics
 from yehu_server.live.web.origin_check import check, own_names
@@ -35,9 +36,6 @@ from yehu_server.util.retry import why
 
 log = logging.getLogger(__name__)
 
-MOST_WEB_SOCKETS = 64
-MOST_CONNECTIONS = 256  # with those that have sent no request
-SWEEP_S = 0.25
 BODY_BYTES = 1 << 16
 IDLE_S = 15.0  # before an idle connection is closed
 ENDING_S = 0.2  # to finish answers at the end
@@ -95,7 +93,7 @@ class WebServer:
         self._names = own_names()
         self._listening = listen("OSCQuery", *options.address)
         self.host, self.port = self._listening.getsockname()[:2]
-        self._talking: set[web.RequestHandler] = set()  # connections that are WebSockets
+        self._connections = Connections()
         self._thread = LoopThread(
             self._serve, "OSCQuery", lambda error: log.warning("OSCQuery: %s; trying again", error)
         )
@@ -130,20 +128,13 @@ class WebServer:
         server = runner.server
         assert server is not None  # noqa: S101 - setup makes it
         try:
+            self._connections.bound(server)
             # A copy, since it is closed at the end, and serving may have to start again.
             await web.SockSite(runner, self._listening.dup()).start()
-            while True:
-                await asyncio.sleep(SWEEP_S)
-                self._close_excess(server.connections)
+            await asyncio.Event().wait()
         finally:
             await self._sockets.close()
             await runner.cleanup()
-
-    def _close_excess(self, connections: Sequence[web.RequestHandler]) -> None:
-        """Close the oldest connections where there are too many, but no WebSockets."""
-        others = [one for one in connections if one not in self._talking]
-        for excess in others[: max(0, len(connections) - MOST_CONNECTIONS)]:
-            excess.force_close()
 
     async def _answer(self, request: web.Request) -> web.StreamResponse:
         self.traffic.requests += 1
@@ -167,13 +158,8 @@ class WebServer:
         if (request.content_length or 0) > BODY_BYTES:
             raise web.HTTPRequestEntityTooLarge(BODY_BYTES, request.content_length or 0)
         if request.headers.get("Upgrade", "").lower() == "websocket":
-            if self.traffic.web_sockets >= MOST_WEB_SOCKETS:
-                raise web.HTTPServiceUnavailable(text="there are too many WebSockets\n")
-            self._talking.add(request.protocol)
-            try:
+            with self._connections.talking(request):
                 return await self._sockets.serve(request)
-            finally:
-                self._talking.discard(request.protocol)
         if request.path == "/metrics":
             body, content_type = self._metrics.text(request.headers.get("Accept", ""))
             return web.Response(body=body, headers=HEADERS | {"Content-Type": content_type})

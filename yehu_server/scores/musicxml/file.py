@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import os
 import re
+import sys
 import zipfile
 import zlib
 from typing import Any
@@ -132,6 +133,7 @@ class _Builder:
         self._tree = ET.TreeBuilder()
         self._depth = 0
         self._elements = 0
+        self._is_text = False
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         self._depth += 1
@@ -140,14 +142,18 @@ class _Builder:
             raise ScoreError(f"has elements deeper than {DEEPEST}")
         if self._elements > MOST_ELEMENTS:
             raise ScoreError(f"has more than {MOST_ELEMENTS} elements")
-        self._tree.start(tag.rpartition(":")[2], attributes)
+        self._is_text = True
+        # Of a million elements each string counts.
+        self._tree.start(sys.intern(tag.rpartition(":")[2]), attributes)
 
     def end(self, tag: str) -> None:
         self._depth -= 1
+        self._is_text = False
         self._tree.end(tag.rpartition(":")[2])
 
     def data(self, text: str) -> None:
-        self._tree.data(text)
+        if self._is_text and not text.isspace():  # the rest is indentation
+            self._tree.data(text)
 
     def root(self) -> ET.Element:
         return self._tree.close()

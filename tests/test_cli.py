@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import pty
 import re
+import resource
 import signal
 import subprocess
 import sys
 import time
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,6 +24,10 @@ from forks import start
 from midi_files import midi_file, notes
 
 import yehu_server
+from yehu_server.cli import main
+from yehu_server.cli.serve import _Ending
+from yehu_server.errors import DeviceError
+from yehu_server.live.audio.output import SharedMemory
 from yehu_server.util.sound_file import sound_file
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -521,6 +528,56 @@ def test_an_interrupted_rendering_leaves_no_file(tmp_path, out, signum, options)
     assert stdout == ""
     assert is_one_line(err)
     assert not list(out.iterdir())
+
+
+HUNG = """
+import ctypes
+from yehu_server.cli.terminal import ending_at_once, interrupt
+import signal
+signal.signal(signal.SIGTERM, interrupt)
+libc, lock = ctypes.CDLL(None), ctypes.create_string_buffer(256)
+with ending_at_once():
+    libc.pthread_mutex_lock(lock)
+    print("begun", flush=True)
+    libc.pthread_mutex_lock(lock)  # as in a compiler: no signal brings it back to Python
+"""
+
+
+def test_a_signal_ends_a_command_that_compiles_though_the_compiler_does_not_return():
+    with subprocess.Popen(
+        [sys.executable, "-c", HUNG], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout.readline() == "begun\n"
+        process.send_signal(signal.SIGTERM)
+        _, err = process.communicate(timeout=30)
+    assert (process.returncode, err) == (130, "yehu-server: interrupted, nothing written\n")
+
+
+def test_a_server_that_is_not_made_yet_ends_at_the_first_signal():
+    ending = _Ending()
+    with pytest.raises(KeyboardInterrupt):
+        ending(signal.SIGTERM, None)
+    ending.server = SimpleNamespace(skip_fade_out=lambda: None, is_interruptible=True)
+    ending(signal.SIGINT, None)
+    assert ending.requested.is_set()
+
+
+def test_letters_that_a_terminal_has_not_are_no_traceback(tmp_path, monkeypatch):
+    (tmp_path / "tune.jianpu").write_text("title=十杯酒\n1=F 2/4 4=120\n\n1 2 |\n", "utf-8")
+    terminal = io.TextIOWrapper(io.BytesIO(), "latin-1", write_through=True)
+    monkeypatch.setattr(sys, "stdout", terminal)
+    assert main(["score", "show", str(tmp_path / "tune.jianpu")]) == 0
+    assert terminal.buffer.getvalue().startswith(rb"\u5341\u676f\u9152")
+
+
+def test_a_limit_on_files_is_told_where_it_leaves_no_memory_for_instruments():
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, before[1]))
+    try:
+        with pytest.raises(DeviceError, match=r"no memory of \d+ MB for .*: File too large"):
+            SharedMemory()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def test_a_simulation_without_memory_says_so(refused, gesture, out, monkeypatch):

@@ -130,6 +130,23 @@ def test_log_lines_are_bounded_and_steer_nothing(monkeypatch, is_json):
     assert len(said) < 5000
 
 
+def test_lines_of_one_cause_are_bounded_a_minute():
+    few = terminal._FewOfACause()
+    times = [second / 10 for second in range(1000)]
+
+    def logged(line: int, level: int = logging.INFO) -> list[str]:
+        made = [logging.LogRecord("a", level, "a.py", line, "%d", (i,), None) for i in range(1000)]
+        for record, at in zip(made, times, strict=True):
+            record.created = at
+        return [record.getMessage() for record in made if few.filter(record)]
+
+    told = logged(1)
+    assert len(told) == 2 * terminal.MOST_OF_A_CAUSE
+    assert told[terminal.MOST_OF_A_CAUSE - 1].endswith("left out for a minute)")
+    assert len(logged(2)) == len(told)  # each cause by itself
+    assert len(logged(3, logging.DEBUG)) == 1000
+
+
 @pytest.mark.parametrize("words", [(), ("--verbose",)])
 def test_serve_tells_what_is_no_news_to_a_player_only_where_it_is_asked_to(
     monkeypatch, caplog, words

@@ -10,7 +10,6 @@ import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
@@ -36,7 +35,7 @@ from yehu_server.cli import (
 from yehu_server.cli.arguments import Parser
 from yehu_server.cli.config import parse
 from yehu_server.cli.render_pipe import BROKEN_PIPE
-from yehu_server.cli.terminal import warn
+from yehu_server.cli.terminal import INTERRUPTED, interrupt, warn
 from yehu_server.errors import YehuError
 from yehu_server.util import __version__
 from yehu_server.util.files import why
@@ -49,8 +48,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     for name in ("SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
-            signal.signal(getattr(signal, name), _interrupt)
+            signal.signal(getattr(signal, name), interrupt)
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is to be ignored
+        signal.signal(signal.SIGINT, interrupt)
     logging.basicConfig(format="yehu-server: %(message)s", level=logging.WARNING)
+    if hasattr(sys.stdout, "reconfigure"):  # a title may have letters that a terminal has not
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         try:
             arguments = parse(sys.argv[1:] if argv is None else argv, _parser())
@@ -75,14 +78,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except MemoryError:
         warn("not enough memory")
         return 2
-    except KeyboardInterrupt as interrupt:
-        warn(f"interrupted, {str(interrupt) or 'nothing written'}")
-        return 130
+    except KeyboardInterrupt as told:
+        warn(f"interrupted, {str(told) or 'nothing written'}")
+        return INTERRUPTED
     return code
-
-
-def _interrupt(*_: object) -> NoReturn:
-    raise KeyboardInterrupt
 
 
 def _parser() -> Parser:

@@ -14,7 +14,13 @@ import numpy as np
 from yehu_server.cli.arguments import instrument_of
 from yehu_server.cli.folder_cluster import render_on_cluster
 from yehu_server.cli.folder_tasks import Done, Line, Task, perform
-from yehu_server.cli.terminal import print_result, progress_bar, warn, warn_of_compiling
+from yehu_server.cli.terminal import (
+    ending_at_once,
+    print_result,
+    progress_bar,
+    warn,
+    warn_of_compiling,
+)
 from yehu_server.errors import one_line
 
 if TYPE_CHECKING:
@@ -65,7 +71,8 @@ def prepare(arguments: argparse.Namespace, progress: Any = None) -> None:
     from yehu_server.core.engine.warming import warm_up
     from yehu_server.playing.calibration_store import calibration_for
 
-    warm_up()
+    with ending_at_once():
+        warm_up()
     rate, quantities = float(arguments.rate), instrument_of(arguments)
     calibration_for(rate, quantities, a4=arguments.a4, progress=progress)
 

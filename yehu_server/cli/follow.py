@@ -20,7 +20,7 @@ from yehu_server.cli.arguments import (
 from yehu_server.cli.converters import hours, number_within, target, whole
 from yehu_server.cli.playing_options import add_playing, playing_options_of
 from yehu_server.cli.stage_options import add_room, room_of
-from yehu_server.cli.terminal import print_report, progress_bar, warn, warn_of_compiling
+from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn
 from yehu_server.errors import OutputError, ParameterError
 from yehu_server.scores.score import MAX_DURATION_H
 
@@ -200,11 +200,9 @@ def _write(arguments: argparse.Namespace, options: Options, heard: Heard, found:
             told = ", ".join(f"{address} ({count})" for address, count in sorted(lost.items()))
             warn(f"{arguments.output}: MIDI has no controllers for {told}")
         return
-    from yehu_server.core.engine.warming import warm_up
     from yehu_server.playing.calibration_store import calibration_for
 
-    warn_of_compiling(arguments)
-    warm_up()
+    compile_all(arguments)
     with progress_bar(arguments, "calibrating", "notes") as progress:
         calibration = calibration_for(
             float(options.rate), options.quantities, a4=options.playing.a4, progress=progress

@@ -15,7 +15,7 @@ from yehu_server.cli.arguments import (
 )
 from yehu_server.cli.converters import target
 from yehu_server.cli.playing_options import add_tuning, tuning_of
-from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
+from yehu_server.cli.terminal import compile_all, print_report, progress_bar
 
 A4 = 440.0  # Hz
 
@@ -60,7 +60,6 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.core.engine.warming import warm_up
     from yehu_server.core.physics.grid import check_rate
     from yehu_server.playing.calibration_store import calibration_for
     from yehu_server.playing.practice import Practice
@@ -76,8 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
     values = {} if arguments.preset is None else Presets().load(arguments.preset).values
     quantities = instrument_of(arguments)
     start = time.perf_counter()
-    warn_of_compiling(arguments)
-    warm_up()
+    compile_all(arguments)
     with progress_bar(arguments, "calibrating", "notes") as progress:
         calibration = calibration_for(arguments.rate, quantities, progress=progress)
     practice = Practice(

@@ -13,7 +13,7 @@ from yehu_server.cli.ensemble_parts import Players, players_of
 from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.cli.render_pipe import is_piped
 from yehu_server.cli.stage_options import check_stage, room_of
-from yehu_server.cli.terminal import progress_bar, warn, warn_of_compiling
+from yehu_server.cli.terminal import compile_all, progress_bar, warn
 from yehu_server.errors import OutputError
 from yehu_server.util.files import anything, make_folder
 
@@ -53,7 +53,6 @@ def rendered(
     YehuError
         Where it fails; no partial file is left.
     """
-    from yehu_server.core.engine.warming import warm_up
     from yehu_server.core.physics.grid import check_rate
     from yehu_server.playing.calibration import calibration_key
     from yehu_server.rendering.options import Options
@@ -99,8 +98,7 @@ def rendered(
     played = players.parts[0].score
     for line in (*played.remarks * (not arguments.quiet), *played.warnings):
         warn(line)
-    warn_of_compiling(arguments)
-    warm_up()
+    compile_all(arguments)
     parts = _calibrated(arguments, players.parts, float(options.rate))
     key = calibration_key(float(options.rate), options.quantities, playing.a4)
     watch = None

@@ -14,7 +14,7 @@ from yehu_server.cli.arguments import (
     check_output,
 )
 from yehu_server.cli.converters import hours
-from yehu_server.cli.terminal import print_report, progress_bar, warn, warn_of_compiling
+from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn
 
 MAX_DURATION_H = 12.0
 EXAMPLES = """\
@@ -55,7 +55,6 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.cli.report import replay_report
-    from yehu_server.core.engine.warming import warm_up
     from yehu_server.rendering.replay import replay
     from yehu_server.scores.capture import read_capture
     from yehu_server.util.files import check_distinct
@@ -67,8 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
     capture = read_capture(arguments.capture)
     for warning in capture.warnings:
         warn(f"{arguments.capture}: {warning}")
-    warn_of_compiling(arguments)
-    warm_up()
+    compile_all(arguments)
     with progress_bar(arguments, "replaying") as progress:
         result = replay(
             capture,

@@ -15,7 +15,13 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_command
 from yehu_server.cli.serve_options import add_arguments, options_of
-from yehu_server.cli.terminal import progress_bar, set_up_log, warn_of_compiling
+from yehu_server.cli.terminal import (
+    ending_at_once,
+    interrupt,
+    progress_bar,
+    set_up_log,
+    warn_of_compiling,
+)
 from yehu_server.errors import YehuError
 
 if TYPE_CHECKING:
@@ -97,27 +103,27 @@ def run(arguments: argparse.Namespace) -> int:
 class _Ending:
     """Handles Ctrl-C and other signals that end the server.
 
-    The first Ctrl-C ends playing, the second also ends the fade-out, and the third exits at
-    once. Recordings and captures are complete in any case.
+    Before there is a server, as while it compiles, any exits at once. Then the first Ctrl-C ends
+    playing, the second also ends the fade-out, and the third exits at once. Recordings and captures
+    are complete in any case.
     """
 
     def __init__(self) -> None:
         self.requested = threading.Event()
-        self.server: Any = None  # set once it plays
+        self.server: Any = None  # set once it is made
         self._times = 0
 
     def __call__(self, number: int, _frame: Any) -> None:
         """Handle a signal."""
+        if self.server is None:
+            interrupt()
         self._times += number == signal.SIGINT
         self.requested.set()
         if self._times < 2:
             return
-        if self.server is not None:
-            self.server.skip_fade_out()
-            if self._times > 2 and self.server.is_interruptible:
-                raise KeyboardInterrupt("the sound cut off")
-        else:
-            raise KeyboardInterrupt
+        self.server.skip_fade_out()
+        if self._times > 2 and self.server.is_interruptible:
+            raise KeyboardInterrupt("the sound cut off")
 
 
 def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
@@ -132,8 +138,8 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     report = log.info
     options = options_of(arguments)
     warn_of_compiling(arguments)
-    with progress_bar(arguments, "calibrating", "notes") as progress:
-        server = Server(options, report, progress)
+    with progress_bar(arguments, "calibrating", "notes") as progress, ending_at_once():
+        server = ending.server = Server(options, report, progress)
     if server.output.state.problem and arguments.audio_device != "null":
         report(f"{server.output.state.problem}: playing on a silent clock")
         if server.output.state.problem == NO_OUTPUT:
@@ -143,7 +149,6 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         if is_own(mapping):
             report(f"mapping {mapping.name}, your own: {mapping.files[0]}")
     server.start()
-    ending.server = server
     try:
         lan = lan_interface()
         where = (server.osc.host, server.osc.port, lan)

@@ -6,11 +6,18 @@ import argparse
 import contextlib
 import json
 import logging
+import os
+import signal
+import socket
 import sys
+import threading
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NoReturn
 
 from yehu_server.errors import one_line
+
+INTERRUPTED = 130  # exit code
+ENDING = (signal.SIGINT, signal.SIGTERM)
 
 
 def print_result(text: str, *, flush: bool = False) -> None:
@@ -32,6 +39,48 @@ def warn(text: str) -> None:
     print(f"yehu-server: {one_line(text)}", file=sys.stderr)
 
 
+def interrupt(*_: object) -> NoReturn:
+    """Handle a signal that ends a command: by KeyboardInterrupt."""
+    # A compiler that is interrupted leaves objects half made, which Python would tell of.
+    sys.unraisablehook = lambda _unraisable: None
+    raise KeyboardInterrupt
+
+
+AT_ONCE_S = 1.0
+
+
+@contextlib.contextmanager
+def ending_at_once() -> Iterator[None]:
+    """Let signals end this process soon in a block that compiles and writes no file of the user.
+
+    The compiler may be away from Python for half a minute, and handlers of signals run in Python.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    receiving, sending = socket.socketpair()
+    sending.setblocking(False)
+    is_over = threading.Event()
+
+    def watch() -> None:
+        while number := receiving.recv(1):
+            if number[0] in ENDING and not is_over.wait(AT_ONCE_S):
+                warn("interrupted, nothing written")
+                os._exit(INTERRUPTED)
+
+    before = signal.set_wakeup_fd(sending.fileno(), warn_on_full_buffer=False)
+    watching = threading.Thread(target=watch, daemon=True)
+    watching.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        signal.set_wakeup_fd(before)
+        sending.close()
+        watching.join()
+        receiving.close()
+
+
 def warn_of_compiling(arguments: argparse.Namespace, *, plays: bool = True) -> None:
     """Warn where the model will be compiled: at its first use, or always if it is not cached.
 
@@ -50,6 +99,15 @@ def warn_of_compiling(arguments: argparse.Namespace, *, plays: bool = True) -> N
         warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
     elif not is_ready:
         warn("compiling for this machine, once, for half a minute ...")
+
+
+def compile_all(arguments: argparse.Namespace) -> None:
+    """Compile what playing needs, or load it; warn where that takes long."""
+    from yehu_server.core.engine.warming import warm_up
+
+    warn_of_compiling(arguments)
+    with ending_at_once():
+        warm_up()
 
 
 @contextlib.contextmanager
@@ -81,6 +139,7 @@ LEVELS = ("debug", "info", "warning", "error")
 def set_up_log(arguments: argparse.Namespace) -> None:
     """Set up logging by --log-level and --json-log, and set `quiet` for warnings only or JSON."""
     handler = _Handler()
+    handler.addFilter(_FewOfACause().filter)
     handler.setFormatter(_JsonFormatter() if arguments.json_log else _PlainFormatter())
     logging.basicConfig(handlers=[handler], level=logging.WARNING, force=True)
     logging.getLogger("yehu_server").setLevel(arguments.log_level.upper())
@@ -94,6 +153,33 @@ class _Handler(logging.Handler):
         with contextlib.suppress(OSError, ValueError):
             sys.stderr.write(self.format(record) + "\n")
             sys.stderr.flush()
+
+
+MOST_OF_A_CAUSE, CAUSE_S = 30, 60.0
+
+
+class _FewOfACause:
+    """Lets so many lines a minute through of each place in the code, but for debugging all.
+
+    What clients ask for is logged too, and none of them may fill the log.
+    """
+
+    def __init__(self) -> None:
+        self._told: dict[tuple[str, int], tuple[float, int]] = {}  # since when, how many
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Return whether a line is to be logged."""
+        if record.levelno < logging.INFO:
+            return True
+        cause = record.pathname, record.lineno
+        since, count = self._told.get(cause, (record.created, 0))
+        if record.created - since >= CAUSE_S:
+            since, count = record.created, 0
+        self._told[cause] = since, count + 1
+        if count + 1 == MOST_OF_A_CAUSE:
+            record.msg = f"{record.getMessage()} (more of this kind are left out for a minute)"
+            record.args = None
+        return count < MOST_OF_A_CAUSE
 
 
 class _PlainFormatter(logging.Formatter):

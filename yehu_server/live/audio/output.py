@@ -49,7 +49,12 @@ class SharedMemory:
         else:
             with tempfile.TemporaryFile() as file:
                 self.descriptor = os.dup(file.fileno())
-        os.ftruncate(self.descriptor, self.size)
+        try:
+            os.ftruncate(self.descriptor, self.size)
+        except OSError as error:  # such as a limit on files, which holds for memory too
+            os.close(self.descriptor)
+            size = f"{self.size / 1e6:.0f} MB"
+            raise DeviceError(f"no memory of {size} for instruments: {why(error)}") from error
         self.buffer = mmap.mmap(self.descriptor, self.size)
 
     def close(self) -> None:

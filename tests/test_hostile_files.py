@@ -118,3 +118,15 @@ def test_what_is_refused_by_the_reader_is_one_line_of_the_command(tmp_path, caps
             (tmp_path / name).write_bytes(b"[" * 100_000)
             assert main([str(path) if word == "FILE" else word for word in words]) == 2
             assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_mapping_of_far_too_many_binds_is_refused_before_it_is_parsed(tmp_path, monkeypatch):
+    bind = '{source = "cc 20", target = "/playing/vibrato"}, '
+    path = tmp_path / "m.toml"
+    path.write_text(f"bind = [{bind * 257}]")
+    with pytest.raises(YehuError, match="expected 0 to 256 of .* got 257"):
+        load(str(path))
+    path.write_text(f"bind = [{bind * 14_000}]")
+    monkeypatch.setattr("tomllib.loads", None)
+    with pytest.raises(YehuError, match="File too large, above 128 KiB"):
+        load(str(path))

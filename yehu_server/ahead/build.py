@@ -23,6 +23,7 @@ from yehu_server.ahead.module import PAGE, Target, here, joined
 from yehu_server.errors import OutputError, ParameterError, YehuError
 from yehu_server.util import __version__
 from yehu_server.util.files import replacing
+from yehu_server.util.processes import python_command
 
 PAGE_FILE, HEADER_FILE = "yehu.wasm", "yehu.h"
 LIBRARY_FILE = "libyehu.dylib" if sys.platform == "darwin" else "libyehu.so"
@@ -48,7 +49,7 @@ def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str =
         Where something is missing to build with, or the folder cannot be written.
     """
     link.linker_of(what)  # or there would be none after minutes of compiling
-    command = [sys.executable, "-m", "yehu_server.ahead.build", what, str(folder), cpu]
+    command = python_command("yehu_server.ahead.build", what, str(folder), cpu)
     command += [f"{rate!r}" for rate in rates]
     environment = {**os.environ, "NUMBA_CPU_NAME": cpu, "NUMBA_CPU_FEATURES": ""}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603 - our own

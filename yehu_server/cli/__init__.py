@@ -46,6 +46,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     0; 1 where something asked for failed a check; 2 for bad input; 130 when interrupted.
     """
+    # No Python that is started here takes modules from the current folder, where anything may lie.
+    os.environ["PYTHONSAFEPATH"] = "1"
     for name in ("SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), interrupt)

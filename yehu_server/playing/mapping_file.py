@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from yehu_server.core.midi.tables import MOST_BINDS
 from yehu_server.core.player.fingering import LOWEST_NOTE
 from yehu_server.errors import MappingError
 from yehu_server.params.articulations import ARTICULATIONS
@@ -19,6 +20,8 @@ from yehu_server.playing import sources
 from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.util.documents import MOST_ERRORS, Document, Fields
 from yehu_server.util.values import flag, line, number, whole
+
+MOST_BYTES = 1 << 17  # one that is watched is parsed beside the playing
 
 
 @dataclass(frozen=True)
@@ -47,7 +50,7 @@ def text_of(path: Path) -> str:
     MappingError
         Where it cannot be read or is not UTF-8.
     """
-    return document_of(path).read(path).text
+    return document_of(path).read(path, MOST_BYTES).text
 
 
 def read_mapping_file(path: Path, text: str | None = None) -> MappingFile:
@@ -114,7 +117,7 @@ def mapping_file_from(table: Fields) -> MappingFile:
         mpe=table.read("mpe", flag, None),
         key_switches=table.read("key_switches", _switches, None),
         start=entries.settings(table.table("start")),
-        binds=tuple(filter(None, map(_bind, table.tables("bind")))),
+        binds=tuple(filter(None, map(_bind, table.tables("bind", 0, MOST_BINDS)))),
     )
     table.only()
     table.document.finish()

@@ -20,6 +20,7 @@ from yehu_server.ahead.memory_images import image
 from yehu_server.errors import YehuError
 from yehu_server.plugin.targets import ANY, WIDE, System, systems_of
 from yehu_server.util import __version__
+from yehu_server.util.processes import python_command
 
 ENGINE_HEADER = "yehu.h"
 
@@ -40,7 +41,7 @@ def make_objects(folder: Path, name: str) -> None:
     for cpu in (ANY, WIDE):
         if cpu == WIDE and not any(system.has_wide for system in systems_of(name)):
             continue
-        command = [sys.executable, "-m", "yehu_server.plugin.objects", str(folder), cpu, name]
+        command = python_command("yehu_server.plugin.objects", str(folder), cpu, name)
         environment = {**os.environ, "NUMBA_CPU_NAME": cpu, "NUMBA_CPU_FEATURES": ""}
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603 - our own
         if done.returncode != 0:

@@ -21,6 +21,7 @@ from functools import partial
 from pathlib import Path
 from typing import IO, Any
 
+from yehu_server.util import PACKAGE
 from yehu_server.util.retry import Backoff, run_forever
 
 Message = dict[str, Any]
@@ -30,6 +31,19 @@ log = logging.getLogger(__name__)
 GOODBYE_S = 1.0
 PIPE_BYTES = 1 << 20  # buffer for events while the parent is stopped
 F_SETPIPE_SZ = 1031  # of Linux
+
+
+def python_command(module: str, *arguments: str) -> list[str]:
+    """The command that runs a module of this package in another Python, with the same path.
+
+    Not by ``-m``, which first looks for all modules in the current folder, where anything may lie.
+    """
+    path = [*filter(None, sys.path), str(PACKAGE.parent)]
+    code = (
+        f"import sys; sys.path[:] = {path!r}; import runpy; "
+        f"runpy.run_module({module!r}, run_name='__main__', alter_sys=True)"
+    )
+    return [sys.executable, "-P", "-c", code, *arguments]
 
 
 class Child:
@@ -58,7 +72,7 @@ class Child:
         self._on_event = on_event
         self._sending = threading.Lock()
         self._process = subprocess.Popen(  # noqa: S603 - our own module
-            [sys.executable, "-m", module],
+            python_command(module),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import os
 import subprocess
-import sys
 from functools import cache
 
 from yehu_server.compile import machine_code
@@ -28,6 +27,7 @@ from yehu_server.core.engine.native import (
 )
 from yehu_server.core.engine.sounding import sound, sound_block
 from yehu_server.core.physics.kernel import derive
+from yehu_server.util.processes import python_command
 from yehu_server.util.sealed import SealError
 
 CALLED = (
@@ -50,7 +50,7 @@ def warm_up() -> None:
     with contextlib.ExitStack() as stack:
         beside = None
         if IS_CACHED and (os.cpu_count() or 1) > 1 and not sound.is_cached:
-            command = [sys.executable, "-m", __name__]
+            command = python_command("yehu_server.core.engine.warming")
             beside = subprocess.Popen(command, stderr=subprocess.DEVNULL)  # noqa: S603 - our own
             stack.callback(beside.kill)  # where we are interrupted
         model = with_called(MODEL).keys()

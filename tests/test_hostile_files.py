@@ -124,7 +124,7 @@ def test_a_mapping_of_far_too_many_binds_is_refused_before_it_is_parsed(tmp_path
     bind = '{source = "cc 20", target = "/playing/vibrato"}, '
     path = tmp_path / "m.toml"
     path.write_text(f"bind = [{bind * 257}]")
-    with pytest.raises(YehuError, match="expected 0 to 256 of .* got 257"):
+    with pytest.raises(YehuError, match=r"expected 0 to 256 of .* got 257"):
         load(str(path))
     path.write_text(f"bind = [{bind * 14_000}]")
     monkeypatch.setattr("tomllib.loads", None)

@@ -11,6 +11,9 @@ const FORMAT = "yehu-server capture";
 const VERSIONS = [2, 3]; // the former has one player, and no numbers of players
 const OWN = 1; // the player of this page, and of a file the one that is played
 const MOST_BYTES = 64 << 20;
+const MOST_WISHES = 1e6;
+const MOST_A_SECOND = 5000; // wishes: two hands come to some hundreds
+const LONGEST_S = 24 * 3600;
 const EVERY = 60; // ms
 const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW } = facts.kinds;
 const NAMES = Object.keys(facts.kinds).map((name) => name.toLowerCase());
@@ -115,12 +118,33 @@ export async function readCapture(file) {
   const told = lines.map((line) => JSON.parse(line)).filter(Array.isArray); // others are no wishes
   const own = isOld ? told : told.filter(([, player]) => player === OWN);
   const wishes = own.map(([frame, ...wish]) => wishOf([frame, ...wish.slice(isOld ? 0 : 1)]));
-  return {
+  return checked({
     rate,
     values: Object.fromEntries(Object.entries(values).filter(([address]) => !find(address).owned)),
     wishes: wishes.sort((one, other) => one.frame - other.frame),
     players: players.length,
-  };
+  });
+}
+
+/**
+ * A performance that came from elsewhere. Throws an error where it has more wishes than anybody plays,
+ * in all or in a second, or numbers that are none.
+ * @param {Performance} performance
+ */
+export function checked(performance) {
+  const { rate, values, wishes } = performance;
+  if (wishes.length > MOST_WISHES) throw new RangeError("too many wishes");
+  Object.values(values).forEach(finite);
+  let before = 0;
+  wishes.forEach(({ frame, value, other }, at) => {
+    if (!(frame >= before && frame <= LONGEST_S * rate)) throw new RangeError(`frame ${frame}`);
+    before = frame;
+    finite(value);
+    finite(other);
+    const earlier = wishes[at - MOST_A_SECOND];
+    if (earlier && frame - earlier.frame < rate) throw new RangeError("too many wishes at a time");
+  });
+  return performance;
 }
 
 /**

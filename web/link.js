@@ -3,6 +3,7 @@
 /** @typedef {import('./capture.js').Performance} Performance */
 
 import facts from "./facts.js";
+import { checked } from "./capture.js";
 import { TABLE, find } from "./playing/table.js";
 
 const MARK = "#play=";
@@ -38,6 +39,7 @@ export async function linkOf(performance) {
  */
 export async function readLink(fragment) {
   if (!fragment.startsWith(MARK)) return null;
+  if (fragment.length > MARK.length + MOST) throw new RangeError("too long");
   const text = fragment.slice(MARK.length).replaceAll("-", "+").replaceAll("_", "/");
   const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   return unpack(await through(new DecompressionStream("deflate-raw"), packed));
@@ -48,10 +50,15 @@ export async function readLink(fragment) {
  * @param {Uint8Array<ArrayBuffer>} bytes
  */
 async function through(stream, bytes) {
-  const all = new Response(new Blob([bytes]).stream().pipeThrough(stream));
-  const found = new Uint8Array(await all.arrayBuffer());
-  if (found.length > MOST_BYTES) throw new RangeError("too large");
-  return found;
+  const parts = [];
+  let size = 0;
+  // By parts: a short link may claim to be gigabytes.
+  for await (const part of new Blob([bytes]).stream().pipeThrough(stream)) {
+    size += part.length;
+    if (size > MOST_BYTES) throw new RangeError("too large");
+    parts.push(part);
+  }
+  return new Uint8Array(await new Blob(parts).arrayBuffer());
 }
 
 /**
@@ -103,6 +110,7 @@ function unpack(bytes) {
       if (at >= bytes.length) throw new RangeError("cut off");
       const byte = bytes[at++];
       number += (byte % BASE) * weight;
+      if (!Number.isSafeInteger(number)) throw new RangeError("a number of too many bytes");
       if (byte < BASE) return number % 2 ? -(number + 1) / 2 : number / 2;
     }
   };
@@ -110,13 +118,13 @@ function unpack(bytes) {
   const head = JSON.parse(new TextDecoder().decode(bytes.subarray(at, at + length)));
   at += length;
   if (head.v !== VERSION) throw new TypeError("another version");
-  const kinds = head.kinds.map((/** @type {keyof typeof facts.kinds} */ name) => facts.kinds[name]);
+  const kinds = head.kinds.map((/** @type {string} */ name) => NAMES.indexOf(name));
   const last = new Last();
   const wishes = [];
   for (let frame = 0; at < bytes.length;) {
     frame += take();
     const wish = { frame, kind: kinds[take()], index: take(), value: 0, other: 0 };
-    if (wish.kind === undefined) throw new TypeError("another kind");
+    if (!(wish.kind >= 0)) throw new TypeError("another kind");
     if (isOfTable(wish)) {
       const address = head.addresses[wish.index];
       const row = address === SILENCE ? -1 : find(address).row;
@@ -130,7 +138,7 @@ function unpack(bytes) {
     wishes.push(wish);
   }
   const values = OWN.map((one) => [one.address, Number(head.values[one.address] ?? one.default)]);
-  return { rate: RATE, values: Object.fromEntries(values), wishes, players: 1 };
+  return checked({ rate: RATE, values: Object.fromEntries(values), wishes, players: 1 });
 }
 
 /** The last values by what they are of: most differ little from those before. */

@@ -8,6 +8,7 @@ Text seeds, and those that once broke something, are written by hand.
 from __future__ import annotations
 
 import io
+import pickle
 import struct
 import sys
 import tempfile
@@ -337,6 +338,7 @@ def laboratory() -> dict[str, dict[str, bytes]]:
             "binary": universal({**ENTRY, "data": mobility, "binary": 1}),
             "in-millimetres": universal(UNITS, {**ENTRY, "data": 1e3 * mobility, "binary": 0}),
         },
+        "followed-sound": {"a-tap": sound(force[:2000] / 100.0, velocity[:2000])},
         "measured-sound": {"a-tap": sound(force / 100.0, 0.5 * velocity / np.abs(velocity).max())},
         "fitted-body": {
             "a-fit": as_text(fit).encode(),
@@ -345,7 +347,56 @@ def laboratory() -> dict[str, dict[str, bytes]]:
     }
 
 
+EVENT = struct.pack("<qqqdd", 100, 4, 60, 69.0, 0.8)  # a note, by its frame, kind, index, values
+EVENT_RINGS = {
+    "two-notes": b"\0" + b"\x01" + EVENT + b"\0" + EVENT,
+    "another-writer": b"\x01\0" + EVENT,
+    "a-cursor-of-any-number": b"\x03\0" + EVENT,
+    "a-cursor-that-goes-back": b"\x06\0" + EVENT,
+    "a-lap-ahead": b"\x0b\0" + EVENT,
+    "never": b"\0\0" + struct.pack("<qqqdd", 2**62, 4, 60, 69.0, 0.8),
+    "long-ago": b"\x01\0" + struct.pack("<qqqdd", -(2**63), 11, -1, float("nan"), float("inf")),
+}
+
+
+class Calling:
+    """Calls a function where it is unpickled."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return print, ("it ran",)
+
+
+CLUSTER_PICKLES = {
+    "a-result": pickle.dumps((1, "a", b"b", [None, 0.5], {"c": {"d"}})),
+    "a-call": pickle.dumps([Calling()]),
+    "an-exception": pickle.dumps(ValueError("wrong")),
+    "a-class": pickle.dumps(Path),
+    "an-object-with-a-state": pickle.dumps(Path("a/b")),
+}
+TUNES = {
+    "repeats-and-two-voices": b"""X:1
+T:A tune
+M:6/8
+L:1/8
+Q:3/8=100
+P:A(AB)2
+K:Dm
+V:1
+P:A
+|: ~D3 {ef}A2B | (3cde !trill!f3 :|1 z6 :|2 A>B c<d |]
+P:B
+V:2
+[DA]6 | !crescendo(! uA3 !crescendo)! vB3- | B6 |]
+w: la la
+""",
+    "a-latin-1-name": b"X:1\nT:Caf\xe9\nK:G\nGABc|",
+}
+
+
 MADE = {
+    "abc": TUNES,
+    "cluster-pickle": CLUSTER_PICKLES,
+    "event-ring": EVENT_RINGS,
     "midi-file": MIDI_FILES,
     "midi-structure": MIDI_STRUCTURES,
     "midi-messages": MIDI_MESSAGES,

@@ -1,8 +1,10 @@
 """All targets, by importing them."""
 
 from fuzz.targets import (
+    abc,
     calibrations,
     captures,
+    clusters,
     jianpu,
     laboratory,
     midi,
@@ -10,6 +12,8 @@ from fuzz.targets import (
     osc,
     osc_calls,
     physical,
+    recordings,
+    rings,
     scores_musicxml,
     settings,
     tunings,
@@ -17,8 +21,10 @@ from fuzz.targets import (
 )
 
 __all__ = [
+    "abc",
     "calibrations",
     "captures",
+    "clusters",
     "jianpu",
     "laboratory",
     "midi",
@@ -26,6 +32,8 @@ __all__ = [
     "osc",
     "osc_calls",
     "physical",
+    "recordings",
+    "rings",
     "scores_musicxml",
     "settings",
     "tunings",

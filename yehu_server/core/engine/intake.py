@@ -49,6 +49,7 @@ from yehu_server.core.midi.record import MIDI, NONE
 from yehu_server.core.player.wishes import BEGIN, END, WISH
 
 NOTHING = -1  # the kind of an event that was cancelled
+FARTHEST = 1 << 40  # frames of an event from now: some months
 
 
 @native
@@ -100,19 +101,30 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
 
 @compiled_with_aliasing
 def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
-    """Move posted events to the heap of a part, up to the budget of a callback."""
+    """Move posted events to the heap of a part, up to the budget of a callback.
+
+    A writer that lost its count, or laps the reader, loses what it wrote; and so does one that
+    writes frames that are no time at all, which would fill the heap for ever. Both are counted.
+    """
     events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
     for writer in range(WRITERS):
         size = RING_SIZES[writer]
         ring = carray(at(rig, RINGS_AT[writer]), (size,), WISH)
         posted = load_acquire(rig, POSTED_AT + writer * CURSOR_BYTES)
         drained = mail.drained[writer, 0]
+        if posted < drained or posted - drained > size:
+            mail.dropped[writer, 0] += 1
+            drained = posted
         last = min(posted, drained + mail.budget)
         while drained < last and mail.pending_events < HEAP:
             event = ring[drained & (size - 1)]
             frame = event.frame
             if writer in (MIDI_INPUTS, SOUND_INPUT):
                 frame = frame_of_arrival(rigs, mail, frame)
+            drained += 1
+            if not now - FARTHEST < frame < now + FARTHEST:
+                mail.dropped[writer, 0] += 1
+                continue
             mail.late[writer] += 1 if frame < now else 0
             mail.most_late[writer] = max(mail.most_late[writer], now - frame)
             push(
@@ -127,7 +139,6 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
             )
             mail.pending_events += 1
             mail.ordered += 1
-            drained += 1
         store_release(rig, DRAINED_AT + writer * CURSOR_BYTES, drained)
 
 

@@ -1,0 +1,93 @@
+/**
+ * Performances in links and files are bounded, and reach nothing but the sound.
+ *
+ * WEB is the page's folder.
+ */
+
+import assert from "node:assert/strict";
+import test from "node:test";
+import { pathToFileURL } from "node:url";
+import { resolve } from "node:path";
+import { deflateRawSync, inflateRawSync } from "node:zlib";
+
+globalThis.location = { origin: "http://a", pathname: "/", search: "" };
+globalThis.AudioWorkletNode ??= class {};
+const web = pathToFileURL(`${resolve(process.env.WEB ?? "web")}/`);
+const { default: facts } = await import(new URL("facts.js", web).href);
+const { checked, readCapture } = await import(new URL("capture.js", web).href);
+const { linkOf, readLink } = await import(new URL("link.js", web).href);
+
+const { BEGIN, EXPRESS, END } = facts.kinds;
+const RATE = 1000;
+
+function performance(wishes) {
+  return { rate: RATE, values: {}, wishes, players: 1 };
+}
+
+function notes(count, apart) {
+  return Array.from({ length: count }, (_, n) => ({
+    frame: n * apart,
+    kind: n % 2 ? END : BEGIN,
+    index: 5,
+    value: 69,
+    other: 0.5,
+  }));
+}
+
+function fragmentOf(bytes) {
+  return `#play=${Buffer.from(bytes).toString("base64url")}`;
+}
+
+async function refuses(action, what) {
+  await assert.rejects(async () => action(), undefined, what);
+}
+
+test("a link brings what was played", async () => {
+  const played = performance([
+    ...notes(20, 100),
+    { frame: 2000, kind: EXPRESS, index: 3, value: 0.25, other: 0 },
+  ]);
+  const read = await readLink(new URL(await linkOf(played)).hash);
+  assert.deepEqual(read.wishes, played.wishes);
+});
+
+test("what is no performance is refused, soon", async () => {
+  const link = new URL(await linkOf(performance(notes(20, 100)))).hash;
+  const whole = inflateRawSync(Buffer.from(link.slice(6), "base64url"));
+  const bombs = [
+    deflateRawSync(Buffer.alloc(64 << 20)), // a short text of many bytes
+    deflateRawSync(Buffer.concat([whole, Buffer.alloc(300, 0xff), Buffer.from([1])])),
+    deflateRawSync(whole.subarray(0, whole.length - 1)),
+    deflateRawSync(Buffer.concat([whole, Buffer.from([3, 0, 0, 0, 0])])), // it goes back in time
+  ];
+  for (const [number, bomb] of bombs.entries()) {
+    await refuses(() => readLink(fragmentOf(bomb)), `bomb ${number}`);
+  }
+  await refuses(() => readLink(`#play=${"A".repeat(30_000)}`), "a long link");
+  const head = JSON.stringify({ v: 1, kinds: ["toString"], addresses: [], values: {} });
+  const strange = [2 * head.length, ...Buffer.from(head), 0, 0, 0, 0, 0];
+  await refuses(() => readLink(fragmentOf(deflateRawSync(Buffer.from(strange)))), "a kind");
+});
+
+test("any bytes are a performance or refused", async () => {
+  let seed = 1;
+  const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
+  const link = new URL(await linkOf(performance(notes(50, 40)))).hash;
+  const whole = inflateRawSync(Buffer.from(link.slice(6), "base64url"));
+  for (let n = 0; n < 2000; n++) {
+    const bytes = Buffer.from(whole);
+    for (let m = 0; m < 1 + 4 * random(); m++) {
+      bytes[Math.floor(random() * bytes.length)] = Math.floor(random() * 256);
+    }
+    const read = await readLink(fragmentOf(deflateRawSync(bytes))).catch(() => null);
+    if (read) assert.equal(checked(read), read);
+  }
+});
+
+test("as much as nobody plays is refused", async () => {
+  assert.throws(() => checked(performance(notes(6000, 0))));
+  assert.throws(() => checked(performance([{ ...notes(1, 0)[0], value: NaN }])));
+  assert.throws(() => checked(performance([{ ...notes(1, 0)[0], frame: 1e12 }])));
+  checked(performance(notes(6000, 1)));
+  await refuses(() => readCapture(new Blob(["{}"])), "a file");
+});

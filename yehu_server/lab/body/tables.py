@@ -108,7 +108,7 @@ def _numbers(path: Path, lines: Iterator[str]) -> tuple[list[str], Floats]:
             raise MeasurementError(f"{path}: {len(headings)} columns, but not in {line[:40]!r}")
         if len(found) > MOST_NUMBERS:
             raise MeasurementError(f"{path}: has more than {MOST_NUMBERS} numbers")
-    count = len(found) // max(1, len(headings)) + 1
+    count = 1 + len(found) // len(headings) if headings else 0
     if count < LEAST_LINES:
         raise MeasurementError(f"{path}: has {count} lines, too few for a measurement")
     numbers = np.frombuffer(found).reshape(-1, len(headings))

@@ -351,9 +351,10 @@ EVENT = struct.pack("<qqqdd", 100, 4, 60, 69.0, 0.8)  # a note, by its frame, ki
 EVENT_RINGS = {
     "two-notes": b"\0" + b"\x01" + EVENT + b"\0" + EVENT,
     "another-writer": b"\x01\0" + EVENT,
-    "a-cursor-of-any-number": b"\x03\0" + EVENT,
-    "a-cursor-that-goes-back": b"\x06\0" + EVENT,
-    "a-lap-ahead": b"\x0b\0" + EVENT,
+    "a-cursor-of-any-number": b"\x04\0" + EVENT,
+    "a-cursor-that-goes-back": b"\x08\0" + EVENT,
+    "a-lap-ahead": b"\x0e\0" + EVENT,
+    "sound-input": b"\x03\0" + EVENT,
     "never": b"\0\0" + struct.pack("<qqqdd", 2**62, 4, 60, 69.0, 0.8),
     "long-ago": b"\x01\0" + struct.pack("<qqqdd", -(2**63), 11, -1, float("nan"), float("inf")),
 }

@@ -14,7 +14,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import TABLES_TO
 from yehu_server.core.player.wishes import BEGIN, WISH
 
-RINGS = ("ring", "midi_ring", "page_ring")  # by writer
+RINGS = ("ring", "midi_ring", "page_ring", "sound_ring")  # by writer
 MOST_EVENTS = 64
 BLOCK = 64
 
@@ -56,7 +56,9 @@ def event_ring(data: bytes) -> None:
         ring[posted % size] = event
         posted += 1
     by = int.from_bytes(program.full(8), "little", signed=True)
-    at = [posted, posted + by % (1 << 62), place - 1 - by % (1 << 32), posted + size][head // 3 % 4]
+    at = [posted, posted + by % (1 << 62), place - 1 - by % (1 << 32), posted + size][
+        head // WRITERS % 4
+    ]
     mail["posted"][writer, 0] = at
     out = np.zeros((8, BLOCK), np.float32)
     for block in out:

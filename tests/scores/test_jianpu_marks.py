@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.scores.jianpu.mark_words import AHEAD, COMMANDS, FINGERING, TEXTS, Act
 from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.written.notated import MARKS, SIGNS, SPANS, Mark, Part, Sign, Span
+from yehu_server.scores.written.words import meaning_of
 
 
 def part(text: str) -> Part:
@@ -127,6 +129,19 @@ def test_a_hairpin_ends_at_its_end_or_at_the_next_dynamic():
     assert part("1 \\< 2 3 \\! 4").spans == (Span("crescendo", 0, 2),)
     assert part("1 2 \\> 3 - - \\p").spans == (Span("diminuendo", 1, 4),)
     assert part("1 \\< 2 \\> 3 - \\!").spans == (Span("crescendo", 0, 1), Span("diminuendo", 1, 3))
+
+
+def test_articulations_are_named_in_two_languages():
+    assert part('1 ^"上滑音" 2').notes[0].marks == (Mark("slide-in-up"),)
+    wrong = []
+    for number, row in enumerate(ARTICULATIONS):
+        name = "gesture" if row.fingers else "articulation"
+        for word in (row.name, row.chinese):
+            (found,) = part(f'1 2 ^"{word}" 3').signs or (None,)
+            usual = meaning_of(word)  # what the word meant before: pizz., trem., vib.
+            if found != Sign(1, name, number) and usual.kind == name:
+                wrong.append((word, found))
+    assert wrong == []
 
 
 def test_texts_pluck_and_bow():

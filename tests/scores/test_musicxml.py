@@ -26,6 +26,7 @@ from musicxml_text import (
 )
 
 from yehu_server.errors import ScoreError
+from yehu_server.params.articulations import NUMBER
 from yehu_server.scores.musicxml.file import DEEPEST, MOST_ELEMENTS, MOST_XML_BYTES
 from yehu_server.scores.musicxml.reader import read_musicxml
 from yehu_server.scores.written.notated import MARKS, SPANS, Mark
@@ -82,6 +83,7 @@ def signs_of(written) -> list[tuple[str, float]]:
         (technical("string", "2"), "inner-string", None),
         (technical("snap-pizzicato"), "snap-pizzicato", None),
         (technical("harmonic"), "harmonic", None),
+        (technical("other-technical", "Ricochet"), "articulation", float(NUMBER["ricochet"])),
         ("<fermata/>", "fermata", None),
         (ornament("trill-mark"), "trill", 2.0),
         (ornament("mordent"), "mordent", 1.0),
@@ -516,8 +518,8 @@ def test_marks_of_tied_notes_are_those_of_the_whole(read):
 def test_the_example_has_every_mark_that_musicxml_can_write(read):
     written = read(EXAMPLE.read_bytes())
     marks = {mark.name for each in written.parts[0].notes for mark in each.marks}
-    # Words say what is plucked or shaken, and an arpeggio is nothing for a fiddle.
-    assert set(MARKS) - marks == {"pizzicato", "arpeggio", "vibrato"}
+    # Words say what is plucked, shaken or else articulated; an arpeggio is nothing for a fiddle.
+    assert set(MARKS) - marks == {"pizzicato", "arpeggio", "vibrato", "articulation"}
     assert {span.name for span in written.parts[0].spans} == set(SPANS) - {"trill", "accelerando"}
     assert not written.unknown
     assert not written.warnings

@@ -8,6 +8,7 @@ from itertools import pairwise
 import pytest
 
 from yehu_server.errors import ScoreError
+from yehu_server.params.articulations import NUMBER
 from yehu_server.params.table import find
 from yehu_server.scores.phrasing import phrased
 from yehu_server.scores.score import Setting, notes_of
@@ -164,12 +165,27 @@ def test_the_direction_of_a_bow_is_for_its_note_alone(mark, value):
         ([Mark("tremolo", 2)], "/playing/tremolo", 8.0),
         ([Mark("vibrato", 40.0)], "/playing/vibrato", 40.0),
         ([Mark("vibrato", 0.0)], "/playing/phrasing", 0.0),
+        (["spiccato"], "/playing/articulation", float(NUMBER["spiccato"])),
+        ([Mark("articulation", 14)], "/playing/articulation", 14.0),
         (["inner-string"], "/playing/string", 1.0),
         (["outer-string"], "/playing/string", 2.0),
     ],
 )
 def test_a_mark_sets_its_parameter_and_puts_it_back(marks, address, value):
     assert settings(play(*four(2, *marks)), address) == [(1.0, value), (1.5, None)]
+
+
+def test_articulations_of_the_bow_hold_and_those_of_the_fingers_are_for_one_note():
+    bow, finger = float(NUMBER["padded"]), float(NUMBER["slide-down"])
+    signs = [sign(0, "articulation", bow), sign(1, "gesture", finger), sign(3, "ordinary")]
+    found = settings(play(*FOUR, signs=signs), "/playing/articulation")
+    assert found == [(0.0, bow), (0.5, finger), (1.0, bow), (1.5, None)]
+
+
+def test_a_forced_note_is_a_sforzando_where_it_is_long():
+    notes = [note(0, 2, 67), note(2, 2, 69), note(4, 0.5, 67)]
+    found = settings(play(*notes, signs=[sign(2, "sfz"), sign(4, "sfz")]), "/playing/articulation")
+    assert found == [(1.0, float(NUMBER["sforzando"])), (2.0, None)]
 
 
 @pytest.mark.parametrize("name", PLACES)
@@ -412,7 +428,7 @@ def test_a_harmonic_that_does_not_speak_is_told():
 
 @pytest.mark.parametrize("name", MARKS)
 def test_every_mark_changes_what_is_played_or_says_nothing_about_it(name):
-    silent = {"finger", "open-string", "tenuto", "arpeggio"}  # of this note
+    silent = {"finger", "open-string", "tenuto", "arpeggio", "articulation"}  # of this note
     plain, marked = play(*FOUR), play(*four(1, name))
     same = [*map(str, marked.events)] == [*map(str, plain.events)]
     assert same == (name in silent)

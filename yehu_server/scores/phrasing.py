@@ -26,8 +26,10 @@ MARKED_SPAN = 12  # between the softest and the loudest
 # A phrase ends with a rest, with a note that lasts much longer than those about it, or when it is
 # this long.
 REST_S, LONG_NOTE, LONGEST_PHRASE_BEATS = 0.3, 2.5, 16.0
-# In steps of velocity at full phrasing: from the ends of a phrase to its middle, and on the beats.
-ARCH, DOWNBEAT, HALF_BAR, BEAT = 22.0, 7.0, 4.0, 2.0
+# In steps of velocity at full phrasing: from the ends of a phrase to its middle, and on the beats;
+# for each semitone above the mean pitch of all, and at most.
+ARCH, DOWNBEAT, HALF_BAR, BEAT = 100.0, 12.0, 7.0, 4.0
+HIGHER, MOST_HIGHER = 6.0, 50.0
 # Notes in one bow: so many, each no longer, in steps no wider (semitones), nothing between them.
 MOST_IN_A_BOW, SHORT_S, STEP, GAP_S = 4, 0.3, 4, 0.03
 LEAST_FOR_BOWS = 0.25  # of phrasing, from which notes share a bow
@@ -51,9 +53,10 @@ def phrased(score: Score, amount: float) -> Score:
             if event.message.type == "control_change" and event.message.channel == channel
         }
         phrases = phrases_of(notes)
+        usual = sum(note.key for note in notes) / len(notes)
         if not is_shaped(notes, controllers):
             for phrase in phrases:
-                velocities.update(shaped(phrase, score, amount))
+                velocities.update(shaped(phrase, score, amount, usual))
         if amount >= LEAST_FOR_BOWS and not is_bowed(notes, controllers):
             for phrase in phrases:
                 ends_s.update(slurred(phrase))
@@ -105,10 +108,17 @@ def _ends_before(phrase: list[ScoreNote], lengths: list[float], note: ScoreNote)
     return len(phrase) > 3 and last.length_s > LONG_NOTE * usual
 
 
-def shaped(phrase: Sequence[ScoreNote], score: Score, amount: float) -> dict[int, int]:
+def shaped(
+    phrase: Sequence[ScoreNote], score: Score, amount: float, usual: float
+) -> dict[int, int]:
     """Return the velocities of a phrase's notes, by the numbers of their events.
 
-    An arch whose mean is where the velocities were, and accents of the metre.
+    An arch whose mean is where the velocities were, accents of the metre, and higher notes louder.
+
+    Parameters
+    ----------
+    usual : float
+        The mean pitch of the part (MIDI note).
     """
     begin, end = phrase[0].start_s, phrase[-1].start_s
     arch = []
@@ -118,7 +128,8 @@ def shaped(phrase: Sequence[ScoreNote], score: Score, amount: float) -> dict[int
     middle = sum(arch) / len(arch)
     velocities = {}
     for note, height in zip(phrase, arch, strict=True):
-        change = amount * (ARCH * (height - middle) + accent(note.beat, score))
+        higher = min(max(HIGHER * (note.key - usual), -MOST_HIGHER), MOST_HIGHER)
+        change = amount * (ARCH * (height - middle) + accent(note.beat, score) + higher)
         velocities[note.begins] = min(max(round(note.velocity + change), 1), 127)
     return velocities
 

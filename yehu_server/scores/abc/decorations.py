@@ -15,6 +15,11 @@ DECORATIONS: Mapping[str, tuple[str, float | None]] = {
     "invertedfermata": ("fermata", None), "upbow": ("up-bow", None), "downbow": ("down-bow", None),
     "open": ("open-string", None), "snap": ("snap-pizzicato", None), "slide": ("slide-in-up", None),
     "breath": ("breath", None), "arpeggio": ("arpeggio", None), "plus": ("pizzicato", None),
+    "spiccato": ("spiccato", None), "tremolo": ("tremolo", None), "harmonic": ("harmonic", None),
+    "vibrato": ("vibrato", None), "slideup": ("slide-in-up", None),
+    "slidedown": ("slide-in-down", None), "fall": ("slide-out-down", None),
+    "doit": ("slide-out-up", None), "espressivo": ("soft-accent", None),
+    "staccatissimo": ("staccatissimo", None), "portato": ("portato", None),
     **{str(finger): ("finger", float(finger)) for finger in range(5)},
     **{"/" * strokes: ("tremolo", float(strokes)) for strokes in range(1, 5)},
 }  # fmt: skip

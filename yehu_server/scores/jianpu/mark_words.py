@@ -64,7 +64,8 @@ COMMANDS: Mapping[str, Action] = {
         "verylongfermata": "fermata", "breathe": "breath", "caesura": "caesura",
         "trill": "trill", "mordent": "mordent", "prall": "inverted-mordent", "turn": "turn",
         "reverseturn": "inverted-turn", "flageolet": "harmonic", "open": "open-string",
-        "snappizzicato": "snap-pizzicato", "1": "inner-string", "2": "outer-string",
+        "snappizzicato": "snap-pizzicato", "spiccato": "spiccato",
+        "1": "inner-string", "2": "outer-string",
     }),
 }  # fmt: skip
 # As in -. and ->
@@ -96,7 +97,16 @@ TEXTS: Mapping[str, Action] = {
     "拨": _sign("pizz"),
     "拉": _sign("arco"),
     "不揉": _sign("vibrato", 0.0),
-    **_marks({"tr": "trill", "颤音": "trill", "泛音": "harmonic"}),
+    **_marks(
+        {
+            "tr": "trill",
+            "颤音": "trill",
+            "泛音": "harmonic",
+            "上滑音": "slide-in-up",
+            "下滑音": "slide-in-down",
+            "揉": "vibrato",
+        }
+    ),
 }
 
 SLURS_AND_TIES: Mapping[str, Action] = {

@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element
 
 from yehu_server.errors import one_line
 from yehu_server.scores.written.notated import Mark
+from yehu_server.scores.written.words import ARTICULATED
 
 STEPS: Mapping[str, int] = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
 LETTERS = "CDEFGAB"
@@ -42,6 +43,12 @@ SILENT = {
 }  # fmt: skip
 GROUPS = {"articulations", "ornaments", "technical"}
 STRINGS = {1.0: "outer-string", 2.0: "inner-string"}  # counted from the highest
+
+
+def plain(text: str | None) -> str:
+    """Words of a mark as tables have them."""
+    return " ".join((text or "").split()).lower()
+
 
 Count = Callable[[str], None]
 
@@ -111,6 +118,8 @@ class NoteMarks:
                 self._add(name, self._interval(way, _accidental(parent, way)))
             elif tag == "tremolo":
                 self._tremolo(child)
+            elif tag.startswith("other-") and (text := plain(child.text)) in ARTICULATED:
+                self._add("articulation", ARTICULATED[text][1])
             elif tag == "harmonic":
                 self._harmonic(child)
             elif tag == "string" and number(child.text) in STRINGS:

@@ -9,12 +9,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from yehu_server.params.articulations import NUMBER
 from yehu_server.params.table import find
-from yehu_server.scores.written.notated import Note, Sign
+from yehu_server.scores.written.notated import FORCED, Note, Sign
 
 Values = dict[str, float]
 
 BEND, PHRASING = "/playing/bend", "/playing/phrasing"
+ARTICULATION, TREMOLO_DEPTH = "/playing/articulation", "/playing/tremolo_depth"
 DIRECTION, STRING, TREMOLO = "/playing/direction", "/playing/string", "/playing/tremolo"
 PIZZICATO, PRESSURE, VIBRATO = "/playing/pizzicato", "/playing/pressure", "/playing/vibrato"
 BOW_POSITION, SPEED = "/playing/bow_position", "/playing/speed"
@@ -25,7 +27,8 @@ FINGER_POSITION, FINGER_PRESS = "/finger/4/position", "/finger/4/press"
 DOWN, UP, INNER, OUTER = 1.0, -1.0, 1.0, 2.0
 INNER_OPEN, OUTER_OPEN = 65.0, 72.0  # F4 and C5
 SAME_PITCH = 0.3  # semitones
-QUICK_TREMOLO = 11.0  # strokes a second, unmeasured
+QUICK_TREMOLO = 13.0  # strokes a second, unmeasured
+DEEP = 0.6  # of such a tremolo
 MEASURED = 2  # so many strokes through a stem are counted; more are as quick as hands go
 VIBRATO_CENTS = 30.0
 SNAP = 0.8  # pressure: a pluck twice as hard as usual
@@ -36,11 +39,18 @@ PLACES: Mapping[str, Values] = {
     "flautando": {PRESSURE: 0.2, SPEED: 0.24},
 }
 CRISP: Mapping[str, Values] = {
-    "spiccato": {ATTACK: 15.0, RELEASE: 25.0},
     "staccatissimo": {ATTACK: 25.0, RELEASE: 25.0},
     "staccato": {ATTACK: 25.0, RELEASE: 40.0},
     "marcato": {ATTACK: 25.0},
 }
+
+
+# Marks that ask for an articulation, on notes that last so long (s).
+GESTURES: Mapping[str, tuple[str, float]] = {
+    "spiccato": ("spiccato", 0.0),
+    "soft-accent": ("swell", 0.5),
+}
+FORCED_GESTURE = "sforzando", 0.4
 
 
 class Node(NamedTuple):
@@ -76,6 +86,9 @@ class Active:
     tremolo: bool = False
     place: str = ""
     string: float = 0.0
+    articulation: float = 0.0
+    gesture: float = 0.0
+    is_forced: bool = False
     vibrato: float | None = None
 
     def take(self, sign: Sign) -> None:
@@ -84,6 +97,7 @@ class Active:
         if name in ("pizz", "arco"):
             self.plucked = name == "pizz"
             self.tremolo = self.tremolo and self.plucked
+            self.articulation = 0.0
         elif name in ("legato", "non-legato"):
             self.slurred = name == "legato"
         elif name in ("staccato", "non-staccato"):
@@ -93,11 +107,20 @@ class Active:
         elif name in PLACES:
             self.place = name
         elif name == "ordinary":
-            self.place, self.tremolo = "", False
+            self.place, self.tremolo, self.articulation = "", False, 0.0
+        elif name == "articulation":
+            self.articulation = sign.value or 0.0
+        elif name == "gesture":
+            self.gesture = sign.value or 0.0
         elif name in ("inner-string", "outer-string", "either-string"):
             self.string = {"i": INNER, "o": OUTER, "e": 0.0}[name[0]]
         elif name == "vibrato":
             self.vibrato = VIBRATO_CENTS if sign.value is None else sign.value
+        self.is_forced = self.is_forced or name in FORCED
+
+    def end_note(self) -> None:
+        """Let end what is written for one note alone."""
+        self.gesture, self.is_forced = 0.0, False
 
 
 def harmonic_of(note: Note) -> Node | None:
@@ -115,14 +138,9 @@ def is_plucked(note: Note, active: Active) -> bool:
 
 def values_of(note: Note, active: Active, quarter_s: float) -> Values:
     """Return the parameters that a note's marks and the signs before it set, by address."""
-    values: Values = dict(PLACES.get(active.place, {}))
-    if active.string:
-        values[STRING] = active.string
-    if active.tremolo:
-        values[TREMOLO] = QUICK_TREMOLO
-    values |= _vibrato(active.vibrato)
-    if active.short:
-        values |= CRISP["staccato"]
+    values = _held(active)
+    if number := articulation_of(note, active, quarter_s):
+        values[ARTICULATION] = number
     for mark in note.marks:
         name, value = mark.name, mark.value
         values |= CRISP.get(name, {})
@@ -133,14 +151,15 @@ def values_of(note: Note, active: Active, quarter_s: float) -> Values:
         elif name in ("open-string", "finger"):
             values |= _fingered(note, 0.0 if name == "open-string" else value)
         elif name == "tremolo":
-            values[TREMOLO] = _strokes(value, quarter_s)
+            values |= _trembled(_strokes(value, quarter_s))
         elif name == "vibrato":
             values |= _vibrato(VIBRATO_CENTS if value is None else value)
         elif name == "snap-pizzicato":
             values[PRESSURE] = SNAP
     if is_plucked(note, active):
         values |= {PIZZICATO: 1.0, GAIN: PLUCKED_DB}
-        values.pop(TREMOLO, None)
+        for address in (TREMOLO, TREMOLO_DEPTH, ARTICULATION):
+            values.pop(address, None)
     node = harmonic_of(note)
     if node is not None:
         values |= {**HARMONIC_BOW, STRING: node.string}
@@ -149,6 +168,37 @@ def values_of(note: Note, active: Active, quarter_s: float) -> Values:
     elif note.marked("harmonic"):
         values |= PLACES["flautando"]
     return {address: find(address).accept(value) for address, value in values.items()}
+
+
+def _held(active: Active) -> Values:
+    """What the signs set that hold."""
+    values: Values = dict(PLACES.get(active.place, {}))
+    if active.string:
+        values[STRING] = active.string
+    if active.tremolo:
+        values |= _trembled(QUICK_TREMOLO)
+    values |= _vibrato(active.vibrato)
+    return values | (CRISP["staccato"] if active.short else {})
+
+
+def articulation_of(note: Note, active: Active, quarter_s: float) -> float:
+    """The articulation that is written for a note, by its number; 0 for none."""
+    length_s = float(note.length) * quarter_s
+    if mark := note.marked("articulation"):
+        return mark.value or 0.0
+    for name, (gesture, least_s) in GESTURES.items():
+        if note.marked(name) and length_s >= least_s:
+            return float(NUMBER[gesture])
+    if active.gesture:
+        return active.gesture
+    gesture, least_s = FORCED_GESTURE
+    if active.is_forced and length_s >= least_s:
+        return float(NUMBER[gesture])
+    return active.articulation
+
+
+def _trembled(strokes: float) -> Values:
+    return {TREMOLO: strokes} | ({TREMOLO_DEPTH: DEEP} if strokes == QUICK_TREMOLO else {})
 
 
 def _strokes(strokes: float | None, quarter_s: float) -> float:

@@ -44,6 +44,7 @@ MARKS: Mapping[str, str] = {
     "outer-string": "on the outer string (C5)",
     "pizzicato": "plucked, this note alone",
     "snap-pizzicato": "plucked hard",
+    "articulation": "value: number of a row of `params.articulations`",
     "tremolo": "value: number of strokes through the stem, 1 to 8; None: as quick as hands go",
     "trill": "value: semitones up to the other note",
     "mordent": "with the note below; value: semitones down",
@@ -94,6 +95,9 @@ SIGNS: Mapping[str, str] = {
     "pizz": "plucked from here on",
     "arco": "bowed again",
     "tremolo": "tremolo from here on, until `arco` or `ordinary`",
+    "articulation": "value: number of a row of `params.articulations`, from here on until `arco`, "
+    "`ordinary` or 0",
+    "gesture": "value: the same, for the next note alone",
     "sul-ponticello": "near the bridge",
     "sul-tasto": "far from the bridge",
     "flautando": "a light, quick bow",

@@ -127,6 +127,7 @@ class _Performer:
                 active.take(beats[taken])
                 taken += 1
             actives.append(replace(active))
+            active.end_note()
         played = bowed(self._part, actives, self._clock)
         for each, state in zip(played, actives, strict=True):
             self._play(each, state)

@@ -8,10 +8,12 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Tempo, Written
 
+ARTICULATED = {float(number): row.name for number, row in enumerate(ARTICULATIONS)}
 MOST_TEMPI = 20  # that the head shows
 
 
@@ -113,6 +115,8 @@ def _around(part: Part) -> dict[Fraction, list[str]]:
 
 
 def _mark(mark: Mark) -> str:
+    if mark.name in ("articulation", "gesture") and mark.value in ARTICULATED:
+        return ARTICULATED[mark.value]
     return mark.name if mark.value is None else f"{mark.name} {mark.value:g}"
 
 

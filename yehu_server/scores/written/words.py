@@ -6,6 +6,8 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from yehu_server.params.articulations import ARTICULATIONS
+
 # Words and their beginnings, as signs of `notated`. The first that fits counts.
 SIGNS: tuple[tuple[str, tuple[str, float | None]], ...] = (
     (r"snap pizz|bart[oó]k pizz", ("pizz", None)),
@@ -25,6 +27,13 @@ SIGNS: tuple[tuple[str, tuple[str, float | None]], ...] = (
     (r"sul (?:f|iv|iii|ii|2)\b|inner string|内弦|內弦|里弦", ("inner-string", None)),
     (r"sul (?:c|i|1)\b|outer string|外弦", ("outer-string", None)),
 )  # fmt: skip
+# Names of articulations, English and Chinese, where no word above is meant: those of the fingers
+# are for one note, others hold.
+ARTICULATED: Mapping[str, tuple[str, float]] = {
+    name: ("gesture" if row.fingers else "articulation", float(number))
+    for number, row in enumerate(ARTICULATIONS)
+    for name in (row.name, row.name.replace("-", " "), row.chinese)
+}
 HAIRPINS = (
     (r"(?:poco a poco |poco |più |piu |molto |sempre )?cresc|[渐漸]强|漸強", "crescendo"),
     (r"(?:poco a poco |poco |più |piu |molto |sempre )?(?:dim|decresc)|[渐漸]弱", "diminuendo"),
@@ -69,6 +78,8 @@ def meaning_of(text: str) -> Meaning | None:
     for pattern, (name, value) in SIGNS:
         if re.match(pattern, words):
             return Meaning("sign", name, value)
+    if words in ARTICULATED:
+        return Meaning("sign", *ARTICULATED[words])
     for kind, table in (("hairpin", HAIRPINS), ("change", CHANGES), ("jump", JUMP_WORDS)):
         for pattern, name in table:
             if re.match(pattern, words):

@@ -1984,12 +1984,12 @@
       104,
       48
      ],
-     "varname": "/playing/pizzicato",
+     "varname": "/playing/tremolo_depth",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/pizzicato",
-       "parameter_shortname": "pizzicato",
+       "parameter_longname": "/playing/tremolo_depth",
+       "parameter_shortname": "tremolo depth",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -2050,14 +2050,14 @@
      "patching_rect": [
       117.0,
       2256,
-      217,
+      245,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/pizzicato"
+     "text": "route /yehu/playing/tremolo_depth"
     }
    },
    {
@@ -2067,7 +2067,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      386.0,
       2256,
       91,
       22
@@ -2105,13 +2105,13 @@
      "patching_rect": [
       152.0,
       2286,
-      231,
+      259,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/pizzicato"
+     "text": "prepend /yehu/playing/tremolo_depth"
     }
    },
    {
@@ -2121,7 +2121,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      435.0,
       2286,
       98,
       22
@@ -2153,14 +2153,14 @@
       104,
       48
      ],
-     "varname": "/playing/articulation",
+     "varname": "/playing/pizzicato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/articulation",
-       "parameter_shortname": "articulation",
+       "parameter_longname": "/playing/pizzicato",
+       "parameter_shortname": "pizzicato",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 127.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2180,7 +2180,7 @@
       104,
       22
      ],
-     "text": "0 to 127",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -2219,14 +2219,14 @@
      "patching_rect": [
       117.0,
       2316,
-      238,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/articulation"
+     "text": "route /yehu/playing/pizzicato"
     }
    },
    {
@@ -2236,7 +2236,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      379.0,
+      358.0,
       2316,
       91,
       22
@@ -2274,13 +2274,13 @@
      "patching_rect": [
       152.0,
       2346,
-      252,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/articulation"
+     "text": "prepend /yehu/playing/pizzicato"
     }
    },
    {
@@ -2290,7 +2290,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
+      407.0,
       2346,
       98,
       22
@@ -2322,14 +2322,14 @@
       104,
       48
      ],
-     "varname": "/playing/string",
+     "varname": "/playing/articulation",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/string",
-       "parameter_shortname": "string",
+       "parameter_longname": "/playing/articulation",
+       "parameter_shortname": "articulation",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 2.0,
+       "parameter_mmax": 127.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2349,7 +2349,7 @@
       104,
       22
      ],
-     "text": "0 to 2",
+     "text": "0 to 127",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -2388,14 +2388,14 @@
      "patching_rect": [
       117.0,
       2376,
-      196,
+      238,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/string"
+     "text": "route /yehu/playing/articulation"
     }
    },
    {
@@ -2405,7 +2405,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      379.0,
       2376,
       91,
       22
@@ -2443,13 +2443,13 @@
      "patching_rect": [
       152.0,
       2406,
-      210,
+      252,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/string"
+     "text": "prepend /yehu/playing/articulation"
     }
    },
    {
@@ -2459,7 +2459,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      428.0,
       2406,
       98,
       22
@@ -2491,14 +2491,14 @@
       104,
       48
      ],
-     "varname": "/playing/direction",
+     "varname": "/playing/string",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/direction",
-       "parameter_shortname": "direction",
-       "parameter_mmin": -1.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/string",
+       "parameter_shortname": "string",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2518,7 +2518,7 @@
       104,
       22
      ],
-     "text": "-1 to 1",
+     "text": "0 to 2",
      "presentation": 1,
      "presentation_rect": [
       16,
@@ -2557,14 +2557,14 @@
      "patching_rect": [
       117.0,
       2436,
-      217,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/direction"
+     "text": "route /yehu/playing/string"
     }
    },
    {
@@ -2574,7 +2574,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      337.0,
       2436,
       91,
       22
@@ -2612,13 +2612,13 @@
      "patching_rect": [
       152.0,
       2466,
-      231,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/direction"
+     "text": "prepend /yehu/playing/string"
     }
    },
    {
@@ -2628,7 +2628,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      386.0,
       2466,
       98,
       22
@@ -2660,17 +2660,17 @@
       104,
       48
      ],
-     "varname": "/playing/bow_length",
+     "varname": "/playing/direction",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bow_length",
-       "parameter_shortname": "bow length",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 2.0,
+       "parameter_longname": "/playing/direction",
+       "parameter_shortname": "direction",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f m"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -2687,7 +2687,7 @@
       104,
       22
      ],
-     "text": "0 to 2 m",
+     "text": "-1 to 1",
      "presentation": 1,
      "presentation_rect": [
       128,
@@ -2726,14 +2726,14 @@
      "patching_rect": [
       117.0,
       2496,
-      224,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bow_length"
+     "text": "route /yehu/playing/direction"
     }
    },
    {
@@ -2743,7 +2743,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      358.0,
       2496,
       91,
       22
@@ -2763,13 +2763,13 @@
      "patching_rect": [
       16.0,
       2526,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.7"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2779,15 +2779,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       2526,
-      238,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bow_length"
+     "text": "prepend /yehu/playing/direction"
     }
    },
    {
@@ -2797,7 +2797,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
+      407.0,
       2526,
       98,
       22
@@ -2829,17 +2829,17 @@
       104,
       48
      ],
-     "varname": "/playing/note_length",
+     "varname": "/playing/bow_length",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/note_length",
-       "parameter_shortname": "note length",
+       "parameter_longname": "/playing/bow_length",
+       "parameter_shortname": "bow length",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 60.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f s"
+       "parameter_units": "%.3f m"
       }
      }
     }
@@ -2856,7 +2856,7 @@
       104,
       22
      ],
-     "text": "0 to 60 s",
+     "text": "0 to 2 m",
      "presentation": 1,
      "presentation_rect": [
       240,
@@ -2895,14 +2895,14 @@
      "patching_rect": [
       117.0,
       2556,
-      231,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/note_length"
+     "text": "route /yehu/playing/bow_length"
     }
    },
    {
@@ -2912,7 +2912,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      372.0,
+      365.0,
       2556,
       91,
       22
@@ -2932,13 +2932,13 @@
      "patching_rect": [
       16.0,
       2586,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 0.7"
     }
    },
    {
@@ -2948,15 +2948,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       2586,
-      245,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/note_length"
+     "text": "prepend /yehu/playing/bow_length"
     }
    },
    {
@@ -2966,7 +2966,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      421.0,
+      428.0,
       2586,
       98,
       22
@@ -2998,17 +2998,17 @@
       104,
       48
      ],
-     "varname": "/playing/press",
+     "varname": "/playing/note_length",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.3,
-       "parameter_mmax": 6.0,
+       "parameter_longname": "/playing/note_length",
+       "parameter_shortname": "note length",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 60.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f N"
+       "parameter_units": "%.3f s"
       }
      }
     }
@@ -3025,7 +3025,7 @@
       104,
       22
      ],
-     "text": "0.3 to 6 N",
+     "text": "0 to 60 s",
      "presentation": 1,
      "presentation_rect": [
       352,
@@ -3064,14 +3064,14 @@
      "patching_rect": [
       117.0,
       2616,
-      189,
+      231,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/press"
+     "text": "route /yehu/playing/note_length"
     }
    },
    {
@@ -3081,7 +3081,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      330.0,
+      372.0,
       2616,
       91,
       22
@@ -3101,13 +3101,13 @@
      "patching_rect": [
       16.0,
       2646,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3117,15 +3117,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       2646,
-      203,
+      245,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/press"
+     "text": "prepend /yehu/playing/note_length"
     }
    },
    {
@@ -3135,7 +3135,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      421.0,
       2646,
       98,
       22
@@ -3167,17 +3167,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato",
+     "varname": "/playing/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato",
-       "parameter_shortname": "vibrato",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 100.0,
+       "parameter_longname": "/playing/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.3,
+       "parameter_mmax": 6.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f cents"
+       "parameter_units": "%.3f N"
       }
      }
     }
@@ -3194,7 +3194,7 @@
       104,
       22
      ],
-     "text": "0 to 100 cents",
+     "text": "0.3 to 6 N",
      "presentation": 1,
      "presentation_rect": [
       464,
@@ -3233,14 +3233,14 @@
      "patching_rect": [
       117.0,
       2676,
-      203,
+      189,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato"
+     "text": "route /yehu/playing/press"
     }
    },
    {
@@ -3250,7 +3250,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      330.0,
       2676,
       91,
       22
@@ -3270,13 +3270,13 @@
      "patching_rect": [
       16.0,
       2706,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1.5"
     }
    },
    {
@@ -3286,15 +3286,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       2706,
-      217,
+      203,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato"
+     "text": "prepend /yehu/playing/press"
     }
    },
    {
@@ -3336,17 +3336,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_press",
+     "varname": "/playing/vibrato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_press",
-       "parameter_shortname": "vibrato press",
+       "parameter_longname": "/playing/vibrato",
+       "parameter_shortname": "vibrato",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 100.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f cents"
       }
      }
     }
@@ -3363,7 +3363,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0 to 100 cents",
      "presentation": 1,
      "presentation_rect": [
       576,
@@ -3402,14 +3402,14 @@
      "patching_rect": [
       117.0,
       2736,
-      245,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_press"
+     "text": "route /yehu/playing/vibrato"
     }
    },
    {
@@ -3419,7 +3419,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      386.0,
+      344.0,
       2736,
       91,
       22
@@ -3457,13 +3457,13 @@
      "patching_rect": [
       152.0,
       2766,
-      259,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_press"
+     "text": "prepend /yehu/playing/vibrato"
     }
    },
    {
@@ -3473,7 +3473,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      435.0,
+      393.0,
       2766,
       98,
       22
@@ -3505,17 +3505,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_rate",
+     "varname": "/playing/vibrato_press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_rate",
-       "parameter_shortname": "vibrato rate",
-       "parameter_mmin": 2.0,
-       "parameter_mmax": 10.0,
+       "parameter_longname": "/playing/vibrato_press",
+       "parameter_shortname": "vibrato press",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f Hz"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -3532,7 +3532,7 @@
       104,
       22
      ],
-     "text": "2 to 10 Hz",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       688,
@@ -3571,14 +3571,14 @@
      "patching_rect": [
       117.0,
       2796,
-      238,
+      245,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_rate"
+     "text": "route /yehu/playing/vibrato_press"
     }
    },
    {
@@ -3588,7 +3588,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      379.0,
+      386.0,
       2796,
       91,
       22
@@ -3608,13 +3608,13 @@
      "patching_rect": [
       16.0,
       2826,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 5.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3624,15 +3624,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       2826,
-      252,
+      259,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_rate"
+     "text": "prepend /yehu/playing/vibrato_press"
     }
    },
    {
@@ -3642,7 +3642,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      442.0,
+      435.0,
       2826,
       98,
       22
@@ -3674,17 +3674,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_delay",
+     "varname": "/playing/vibrato_rate",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_delay",
-       "parameter_shortname": "vibrato delay",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 3000.0,
+       "parameter_longname": "/playing/vibrato_rate",
+       "parameter_shortname": "vibrato rate",
+       "parameter_mmin": 2.0,
+       "parameter_mmax": 10.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f Hz"
       }
      }
     }
@@ -3701,7 +3701,7 @@
       104,
       22
      ],
-     "text": "0 to 3000 ms",
+     "text": "2 to 10 Hz",
      "presentation": 1,
      "presentation_rect": [
       800,
@@ -3740,14 +3740,14 @@
      "patching_rect": [
       117.0,
       2856,
-      245,
+      238,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_delay"
+     "text": "route /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -3757,7 +3757,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      386.0,
+      379.0,
       2856,
       91,
       22
@@ -3783,7 +3783,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 500"
+     "text": "loadmess set 5.5"
     }
    },
    {
@@ -3795,13 +3795,13 @@
      "patching_rect": [
       166.0,
       2886,
-      259,
+      252,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_delay"
+     "text": "prepend /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -3811,7 +3811,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      449.0,
+      442.0,
       2886,
       98,
       22
@@ -3843,17 +3843,17 @@
       104,
       48
      ],
-     "varname": "/playing/bend",
+     "varname": "/playing/vibrato_delay",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend",
-       "parameter_shortname": "bend",
-       "parameter_mmin": -48.0,
-       "parameter_mmax": 48.0,
+       "parameter_longname": "/playing/vibrato_delay",
+       "parameter_shortname": "vibrato delay",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 3000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f semitones"
+       "parameter_units": "%.3f ms"
       }
      }
     }
@@ -3870,7 +3870,7 @@
       104,
       22
      ],
-     "text": "-48 to 48 semitones",
+     "text": "0 to 3000 ms",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -3909,14 +3909,14 @@
      "patching_rect": [
       117.0,
       2916,
-      182,
+      245,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend"
+     "text": "route /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -3926,7 +3926,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      323.0,
+      386.0,
       2916,
       91,
       22
@@ -3946,13 +3946,13 @@
      "patching_rect": [
       16.0,
       2946,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 500"
     }
    },
    {
@@ -3962,15 +3962,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       2946,
-      196,
+      259,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend"
+     "text": "prepend /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -3980,7 +3980,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      372.0,
+      449.0,
       2946,
       98,
       22
@@ -4012,13 +4012,13 @@
       104,
       48
      ],
-     "varname": "/playing/bend_range",
+     "varname": "/playing/bend",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend_range",
-       "parameter_shortname": "bend range",
-       "parameter_mmin": 0.0,
+       "parameter_longname": "/playing/bend",
+       "parameter_shortname": "bend",
+       "parameter_mmin": -48.0,
        "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
@@ -4039,7 +4039,7 @@
       104,
       22
      ],
-     "text": "0 to 48 semitones",
+     "text": "-48 to 48 semitones",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -4078,14 +4078,14 @@
      "patching_rect": [
       117.0,
       2976,
-      224,
+      182,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend_range"
+     "text": "route /yehu/playing/bend"
     }
    },
    {
@@ -4095,7 +4095,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      323.0,
       2976,
       91,
       22
@@ -4121,7 +4121,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 2"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -4133,13 +4133,13 @@
      "patching_rect": [
       152.0,
       3006,
-      238,
+      196,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend_range"
+     "text": "prepend /yehu/playing/bend"
     }
    },
    {
@@ -4149,7 +4149,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      372.0,
       3006,
       98,
       22
@@ -4181,17 +4181,17 @@
       104,
       48
      ],
-     "varname": "/playing/volume",
+     "varname": "/playing/bend_range",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/volume",
-       "parameter_shortname": "volume",
+       "parameter_longname": "/playing/bend_range",
+       "parameter_shortname": "bend range",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f semitones"
       }
      }
     }
@@ -4208,7 +4208,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0 to 48 semitones",
      "presentation": 1,
      "presentation_rect": [
       16,
@@ -4247,14 +4247,14 @@
      "patching_rect": [
       117.0,
       3036,
-      196,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/volume"
+     "text": "route /yehu/playing/bend_range"
     }
    },
    {
@@ -4264,7 +4264,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      365.0,
       3036,
       91,
       22
@@ -4290,7 +4290,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 2"
     }
    },
    {
@@ -4302,13 +4302,13 @@
      "patching_rect": [
       152.0,
       3066,
-      210,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/volume"
+     "text": "prepend /yehu/playing/bend_range"
     }
    },
    {
@@ -4318,7 +4318,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      414.0,
       3066,
       98,
       22
@@ -4350,12 +4350,12 @@
       104,
       48
      ],
-     "varname": "/playing/expression",
+     "varname": "/playing/volume",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/expression",
-       "parameter_shortname": "expression",
+       "parameter_longname": "/playing/volume",
+       "parameter_shortname": "volume",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4416,14 +4416,14 @@
      "patching_rect": [
       117.0,
       3096,
-      224,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/expression"
+     "text": "route /yehu/playing/volume"
     }
    },
    {
@@ -4433,7 +4433,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      337.0,
       3096,
       91,
       22
@@ -4471,13 +4471,13 @@
      "patching_rect": [
       152.0,
       3126,
-      238,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/expression"
+     "text": "prepend /yehu/playing/volume"
     }
    },
    {
@@ -4487,7 +4487,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      386.0,
       3126,
       98,
       22
@@ -4519,12 +4519,12 @@
       104,
       48
      ],
-     "varname": "/playing/assist",
+     "varname": "/playing/expression",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/assist",
-       "parameter_shortname": "assist",
+       "parameter_longname": "/playing/expression",
+       "parameter_shortname": "expression",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4585,14 +4585,14 @@
      "patching_rect": [
       117.0,
       3156,
-      196,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/assist"
+     "text": "route /yehu/playing/expression"
     }
    },
    {
@@ -4602,7 +4602,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      365.0,
       3156,
       91,
       22
@@ -4640,13 +4640,13 @@
      "patching_rect": [
       152.0,
       3186,
-      210,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/assist"
+     "text": "prepend /yehu/playing/expression"
     }
    },
    {
@@ -4656,7 +4656,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      414.0,
       3186,
       98,
       22
@@ -4688,12 +4688,12 @@
       104,
       48
      ],
-     "varname": "/playing/variation",
+     "varname": "/playing/assist",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/variation",
-       "parameter_shortname": "variation",
+       "parameter_longname": "/playing/assist",
+       "parameter_shortname": "assist",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4754,14 +4754,14 @@
      "patching_rect": [
       117.0,
       3216,
-      217,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/variation"
+     "text": "route /yehu/playing/assist"
     }
    },
    {
@@ -4771,7 +4771,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      337.0,
       3216,
       91,
       22
@@ -4791,13 +4791,13 @@
      "patching_rect": [
       16.0,
       3246,
-      133,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.25"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -4807,15 +4807,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      173.0,
+      152.0,
       3246,
-      231,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/variation"
+     "text": "prepend /yehu/playing/assist"
     }
    },
    {
@@ -4825,7 +4825,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
+      386.0,
       3246,
       98,
       22
@@ -4857,12 +4857,12 @@
       104,
       48
      ],
-     "varname": "/playing/listening",
+     "varname": "/playing/variation",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/listening",
-       "parameter_shortname": "listening",
+       "parameter_longname": "/playing/variation",
+       "parameter_shortname": "variation",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4930,7 +4930,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/listening"
+     "text": "route /yehu/playing/variation"
     }
    },
    {
@@ -4960,13 +4960,13 @@
      "patching_rect": [
       16.0,
       3306,
-      112,
+      133,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0.25"
     }
    },
    {
@@ -4976,7 +4976,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      173.0,
       3306,
       231,
       22
@@ -4984,7 +4984,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/listening"
+     "text": "prepend /yehu/playing/variation"
     }
    },
    {
@@ -4994,7 +4994,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      428.0,
       3306,
       98,
       22
@@ -5026,12 +5026,12 @@
       104,
       48
      ],
-     "varname": "/playing/phrasing",
+     "varname": "/playing/listening",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/phrasing",
-       "parameter_shortname": "phrasing",
+       "parameter_longname": "/playing/listening",
+       "parameter_shortname": "listening",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -5092,14 +5092,14 @@
      "patching_rect": [
       117.0,
       3336,
-      210,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/phrasing"
+     "text": "route /yehu/playing/listening"
     }
    },
    {
@@ -5109,7 +5109,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      351.0,
+      358.0,
       3336,
       91,
       22
@@ -5135,7 +5135,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -5147,13 +5147,13 @@
      "patching_rect": [
       152.0,
       3366,
-      224,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/phrasing"
+     "text": "prepend /yehu/playing/listening"
     }
    },
    {
@@ -5163,7 +5163,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      400.0,
+      407.0,
       3366,
       98,
       22
@@ -5195,14 +5195,14 @@
       104,
       48
      ],
-     "varname": "/playing/section",
+     "varname": "/playing/phrasing",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/section",
-       "parameter_shortname": "section",
-       "parameter_mmin": 1.0,
-       "parameter_mmax": 16.0,
+       "parameter_longname": "/playing/phrasing",
+       "parameter_shortname": "phrasing",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -5222,7 +5222,7 @@
       104,
       22
      ],
-     "text": "1 to 16",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       688,
@@ -5261,14 +5261,14 @@
      "patching_rect": [
       117.0,
       3396,
-      203,
+      210,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/section"
+     "text": "route /yehu/playing/phrasing"
     }
    },
    {
@@ -5278,7 +5278,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      351.0,
       3396,
       91,
       22
@@ -5304,7 +5304,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -5316,13 +5316,13 @@
      "patching_rect": [
       152.0,
       3426,
-      217,
+      224,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/section"
+     "text": "prepend /yehu/playing/phrasing"
     }
    },
    {
@@ -5332,7 +5332,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      400.0,
       3426,
       98,
       22
@@ -5364,17 +5364,17 @@
       104,
       48
      ],
-     "varname": "/playing/attack",
+     "varname": "/playing/section",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/attack",
-       "parameter_shortname": "attack",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 500.0,
+       "parameter_longname": "/playing/section",
+       "parameter_shortname": "section",
+       "parameter_mmin": 1.0,
+       "parameter_mmax": 16.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -5391,7 +5391,7 @@
       104,
       22
      ],
-     "text": "5 to 500 ms",
+     "text": "1 to 16",
      "presentation": 1,
      "presentation_rect": [
       800,
@@ -5430,14 +5430,14 @@
      "patching_rect": [
       117.0,
       3456,
-      196,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/attack"
+     "text": "route /yehu/playing/section"
     }
    },
    {
@@ -5447,7 +5447,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      344.0,
       3456,
       91,
       22
@@ -5467,13 +5467,13 @@
      "patching_rect": [
       16.0,
       3486,
-      119,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 40"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -5483,15 +5483,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      159.0,
+      152.0,
       3486,
-      210,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/attack"
+     "text": "prepend /yehu/playing/section"
     }
    },
    {
@@ -5533,14 +5533,14 @@
       104,
       48
      ],
-     "varname": "/playing/release",
+     "varname": "/playing/attack",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/release",
-       "parameter_shortname": "release",
+       "parameter_longname": "/playing/attack",
+       "parameter_shortname": "attack",
        "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_mmax": 500.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
@@ -5560,7 +5560,7 @@
       104,
       22
      ],
-     "text": "5 to 2000 ms",
+     "text": "5 to 500 ms",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -5599,14 +5599,14 @@
      "patching_rect": [
       117.0,
       3516,
-      203,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/release"
+     "text": "route /yehu/playing/attack"
     }
    },
    {
@@ -5616,7 +5616,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      337.0,
       3516,
       91,
       22
@@ -5642,7 +5642,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 60"
+     "text": "loadmess set 40"
     }
    },
    {
@@ -5654,13 +5654,13 @@
      "patching_rect": [
       159.0,
       3546,
-      217,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/release"
+     "text": "prepend /yehu/playing/attack"
     }
    },
    {
@@ -5670,7 +5670,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      400.0,
+      393.0,
       3546,
       98,
       22
@@ -5702,17 +5702,17 @@
       104,
       48
      ],
-     "varname": "/playing/portamento",
+     "varname": "/playing/release",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento",
-       "parameter_shortname": "portamento",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/release",
+       "parameter_shortname": "release",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f ms"
       }
      }
     }
@@ -5729,7 +5729,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "5 to 2000 ms",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -5768,14 +5768,14 @@
      "patching_rect": [
       117.0,
       3576,
-      224,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento"
+     "text": "route /yehu/playing/release"
     }
    },
    {
@@ -5785,7 +5785,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      344.0,
       3576,
       91,
       22
@@ -5805,13 +5805,13 @@
      "patching_rect": [
       16.0,
       3606,
-      112,
+      119,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 60"
     }
    },
    {
@@ -5821,15 +5821,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      159.0,
       3606,
-      238,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento"
+     "text": "prepend /yehu/playing/release"
     }
    },
    {
@@ -5839,7 +5839,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      400.0,
       3606,
       98,
       22
@@ -5871,17 +5871,17 @@
       104,
       48
      ],
-     "varname": "/playing/portamento_time",
+     "varname": "/playing/portamento",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento_time",
-       "parameter_shortname": "portamento time",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_longname": "/playing/portamento",
+       "parameter_shortname": "portamento",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -5898,7 +5898,7 @@
       104,
       22
      ],
-     "text": "5 to 2000 ms",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       16,
@@ -5937,14 +5937,14 @@
      "patching_rect": [
       117.0,
       3636,
-      259,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento_time"
+     "text": "route /yehu/playing/portamento"
     }
    },
    {
@@ -5954,7 +5954,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      400.0,
+      365.0,
       3636,
       91,
       22
@@ -5974,13 +5974,13 @@
      "patching_rect": [
       16.0,
       3666,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 120"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -5990,15 +5990,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       3666,
-      273,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento_time"
+     "text": "prepend /yehu/playing/portamento"
     }
    },
    {
@@ -6008,7 +6008,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      463.0,
+      414.0,
       3666,
       98,
       22
@@ -6020,6 +6020,175 @@
    {
     "box": {
      "id": "obj-286",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      128,
+      646,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      646,
+      104,
+      48
+     ],
+     "varname": "/playing/portamento_time",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento_time",
+       "parameter_shortname": "portamento time",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f ms"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-287",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      128,
+      696,
+      104,
+      22
+     ],
+     "text": "5 to 2000 ms",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-288",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3696,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-289",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      3696,
+      259,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-290",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      400.0,
+      3696,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-291",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3726,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 120"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-292",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      3726,
+      273,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-293",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      463.0,
+      3726,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-294",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6042,7 +6211,7 @@
    },
    {
     "box": {
-     "id": "obj-287",
+     "id": "obj-295",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6080,7 +6249,7 @@
    },
    {
     "box": {
-     "id": "obj-288",
+     "id": "obj-296",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6094,175 +6263,6 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      794,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-289",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      3696,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-290",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      3696,
-      161,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/bow/speed"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-291",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      302.0,
-      3696,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-292",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      3726,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-293",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      3726,
-      175,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/speed"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-294",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      351.0,
-      3726,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-295",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      744,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      744,
-      104,
-      48
-     ],
-     "varname": "/bow/side",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/bow/side",
-       "parameter_shortname": "side",
-       "parameter_mmin": -1.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-296",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      794,
-      104,
-      22
-     ],
-     "text": "-1 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
       794,
       104,
       22
@@ -6298,14 +6298,14 @@
      "patching_rect": [
       117.0,
       3756,
-      154,
+      161,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/bow/side"
+     "text": "route /yehu/bow/speed"
     }
    },
    {
@@ -6315,7 +6315,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      295.0,
+      302.0,
       3756,
       91,
       22
@@ -6353,13 +6353,13 @@
      "patching_rect": [
       152.0,
       3786,
-      168,
+      175,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/bow/side"
+     "text": "prepend /yehu/bow/speed"
     }
    },
    {
@@ -6369,7 +6369,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      344.0,
+      351.0,
       3786,
       98,
       22
@@ -6381,6 +6381,175 @@
    {
     "box": {
      "id": "obj-303",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      128,
+      744,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      744,
+      104,
+      48
+     ],
+     "varname": "/bow/side",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/bow/side",
+       "parameter_shortname": "side",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-304",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      128,
+      794,
+      104,
+      22
+     ],
+     "text": "-1 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-305",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3816,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-306",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      3816,
+      154,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/bow/side"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-307",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      295.0,
+      3816,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-308",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3846,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-309",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3846,
+      168,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/side"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-310",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      344.0,
+      3846,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-311",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6418,7 +6587,7 @@
    },
    {
     "box": {
-     "id": "obj-304",
+     "id": "obj-312",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6442,13 +6611,13 @@
    },
    {
     "box": {
-     "id": "obj-305",
+     "id": "obj-313",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3816,
+      3876,
       77,
       22
      ],
@@ -6460,13 +6629,13 @@
    },
    {
     "box": {
-     "id": "obj-306",
+     "id": "obj-314",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3816,
+      3876,
       161,
       22
      ],
@@ -6479,13 +6648,13 @@
    },
    {
     "box": {
-     "id": "obj-307",
+     "id": "obj-315",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      3816,
+      3876,
       91,
       22
      ],
@@ -6497,13 +6666,13 @@
    },
    {
     "box": {
-     "id": "obj-308",
+     "id": "obj-316",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3846,
+      3906,
       126,
       22
      ],
@@ -6515,13 +6684,13 @@
    },
    {
     "box": {
-     "id": "obj-309",
+     "id": "obj-317",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      3846,
+      3906,
       175,
       22
      ],
@@ -6533,13 +6702,13 @@
    },
    {
     "box": {
-     "id": "obj-310",
+     "id": "obj-318",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      3846,
+      3906,
       98,
       22
      ],
@@ -6549,7 +6718,7 @@
    },
    {
     "box": {
-     "id": "obj-311",
+     "id": "obj-319",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6587,7 +6756,7 @@
    },
    {
     "box": {
-     "id": "obj-312",
+     "id": "obj-320",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6611,13 +6780,13 @@
    },
    {
     "box": {
-     "id": "obj-313",
+     "id": "obj-321",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3876,
+      3936,
       77,
       22
      ],
@@ -6629,13 +6798,13 @@
    },
    {
     "box": {
-     "id": "obj-314",
+     "id": "obj-322",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3876,
+      3936,
       182,
       22
      ],
@@ -6648,13 +6817,13 @@
    },
    {
     "box": {
-     "id": "obj-315",
+     "id": "obj-323",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      3876,
+      3936,
       91,
       22
      ],
@@ -6666,13 +6835,13 @@
    },
    {
     "box": {
-     "id": "obj-316",
+     "id": "obj-324",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3906,
+      3966,
       126,
       22
      ],
@@ -6684,13 +6853,13 @@
    },
    {
     "box": {
-     "id": "obj-317",
+     "id": "obj-325",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      3906,
+      3966,
       196,
       22
      ],
@@ -6702,13 +6871,13 @@
    },
    {
     "box": {
-     "id": "obj-318",
+     "id": "obj-326",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      3906,
+      3966,
       98,
       22
      ],
@@ -6718,7 +6887,7 @@
    },
    {
     "box": {
-     "id": "obj-319",
+     "id": "obj-327",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6756,7 +6925,7 @@
    },
    {
     "box": {
-     "id": "obj-320",
+     "id": "obj-328",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6780,13 +6949,13 @@
    },
    {
     "box": {
-     "id": "obj-321",
+     "id": "obj-329",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3936,
+      3996,
       77,
       22
      ],
@@ -6798,13 +6967,13 @@
    },
    {
     "box": {
-     "id": "obj-322",
+     "id": "obj-330",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3936,
+      3996,
       168,
       22
      ],
@@ -6817,13 +6986,13 @@
    },
    {
     "box": {
-     "id": "obj-323",
+     "id": "obj-331",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      3936,
+      3996,
       91,
       22
      ],
@@ -6835,13 +7004,13 @@
    },
    {
     "box": {
-     "id": "obj-324",
+     "id": "obj-332",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3966,
+      4026,
       112,
       22
      ],
@@ -6853,13 +7022,13 @@
    },
    {
     "box": {
-     "id": "obj-325",
+     "id": "obj-333",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      3966,
+      4026,
       182,
       22
      ],
@@ -6871,13 +7040,13 @@
    },
    {
     "box": {
-     "id": "obj-326",
+     "id": "obj-334",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       358.0,
-      3966,
+      4026,
       98,
       22
      ],
@@ -6887,7 +7056,7 @@
    },
    {
     "box": {
-     "id": "obj-327",
+     "id": "obj-335",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6925,7 +7094,7 @@
    },
    {
     "box": {
-     "id": "obj-328",
+     "id": "obj-336",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6949,13 +7118,13 @@
    },
    {
     "box": {
-     "id": "obj-329",
+     "id": "obj-337",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3996,
+      4056,
       77,
       22
      ],
@@ -6967,13 +7136,13 @@
    },
    {
     "box": {
-     "id": "obj-330",
+     "id": "obj-338",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3996,
+      4056,
       182,
       22
      ],
@@ -6986,13 +7155,13 @@
    },
    {
     "box": {
-     "id": "obj-331",
+     "id": "obj-339",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      3996,
+      4056,
       91,
       22
      ],
@@ -7004,13 +7173,13 @@
    },
    {
     "box": {
-     "id": "obj-332",
+     "id": "obj-340",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4026,
+      4086,
       133,
       22
      ],
@@ -7022,13 +7191,13 @@
    },
    {
     "box": {
-     "id": "obj-333",
+     "id": "obj-341",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4026,
+      4086,
       196,
       22
      ],
@@ -7040,13 +7209,13 @@
    },
    {
     "box": {
-     "id": "obj-334",
+     "id": "obj-342",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      4026,
+      4086,
       98,
       22
      ],
@@ -7056,7 +7225,7 @@
    },
    {
     "box": {
-     "id": "obj-335",
+     "id": "obj-343",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7094,7 +7263,7 @@
    },
    {
     "box": {
-     "id": "obj-336",
+     "id": "obj-344",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7108,175 +7277,6 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      794,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-337",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4056,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-338",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      4056,
-      175,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/bow/tremolo"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-339",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      316.0,
-      4056,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-340",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4086,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-341",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      4086,
-      189,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/tremolo"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-342",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      365.0,
-      4086,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-343",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      800,
-      744,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      744,
-      104,
-      48
-     ],
-     "varname": "/bow/noise",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/bow/noise",
-       "parameter_shortname": "noise",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-344",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      800,
-      794,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      800,
       794,
       104,
       22
@@ -7312,14 +7312,14 @@
      "patching_rect": [
       117.0,
       4116,
-      161,
+      175,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/bow/noise"
+     "text": "route /yehu/bow/tremolo"
     }
    },
    {
@@ -7329,7 +7329,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      302.0,
+      316.0,
       4116,
       91,
       22
@@ -7349,13 +7349,13 @@
      "patching_rect": [
       16.0,
       4146,
-      140,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.025"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -7365,15 +7365,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      180.0,
+      152.0,
       4146,
-      175,
+      189,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/bow/noise"
+     "text": "prepend /yehu/bow/tremolo"
     }
    },
    {
@@ -7383,7 +7383,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      379.0,
+      365.0,
       4146,
       98,
       22
@@ -7395,6 +7395,344 @@
    {
     "box": {
      "id": "obj-351",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      800,
+      744,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      744,
+      104,
+      48
+     ],
+     "varname": "/bow/tremolo_depth",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/bow/tremolo_depth",
+       "parameter_shortname": "tremolo depth",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-352",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      800,
+      794,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-353",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4176,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-354",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4176,
+      217,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/bow/tremolo_depth"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-355",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      358.0,
+      4176,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-356",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4206,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-357",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4206,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/tremolo_depth"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-358",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      407.0,
+      4206,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-359",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      912,
+      744,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      744,
+      104,
+      48
+     ],
+     "varname": "/bow/noise",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/bow/noise",
+       "parameter_shortname": "noise",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-360",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      912,
+      794,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-361",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4236,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-362",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4236,
+      161,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/bow/noise"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-363",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      302.0,
+      4236,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-364",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4266,
+      140,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.025"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-365",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      180.0,
+      4266,
+      175,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/noise"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-366",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      4266,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-367",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7417,7 +7755,7 @@
    },
    {
     "box": {
-     "id": "obj-352",
+     "id": "obj-368",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7455,350 +7793,12 @@
    },
    {
     "box": {
-     "id": "obj-353",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      16,
-      892,
-      104,
-      22
-     ],
-     "text": "0.008 to 0.28 m",
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      892,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-354",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4176,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-355",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      4176,
-      217,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/finger/1/position"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-356",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      358.0,
-      4176,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-357",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4206,
-      133,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0.05"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-358",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      173.0,
-      4206,
-      231,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/finger/1/position"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-359",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      428.0,
-      4206,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-360",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      842,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      842,
-      104,
-      48
-     ],
-     "varname": "/finger/1/press",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/finger/1/press",
-       "parameter_shortname": "1 press",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 10.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f N"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-361",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      892,
-      104,
-      22
-     ],
-     "text": "0 to 10 N",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      892,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-362",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4236,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-363",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      4236,
-      196,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/finger/1/press"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-364",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      337.0,
-      4236,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-365",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4266,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-366",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      4266,
-      210,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/finger/1/press"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-367",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      386.0,
-      4266,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-368",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      240,
-      842,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      842,
-      104,
-      48
-     ],
-     "varname": "/finger/2/position",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/finger/2/position",
-       "parameter_shortname": "2 position",
-       "parameter_mmin": 0.008,
-       "parameter_mmax": 0.28,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f m"
-      }
-     }
-    }
-   },
-   {
-    "box": {
      "id": "obj-369",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      240,
+      16,
       892,
       104,
       22
@@ -7806,7 +7806,7 @@
      "text": "0.008 to 0.28 m",
      "presentation": 1,
      "presentation_rect": [
-      240,
+      16,
       892,
       104,
       22
@@ -7849,7 +7849,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/finger/2/position"
+     "text": "route /yehu/finger/1/position"
     }
    },
    {
@@ -7903,7 +7903,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/finger/2/position"
+     "text": "prepend /yehu/finger/1/position"
     }
    },
    {
@@ -7929,7 +7929,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      352,
+      128,
       842,
       104,
       48
@@ -7940,17 +7940,17 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      352,
+      128,
       842,
       104,
       48
      ],
-     "varname": "/finger/2/press",
+     "varname": "/finger/1/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/finger/2/press",
-       "parameter_shortname": "2 press",
+       "parameter_longname": "/finger/1/press",
+       "parameter_shortname": "1 press",
        "parameter_mmin": 0.0,
        "parameter_mmax": 10.0,
        "parameter_type": 0,
@@ -7967,7 +7967,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      352,
+      128,
       892,
       104,
       22
@@ -7975,7 +7975,7 @@
      "text": "0 to 10 N",
      "presentation": 1,
      "presentation_rect": [
-      352,
+      128,
       892,
       104,
       22
@@ -8018,7 +8018,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/finger/2/press"
+     "text": "route /yehu/finger/1/press"
     }
    },
    {
@@ -8072,7 +8072,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/finger/2/press"
+     "text": "prepend /yehu/finger/1/press"
     }
    },
    {
@@ -8098,7 +8098,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      464,
+      240,
       842,
       104,
       48
@@ -8109,17 +8109,17 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      464,
+      240,
       842,
       104,
       48
      ],
-     "varname": "/finger/3/position",
+     "varname": "/finger/2/position",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/finger/3/position",
-       "parameter_shortname": "3 position",
+       "parameter_longname": "/finger/2/position",
+       "parameter_shortname": "2 position",
        "parameter_mmin": 0.008,
        "parameter_mmax": 0.28,
        "parameter_type": 0,
@@ -8136,7 +8136,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      464,
+      240,
       892,
       104,
       22
@@ -8144,7 +8144,7 @@
      "text": "0.008 to 0.28 m",
      "presentation": 1,
      "presentation_rect": [
-      464,
+      240,
       892,
       104,
       22
@@ -8187,7 +8187,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/finger/3/position"
+     "text": "route /yehu/finger/2/position"
     }
    },
    {
@@ -8241,7 +8241,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/finger/3/position"
+     "text": "prepend /yehu/finger/2/position"
     }
    },
    {
@@ -8267,7 +8267,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      576,
+      352,
       842,
       104,
       48
@@ -8278,17 +8278,17 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      576,
+      352,
       842,
       104,
       48
      ],
-     "varname": "/finger/3/press",
+     "varname": "/finger/2/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/finger/3/press",
-       "parameter_shortname": "3 press",
+       "parameter_longname": "/finger/2/press",
+       "parameter_shortname": "2 press",
        "parameter_mmin": 0.0,
        "parameter_mmax": 10.0,
        "parameter_type": 0,
@@ -8305,7 +8305,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      576,
+      352,
       892,
       104,
       22
@@ -8313,7 +8313,7 @@
      "text": "0 to 10 N",
      "presentation": 1,
      "presentation_rect": [
-      576,
+      352,
       892,
       104,
       22
@@ -8356,7 +8356,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/finger/3/press"
+     "text": "route /yehu/finger/2/press"
     }
    },
    {
@@ -8410,7 +8410,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/finger/3/press"
+     "text": "prepend /yehu/finger/2/press"
     }
    },
    {
@@ -8436,7 +8436,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      688,
+      464,
       842,
       104,
       48
@@ -8447,17 +8447,17 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      688,
+      464,
       842,
       104,
       48
      ],
-     "varname": "/finger/4/position",
+     "varname": "/finger/3/position",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/finger/4/position",
-       "parameter_shortname": "4 position",
+       "parameter_longname": "/finger/3/position",
+       "parameter_shortname": "3 position",
        "parameter_mmin": 0.008,
        "parameter_mmax": 0.28,
        "parameter_type": 0,
@@ -8474,7 +8474,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      688,
+      464,
       892,
       104,
       22
@@ -8482,7 +8482,7 @@
      "text": "0.008 to 0.28 m",
      "presentation": 1,
      "presentation_rect": [
-      688,
+      464,
       892,
       104,
       22
@@ -8525,7 +8525,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/finger/4/position"
+     "text": "route /yehu/finger/3/position"
     }
    },
    {
@@ -8579,7 +8579,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/finger/4/position"
+     "text": "prepend /yehu/finger/3/position"
     }
    },
    {
@@ -8605,7 +8605,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      800,
+      576,
       842,
       104,
       48
@@ -8616,17 +8616,17 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      800,
+      576,
       842,
       104,
       48
      ],
-     "varname": "/finger/4/press",
+     "varname": "/finger/3/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/finger/4/press",
-       "parameter_shortname": "4 press",
+       "parameter_longname": "/finger/3/press",
+       "parameter_shortname": "3 press",
        "parameter_mmin": 0.0,
        "parameter_mmax": 10.0,
        "parameter_type": 0,
@@ -8643,7 +8643,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      800,
+      576,
       892,
       104,
       22
@@ -8651,7 +8651,7 @@
      "text": "0 to 10 N",
      "presentation": 1,
      "presentation_rect": [
-      800,
+      576,
       892,
       104,
       22
@@ -8694,7 +8694,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/finger/4/press"
+     "text": "route /yehu/finger/3/press"
     }
    },
    {
@@ -8748,7 +8748,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/finger/4/press"
+     "text": "prepend /yehu/finger/3/press"
     }
    },
    {
@@ -8770,6 +8770,344 @@
    {
     "box": {
      "id": "obj-416",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      688,
+      842,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      842,
+      104,
+      48
+     ],
+     "varname": "/finger/4/position",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/finger/4/position",
+       "parameter_shortname": "4 position",
+       "parameter_mmin": 0.008,
+       "parameter_mmax": 0.28,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f m"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-417",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      688,
+      892,
+      104,
+      22
+     ],
+     "text": "0.008 to 0.28 m",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-418",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4656,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-419",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4656,
+      217,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/finger/4/position"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-420",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      358.0,
+      4656,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-421",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4686,
+      133,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.05"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-422",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      4686,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/finger/4/position"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-423",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      428.0,
+      4686,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-424",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      800,
+      842,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      842,
+      104,
+      48
+     ],
+     "varname": "/finger/4/press",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/finger/4/press",
+       "parameter_shortname": "4 press",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 10.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f N"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-425",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      800,
+      892,
+      104,
+      22
+     ],
+     "text": "0 to 10 N",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-426",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4716,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-427",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4716,
+      196,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/finger/4/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-428",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      337.0,
+      4716,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-429",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4746,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-430",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4746,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/finger/4/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-431",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      4746,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-432",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8792,7 +9130,7 @@
    },
    {
     "box": {
-     "id": "obj-417",
+     "id": "obj-433",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8830,7 +9168,7 @@
    },
    {
     "box": {
-     "id": "obj-418",
+     "id": "obj-434",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8844,344 +9182,6 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      990,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-419",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4656,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-420",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      4656,
-      189,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/vibrato/depth"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-421",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      330.0,
-      4656,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-422",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4686,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-423",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      4686,
-      203,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/vibrato/depth"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-424",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      379.0,
-      4686,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-425",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      940,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      940,
-      104,
-      48
-     ],
-     "varname": "/vibrato/press",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/vibrato/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-426",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      990,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      990,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-427",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4716,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-428",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      4716,
-      189,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/vibrato/press"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-429",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      330.0,
-      4716,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-430",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4746,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-431",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      4746,
-      203,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/vibrato/press"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-432",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      379.0,
-      4746,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-433",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      240,
-      940,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      940,
-      104,
-      48
-     ],
-     "varname": "/vibrato/upward",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/vibrato/upward",
-       "parameter_shortname": "upward",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-434",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      240,
-      990,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      240,
       990,
       104,
       22
@@ -9217,14 +9217,14 @@
      "patching_rect": [
       117.0,
       4776,
-      196,
+      189,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/vibrato/upward"
+     "text": "route /yehu/vibrato/depth"
     }
    },
    {
@@ -9234,7 +9234,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      330.0,
       4776,
       91,
       22
@@ -9272,13 +9272,13 @@
      "patching_rect": [
       152.0,
       4806,
-      210,
+      203,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/vibrato/upward"
+     "text": "prepend /yehu/vibrato/depth"
     }
    },
    {
@@ -9288,7 +9288,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      379.0,
       4806,
       98,
       22
@@ -9300,6 +9300,344 @@
    {
     "box": {
      "id": "obj-441",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      128,
+      940,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      940,
+      104,
+      48
+     ],
+     "varname": "/vibrato/press",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/vibrato/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-442",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      128,
+      990,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-443",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4836,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-444",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4836,
+      189,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/vibrato/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-445",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      330.0,
+      4836,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-446",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4866,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-447",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4866,
+      203,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/vibrato/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-448",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      4866,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-449",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      940,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      940,
+      104,
+      48
+     ],
+     "varname": "/vibrato/upward",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/vibrato/upward",
+       "parameter_shortname": "upward",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-450",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      990,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-451",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4896,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-452",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4896,
+      196,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/vibrato/upward"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-453",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      337.0,
+      4896,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-454",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4926,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-455",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4926,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/vibrato/upward"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-456",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      4926,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-457",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9337,7 +9675,7 @@
    },
    {
     "box": {
-     "id": "obj-442",
+     "id": "obj-458",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9361,13 +9699,13 @@
    },
    {
     "box": {
-     "id": "obj-443",
+     "id": "obj-459",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4836,
+      4956,
       77,
       22
      ],
@@ -9379,13 +9717,13 @@
    },
    {
     "box": {
-     "id": "obj-444",
+     "id": "obj-460",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4836,
+      4956,
       182,
       22
      ],
@@ -9398,13 +9736,13 @@
    },
    {
     "box": {
-     "id": "obj-445",
+     "id": "obj-461",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      4836,
+      4956,
       91,
       22
      ],
@@ -9416,13 +9754,13 @@
    },
    {
     "box": {
-     "id": "obj-446",
+     "id": "obj-462",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4866,
+      4986,
       126,
       22
      ],
@@ -9434,13 +9772,13 @@
    },
    {
     "box": {
-     "id": "obj-447",
+     "id": "obj-463",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      4866,
+      4986,
       196,
       22
      ],
@@ -9452,13 +9790,13 @@
    },
    {
     "box": {
-     "id": "obj-448",
+     "id": "obj-464",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4866,
+      4986,
       98,
       22
      ],
@@ -9468,7 +9806,7 @@
    },
    {
     "box": {
-     "id": "obj-449",
+     "id": "obj-465",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9506,7 +9844,7 @@
    },
    {
     "box": {
-     "id": "obj-450",
+     "id": "obj-466",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9530,13 +9868,13 @@
    },
    {
     "box": {
-     "id": "obj-451",
+     "id": "obj-467",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4896,
+      5016,
       77,
       22
      ],
@@ -9548,13 +9886,13 @@
    },
    {
     "box": {
-     "id": "obj-452",
+     "id": "obj-468",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4896,
+      5016,
       189,
       22
      ],
@@ -9567,13 +9905,13 @@
    },
    {
     "box": {
-     "id": "obj-453",
+     "id": "obj-469",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      4896,
+      5016,
       91,
       22
      ],
@@ -9585,13 +9923,13 @@
    },
    {
     "box": {
-     "id": "obj-454",
+     "id": "obj-470",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4926,
+      5046,
       112,
       22
      ],
@@ -9603,13 +9941,13 @@
    },
    {
     "box": {
-     "id": "obj-455",
+     "id": "obj-471",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4926,
+      5046,
       203,
       22
      ],
@@ -9621,13 +9959,13 @@
    },
    {
     "box": {
-     "id": "obj-456",
+     "id": "obj-472",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      4926,
+      5046,
       98,
       22
      ],
@@ -9637,7 +9975,7 @@
    },
    {
     "box": {
-     "id": "obj-457",
+     "id": "obj-473",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9660,7 +9998,7 @@
    },
    {
     "box": {
-     "id": "obj-458",
+     "id": "obj-474",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9698,7 +10036,7 @@
    },
    {
     "box": {
-     "id": "obj-459",
+     "id": "obj-475",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9722,13 +10060,13 @@
    },
    {
     "box": {
-     "id": "obj-460",
+     "id": "obj-476",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4956,
+      5076,
       77,
       22
      ],
@@ -9740,13 +10078,13 @@
    },
    {
     "box": {
-     "id": "obj-461",
+     "id": "obj-477",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4956,
+      5076,
       175,
       22
      ],
@@ -9759,13 +10097,13 @@
    },
    {
     "box": {
-     "id": "obj-462",
+     "id": "obj-478",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      4956,
+      5076,
       91,
       22
      ],
@@ -9777,13 +10115,13 @@
    },
    {
     "box": {
-     "id": "obj-463",
+     "id": "obj-479",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4986,
+      5106,
       112,
       22
      ],
@@ -9795,13 +10133,13 @@
    },
    {
     "box": {
-     "id": "obj-464",
+     "id": "obj-480",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4986,
+      5106,
       189,
       22
      ],
@@ -9813,13 +10151,13 @@
    },
    {
     "box": {
-     "id": "obj-465",
+     "id": "obj-481",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      4986,
+      5106,
       98,
       22
      ],
@@ -9829,7 +10167,7 @@
    },
    {
     "box": {
-     "id": "obj-466",
+     "id": "obj-482",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9867,7 +10205,7 @@
    },
    {
     "box": {
-     "id": "obj-467",
+     "id": "obj-483",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9891,13 +10229,13 @@
    },
    {
     "box": {
-     "id": "obj-468",
+     "id": "obj-484",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5016,
+      5136,
       77,
       22
      ],
@@ -9909,13 +10247,13 @@
    },
    {
     "box": {
-     "id": "obj-469",
+     "id": "obj-485",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5016,
+      5136,
       196,
       22
      ],
@@ -9928,13 +10266,13 @@
    },
    {
     "box": {
-     "id": "obj-470",
+     "id": "obj-486",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      5016,
+      5136,
       91,
       22
      ],
@@ -9946,13 +10284,13 @@
    },
    {
     "box": {
-     "id": "obj-471",
+     "id": "obj-487",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5046,
+      5166,
       126,
       22
      ],
@@ -9964,13 +10302,13 @@
    },
    {
     "box": {
-     "id": "obj-472",
+     "id": "obj-488",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      5046,
+      5166,
       210,
       22
      ],
@@ -9982,13 +10320,13 @@
    },
    {
     "box": {
-     "id": "obj-473",
+     "id": "obj-489",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       400.0,
-      5046,
+      5166,
       98,
       22
      ],
@@ -9998,7 +10336,7 @@
    },
    {
     "box": {
-     "id": "obj-474",
+     "id": "obj-490",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10021,7 +10359,7 @@
    },
    {
     "box": {
-     "id": "obj-475",
+     "id": "obj-491",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10059,350 +10397,12 @@
    },
    {
     "box": {
-     "id": "obj-476",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      16,
-      1088,
-      104,
-      22
-     ],
-     "text": "-200 to 40 cents",
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      1088,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-477",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5076,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-478",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5076,
-      231,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/string/inner/tuning"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-479",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      372.0,
-      5076,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-480",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5106,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-481",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5106,
-      245,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/string/inner/tuning"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-482",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      421.0,
-      5106,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-483",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      1038,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      1038,
-      104,
-      48
-     ],
-     "varname": "/string/inner/loss",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/string/inner/loss",
-       "parameter_shortname": "inner loss",
-       "parameter_mmin": 0.25,
-       "parameter_mmax": 4.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-484",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      1088,
-      104,
-      22
-     ],
-     "text": "0.25 to 4",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      1088,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-485",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5136,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-486",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5136,
-      217,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/string/inner/loss"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-487",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      358.0,
-      5136,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-488",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5166,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 1"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-489",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5166,
-      231,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/string/inner/loss"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-490",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      407.0,
-      5166,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-491",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      240,
-      1038,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1038,
-      104,
-      48
-     ],
-     "varname": "/string/outer/tuning",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/string/outer/tuning",
-       "parameter_shortname": "outer tuning",
-       "parameter_mmin": -200.0,
-       "parameter_mmax": 40.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f cents"
-      }
-     }
-    }
-   },
-   {
-    "box": {
      "id": "obj-492",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      240,
+      16,
       1088,
       104,
       22
@@ -10410,7 +10410,7 @@
      "text": "-200 to 40 cents",
      "presentation": 1,
      "presentation_rect": [
-      240,
+      16,
       1088,
       104,
       22
@@ -10453,7 +10453,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/string/outer/tuning"
+     "text": "route /yehu/string/inner/tuning"
     }
    },
    {
@@ -10507,7 +10507,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/string/outer/tuning"
+     "text": "prepend /yehu/string/inner/tuning"
     }
    },
    {
@@ -10533,7 +10533,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      352,
+      128,
       1038,
       104,
       48
@@ -10544,17 +10544,17 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      352,
+      128,
       1038,
       104,
       48
      ],
-     "varname": "/string/outer/loss",
+     "varname": "/string/inner/loss",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/string/outer/loss",
-       "parameter_shortname": "outer loss",
+       "parameter_longname": "/string/inner/loss",
+       "parameter_shortname": "inner loss",
        "parameter_mmin": 0.25,
        "parameter_mmax": 4.0,
        "parameter_type": 0,
@@ -10571,7 +10571,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      352,
+      128,
       1088,
       104,
       22
@@ -10579,7 +10579,7 @@
      "text": "0.25 to 4",
      "presentation": 1,
      "presentation_rect": [
-      352,
+      128,
       1088,
       104,
       22
@@ -10622,7 +10622,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/string/outer/loss"
+     "text": "route /yehu/string/inner/loss"
     }
    },
    {
@@ -10676,7 +10676,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/string/outer/loss"
+     "text": "prepend /yehu/string/inner/loss"
     }
    },
    {
@@ -10698,6 +10698,344 @@
    {
     "box": {
      "id": "obj-507",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      1038,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1038,
+      104,
+      48
+     ],
+     "varname": "/string/outer/tuning",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/string/outer/tuning",
+       "parameter_shortname": "outer tuning",
+       "parameter_mmin": -200.0,
+       "parameter_mmax": 40.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f cents"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-508",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      1088,
+      104,
+      22
+     ],
+     "text": "-200 to 40 cents",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-509",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5316,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-510",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5316,
+      231,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/string/outer/tuning"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-511",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      372.0,
+      5316,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-512",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5346,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-513",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5346,
+      245,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/string/outer/tuning"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-514",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      421.0,
+      5346,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-515",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      352,
+      1038,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1038,
+      104,
+      48
+     ],
+     "varname": "/string/outer/loss",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/string/outer/loss",
+       "parameter_shortname": "outer loss",
+       "parameter_mmin": 0.25,
+       "parameter_mmax": 4.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-516",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      352,
+      1088,
+      104,
+      22
+     ],
+     "text": "0.25 to 4",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-517",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5376,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-518",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5376,
+      217,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/string/outer/loss"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-519",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      358.0,
+      5376,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-520",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5406,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 1"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-521",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5406,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/string/outer/loss"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-522",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      407.0,
+      5406,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-523",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10720,7 +11058,7 @@
    },
    {
     "box": {
-     "id": "obj-508",
+     "id": "obj-524",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10758,7 +11096,7 @@
    },
    {
     "box": {
-     "id": "obj-509",
+     "id": "obj-525",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10772,344 +11110,6 @@
      "presentation": 1,
      "presentation_rect": [
       464,
-      1088,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-510",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5316,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-511",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5316,
-      175,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/output/gain"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-512",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      316.0,
-      5316,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-513",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5346,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-514",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5346,
-      189,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/output/gain"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-515",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      365.0,
-      5346,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-516",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      576,
-      1038,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      1038,
-      104,
-      48
-     ],
-     "varname": "/output/level",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/output/level",
-       "parameter_shortname": "level",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-517",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      576,
-      1088,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      1088,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-518",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5376,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-519",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5376,
-      182,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/output/level"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-520",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      323.0,
-      5376,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-521",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5406,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 1"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-522",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5406,
-      196,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/output/level"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-523",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      372.0,
-      5406,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-524",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      688,
-      1038,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      1038,
-      104,
-      48
-     ],
-     "varname": "/output/balance",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/output/balance",
-       "parameter_shortname": "balance",
-       "parameter_mmin": -36.0,
-       "parameter_mmax": 36.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f dB"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-525",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      688,
-      1088,
-      104,
-      22
-     ],
-     "text": "-36 to 36 dB",
-     "presentation": 1,
-     "presentation_rect": [
-      688,
       1088,
       104,
       22
@@ -11145,14 +11145,14 @@
      "patching_rect": [
       117.0,
       5436,
-      196,
+      175,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/output/balance"
+     "text": "route /yehu/output/gain"
     }
    },
    {
@@ -11162,7 +11162,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      316.0,
       5436,
       91,
       22
@@ -11200,13 +11200,13 @@
      "patching_rect": [
       152.0,
       5466,
-      210,
+      189,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/output/balance"
+     "text": "prepend /yehu/output/gain"
     }
    },
    {
@@ -11216,7 +11216,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      365.0,
       5466,
       98,
       22
@@ -11228,6 +11228,344 @@
    {
     "box": {
      "id": "obj-532",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      576,
+      1038,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      1038,
+      104,
+      48
+     ],
+     "varname": "/output/level",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/output/level",
+       "parameter_shortname": "level",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-533",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      576,
+      1088,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-534",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5496,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-535",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5496,
+      182,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/output/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-536",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      323.0,
+      5496,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-537",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5526,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 1"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-538",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5526,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-539",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      372.0,
+      5526,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-540",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      688,
+      1038,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      1038,
+      104,
+      48
+     ],
+     "varname": "/output/balance",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/output/balance",
+       "parameter_shortname": "balance",
+       "parameter_mmin": -36.0,
+       "parameter_mmax": 36.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f dB"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-541",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      688,
+      1088,
+      104,
+      22
+     ],
+     "text": "-36 to 36 dB",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-542",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5556,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-543",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5556,
+      196,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/output/balance"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-544",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      337.0,
+      5556,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-545",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5586,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-546",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5586,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/balance"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-547",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      5586,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-548",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11265,7 +11603,7 @@
    },
    {
     "box": {
-     "id": "obj-533",
+     "id": "obj-549",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11289,13 +11627,13 @@
    },
    {
     "box": {
-     "id": "obj-534",
+     "id": "obj-550",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5496,
+      5616,
       77,
       22
      ],
@@ -11307,13 +11645,13 @@
    },
    {
     "box": {
-     "id": "obj-535",
+     "id": "obj-551",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5496,
+      5616,
       196,
       22
      ],
@@ -11326,13 +11664,13 @@
    },
    {
     "box": {
-     "id": "obj-536",
+     "id": "obj-552",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      5496,
+      5616,
       91,
       22
      ],
@@ -11344,13 +11682,13 @@
    },
    {
     "box": {
-     "id": "obj-537",
+     "id": "obj-553",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5526,
+      5646,
       119,
       22
      ],
@@ -11362,13 +11700,13 @@
    },
    {
     "box": {
-     "id": "obj-538",
+     "id": "obj-554",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       159.0,
-      5526,
+      5646,
       210,
       22
      ],
@@ -11380,13 +11718,13 @@
    },
    {
     "box": {
-     "id": "obj-539",
+     "id": "obj-555",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      5526,
+      5646,
       98,
       22
      ],
@@ -11396,7 +11734,7 @@
    },
    {
     "box": {
-     "id": "obj-540",
+     "id": "obj-556",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11419,7 +11757,7 @@
    },
    {
     "box": {
-     "id": "obj-541",
+     "id": "obj-557",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11457,7 +11795,7 @@
    },
    {
     "box": {
-     "id": "obj-542",
+     "id": "obj-558",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11481,13 +11819,13 @@
    },
    {
     "box": {
-     "id": "obj-543",
+     "id": "obj-559",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5556,
+      5676,
       77,
       22
      ],
@@ -11499,13 +11837,13 @@
    },
    {
     "box": {
-     "id": "obj-544",
+     "id": "obj-560",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5556,
+      5676,
       161,
       22
      ],
@@ -11518,13 +11856,13 @@
    },
    {
     "box": {
-     "id": "obj-545",
+     "id": "obj-561",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      5556,
+      5676,
       91,
       22
      ],
@@ -11536,13 +11874,13 @@
    },
    {
     "box": {
-     "id": "obj-546",
+     "id": "obj-562",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5586,
+      5706,
       112,
       22
      ],
@@ -11554,13 +11892,13 @@
    },
    {
     "box": {
-     "id": "obj-547",
+     "id": "obj-563",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5586,
+      5706,
       175,
       22
      ],
@@ -11572,13 +11910,13 @@
    },
    {
     "box": {
-     "id": "obj-548",
+     "id": "obj-564",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       351.0,
-      5586,
+      5706,
       98,
       22
      ],
@@ -11588,7 +11926,7 @@
    },
    {
     "box": {
-     "id": "obj-549",
+     "id": "obj-565",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11626,358 +11964,20 @@
    },
    {
     "box": {
-     "id": "obj-550",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      1186,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      1186,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-551",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5616,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-552",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5616,
-      168,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/body/blend"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-553",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      309.0,
-      5616,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-554",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5646,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-555",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5646,
-      182,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/body/blend"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-556",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      358.0,
-      5646,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-557",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      240,
-      1136,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1136,
-      104,
-      48
-     ],
-     "varname": "/body/width",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/body/width",
-       "parameter_shortname": "width",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-558",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      240,
-      1186,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1186,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-559",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5676,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-560",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5676,
-      168,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/body/width"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-561",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      309.0,
-      5676,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-562",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5706,
-      126,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0.3"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-563",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      166.0,
-      5706,
-      182,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/body/width"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-564",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      372.0,
-      5706,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-565",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      352,
-      1136,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      1136,
-      104,
-      48
-     ],
-     "varname": "/body/brilliance",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/body/brilliance",
-       "parameter_shortname": "brilliance",
-       "parameter_mmin": -24.0,
-       "parameter_mmax": 24.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f dB"
-      }
-     }
-    }
-   },
-   {
-    "box": {
      "id": "obj-566",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      352,
+      128,
       1186,
       104,
       22
      ],
-     "text": "-24 to 24 dB",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      352,
+      128,
       1186,
       104,
       22
@@ -12013,14 +12013,14 @@
      "patching_rect": [
       117.0,
       5736,
-      203,
+      168,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/body/brilliance"
+     "text": "route /yehu/body/blend"
     }
    },
    {
@@ -12030,7 +12030,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      309.0,
       5736,
       91,
       22
@@ -12068,13 +12068,13 @@
      "patching_rect": [
       152.0,
       5766,
-      217,
+      182,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/brilliance"
+     "text": "prepend /yehu/body/blend"
     }
    },
    {
@@ -12084,7 +12084,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      358.0,
       5766,
       98,
       22
@@ -12096,6 +12096,344 @@
    {
     "box": {
      "id": "obj-573",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      1136,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1136,
+      104,
+      48
+     ],
+     "varname": "/body/width",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/body/width",
+       "parameter_shortname": "width",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-574",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      1186,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1186,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-575",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5796,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-576",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5796,
+      168,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/body/width"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-577",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      309.0,
+      5796,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-578",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5826,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.3"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-579",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      5826,
+      182,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/width"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-580",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      372.0,
+      5826,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-581",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      352,
+      1136,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1136,
+      104,
+      48
+     ],
+     "varname": "/body/brilliance",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/body/brilliance",
+       "parameter_shortname": "brilliance",
+       "parameter_mmin": -24.0,
+       "parameter_mmax": 24.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f dB"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-582",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      352,
+      1186,
+      104,
+      22
+     ],
+     "text": "-24 to 24 dB",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1186,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-583",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5856,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-584",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5856,
+      203,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/body/brilliance"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-585",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      344.0,
+      5856,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-586",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5886,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-587",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5886,
+      217,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/brilliance"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-588",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      5886,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-589",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12133,7 +12471,7 @@
    },
    {
     "box": {
-     "id": "obj-574",
+     "id": "obj-590",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12157,13 +12495,13 @@
    },
    {
     "box": {
-     "id": "obj-575",
+     "id": "obj-591",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5796,
+      5916,
       77,
       22
      ],
@@ -12175,13 +12513,13 @@
    },
    {
     "box": {
-     "id": "obj-576",
+     "id": "obj-592",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5796,
+      5916,
       189,
       22
      ],
@@ -12194,13 +12532,13 @@
    },
    {
     "box": {
-     "id": "obj-577",
+     "id": "obj-593",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      5796,
+      5916,
       91,
       22
      ],
@@ -12212,13 +12550,13 @@
    },
    {
     "box": {
-     "id": "obj-578",
+     "id": "obj-594",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5826,
+      5946,
       126,
       22
      ],
@@ -12230,13 +12568,13 @@
    },
    {
     "box": {
-     "id": "obj-579",
+     "id": "obj-595",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      5826,
+      5946,
       203,
       22
      ],
@@ -12248,13 +12586,13 @@
    },
    {
     "box": {
-     "id": "obj-580",
+     "id": "obj-596",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      5826,
+      5946,
       98,
       22
      ],
@@ -12264,7 +12602,7 @@
    },
    {
     "box": {
-     "id": "obj-581",
+     "id": "obj-597",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12287,7 +12625,7 @@
    },
    {
     "box": {
-     "id": "obj-582",
+     "id": "obj-598",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12325,7 +12663,7 @@
    },
    {
     "box": {
-     "id": "obj-583",
+     "id": "obj-599",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12349,13 +12687,13 @@
    },
    {
     "box": {
-     "id": "obj-584",
+     "id": "obj-600",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5856,
+      5976,
       77,
       22
      ],
@@ -12367,13 +12705,13 @@
    },
    {
     "box": {
-     "id": "obj-585",
+     "id": "obj-601",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5856,
+      5976,
       161,
       22
      ],
@@ -12386,13 +12724,13 @@
    },
    {
     "box": {
-     "id": "obj-586",
+     "id": "obj-602",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      5856,
+      5976,
       91,
       22
      ],
@@ -12404,13 +12742,13 @@
    },
    {
     "box": {
-     "id": "obj-587",
+     "id": "obj-603",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5886,
+      6006,
       112,
       22
      ],
@@ -12422,13 +12760,13 @@
    },
    {
     "box": {
-     "id": "obj-588",
+     "id": "obj-604",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5886,
+      6006,
       175,
       22
      ],
@@ -12440,13 +12778,13 @@
    },
    {
     "box": {
-     "id": "obj-589",
+     "id": "obj-605",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       351.0,
-      5886,
+      6006,
       98,
       22
      ],
@@ -12456,7 +12794,7 @@
    },
    {
     "box": {
-     "id": "obj-590",
+     "id": "obj-606",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12494,7 +12832,7 @@
    },
    {
     "box": {
-     "id": "obj-591",
+     "id": "obj-607",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12508,344 +12846,6 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      1284,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-592",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5916,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-593",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5916,
-      168,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/room/decay"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-594",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      309.0,
-      5916,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-595",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5946,
-      126,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0.4"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-596",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      166.0,
-      5946,
-      182,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/decay"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-597",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      372.0,
-      5946,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-598",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      240,
-      1234,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1234,
-      104,
-      48
-     ],
-     "varname": "/room/damping",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/room/damping",
-       "parameter_shortname": "damping",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-599",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      240,
-      1284,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1284,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-600",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5976,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-601",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5976,
-      182,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/room/damping"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-602",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      323.0,
-      5976,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-603",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      6006,
-      126,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0.4"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-604",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      166.0,
-      6006,
-      196,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/damping"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-605",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      386.0,
-      6006,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-606",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      352,
-      1234,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      1234,
-      104,
-      48
-     ],
-     "varname": "/room/level",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/room/level",
-       "parameter_shortname": "level",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-607",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      352,
-      1284,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      352,
       1284,
       104,
       22
@@ -12888,7 +12888,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/room/level"
+     "text": "route /yehu/room/decay"
     }
    },
    {
@@ -12918,13 +12918,13 @@
      "patching_rect": [
       16.0,
       6066,
-      133,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.15"
+     "text": "loadmess set 0.4"
     }
    },
    {
@@ -12934,7 +12934,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      173.0,
+      166.0,
       6066,
       182,
       22
@@ -12942,7 +12942,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/room/level"
+     "text": "prepend /yehu/room/decay"
     }
    },
    {
@@ -12952,7 +12952,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      379.0,
+      372.0,
       6066,
       98,
       22
@@ -12964,6 +12964,344 @@
    {
     "box": {
      "id": "obj-614",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      1234,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1234,
+      104,
+      48
+     ],
+     "varname": "/room/damping",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/damping",
+       "parameter_shortname": "damping",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-615",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      1284,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1284,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-616",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6096,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-617",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      6096,
+      182,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-618",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      323.0,
+      6096,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-619",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6126,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.4"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-620",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      6126,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-621",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      6126,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-622",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      352,
+      1234,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1234,
+      104,
+      48
+     ],
+     "varname": "/room/level",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/level",
+       "parameter_shortname": "level",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-623",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      352,
+      1284,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1284,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-624",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6156,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-625",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      6156,
+      168,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-626",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      309.0,
+      6156,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-627",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6186,
+      133,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.15"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-628",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      6186,
+      182,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-629",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      6186,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-630",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13001,7 +13339,7 @@
    },
    {
     "box": {
-     "id": "obj-615",
+     "id": "obj-631",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13025,13 +13363,13 @@
    },
    {
     "box": {
-     "id": "obj-616",
+     "id": "obj-632",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6096,
+      6216,
       77,
       22
      ],
@@ -13043,13 +13381,13 @@
    },
    {
     "box": {
-     "id": "obj-617",
+     "id": "obj-633",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6096,
+      6216,
       189,
       22
      ],
@@ -13062,13 +13400,13 @@
    },
    {
     "box": {
-     "id": "obj-618",
+     "id": "obj-634",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      6096,
+      6216,
       91,
       22
      ],
@@ -13080,13 +13418,13 @@
    },
    {
     "box": {
-     "id": "obj-619",
+     "id": "obj-635",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6126,
+      6246,
       112,
       22
      ],
@@ -13098,13 +13436,13 @@
    },
    {
     "box": {
-     "id": "obj-620",
+     "id": "obj-636",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6126,
+      6246,
       203,
       22
      ],
@@ -13116,13 +13454,13 @@
    },
    {
     "box": {
-     "id": "obj-621",
+     "id": "obj-637",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      6126,
+      6246,
       98,
       22
      ],
@@ -13132,7 +13470,7 @@
    },
    {
     "box": {
-     "id": "obj-622",
+     "id": "obj-638",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13170,7 +13508,7 @@
    },
    {
     "box": {
-     "id": "obj-623",
+     "id": "obj-639",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13194,13 +13532,13 @@
    },
    {
     "box": {
-     "id": "obj-624",
+     "id": "obj-640",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6156,
+      6276,
       77,
       22
      ],
@@ -13212,13 +13550,13 @@
    },
    {
     "box": {
-     "id": "obj-625",
+     "id": "obj-641",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6156,
+      6276,
       154,
       22
      ],
@@ -13231,13 +13569,13 @@
    },
    {
     "box": {
-     "id": "obj-626",
+     "id": "obj-642",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       295.0,
-      6156,
+      6276,
       91,
       22
      ],
@@ -13249,13 +13587,13 @@
    },
    {
     "box": {
-     "id": "obj-627",
+     "id": "obj-643",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6186,
+      6306,
       112,
       22
      ],
@@ -13267,13 +13605,13 @@
    },
    {
     "box": {
-     "id": "obj-628",
+     "id": "obj-644",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6186,
+      6306,
       168,
       22
      ],
@@ -13285,13 +13623,13 @@
    },
    {
     "box": {
-     "id": "obj-629",
+     "id": "obj-645",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       344.0,
-      6186,
+      6306,
       98,
       22
      ],
@@ -13301,7 +13639,7 @@
    },
    {
     "box": {
-     "id": "obj-630",
+     "id": "obj-646",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13324,7 +13662,7 @@
    },
    {
     "box": {
-     "id": "obj-631",
+     "id": "obj-647",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13362,7 +13700,7 @@
    },
    {
     "box": {
-     "id": "obj-632",
+     "id": "obj-648",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13386,13 +13724,13 @@
    },
    {
     "box": {
-     "id": "obj-633",
+     "id": "obj-649",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6216,
+      6336,
       77,
       22
      ],
@@ -13404,13 +13742,13 @@
    },
    {
     "box": {
-     "id": "obj-634",
+     "id": "obj-650",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6216,
+      6336,
       224,
       22
      ],
@@ -13423,13 +13761,13 @@
    },
    {
     "box": {
-     "id": "obj-635",
+     "id": "obj-651",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       365.0,
-      6216,
+      6336,
       91,
       22
      ],
@@ -13441,13 +13779,13 @@
    },
    {
     "box": {
-     "id": "obj-636",
+     "id": "obj-652",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6246,
+      6366,
       112,
       22
      ],
@@ -13459,13 +13797,13 @@
    },
    {
     "box": {
-     "id": "obj-637",
+     "id": "obj-653",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6246,
+      6366,
       238,
       22
      ],
@@ -13477,13 +13815,13 @@
    },
    {
     "box": {
-     "id": "obj-638",
+     "id": "obj-654",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       414.0,
-      6246,
+      6366,
       98,
       22
      ],
@@ -13493,7 +13831,7 @@
    },
    {
     "box": {
-     "id": "obj-639",
+     "id": "obj-655",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13531,7 +13869,7 @@
    },
    {
     "box": {
-     "id": "obj-640",
+     "id": "obj-656",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13555,13 +13893,13 @@
    },
    {
     "box": {
-     "id": "obj-641",
+     "id": "obj-657",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6276,
+      6396,
       77,
       22
      ],
@@ -13573,13 +13911,13 @@
    },
    {
     "box": {
-     "id": "obj-642",
+     "id": "obj-658",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6276,
+      6396,
       175,
       22
      ],
@@ -13592,13 +13930,13 @@
    },
    {
     "box": {
-     "id": "obj-643",
+     "id": "obj-659",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      6276,
+      6396,
       91,
       22
      ],
@@ -13610,13 +13948,13 @@
    },
    {
     "box": {
-     "id": "obj-644",
+     "id": "obj-660",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6306,
+      6426,
       112,
       22
      ],
@@ -13628,13 +13966,13 @@
    },
    {
     "box": {
-     "id": "obj-645",
+     "id": "obj-661",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6306,
+      6426,
       189,
       22
      ],
@@ -13646,13 +13984,13 @@
    },
    {
     "box": {
-     "id": "obj-646",
+     "id": "obj-662",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      6306,
+      6426,
       98,
       22
      ],
@@ -16564,6 +16902,19 @@
    {
     "patchline": {
      "source": [
+      "obj-288",
+      0
+     ],
+     "destination": [
+      "obj-289",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-289",
       0
      ],
@@ -16581,7 +16932,7 @@
       0
      ],
      "destination": [
-      "obj-291",
+      "obj-286",
       0
      ],
      "order": 0
@@ -16594,7 +16945,20 @@
       0
      ],
      "destination": [
-      "obj-287",
+      "obj-286",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-286",
+      0
+     ],
+     "destination": [
+      "obj-292",
       0
      ],
      "order": 0
@@ -16607,33 +16971,7 @@
       0
      ],
      "destination": [
-      "obj-287",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-287",
-      0
-     ],
-     "destination": [
       "obj-293",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-293",
-      0
-     ],
-     "destination": [
-      "obj-294",
       0
      ],
      "order": 0
@@ -17188,6 +17526,19 @@
    {
     "patchline": {
      "source": [
+      "obj-353",
+      0
+     ],
+     "destination": [
+      "obj-354",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-354",
       0
      ],
@@ -17205,7 +17556,7 @@
       0
      ],
      "destination": [
-      "obj-356",
+      "obj-351",
       0
      ],
      "order": 0
@@ -17218,7 +17569,20 @@
       0
      ],
      "destination": [
-      "obj-352",
+      "obj-351",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-351",
+      0
+     ],
+     "destination": [
+      "obj-357",
       0
      ],
      "order": 0
@@ -17231,19 +17595,6 @@
       0
      ],
      "destination": [
-      "obj-352",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-352",
-      0
-     ],
-     "destination": [
       "obj-358",
       0
      ],
@@ -17253,11 +17604,11 @@
    {
     "patchline": {
      "source": [
-      "obj-358",
+      "obj-361",
       0
      ],
      "destination": [
-      "obj-359",
+      "obj-362",
       0
      ],
      "order": 0
@@ -17283,7 +17634,7 @@
       0
      ],
      "destination": [
-      "obj-364",
+      "obj-359",
       0
      ],
      "order": 0
@@ -17296,7 +17647,20 @@
       0
      ],
      "destination": [
-      "obj-360",
+      "obj-359",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-359",
+      0
+     ],
+     "destination": [
+      "obj-365",
       0
      ],
      "order": 0
@@ -17309,33 +17673,7 @@
       0
      ],
      "destination": [
-      "obj-360",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-360",
-      0
-     ],
-     "destination": [
       "obj-366",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-366",
-      0
-     ],
-     "destination": [
-      "obj-367",
       0
      ],
      "order": 0
@@ -17812,6 +18150,19 @@
    {
     "patchline": {
      "source": [
+      "obj-418",
+      0
+     ],
+     "destination": [
+      "obj-419",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-419",
       0
      ],
@@ -17829,7 +18180,7 @@
       0
      ],
      "destination": [
-      "obj-421",
+      "obj-416",
       0
      ],
      "order": 0
@@ -17842,7 +18193,20 @@
       0
      ],
      "destination": [
-      "obj-417",
+      "obj-416",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-416",
+      0
+     ],
+     "destination": [
+      "obj-422",
       0
      ],
      "order": 0
@@ -17855,19 +18219,6 @@
       0
      ],
      "destination": [
-      "obj-417",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-417",
-      0
-     ],
-     "destination": [
       "obj-423",
       0
      ],
@@ -17877,11 +18228,11 @@
    {
     "patchline": {
      "source": [
-      "obj-423",
+      "obj-426",
       0
      ],
      "destination": [
-      "obj-424",
+      "obj-427",
       0
      ],
      "order": 0
@@ -17907,7 +18258,7 @@
       0
      ],
      "destination": [
-      "obj-429",
+      "obj-424",
       0
      ],
      "order": 0
@@ -17920,7 +18271,20 @@
       0
      ],
      "destination": [
-      "obj-425",
+      "obj-424",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-424",
+      0
+     ],
+     "destination": [
+      "obj-430",
       0
      ],
      "order": 0
@@ -17933,33 +18297,7 @@
       0
      ],
      "destination": [
-      "obj-425",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-425",
-      0
-     ],
-     "destination": [
       "obj-431",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-431",
-      0
-     ],
-     "destination": [
-      "obj-432",
       0
      ],
      "order": 0
@@ -18202,6 +18540,19 @@
    {
     "patchline": {
      "source": [
+      "obj-459",
+      0
+     ],
+     "destination": [
+      "obj-460",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-460",
       0
      ],
@@ -18219,7 +18570,7 @@
       0
      ],
      "destination": [
-      "obj-462",
+      "obj-457",
       0
      ],
      "order": 0
@@ -18232,7 +18583,20 @@
       0
      ],
      "destination": [
-      "obj-458",
+      "obj-457",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-457",
+      0
+     ],
+     "destination": [
+      "obj-463",
       0
      ],
      "order": 0
@@ -18245,19 +18609,6 @@
       0
      ],
      "destination": [
-      "obj-458",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-458",
-      0
-     ],
-     "destination": [
       "obj-464",
       0
      ],
@@ -18267,11 +18618,11 @@
    {
     "patchline": {
      "source": [
-      "obj-464",
+      "obj-467",
       0
      ],
      "destination": [
-      "obj-465",
+      "obj-468",
       0
      ],
      "order": 0
@@ -18297,7 +18648,7 @@
       0
      ],
      "destination": [
-      "obj-470",
+      "obj-465",
       0
      ],
      "order": 0
@@ -18310,7 +18661,20 @@
       0
      ],
      "destination": [
-      "obj-466",
+      "obj-465",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-465",
+      0
+     ],
+     "destination": [
+      "obj-471",
       0
      ],
      "order": 0
@@ -18323,19 +18687,6 @@
       0
      ],
      "destination": [
-      "obj-466",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-466",
-      0
-     ],
-     "destination": [
       "obj-472",
       0
      ],
@@ -18345,11 +18696,11 @@
    {
     "patchline": {
      "source": [
-      "obj-472",
+      "obj-476",
       0
      ],
      "destination": [
-      "obj-473",
+      "obj-477",
       0
      ],
      "order": 0
@@ -18375,7 +18726,7 @@
       0
      ],
      "destination": [
-      "obj-479",
+      "obj-474",
       0
      ],
      "order": 0
@@ -18388,7 +18739,20 @@
       0
      ],
      "destination": [
-      "obj-475",
+      "obj-474",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-474",
+      0
+     ],
+     "destination": [
+      "obj-480",
       0
      ],
      "order": 0
@@ -18401,19 +18765,6 @@
       0
      ],
      "destination": [
-      "obj-475",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-475",
-      0
-     ],
-     "destination": [
       "obj-481",
       0
      ],
@@ -18423,11 +18774,11 @@
    {
     "patchline": {
      "source": [
-      "obj-481",
+      "obj-484",
       0
      ],
      "destination": [
-      "obj-482",
+      "obj-485",
       0
      ],
      "order": 0
@@ -18453,7 +18804,7 @@
       0
      ],
      "destination": [
-      "obj-487",
+      "obj-482",
       0
      ],
      "order": 0
@@ -18466,7 +18817,20 @@
       0
      ],
      "destination": [
-      "obj-483",
+      "obj-482",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-482",
+      0
+     ],
+     "destination": [
+      "obj-488",
       0
      ],
      "order": 0
@@ -18479,33 +18843,7 @@
       0
      ],
      "destination": [
-      "obj-483",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-483",
-      0
-     ],
-     "destination": [
       "obj-489",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-489",
-      0
-     ],
-     "destination": [
-      "obj-490",
       0
      ],
      "order": 0
@@ -18670,6 +19008,19 @@
    {
     "patchline": {
      "source": [
+      "obj-509",
+      0
+     ],
+     "destination": [
+      "obj-510",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-510",
       0
      ],
@@ -18687,7 +19038,7 @@
       0
      ],
      "destination": [
-      "obj-512",
+      "obj-507",
       0
      ],
      "order": 0
@@ -18700,7 +19051,20 @@
       0
      ],
      "destination": [
-      "obj-508",
+      "obj-507",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-507",
+      0
+     ],
+     "destination": [
+      "obj-513",
       0
      ],
      "order": 0
@@ -18713,19 +19077,6 @@
       0
      ],
      "destination": [
-      "obj-508",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-508",
-      0
-     ],
-     "destination": [
       "obj-514",
       0
      ],
@@ -18735,11 +19086,11 @@
    {
     "patchline": {
      "source": [
-      "obj-514",
+      "obj-517",
       0
      ],
      "destination": [
-      "obj-515",
+      "obj-518",
       0
      ],
      "order": 0
@@ -18765,7 +19116,7 @@
       0
      ],
      "destination": [
-      "obj-520",
+      "obj-515",
       0
      ],
      "order": 0
@@ -18778,7 +19129,20 @@
       0
      ],
      "destination": [
-      "obj-516",
+      "obj-515",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-515",
+      0
+     ],
+     "destination": [
+      "obj-521",
       0
      ],
      "order": 0
@@ -18791,33 +19155,7 @@
       0
      ],
      "destination": [
-      "obj-516",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-516",
-      0
-     ],
-     "destination": [
       "obj-522",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-522",
-      0
-     ],
-     "destination": [
-      "obj-523",
       0
      ],
      "order": 0
@@ -18982,6 +19320,19 @@
    {
     "patchline": {
      "source": [
+      "obj-542",
+      0
+     ],
+     "destination": [
+      "obj-543",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-543",
       0
      ],
@@ -18999,7 +19350,7 @@
       0
      ],
      "destination": [
-      "obj-545",
+      "obj-540",
       0
      ],
      "order": 0
@@ -19012,7 +19363,20 @@
       0
      ],
      "destination": [
-      "obj-541",
+      "obj-540",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-540",
+      0
+     ],
+     "destination": [
+      "obj-546",
       0
      ],
      "order": 0
@@ -19025,19 +19389,6 @@
       0
      ],
      "destination": [
-      "obj-541",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-541",
-      0
-     ],
-     "destination": [
       "obj-547",
       0
      ],
@@ -19047,11 +19398,11 @@
    {
     "patchline": {
      "source": [
-      "obj-547",
+      "obj-550",
       0
      ],
      "destination": [
-      "obj-548",
+      "obj-551",
       0
      ],
      "order": 0
@@ -19077,7 +19428,7 @@
       0
      ],
      "destination": [
-      "obj-553",
+      "obj-548",
       0
      ],
      "order": 0
@@ -19090,7 +19441,20 @@
       0
      ],
      "destination": [
-      "obj-549",
+      "obj-548",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-548",
+      0
+     ],
+     "destination": [
+      "obj-554",
       0
      ],
      "order": 0
@@ -19103,33 +19467,7 @@
       0
      ],
      "destination": [
-      "obj-549",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-549",
-      0
-     ],
-     "destination": [
       "obj-555",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-555",
-      0
-     ],
-     "destination": [
-      "obj-556",
       0
      ],
      "order": 0
@@ -19372,6 +19710,19 @@
    {
     "patchline": {
      "source": [
+      "obj-583",
+      0
+     ],
+     "destination": [
+      "obj-584",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-584",
       0
      ],
@@ -19389,7 +19740,7 @@
       0
      ],
      "destination": [
-      "obj-586",
+      "obj-581",
       0
      ],
      "order": 0
@@ -19402,7 +19753,20 @@
       0
      ],
      "destination": [
-      "obj-582",
+      "obj-581",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-581",
+      0
+     ],
+     "destination": [
+      "obj-587",
       0
      ],
      "order": 0
@@ -19415,19 +19779,6 @@
       0
      ],
      "destination": [
-      "obj-582",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-582",
-      0
-     ],
-     "destination": [
       "obj-588",
       0
      ],
@@ -19437,11 +19788,11 @@
    {
     "patchline": {
      "source": [
-      "obj-588",
+      "obj-591",
       0
      ],
      "destination": [
-      "obj-589",
+      "obj-592",
       0
      ],
      "order": 0
@@ -19467,7 +19818,7 @@
       0
      ],
      "destination": [
-      "obj-594",
+      "obj-589",
       0
      ],
      "order": 0
@@ -19480,7 +19831,20 @@
       0
      ],
      "destination": [
-      "obj-590",
+      "obj-589",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-589",
+      0
+     ],
+     "destination": [
+      "obj-595",
       0
      ],
      "order": 0
@@ -19493,33 +19857,7 @@
       0
      ],
      "destination": [
-      "obj-590",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-590",
-      0
-     ],
-     "destination": [
       "obj-596",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-596",
-      0
-     ],
-     "destination": [
-      "obj-597",
       0
      ],
      "order": 0
@@ -19840,6 +20178,19 @@
    {
     "patchline": {
      "source": [
+      "obj-632",
+      0
+     ],
+     "destination": [
+      "obj-633",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-633",
       0
      ],
@@ -19857,7 +20208,7 @@
       0
      ],
      "destination": [
-      "obj-635",
+      "obj-630",
       0
      ],
      "order": 0
@@ -19870,7 +20221,20 @@
       0
      ],
      "destination": [
-      "obj-631",
+      "obj-630",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-630",
+      0
+     ],
+     "destination": [
+      "obj-636",
       0
      ],
      "order": 0
@@ -19883,19 +20247,6 @@
       0
      ],
      "destination": [
-      "obj-631",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-631",
-      0
-     ],
-     "destination": [
       "obj-637",
       0
      ],
@@ -19905,11 +20256,11 @@
    {
     "patchline": {
      "source": [
-      "obj-637",
+      "obj-640",
       0
      ],
      "destination": [
-      "obj-638",
+      "obj-641",
       0
      ],
      "order": 0
@@ -19935,7 +20286,7 @@
       0
      ],
      "destination": [
-      "obj-643",
+      "obj-638",
       0
      ],
      "order": 0
@@ -19948,7 +20299,20 @@
       0
      ],
      "destination": [
-      "obj-639",
+      "obj-638",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-638",
+      0
+     ],
+     "destination": [
+      "obj-644",
       0
      ],
      "order": 0
@@ -19961,19 +20325,6 @@
       0
      ],
      "destination": [
-      "obj-639",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-639",
-      0
-     ],
-     "destination": [
       "obj-645",
       0
      ],
@@ -19983,11 +20334,154 @@
    {
     "patchline": {
      "source": [
-      "obj-645",
+      "obj-649",
       0
      ],
      "destination": [
-      "obj-646",
+      "obj-650",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-650",
+      0
+     ],
+     "destination": [
+      "obj-651",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-651",
+      0
+     ],
+     "destination": [
+      "obj-647",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-652",
+      0
+     ],
+     "destination": [
+      "obj-647",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-647",
+      0
+     ],
+     "destination": [
+      "obj-653",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-653",
+      0
+     ],
+     "destination": [
+      "obj-654",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-657",
+      0
+     ],
+     "destination": [
+      "obj-658",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-658",
+      0
+     ],
+     "destination": [
+      "obj-659",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-659",
+      0
+     ],
+     "destination": [
+      "obj-655",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-660",
+      0
+     ],
+     "destination": [
+      "obj-655",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-655",
+      0
+     ],
+     "destination": [
+      "obj-661",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-661",
+      0
+     ],
+     "destination": [
+      "obj-662",
       0
      ],
      "order": 0

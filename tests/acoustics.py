@@ -23,6 +23,14 @@ def energy_left(response: Any) -> Any:
     return np.cumsum(power[::-1])[::-1]
 
 
+def clarity_db(response: Any, rate: float) -> float:
+    """C80: energy of the first 80 ms from the first sound on, over all that follows (dB)."""
+    power = np.sum(np.square(response), axis=1)
+    first = int(np.argmax(power > 1e-4 * power.max()))
+    early, late = np.split(power[first:], [round(0.08 * rate)])
+    return float(10.0 * np.log10(early.sum() / late.sum()))
+
+
 def decay_line(response: Any, rate: float, from_db: float, to_db: float) -> tuple[float, float]:
     """Slope (dB/s), and level at the start (dB), of a line through a part of the decay curve."""
     left = energy_left(response)

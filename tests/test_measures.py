@@ -112,3 +112,35 @@ def test_the_share_of_a_measure_leaves_out_what_is_there_to_compare(tmp_path):
     written = json.loads((tmp_path / "shares.jsonl").read_text(encoding="utf-8"))
     assert written["percent"] == 75.0
     assert [part["what"] for part in written["parts"]] == ["one", "other", "compared"]
+
+
+def moving(pitch, level_db, rate, random):
+    """A tone whose pitch (MIDI note) and level (dB) are given for each sample."""
+    phase = 2.0 * np.pi * np.cumsum(hertz(pitch)) / rate
+    return 0.1 * 10.0 ** (level_db / 20.0) * saw(phase, 8, random)
+
+
+def test_what_is_heard_of_a_note_is_what_it_does():
+    from measures.heard import figures, heard
+
+    random, rate = np.random.default_rng(3), 44100.0
+    at = np.arange(round(1.2 * rate)) / rate
+    flat, wrong = np.zeros(len(at)), []
+    slide = 74.0 - 2.0 * np.clip((0.2 - at) / 0.1, 0.0, 1.0)
+    trill = 74.0 + 2.0 * (np.sin(2.0 * np.pi * 7.0 * at) > 0.0)
+    strokes = -8.0 + 8.0 * np.abs(np.sin(np.pi * 13.0 * at))
+    cases = (
+        (slide, flat, {"begins": (-2.0, 0.1), "ends": (0.0, 0.05), "arrives": (180.0, 20.0)}),
+        (trill, flat, {"beat_rate": (7.0, 0.4), "width": (200.0, 15.0), "off": (0.0, 1.0)}),
+        (74.0 + flat, strokes, {"stroke_rate": (13.0, 0.4), "off": (0.0, 1.0)}),
+        (76.5 + flat, flat, {"off": (100.0, 1.0)}),
+        (62.0 + flat, flat, {"off": (100.0, 1.0)}),
+        (74.0 + flat, -20.0 * at, {"fade": (22.8, 1.5)}),
+    )
+    for pitch, level, expected in cases:
+        track = heard(moving(pitch, level, rate, random), rate)
+        found = figures(track, 0.0, 1.2, 74.0, (0.0, 2.0) if pitch is trill else (-2.0, 0.0))
+        for name, (value, within) in expected.items():
+            if abs(getattr(found, name) - value) > within:
+                wrong.append((name, getattr(found, name), value))
+    assert wrong == []

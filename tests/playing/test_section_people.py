@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hands import ideal
 
+from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.midi.section_players import DISTANCE, GAIN, OWN_SEED, PAN, own_value
 from yehu_server.core.physics.quantities import Quantities
@@ -23,6 +24,7 @@ from yehu_server.playing.section_instruments import (
     section_specs,
     vary,
 )
+from yehu_server.playing.wishes import Key
 
 SEEDS = range(20)
 
@@ -166,3 +168,28 @@ def test_a_part_of_one_player_is_the_instrument_of_its_style():
         instrument.process(out[-1])
     assert np.abs(out[0]).max() > 1e-3
     assert np.array_equal(*out)
+
+
+def vibratos(variation):
+    """Rate and depth of the vibrato of each of six, and its phase as their note begins."""
+    specs = section_specs(PlayingOptions(), 44100.0, ideal(), people=6)
+    ensemble = Ensemble(specs, has_room=False)
+    wishes = PlayingOptions().wishes(ensemble.instruments)
+    wishes.write("/playing/variation", variation)
+    wishes.write("/playing/vibrato", 30.0)
+    wishes.note_on(Key(0, 74))
+    ensemble.process(np.zeros((441, 2), np.float32))
+    found = []
+    for instrument in ensemble.instruments:
+        controls = instrument._rig["controls"][0]
+        asked = (instrument.target(f"/vibrato/{name}") for name in ("rate", "depth"))
+        found.append((*asked, float(controls["vibrato"])))
+    return np.array(found).T
+
+
+def test_people_have_vibratos_of_their_own_and_the_first_that_of_the_part():
+    rates, depths, phases = vibratos(0.25)
+    assert (rates[0], depths[0]) == (5.5, 30.0)
+    for own_values, least in ((rates, 0.2), (depths, 3.0), (phases, 0.1)):
+        assert np.std(own_values) > least
+    assert all(np.ptp(values) == 0.0 for values in vibratos(0.0))

@@ -93,8 +93,8 @@ class Articulation:
         began, and each time sooner by this share of it; at 0 ms they do not.
     times : int
         How often they come; 0: while the note sounds.
-    tremolo : float
-        Strokes a second.
+    tremolo, tremolo_depth : float
+        Strokes a second; as `/playing/tremolo_depth`.
     is_plucked : bool
     """
 
@@ -111,6 +111,7 @@ class Articulation:
     sooner: float = 0.0
     times: int = 0
     tremolo: float = 0.0
+    tremolo_depth: float = 0.0
     is_plucked: bool = False
 
 
@@ -146,7 +147,7 @@ ARTICULATIONS: tuple[Articulation, ...] = (
         "tremolo", "颤弓", "many short strokes, growing",
         source="12 to 15 strokes a second in recordings; the growth by ear",
         bow=(BowStep(speed=0.7), BowStep(speed=1.1, ramp_share=0.9)),
-        tremolo=13.0, length_s=1.5,
+        tremolo=13.0, tremolo_depth=0.6, length_s=1.5,
     ),
     Articulation(
         "padded", "垫弓", "a light stroke the other way before the note ends",

@@ -55,6 +55,9 @@ TABLE: tuple[Param, ...] = (
         smooth_ms=20.0),
     _owned("/bow/tremolo", "", "1/s", 0.0, 20.0, 0.0,
         "Tremolo: strokes a second, back and forth; 0: the sign of /bow/speed is the direction."),
+    _owned("/bow/tremolo_depth", "", "1", 0.0, 1.0, 0.0,
+        "How slowly the bow turns in a tremolo: 0 almost at once, 1 like a pendulum that lingers.",
+        smooth_ms=20.0),
     _engine("/bow/noise", "", "1", 0.0, 1.0, 0.025,
         "How much friction varies along the bow, by the rosin on its hair, as a fraction of it: "
         "0.1 is breathy, from 0.2 the tone breaks.", smooth_ms=20.0),
@@ -133,6 +136,8 @@ TABLE: tuple[Param, ...] = (
         "Distance of the bow from the bridge as a fraction of the sounding length."),
     Param("/playing/tremolo", "", "1/s", 0.0, 20.0, 0.0,
         "Tremolo: strokes a second, back and forth; 0: one stroke a note."),
+    Param("/playing/tremolo_depth", "", "1", 0.0, 1.0, 0.0,
+        "How deep the sound falls between the strokes of a tremolo: 0 by some 7 dB, 1 by 20."),
     Param("/playing/pizzicato", "", "1", 0.0, 1.0, 0.0,
         "From 0.5 up notes are plucked, harder with more /playing/pressure.", is_choice=True),
     Param("/playing/articulation", "", "1", 0.0, float(LAST), 0.0,

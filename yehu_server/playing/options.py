@@ -74,6 +74,7 @@ class PlayingOptions:
         *,
         start_values: Values[str, float] | None = None,
         body: int = 0,
+        person: int = 0,
     ) -> InstrumentSpec:
         """An instrument at a rate (Hz), calibrated, with a player with these options.
 
@@ -81,7 +82,7 @@ class PlayingOptions:
         ----------
         quantities : Quantities
             The instrument as it is before it is tuned.
-        start_values, body
+        start_values, body, person
             See `InstrumentSpec`.
         """
         return InstrumentSpec(
@@ -93,6 +94,7 @@ class PlayingOptions:
             seed=self.seed,
             start_values=start_values or {},
             body=body,
+            person=person,
         )
 
     def wishes(self, instruments: Instrument | Sequence[Instrument]) -> WishPoster:

@@ -75,6 +75,48 @@ def test_slides_begin_away_and_end_on_the_pitch():
     assert wrong == []
 
 
+def test_steps_come_sooner_in_a_note_that_is_too_short_for_them():
+    wrong = []
+    for name, ends in (("large-slide-up", 0.0), ("turning-slide", 0.0), ("fall", -3.0)):
+        bend = bends(name, 0.25, note_length=0.25)
+        if bend[-1] != pytest.approx(ends, abs=0.02):
+            wrong.append((name, bend[-1]))
+    assert wrong == []
+
+
+def test_no_finger_goes_where_none_fits_by_the_loop():
+    assert bends("large-slide-up", 0.3, note=67).min() == pytest.approx(65.6 - 67)
+    assert bends("wavering", 0.3, note=65).min() == 0.0
+
+
+def test_a_slide_into_a_note_stays_on_one_string():
+    wrong = []
+    for note in (74, 75, 79):
+        playing = Playing(articulation=NUMBER["passed-slide"], variation=0.0, listening=0.0)
+        playing.on(76)
+        playing.play(0.2)
+        playing.on(note)
+        strings = set()
+        for _ in range(60):
+            playing.play(0.005)
+            strings.add(int(playing.player["string"]))
+        if len(strings) != 1:
+            wrong.append((note, strings))
+    assert wrong == []
+
+
+def test_the_level_goes_with_the_bow_of_a_swell():
+    playing = Playing(articulation=NUMBER["swell"], variation=0.0, listening=0.0, note_length=1.0)
+    playing.on(74)
+    level = []
+    for _ in range(200):
+        playing.play(0.005)
+        level.append(float(playing.player["balance"]))
+    assert 80 < int(np.argmax(level)) < 130
+    assert max(level) - level[10] > 4.0
+    assert max(level) - level[-1] > 4.0
+
+
 def test_a_trill_beats_a_second_above_some_seven_times_a_second():
     bend = bends("trill", 2.0)
     assert set(np.round(bend, 6)) == {0.0, 2.0}

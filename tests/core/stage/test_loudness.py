@@ -5,9 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from stages import Stage, told
+from acoustics import clarity_db
+from stages import Stage, response, told
 
 from yehu_server.playing.pitch_and_level import a_weighting
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
 from yehu_server.scores.smf.reader import read_score
@@ -45,3 +47,11 @@ def test_the_default_room_changes_the_loudness_of_a_tune_by_less_than_a_decibel(
 def test_a_tune_in_the_middle_is_as_loud_to_both_sides(air):
     left, right = loudness_db(Stage(RATE).play(air, told(len(air)))[0])
     assert left == pytest.approx(right, abs=1.5)
+
+
+@pytest.mark.parametrize(("distance", "clarity"), [(2.0, 11.6), (12.0, -0.8)])
+def test_the_hall_is_clear_near_the_player_and_a_hall_in_its_middle(distance, clarity):
+    values = Presets().load("hall").values
+    asked = {address.rpartition("/")[2]: value for address, value in values.items()}
+    direct, room = response(48000.0, 2.3, **asked, distance=distance)
+    assert clarity_db(direct + room, 48000.0) == pytest.approx(clarity, abs=0.3)

@@ -32,6 +32,7 @@ from yehu_server.core.controls.slots import (
     SIDE,
     SPEED,
     TREMOLO,
+    TREMOLO_DEPTH,
     UPWARD,
     VIBRATO_PRESS,
 )
@@ -58,7 +59,8 @@ PARK_X = 0.012  # m
 # F4 to F6: the least share that holds is 0.35 at 0.12 m/s, 0.5 at 0.2 m/s, 0.75 at 0.3 m/s.
 FAST_SHARE, FAST = 0.6, 0.35  # m/s
 ONSET_FROM = 0.4  # of /vibrato/onset, below which there is no vibrato
-# In tremolo the bow's speed is a sine times this, clipped to -1..1: mostly full speed.
+# In tremolo the bow's speed is a sine times this, clipped to -1..1: mostly full speed. The deeper
+# a tremolo is, the nearer its speed is to a sine squared.
 TURN = 3.0
 LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction when tremolo ends
 ARRIVED = 1e-6  # m; as near as this to where the sounding length ends, the bow's place is there
@@ -124,7 +126,9 @@ def turn_bow(c: Any) -> float:
 @compiled
 def turned(c: Any) -> float:
     """Factor of the bow's speed at this phase of the tremolo, -1 to 1."""
-    return float(max(-1.0, min(1.0, TURN * math.sin(2.0 * math.pi * c.tremolo))))
+    swing, depth = math.sin(2.0 * math.pi * c.tremolo), c.value[TREMOLO_DEPTH]
+    quick = max(-1.0, min(1.0, TURN * swing))
+    return float((1.0 - depth) * quick + depth * swing * abs(swing))
 
 
 @compiled

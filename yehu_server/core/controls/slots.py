@@ -8,6 +8,7 @@ from yehu_server.params.table import ENGINE, FINGERS, SLOT, STRING_NAMES
 
 SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
 FORCE, SHARE, ASSIST = SLOT["/bow/force"], SLOT["/bow/pressure"], SLOT["/bow/assist"]
+TREMOLO_DEPTH = SLOT["/bow/tremolo_depth"]
 POSITION, TREMOLO = SLOT["/bow/position"], SLOT["/bow/tremolo"]
 FINGER_POSITION = np.array([SLOT[f"/finger/{number}/position"] for number in FINGERS])
 FINGER_PRESS = np.array([SLOT[f"/finger/{number}/press"] for number in FINGERS])

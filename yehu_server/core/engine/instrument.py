@@ -98,6 +98,7 @@ class Instrument:
             open_strings=spec.open_strings,
             bowing=spec.bowing,
             seed=spec.seed,
+            person=spec.person,
         )
         rig["ear_buffer"] = 0.0
         prepare_output(rig["output"], self.rate)

@@ -6,6 +6,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player import notes, right_hand
+from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.gestures import (
     AGAIN,
     AT,
@@ -26,13 +27,16 @@ from yehu_server.core.player.gestures import (
     TURNS,
     WEIGHT,
     begin_slide,
+    gain_of,
     note_length,
     scaled,
     slid,
+    within_reach,
 )
 from yehu_server.core.player.notes import BEND_RAMP_MS
 from yehu_server.core.player.phrasing import STEP_MS
 
+EACH_MS = 1e3 * HOP_S  # from one call of `articulate` to the next
 SOONEST = 0.55  # of the time between rounds, at least: as quick as hands go
 
 
@@ -45,13 +49,14 @@ def articulate(p: Any, c: Any) -> None:
     now = (c.frame - p.note_began) / p.rate
     length = note_length(p, g.row)
     move_bow(p, c, now, length)
+    move_level(p, c)
     move_finger(p, c, now, length)
 
 
 @compiled_exactly
-def time_of(step: Any, length: float) -> float:
+def time_of(step: Any, pace: float, length: float) -> float:
     """When a step is due (s after its round began)."""
-    return float(1e-3 * step[AT] + step[AT_SHARE] * length)
+    return float(1e-3 * pace * step[AT] + step[AT_SHARE] * length)
 
 
 @compiled_exactly
@@ -77,10 +82,10 @@ def move_bow(p: Any, c: Any, now: float, length: float) -> None:
         begin_again(g.bow, g.row, count, now)
     while g.bow.step < count:
         step = BOW_STEPS[g.row, g.bow.step]
-        if now < g.bow.begins + time_of(step, length):
+        if now < g.bow.begins + time_of(step, g.pace, length):
             return
         g.bow.step += 1
-        ramp_ms = step[RAMP] + 1e3 * step[RAMP_SHARE] * length
+        ramp_ms = g.pace * step[RAMP] + 1e3 * step[RAMP_SHARE] * length
         g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
         g.is_off = 0 if step[IS_ON] != 0.0 else 1
         if step[TURNS] != 0.0:
@@ -90,6 +95,19 @@ def move_bow(p: Any, c: Any, now: float, length: float) -> None:
         else:
             notes.set_bow_pressure(p, c)
             notes.draw(p, c, ramp_ms)
+            g.gain_to = gain_of(g)
+            g.gain_step = (g.gain_to - g.gain_db) / max(ramp_ms / EACH_MS, 1.0)
+
+
+@compiled_exactly
+def move_level(p: Any, c: Any) -> None:
+    """Let the level go on to where the bow's speed wants it."""
+    g = p.gesture
+    if g.gain_db == g.gain_to:
+        return
+    is_there = abs(g.gain_to - g.gain_db) <= abs(g.gain_step)
+    g.gain_db = g.gain_to if is_there else g.gain_db + g.gain_step
+    notes.even_out(p, c)
 
 
 @compiled_exactly
@@ -100,13 +118,14 @@ def move_finger(p: Any, c: Any, now: float, length: float) -> None:
     begin_again(g.finger, g.row, count, now)
     while g.finger.step < count:
         step = FINGER_STEPS[g.row, g.finger.step]
-        if now < g.finger.begins + time_of(step, length):
+        if now < g.finger.begins + time_of(step, g.pace, length):
             break
         g.finger.step += 1
+        semitones = within_reach(p, step[SEMITONES])
         if step[GLIDE] > 0.0:
-            begin_slide(p, g.bend, step[SEMITONES], now, 1e-3 * step[GLIDE])
+            begin_slide(p, g.bend, semitones, now, 1e-3 * g.pace * step[GLIDE])
         else:
-            g.bend, g.slide_s = step[SEMITONES], 0.0
+            g.bend, g.slide_s = semitones, 0.0
             notes.follow_pitch(p, c, STEP_MS)
     if g.slide_s > 0.0:
         g.bend = slid(g, now)

@@ -14,7 +14,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SPEED as BOW_SPEED
-from yehu_server.core.player.phrasing import deviate
+from yehu_server.core.player.phrasing import OWN_RATE, deviate, own_factor
 from yehu_server.core.player.rows import (
     ARTICULATION,
     NOTE_LENGTH,
@@ -22,6 +22,7 @@ from yehu_server.core.player.rows import (
     PLAYING_VIBRATO_PRESS,
     PLAYING_VIBRATO_RATE,
     TREMOLO,
+    TREMOLO_DEPTH,
     VARIATION,
 )
 from yehu_server.core.player.rows import ATTACK as ATTACK_MS
@@ -33,7 +34,7 @@ ORDINARY = 0
 SHAPED = Articulation(
     "shaped", "", "a note that swells a little and eases off",
     bow=(
-        BowStep(speed=0.86),
+        BowStep(speed=0.86, weight=1.1),
         BowStep(speed=1.1, ramp_share=0.35),
         BowStep(at_share=0.5, speed=0.8, ramp_share=0.48),
     ),
@@ -43,13 +44,17 @@ SHAPED_AT, LEAST_SHAPED_S = 0.5, 0.35
 # Of the attack of a shaped note: its factor for a short note and for a long one (s). By ear; in
 # recordings of an erhu and a violin a tenth of the notes rise within 30 ms and half in 120 to 250.
 SHORT_ATTACK, LONG_ATTACK, LONG_S, UNEVEN_ATTACK = 0.8, 3.4, 1.2, 0.3
+LOWEST_STOPPED = 65.6  # MIDI note: a finger there is over 8 mm from the loop
+FITS = 0.7  # of a note, for steps that have times of their own
+# The level is this power of the bow's factor, on top of what a faster bow gives, as with dynamics.
+LEVEL_EXPONENT, LEAST_FACTOR = 0.6, 0.1
 
 _ROWS: tuple[Articulation, ...] = (*ARTICULATIONS, SHAPED)
 SHAPED_ROW = len(ARTICULATIONS)
 
 AT, AT_SHARE, RAMP, RAMP_SHARE, SPEED, WEIGHT, IS_ON, TURNS = range(8)  # of a bow's step
 SEMITONES, GLIDE = 2, 3  # of a finger's, after AT and AT_SHARE
-ATTACK, LENGTH, AGAIN, SOONER, TIMES, STROKES, IS_PLUCKED = range(7)
+ATTACK, LENGTH, AGAIN, SOONER, TIMES, STROKES, DEPTH, IS_PLUCKED = range(8)
 CENTS, HERTZ, PRESS, UPWARD, DELAY_MS = range(5)  # of a vibrato
 
 
@@ -81,7 +86,7 @@ FINGER_STEPS = _padded(
 )
 SHAPES = np.array([
     (row.attack, row.length_s, row.again_ms, row.sooner, row.times or math.inf, row.tremolo,
-     row.is_plucked)
+     row.tremolo_depth, row.is_plucked)
     for row in _ROWS
 ])  # fmt: skip
 HAS_VIBRATO = np.array([row.vibrato is not None for row in _ROWS])
@@ -104,6 +109,10 @@ GESTURE = np.dtype(
         ("bow", TRACK),
         ("speed", np.float64),  # factors
         ("weight", np.float64),
+        ("pace", np.float64),  # of the steps, below 1 in a note that is too short for them
+        ("gain_db", np.float64),  # of the level, that follows the bow's speed
+        ("gain_to", np.float64),  # where it goes (dB)
+        ("gain_step", np.float64),  # by so much in each 5 ms
         ("is_off", np.int64),  # whether the hair is lifted
         ("finger", TRACK),
         ("bend", np.float64),  # where the finger is from the note's pitch (semitones)
@@ -118,7 +127,7 @@ GESTURE = np.dtype(
 
 
 RESTING = np.zeros(1, GESTURE)[0]  # as `rest` leaves it
-for _field in ("scale", "attack", "speed", "weight"):
+for _field in ("scale", "attack", "speed", "weight", "pace"):
     RESTING[_field] = 1.0
 
 
@@ -128,7 +137,8 @@ def rest(g: Any) -> None:
     g.row, g.scale, g.attack = ORDINARY, 1.0, 1.0
     g.bow.step = g.bow.times = g.finger.step = g.finger.times = 0
     g.bow.begins = g.finger.begins = 0.0
-    g.speed = g.weight = 1.0
+    g.speed = g.weight = g.pace = 1.0
+    g.gain_db = g.gain_to = g.gain_step = 0.0
     g.is_off, g.bend, g.slide_s = 0, 0.0, 0.0
 
 
@@ -142,12 +152,14 @@ def begin_gesture(p: Any, c: Any, is_slur: bool) -> None:
     if g.row == ORDINARY and p.value[PHRASING] > 0.0:
         shape(p, c)
     g.attack *= SHAPES[g.row, ATTACK]
+    g.pace = pace_of(p, g.row)
     if is_slur and SHAPES[g.row, STROKES] == 0.0:
         g.bow.step = BOW_COUNT[g.row]
     while g.bow.step < BOW_COUNT[g.row] and is_immediate(BOW_STEPS[g.row, g.bow.step]):
         step = BOW_STEPS[g.row, g.bow.step]
         g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
         g.bow.step += 1
+    g.gain_db = g.gain_to = gain_of(g)
     if g.bow.step < BOW_COUNT[g.row]:
         step = BOW_STEPS[g.row, g.bow.step]
         if step[AT] == step[AT_SHARE] == 0.0:  # a swell, which begins once the bow is there
@@ -155,8 +167,15 @@ def begin_gesture(p: Any, c: Any, is_slur: bool) -> None:
     if FINGER_COUNT[g.row] > 0:
         first = FINGER_STEPS[g.row, 0]
         if first[AT] == first[AT_SHARE] == first[GLIDE] == 0.0:
-            g.bend = first[SEMITONES]
+            g.bend = within_reach(p, first[SEMITONES])
             g.finger.step = 1
+
+
+@compiled_exactly
+def within_reach(p: Any, semitones: float) -> float:
+    """Where a finger can be, from the note's pitch: not lower than the lowest that one stops."""
+    lowest = LOWEST_STOPPED - p.held_pitch[p.sounding]
+    return float(max(semitones, min(lowest, 0.0)))
 
 
 @compiled_exactly
@@ -181,6 +200,40 @@ def note_length(p: Any, row: int) -> float:
     """The length of the note (s), or what is assumed of it."""
     known = p.value[NOTE_LENGTH]
     return float(known if known > 0.0 else SHAPES[row, LENGTH])
+
+
+@compiled_exactly
+def pace_of(p: Any, row: int) -> float:
+    """Factor on the times of a gesture's steps, so that they fit into a note of a known length.
+
+    What comes again and again keeps its pace.
+    """
+    length_ms = 1e3 * p.value[NOTE_LENGTH]
+    pace = 1.0
+    if length_ms == 0.0 or SHAPES[row, AGAIN] > 0.0:
+        return pace
+    for i in range(BOW_COUNT[row]):
+        step = BOW_STEPS[row, i]
+        pace = min(pace, fitting(step[AT] + step[RAMP], step[AT_SHARE], length_ms))
+    for i in range(FINGER_COUNT[row]):
+        step = FINGER_STEPS[row, i]
+        pace = min(pace, fitting(step[AT] + step[GLIDE], step[AT_SHARE], length_ms))
+    return pace
+
+
+@compiled_exactly
+def fitting(needed_ms: float, at_share: float, length_ms: float) -> float:
+    """Factor by which a time fits into what of a note is left after a share of it."""
+    left_ms = FITS * (1.0 - at_share) * length_ms
+    return float(left_ms / needed_ms if needed_ms > left_ms else 1.0)
+
+
+@compiled_exactly
+def gain_of(g: Any) -> float:
+    """Gain of the level (dB) at the bow's factor on its speed, beyond what the speed gives."""
+    if g.is_off != 0 or g.speed <= LEAST_FACTOR:
+        return 0.0
+    return float(20.0 * LEVEL_EXPONENT * math.log10(g.speed))
 
 
 @compiled_exactly
@@ -209,6 +262,13 @@ def tremolo_of(p: Any) -> float:
 
 
 @compiled_exactly
+def tremolo_depth_of(p: Any) -> float:
+    """How deep a tremolo is: as wished where there is a wish for one, else the gesture's."""
+    wished = p.value[TREMOLO_DEPTH]
+    return float(wished if p.value[TREMOLO] > 0.0 else SHAPES[p.gesture.row, DEPTH])
+
+
+@compiled_exactly
 def has_vibrato(p: Any) -> bool:
     """Whether the gesture has a vibrato of its own."""
     return bool(HAS_VIBRATO[p.gesture.row])
@@ -217,9 +277,8 @@ def has_vibrato(p: Any) -> bool:
 @compiled_exactly
 def vibrato_rate(p: Any) -> float:
     """Rate of the vibrato (Hz)."""
-    if has_vibrato(p):
-        return float(VIBRATOS[p.gesture.row, HERTZ])
-    return float(p.value[PLAYING_VIBRATO_RATE])
+    hertz = VIBRATOS[p.gesture.row, HERTZ] if has_vibrato(p) else p.value[PLAYING_VIBRATO_RATE]
+    return float(hertz * own_factor(p, 0, OWN_RATE))
 
 
 @compiled_exactly

@@ -20,12 +20,21 @@ from yehu_server.core.player.gestures import (
     vibrato_upward,
 )
 from yehu_server.core.player.ownership import USUAL_MS, move, take_back
-from yehu_server.core.player.phrasing import varied_landing, vibrato_cents, vibrato_delay_ms
+from yehu_server.core.player.phrasing import (
+    OWN_DELAY,
+    OWN_DEPTH,
+    own_factor,
+    own_phase,
+    varied_landing,
+    vibrato_cents,
+    vibrato_delay_ms,
+)
 from yehu_server.core.player.rows import (
     FINGER_COUNT,
     FINGER_POSITION,
     FINGER_PRESS,
     PRESS,
+    VARIATION,
     VIBRATO_DEPTH,
     VIBRATO_ONSET,
     VIBRATO_PRESS,
@@ -107,7 +116,7 @@ def lift_all(p: Any, c: Any) -> None:
 def set_vibrato(p: Any, c: Any) -> None:
     """Set depth and rate of the vibrato as wished."""
     depth = VIBRATOS[p.gesture.row, CENTS] if has_vibrato(p) else vibrato_cents(p)
-    move(p, c, VIBRATO_DEPTH, depth, USUAL_MS)
+    move(p, c, VIBRATO_DEPTH, depth * own_factor(p, 1, OWN_DEPTH), USUAL_MS)
     move(p, c, VIBRATO_PRESS, vibrato_press(p), USUAL_MS)
     move(p, c, VIBRATO_UPWARD, vibrato_upward(p), USUAL_MS)
     move(p, c, VIBRATO_RATE, vibrato_rate(p), USUAL_MS)
@@ -115,8 +124,11 @@ def set_vibrato(p: Any, c: Any) -> None:
 
 @compiled_exactly
 def begin_vibrato(p: Any, c: Any) -> None:
-    """Fade in the vibrato of a new note."""
+    """Fade in the vibrato of a new note; people of a section begin at other phases of it."""
     delay_ms = VIBRATOS[p.gesture.row, DELAY_MS] if has_vibrato(p) else vibrato_delay_ms(p)
+    delay_ms *= own_factor(p, 2, OWN_DELAY)
+    if p.person != 0 and p.value[VARIATION] > 0.0 and delay_ms > 0.0:
+        c.vibrato = own_phase(p, c)
     move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
     if delay_ms > 0.0:
         move(p, c, VIBRATO_ONSET, 1.0, delay_ms)

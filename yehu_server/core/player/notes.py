@@ -147,7 +147,11 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
         pitch = p.finger_pitch = note_pitch(p)
     else:
         pitch = p.finger_pitch = note_pitch(p)
-        string, position = choose(p, pitch, wished_speed(p))
+        if p.gesture.bend != 0.0 and p.string >= 0:  # on the string that has all of the slide
+            aim = pitch - p.gesture.bend
+            string, position = stay_for_slide(p, pitch, aim, wished_speed(p))
+        else:
+            string, position = choose(p, pitch, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
     begin_pressure_correction(p, pitch)

@@ -26,6 +26,10 @@ ADDED = 12
 VARIED_FRACTION = 0.1  # of bow speed and pressure
 VARIED_CENTS = 6.0
 VARIED_LANDING, MOST_LANDING = 0.8, 2.0  # of the time of a landing; and its largest factor
+# How people of a section differ in rate, depth and delay of their vibrato, and its least factor.
+OWN_RATE, OWN_DEPTH, OWN_DELAY = 0.3, 0.9, 1.2
+LEAST_OWN = 0.4
+FRAMES_FROM = 3 << 30  # of the seed's numbers: those that frames have; `drift` has some before
 
 
 @compiled_exactly
@@ -52,6 +56,29 @@ def deviate(p: Any) -> float:
         total += chance((p.seed << 32) + p.drawn)
         p.drawn += 1
     return total / math.sqrt(ADDED / 3.0)
+
+
+@compiled_exactly
+def own_factor(p: Any, number: int, varied: float) -> float:
+    """A factor that a person of a section has for good; 1 for the first of them, or one alone.
+
+    Parameters
+    ----------
+    number : int
+        Of what it is a factor on: each has another one.
+    varied : float
+        Its standard deviation at full variation.
+    """
+    if p.person == 0:
+        return 1.0
+    differs = math.sqrt(3.0) * chance((p.person << 32) + number)
+    return float(max(1.0 + p.value[VARIATION] * varied * differs, LEAST_OWN))
+
+
+@compiled_exactly
+def own_phase(p: Any, c: Any) -> float:
+    """Where the vibrato of a note that begins now starts, of one of a section (turns)."""
+    return float(0.5 + 0.5 * chance((p.seed << 32) + FRAMES_FROM + c.frame))
 
 
 @compiled_exactly

@@ -15,7 +15,7 @@ from yehu_server.core.player.bowing import (
     recipe_value,
     share,
 )
-from yehu_server.core.player.gestures import attack_ms, tremolo_of
+from yehu_server.core.player.gestures import attack_ms, tremolo_depth_of, tremolo_of
 from yehu_server.core.player.ownership import USUAL_MS, forget, move
 from yehu_server.core.player.rows import (
     BOW_POSITION,
@@ -23,6 +23,7 @@ from yehu_server.core.player.rows import (
     BOW_SIDE,
     BOW_SPEED,
     BOW_TREMOLO,
+    BOW_TREMOLO_DEPTH,
     DYNAMICS,
     PLUCK_FORCE,
     POSITION,
@@ -114,6 +115,7 @@ def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
     p.side = side
     move(p, c, BOW_SIDE, side, crossing_ms)
     move(p, c, BOW_TREMOLO, tremolo_of(p), USUAL_MS)
+    move(p, c, BOW_TREMOLO_DEPTH, tremolo_depth_of(p), USUAL_MS)
     move(p, c, BOW_SPEED, p.direction * speed_at(p, pitch), ramp_ms)
 
 

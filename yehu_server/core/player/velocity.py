@@ -11,6 +11,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SIDE
+from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.fingering import FIRST_OPEN, OPEN, SECOND_OPEN
 from yehu_server.core.player.intonation import balance_db
 from yehu_server.core.player.ownership import move
@@ -30,9 +31,11 @@ def even_out(p: Any, c: Any, pitch: float, speed: float) -> None:
     if p.position == OPEN:
         sounding_pitch = SECOND_OPEN if string == 1 else FIRST_OPEN
     balance = balance_db(p, string, sounding_pitch, speed) * p.value[EVENNESS]
-    balance += 0.0 if p.by_hand != 0 else struck_db(p)
+    balance += 0.0 if p.by_hand != 0 else struck_db(p) + p.gesture.gain_db
     is_off = c.value[SIDE] == 0.0 and p.by_hand == 0
     ramp_ms = RISING_MS if balance > p.balance and not is_off else FALLING_MS
+    if p.gesture.gain_db != p.gesture.gain_to:  # it goes on in small steps
+        ramp_ms = 1e3 * HOP_S
     p.balance = balance
     move(p, c, OUTPUT_BALANCE, balance, ramp_ms)
 

@@ -9,6 +9,7 @@ rooms      How the rooms of the presets answer an impulse.
 ensemble   The beginning of examples/mo_li_hua.mid: four yehus on a stage.
 followed   A hummed tune, and what is played of it.
 life       A held note, a bow change and a plain phrase, as a machine and as hands play them.
+articulations  Every articulation on one note.
 schelleng  Where the model can be bowed, and the forces by which the player bows it.
 
 Without names it draws all, in some minutes. Pictures go to FOLDER/figures and
@@ -24,12 +25,12 @@ import matplotlib as mpl
 
 mpl.use("Agg")
 
-from pictures import body, ensemble, followed, life, paper, rooms, schelleng
+from pictures import articulations, body, ensemble, followed, life, paper, rooms, schelleng
 
 ROOT = Path(__file__).resolve().parent.parent
 ALL = {
     module.__name__.rpartition(".")[2]: module.draw_all
-    for module in (paper, body, rooms, ensemble, followed, life, schelleng)
+    for module in (paper, body, rooms, ensemble, followed, life, articulations, schelleng)
 }
 
 

@@ -1,7 +1,7 @@
 """Play every note in many ways and measure intonation, timing, clicks and loudness.
 
     .venv/bin/python scripts/playability.py [MEASURE] [--rate HZ] [--variation VALUE]
-        [--seed N] [--way NAME] [--json FILE]
+        [--phrasing VALUE] [--seed N] [--way NAME] [--json FILE]
 
 docs/intonation.md tells what each measure plays and counts; `grid` is the default.
 
@@ -21,6 +21,7 @@ from measures.hunting import hunting
 from measures.in_tune import chromatic, grid, isolated, presets, quarters, steady, strings
 from measures.life import life
 from measures.loudness import evenness, velocity
+from measures.phrases import phrases
 from measures.shares import Share, whole
 from measures.shuffled import WAYS, shuffled
 from measures.take import Setup
@@ -36,7 +37,7 @@ MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
     each.__name__: each
     for each in (
         *(grid, isolated, chromatic, steady, quarters, legato, bends, tunes, hunting, life),
-        *(clicks, evenness, velocity, shuffled, strings, presets),
+        *(clicks, evenness, velocity, shuffled, strings, presets, phrases),
     )
 }
 
@@ -58,6 +59,7 @@ def append(
         "measure": found.what,
         "rate": setup.rate,
         "variation": setup.variation,
+        "phrasing": setup.phrasing,
         "seed": setup.seed,
         **{name: str(path) for name, path in files.items() if path is not None},
         **{name: value for name, value in found.as_data().items() if name != "what"},
@@ -75,6 +77,7 @@ def main() -> None:
     parser.add_argument(
         "--variation", type=variation, default=0.0, help="0 to 1, or 'default' (default: 0)"
     )
+    parser.add_argument("--phrasing", type=float, default=0.0, help="0 to 1 (default: 0)")
     parser.add_argument("--seed", type=int, default=0, help="of orders and of the variation")
     parser.add_argument("--way", choices=WAYS, help="measure this way alone (shuffled)")
     parser.add_argument("--instrument", type=Path, metavar="FILE", help="as of `render`")
@@ -90,7 +93,9 @@ def main() -> None:
     except YehuError as error:
         parser.error(str(error))
     asked = arguments.rate, arguments.variation, arguments.seed, arguments.way
-    setup = Setup(*asked, own, bowing)
+    setup = Setup(
+        *asked, own, bowing, phrasing=find("/playing/phrasing").accept(arguments.phrasing)
+    )
     parts = MEASURES[arguments.measure](setup)
     found = whole(arguments.measure, parts)
     print(found)

@@ -9,6 +9,7 @@ tuning    Pitch of each of eight players on all notes, against the section's mea
 chorus    Spectrum of eight players over that of their powers (0 dB), in third octaves, and how it
           changes within notes; beside it eight copies of one player, and copies that are late.
 loudness  Loudness of a section over that of one player (dB, A-weighted), alone and in the room.
+vibrato   How far the pitch swings of each of sixteen with a vibrato, and of all together (cents).
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from measures.section_sound import chorus, loudness, tuning
+from measures.section_sound import chorus, loudness, tuning, vibrato
 from measures.section_time import law, together
 
 MEASURES: dict[str, Callable[[float, int], dict[str, Any]]] = {
@@ -28,6 +29,7 @@ MEASURES: dict[str, Callable[[float, int], dict[str, Any]]] = {
     "tuning": tuning,
     "chorus": chorus,
     "loudness": loudness,
+    "vibrato": vibrato,
 }
 
 

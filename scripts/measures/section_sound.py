@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from measures.life import pitch_track
 from measures.section_take import SectionTake
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.calibration import OPEN_NOTES
@@ -21,6 +22,8 @@ NOTES = range(65, 90)  # F4 to F6
 NOTE_S, BEAT_S, STEADY_S = 1.0, 1.2, 0.4
 WINDOW_S = 0.1
 TAKES = 3
+ROCKED, ROCKED_CENTS, LONG_S = 16, 30.0, 3.0  # people with a vibrato, its depth, their notes
+ROCKED_NOTES = (67, 71, 74, 79)
 LATE_S = 0.025  # the last of the late copies
 CENTRES_HZ = 1000.0 * 2.0 ** (np.arange(-4, 11) / 3.0)
 
@@ -130,4 +133,35 @@ def loudness(rate: float, seed: int) -> dict[str, Any]:
             "in the room dB": round(float(levels[people][1] - levels[1][1]), 2),
         }
         for people in levels
+    }
+
+
+def swing(track: Any) -> float:
+    """How far a pitch swings (cents), from the 5th to the 95th of a hundred."""
+    low, high = np.quantile(track, (0.05, 0.95))
+    return float(high - low)
+
+
+def vibrato(rate: float, seed: int) -> dict[str, Any]:
+    """See scripts/section.py."""
+    take = SectionTake(rate, seed, ROCKED)
+    take.wishes.write("/playing/vibrato", ROCKED_CENTS, frame=0, hold=True)
+    each_s = LONG_S + 0.2
+    for number, note in enumerate(ROCKED_NOTES):
+        take.note(note, number * each_s, number * each_s + LONG_S)
+    sounds = take.play(len(ROCKED_NOTES) * each_s)
+    own, mean, mixed = [], [], []
+    for number, note in enumerate(ROCKED_NOTES):
+        begin, end = ((number + part) * each_s * rate for part in (0.3, 0.92))
+        steady = sounds[:, round(begin) : round(end)].astype(float)
+        hertz = 440.0 * 2.0 ** ((note - 69) / 12.0)
+        tracks = np.array([pitch_track(sound, rate, hertz) for sound in steady])
+        own += [swing(track) for track in tracks]
+        mean.append(swing(tracks.mean(axis=0)))
+        mixed.append(swing(pitch_track(steady.sum(axis=0), rate, hertz)))
+    return {
+        "people": ROCKED,
+        "swing of each, cents": [round(float(x)) for x in np.quantile(own, (0.1, 0.5, 0.9))],
+        "swing of the mean of all, cents": [round(value) for value in mean],
+        "swing of the sound of all, cents": [round(value) for value in mixed],
     }

@@ -42,7 +42,7 @@ WAYS: dict[str, dict[str, Any]] = {
 
 
 @cache
-def _ringing_hz(rate: float, own: Quantities) -> tuple[float, ...]:
+def ringing_hz(rate: float, own: Quantities) -> tuple[float, ...]:
     """Return the frequencies (Hz) of the strings' ends behind the bridge, without stiffness."""
     tuned = calibrated(rate, own).tuned(own)
     return tuple(
@@ -59,7 +59,7 @@ def _harmonics_db(sound: Sound, setup: Setup, pitch: float) -> float:
     multiples = np.arange(len(power)) * rate / size / frequency
     near = np.abs(multiples - np.rint(multiples)) * frequency < 4.0 * rate / len(sound)
     heard = (multiples > 0.5) & (multiples * frequency < 10000.0)
-    for ringing in _ringing_hz(rate, setup.own):
+    for ringing in ringing_hz(rate, setup.own):
         part = multiples * frequency / ringing
         order = np.floor(part)
         heard &= (part > (1.0 + STIFFER) * order) | (order > LAST_RINGING)

@@ -48,6 +48,8 @@ class Setup:
         The instrument before it is tuned.
     bowing : ndarray, optional
         A practice; by default that which comes with the program.
+    phrasing : float
+        `/playing/phrasing`.
     """
 
     rate: float
@@ -56,6 +58,7 @@ class Setup:
     way: str | None = None
     own: Quantities = field(default_factory=Quantities)
     bowing: Any = None
+    phrasing: float = 0.0
 
     def steady_s(self, usual_s: float) -> float:
         """Return when the steady state begins (s): under variation the mean from 0.4 s counts."""
@@ -114,6 +117,7 @@ class Take:
         _believe(self.instrument, usual.tuned(quantities))
         self.wishes = playing.wishes(self.instrument)
         self.wishes.write("/playing/variation", setup.variation, frame=0, hold=True)
+        self.wishes.write("/playing/phrasing", setup.phrasing, frame=0, hold=True)
         self.midi = playing.midi(self.wishes)
         self._channel = 1 if playing.mapping.mpe else 0  # a member of the zone
         for address, value in (settings or {}).items():
@@ -134,6 +138,11 @@ class Take:
     def off(self, seconds: float, note: float) -> None:
         """Schedule the end of a note."""
         self.midi.note_off(Key(self._channel, note), self._frame(seconds))
+
+    def long(self, seconds: float, length_s: float) -> None:
+        """Tell how long the note will be that begins at a time, as files do."""
+        address = "/playing/note_length"
+        self.wishes.write(address, length_s, frame=self._frame(seconds))
 
     def wheel(self, place: int | None) -> None:
         """Set the bow speed, by its controller, before the first note; None leaves it untouched."""

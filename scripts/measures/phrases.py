@@ -1,0 +1,100 @@
+"""`phrases`: how bare tunes are shaped: dynamics over a tune and inside notes, attacks, vibrato.
+
+Ten tunes of examples/tunes are played without a room at phrasing 0 and 0.5. What people do stands
+beside it: recordings of an erhu, a solo violin and a cello. A measure without right and wrong, but
+for the dynamics over a tune.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import yehu_server as yehu
+from measures.heard import HOP_S, Track, heard
+from measures.shares import Share, share_line
+from measures.take import Setup
+from yehu_server.scores.reading import performed_part, read_written
+from yehu_server.scores.score import ScoreNote, notes_of
+
+TUNES = Path(__file__).parents[2] / "examples" / "tunes"
+PHRASINGS = (0.0, 0.5)
+SILENT_DB = 35.0  # below the loudest moment of a tune
+LONG_S, EDGE_S, SCRAPE_S, WITHIN_DB = 0.4, 0.1, 0.08, 3.0
+LEAST_DB, MOST_DB = 10.0, 17.0  # over a tune, from the 5th to the 95th of a hundred
+
+
+def over_tune(track: Track) -> float:
+    """How far the level ranges over a tune (dB): 5 to 95 of a hundred of what sounds."""
+    level = track.level_db[track.level_db > track.level_db.max() - SILENT_DB]
+    low, high = np.quantile(level, (0.05, 0.95))
+    return float(high - low)
+
+
+def of_note(track: Track, note: ScoreNote) -> tuple[float, float, float]:
+    """Rise (ms) to 3 dB below the loudest, SD of the level (dB), width of the vibrato (cents)."""
+    part = track.part(note.start_s, note.end_s)
+    rise = 1e3 * HOP_S * float(np.argmax(part.level_db > part.level_db.max() - WITHIN_DB))
+    edge = round(EDGE_S / HOP_S)
+    level, pitch = part.level_db[edge:-edge], part.pitch[edge:-edge]
+    pitch = pitch[np.isfinite(pitch)]
+    late = pitch[len(pitch) // 2 :]
+    width = 100.0 * float(np.ptp(np.quantile(late, (0.1, 0.9)))) if len(late) > 20 else np.nan
+    return rise, float(level.std()), width
+
+
+def scrape_db(sound: Any, rate: float, note: ScoreNote) -> float:
+    """Power between the harmonics, of that of the harmonics, in a note's first 80 ms (dB)."""
+    begin = round((note.start_s + 0.01) * rate)
+    part = sound[begin : begin + round(SCRAPE_S * rate)]
+    power = np.abs(np.fft.rfft(part * np.hanning(len(part)), 4 * len(part))) ** 2
+    hz = np.fft.rfftfreq(4 * len(part), 1.0 / rate)
+    own = 440.0 * 2.0 ** ((note.key - 69) / 12.0)
+    apart = np.abs(hz - own * np.rint(hz / own))
+    heard_hz = (hz > 150.0) & (hz < 8000.0)
+    near = power[heard_hz & (apart < 60.0)].sum()
+    between = power[heard_hz & (apart >= 60.0)].sum() / (1.0 - 120.0 / own)
+    return float(10.0 * np.log10(between / near))
+
+
+def shape_of(path: Path, phrasing: float, rate: float, seed: int) -> dict[str, Any]:
+    """What is heard of a tune."""
+    sound = yehu.render(path, phrasing=phrasing, dry=True, mono=True, seed=seed).sound
+    sound = np.asarray(sound, np.float64).reshape(len(sound), -1).mean(axis=1)
+    track = heard(sound, rate)
+    notes = notes_of(performed_part(read_written(path)))
+    long = [note for note in notes if note.length_s >= LONG_S]
+    rows = np.array([of_note(track, note) for note in long])
+    return {
+        "over": over_tune(track),
+        "rise": rows[:, 0],
+        "inside": rows[:, 1],
+        "vibrato": rows[:, 2],
+        "scrape": np.array([scrape_db(sound, rate, note) for note in notes]),
+    }
+
+
+def phrases(setup: Setup) -> list[Share]:
+    """Print how tunes are shaped, without phrasing and with the usual."""
+    parts = []
+    paths = sorted(TUNES.glob("*.jianpu"))
+    for phrasing in PHRASINGS:
+        found = [shape_of(path, phrasing, setup.rate, setup.seed) for path in paths]
+        over = [each["over"] for each in found]
+        print(f"phrasing {phrasing:g}: over a tune {min(over):.1f} to {max(over):.1f} dB")
+        for name, unit in (
+            ("rise", "ms"),
+            ("inside", "dB"),
+            ("vibrato", "cents"),
+            ("scrape", "dB"),
+        ):
+            values = np.concatenate([each[name] for each in found])
+            low, middle, high = np.nanquantile(values, (0.1, 0.5, 0.9))
+            print(f"    {name}: {low:.1f} / {middle:.1f} / {high:.1f} {unit}", flush=True)
+        words = [f"{path.stem} {db:.1f}" for path, db in zip(paths, over, strict=True)]
+        right = [LEAST_DB <= db <= MOST_DB for db in over]
+        name = f"{LEAST_DB:g} to {MOST_DB:g} dB over a tune at phrasing {phrasing:g}"
+        parts.append(share_line(name, right, words, counts=phrasing > 0.0))
+    return parts

@@ -35,6 +35,7 @@ from yehu_server.core.player.gestures import (
 )
 from yehu_server.core.player.notes import BEND_RAMP_MS
 from yehu_server.core.player.phrasing import STEP_MS
+from yehu_server.core.player.velocity import has_risen
 
 EACH_MS = 1e3 * HOP_S  # from one call of `articulate` to the next
 SOONEST = 0.55  # of the time between rounds, at least: as quick as hands go
@@ -106,8 +107,10 @@ def move_level(p: Any, c: Any) -> None:
     if g.gain_db == g.gain_to:
         return
     is_there = abs(g.gain_to - g.gain_db) <= abs(g.gain_step)
-    g.gain_db = g.gain_to if is_there else g.gain_db + g.gain_step
-    notes.even_out(p, c)
+    if has_risen(p, c) or not is_there:
+        g.gain_db = g.gain_to if is_there else g.gain_db + g.gain_step
+    if has_risen(p, c):
+        notes.even_out(p, c)
 
 
 @compiled_exactly

@@ -34,10 +34,16 @@ def even_out(p: Any, c: Any, pitch: float, speed: float) -> None:
     balance += 0.0 if p.by_hand != 0 else struck_db(p) + p.gesture.gain_db
     is_off = c.value[SIDE] == 0.0 and p.by_hand == 0
     ramp_ms = RISING_MS if balance > p.balance and not is_off else FALLING_MS
-    if p.gesture.gain_db != p.gesture.gain_to:  # it goes on in small steps
+    if p.gesture.gain_db != p.gesture.gain_to and has_risen(p, c):  # it goes on in small steps
         ramp_ms = 1e3 * HOP_S
     p.balance = balance
     move(p, c, OUTPUT_BALANCE, balance, ramp_ms)
+
+
+@compiled_exactly
+def has_risen(p: Any, c: Any) -> bool:
+    """Whether a gain that rose as the note began has come to its end."""
+    return bool(c.frame - p.note_began >= 1e-3 * RISING_MS * p.rate)
 
 
 NEUTRAL = find("/playing/velocity").default

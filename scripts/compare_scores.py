@@ -3,9 +3,12 @@
     PYTHONPATH=. PYTHON scripts/compare_scores.py FOLDER [--most 1000] [--list differences.txt]
 
 PYTHON has this package's dependencies and music21 (developed with 10.5), which is too large for
-every install. A part agrees where each of its notes has the beat, length and pitch that music21
-reads, repeats unfolded; of chords the highest note counts. It also tells how many intervals of the
-parts are kept when they are moved into range as a whole, and note by note, as in live playing.
+every install. A note agrees where music21 reads one at the same beat of the same bar, as bars are
+played, at the same pitch; of chords the highest counts. Bars are compared and not beats from the
+beginning, since music21 leaves parts of a score apart from each other after a bar that one of them
+does not fill. Where it cannot unfold the repeats, or has the bars in another order, each bar counts
+once. It also tells how many intervals of the parts are kept when they are moved into range as a
+whole, and note by note, as in live playing.
 """
 
 from __future__ import annotations
@@ -13,8 +16,10 @@ from __future__ import annotations
 import argparse
 import signal
 import warnings
+from bisect import bisect_right
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
@@ -27,49 +32,140 @@ from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.notated import Part, Written
 
 ENDINGS = (".musicxml", ".xml", ".mxl", ".abc")
-LIMIT_S = 60  # for music21 to read a file
+LIMIT_S = 90  # for music21 to read a file
 LOWEST, HIGHEST = 65, 89
+# What files may differ in.
+APART = "music21 has the parts apart"
+FOLDED = "music21 does not unfold the repeats"
+ORDER = "another order of bars"
+LENGTHS = "lengths alone"
+NOTES = "other notes"
 
-Notes = list[tuple[Fraction, Fraction, float]]
+
+@dataclass(frozen=True)
+class Heard:
+    """A note in its bar: the bar by its place as played, and by its number."""
+
+    bar: int
+    number: str
+    offset: Fraction  # quarters
+    length: Fraction
+    pitch: float
 
 
-def read_by_music21(path: Path) -> Notes:
-    """All notes that sound, of all parts, in order."""
+@dataclass
+class Reading:
+    """All notes of a score, of all parts, and the numbers of its bars as played."""
+
+    notes: list[Heard] = field(default_factory=list)
+    bars: list[str] = field(default_factory=list)
+    is_unfolded: bool = True
+    is_together: bool = True  # all parts begin their bars at the same beats
+
+
+def read_by_music21(path: Path) -> Reading:
+    """What music21 reads."""
     import music21  # type: ignore[import-not-found, unused-ignore]
 
     parsed: Any = music21.converter.parse(path)
-    found: set[tuple[Fraction, Fraction, float]] = set()
+    found = Reading()
+    begun: set[tuple[Fraction, ...]] = set()
     for part in parsed.toSoundingPitch().parts:
         try:
             unfolded = part.expandRepeats()
         except music21.repeat.ExpanderException:
-            unfolded = part
+            unfolded, found.is_unfolded = part, False
+        measures = list(unfolded.getElementsByClass("Measure"))
+        begins = [_exact(measure.offset) for measure in measures]
+        found.bars = [str(measure.number) for measure in measures]
+        begun.add(tuple(begins))
         for each in unfolded.stripTies().flatten().notes:
             if each.duration.isGrace or isinstance(each, music21.harmony.ChordSymbol):
                 continue
-            pitches = getattr(each, "pitches", ())
-            if pitches:
-                found.add((_exact(each.offset), _exact(each.quarterLength), _highest(pitches)))
-    return sorted(found)
+            if pitches := getattr(each, "pitches", ()):
+                pitch = max(float(pitch.ps) for pitch in pitches)
+                length = _exact(each.quarterLength)
+                found.notes.append(_heard(begins, found.bars, _exact(each.offset), length, pitch))
+    found.is_together = len(begun) <= 1
+    return found
+
+
+def read_by_us(written: Written) -> Reading:
+    """The same by our own reader."""
+    begins = [bar.beat for bar in written.bars]
+    numbers = [bar.number for bar in written.bars]
+    notes = [
+        _heard(begins, numbers, note.beat, note.length, note.pitch)
+        for part in written.parts
+        for note in part.notes
+    ]
+    return Reading(notes, numbers)
+
+
+def _heard(
+    begins: list[Fraction], numbers: list[str], beat: Fraction, length: Fraction, pitch: float
+) -> Heard:
+    at = max(bisect_right(begins, _exact(beat)) - 1, 0)
+    offset = _exact(beat) - (begins[at] if begins else 0)
+    return Heard(at, numbers[at] if numbers else "", _exact(offset), _exact(length), pitch)
 
 
 def _exact(value: Any) -> Fraction:
     return Fraction(value).limit_denominator(10_000)
 
 
-def _highest(pitches: Any) -> float:
-    return max(float(pitch.ps) for pitch in pitches)
+@dataclass
+class Judged:
+    """How far two readings agree."""
+
+    notes: int  # that music21 has
+    same: int
+    kinds: list[str]
+    first: str = ""  # an example of what differs
 
 
-def read_by_us(written: Written) -> Notes:
-    """The same by our own reader."""
-    return sorted(
-        {
-            (_exact(note.beat), _exact(note.length), note.pitch)
-            for part in written.parts
-            for note in part.notes
-        }
-    )
+def judged(ours: Reading, theirs: Reading) -> Judged:
+    """Compare two readings."""
+    kinds = []
+    same_order = [each.split("-")[0] for each in ours.bars] == theirs.bars
+    if not theirs.is_unfolded:
+        kinds.append(FOLDED)
+    elif len(ours.bars) != len(theirs.bars) or not (same_order or _same_runs(ours, theirs)):
+        kinds.append(ORDER)
+    if kinds:  # each bar once, by its number
+        own = Counter({(each.number, each.offset, each.pitch) for each in ours.notes})
+        other = Counter({(each.number, each.offset, each.pitch) for each in theirs.notes})
+        longer: Counter[Any] = Counter()
+    else:
+        own = Counter((each.bar, each.offset, each.pitch) for each in ours.notes)
+        other = Counter((each.bar, each.offset, each.pitch) for each in theirs.notes)
+        longer = Counter((each.bar, each.offset, each.pitch, each.length) for each in ours.notes)
+        longer.subtract((each.bar, each.offset, each.pitch, each.length) for each in theirs.notes)
+    if not theirs.is_together:
+        kinds.append(APART)
+    more, less = own - other, other - own
+    first = ""
+    if more or less:
+        kinds.append(NOTES)
+        first = f"ours {_shown(more)}; music21 {_shown(less)}"
+    elif any(longer.values()):
+        kinds.append(LENGTHS)
+    return Judged(other.total(), (own & other).total(), kinds, first)
+
+
+def _same_runs(ours: Reading, theirs: Reading) -> bool:
+    """Whether bars repeat at the same places, however they are numbered."""
+
+    def back(numbers: list[str]) -> list[int]:
+        seen: dict[str, int] = {}
+        return [seen.setdefault(number, at) for at, number in enumerate(numbers)]
+
+    return back(ours.bars) == back(theirs.bars)
+
+
+def _shown(notes: Counter[Any]) -> str:
+    some = sorted(notes, key=lambda each: (str(each[0]).zfill(6), *each[1:]))[:2]
+    return f"{notes.total()} {[' '.join(map(str, each)) for each in some]}"
 
 
 def kept(part: Part) -> tuple[int, int, int, bool]:
@@ -94,7 +190,72 @@ def files_of(folder: Path, most: int) -> Iterator[Path]:
     return iter(found[::step][:most])
 
 
-def main() -> None:  # noqa: PLR0915 - one pass over the files
+class Comparison:
+    """Compares file after file, and counts."""
+
+    def __init__(self) -> None:
+        self.counts: Counter[str] = Counter()
+        self.kinds: Counter[str] = Counter()
+        self.intervals = {"first parts": [0, 0, 0], "those that fit": [0, 0, 0]}
+        self.differences: list[str] = []
+
+    def add(self, path: Path, *, asks: bool) -> None:
+        """Compare a file; without `asks`, count its intervals alone."""
+        self.counts["files"] += 1
+        try:
+            written = read_written(path)
+        except YehuError as error:
+            self.counts["refused by us"] += 1
+            self.differences.append(str(error))
+            return
+        self._count_intervals(written)
+        if asks:
+            self._ask(path, read_by_us(written))
+
+    def _count_intervals(self, written: Written) -> None:
+        first = next((part for part in written.parts if part.notes), None)
+        if first is not None:
+            *values, fits = kept(first)
+            for name in ["first parts", *["those that fit"] * fits]:
+                pairs = zip(self.intervals[name], values, strict=True)
+                self.intervals[name] = [a + b for a, b in pairs]
+
+    def _ask(self, path: Path, ours: Reading) -> None:
+        try:
+            signal.alarm(LIMIT_S)
+            theirs = read_by_music21(path)
+        except Exception as error:  # noqa: BLE001 - another program may fail in any way
+            self.counts["not read by music21"] += 1
+            self.differences.append(f"{path}: music21: {type(error).__name__}")
+            return
+        finally:
+            signal.alarm(0)
+        found = judged(ours, theirs)
+        self.counts["compared"] += 1
+        self.counts["notes"] += found.notes
+        self.counts["notes that agree"] += found.same
+        self.kinds.update([", ".join(found.kinds) or "the same"])
+        if found.kinds:
+            share = 100.0 * found.same / max(found.notes, 1)
+            kinds = ", ".join(found.kinds)
+            self.differences.append(f"{path}: {share:.1f} % of notes; {kinds}; {found.first}")
+
+    def tell(self) -> None:
+        """Print what was counted."""
+        for name, count in self.counts.items():
+            print(f"{name}: {count}")
+        if self.counts["notes"]:
+            share = 100.0 * self.counts["notes that agree"] / self.counts["notes"]
+            print(f"agreement: {share:.2f} % of notes")
+        for name, count in self.kinds.most_common():
+            print(f"files, {name}: {count}")
+        for name, (total, alone, whole) in self.intervals.items():
+            if total > 0:
+                shares = f"{100 * alone / total:.2f} % note by note, {100 * whole / total:.2f} %"
+                print(f"intervals of {name}: {total}; kept: {shares} now")
+
+
+def main() -> None:
     """Compare and print."""
     words = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     words.add_argument("folder", type=Path)
@@ -103,63 +264,13 @@ def main() -> None:  # noqa: PLR0915 - one pass over the files
     words.add_argument("--intervals", action="store_true", help="do not ask music21")
     asked = words.parse_args()
     warnings.simplefilter("ignore")
-    counts: Counter[str] = Counter()
-    intervals = [0, 0, 0]
-    fitting = [0, 0, 0]
-    differences = []
     signal.signal(signal.SIGALRM, _too_slow)
+    comparison = Comparison()
     for path in files_of(asked.folder, asked.most):
-        counts["files"] += 1
-        try:
-            written = read_written(path)
-        except YehuError as error:
-            counts["refused by us"] += 1
-            differences.append(f"{path}: {error}")
-            continue
-        first = next((part for part in written.parts if part.notes), None)
-        if first is not None:
-            *values, fits = kept(first)
-            intervals = [a + b for a, b in zip(intervals, values, strict=True)]
-            if fits:
-                fitting = [a + b for a, b in zip(fitting, values, strict=True)]
-        if asked.intervals:
-            continue
-        try:
-            signal.alarm(LIMIT_S)
-            other = read_by_music21(path)
-        except Exception as error:  # noqa: BLE001 - another program may fail in any way
-            counts["not read by music21"] += 1
-            differences.append(f"{path}: music21: {type(error).__name__}")
-            continue
-        finally:
-            signal.alarm(0)
-        own = read_by_us(written)
-        counts["compared"] += 1
-        same = {(a, c) for a, _, c in own} & {(a, c) for a, _, c in other}
-        counts["notes"] += len(other)
-        counts["notes that agree"] += len(same)
-        counts["the same notes"] += own == other
-        counts["the same pitches and beats"] += [x[::2] for x in own] == [x[::2] for x in other]
-        if own != other:
-            first_bad = next((x for x in zip(own, other, strict=False) if x[0] != x[1]), None)
-            told = (
-                ""
-                if first_bad is None
-                else f"{[*map(str, first_bad[0])]} {[*map(str, first_bad[1])]}"
-            )
-            differences.append(f"{path}: {len(own)}, music21 {len(other)}; {told}")
-    _tell(counts, {"first parts": intervals, "those that fit": fitting})
+        comparison.add(path, asks=not asked.intervals)
+    comparison.tell()
     if asked.list:
-        asked.list.write_text("\n".join(differences) + "\n", encoding="utf-8")
-
-
-def _tell(counts: Counter[str], intervals: dict[str, list[int]]) -> None:
-    for name, count in counts.items():
-        print(f"{name}: {count}")
-    for name, (total, alone, whole) in intervals.items():
-        if total > 0:
-            shares = f"{100 * alone / total:.2f} % note by note, {100 * whole / total:.2f} % now"
-            print(f"intervals of {name}: {total}; kept: {shares}")
+        asked.list.write_text("\n".join(comparison.differences) + "\n", encoding="utf-8")
 
 
 def _too_slow(*_: object) -> None:

@@ -355,6 +355,20 @@ def test_figures_of_tempo_go_over_words_in_any_order(read, number):
     assert [(each.beat, each.quarters_per_minute) for each in tempi] == [(0, 189.0)]
 
 
+def test_a_rest_that_one_part_has_too_much_makes_no_bar_longer(read):
+    def begins(*bars):
+        return [float(bar.beat) for bar in read(score(*bars)).bars]
+
+    other = score(FOUR, P2=FOUR + note("r", 2)).replace("</measure></part>", "</measure>{}</part>")
+    more = f'<measure number="2">{FOUR}</measure>'
+    assert [float(bar.beat) for bar in read(other.format(more, more)).bars] == [0.0, 4.0]
+    assert begins(FOUR + note("r", 2), FOUR) == [0.0, 6.0]  # of a part alone it may be meant
+    longer = score(FOUR, P2=FOUR + note("G4", 2)).replace(
+        "</measure></part>", f"</measure>{more}</part>"
+    )
+    assert [float(bar.beat) for bar in read(longer).bars] == [0.0, 6.0]
+
+
 def test_divisions_may_be_told_after_the_first_notes(read):
     late = "<attributes><divisions>12</divisions></attributes>"
     first = "<attributes><key><fifths>1</fifths></key></attributes>"
@@ -385,6 +399,10 @@ def test_endings_without_numbers_and_bars_that_nobody_plays_are_told(read):
         )
         pitches = [each.pitch for each in read(score(*bars)).parts[0].notes]
         assert pitches == [67.0, 69.0, 67.0, 71.0]
+    stop = barline(repeat="backward", ending="2 stop")  # as one program writes a first ending
+    bars = (note("G4", 4), note("A4", 4) + stop, bars[2])
+    pitches = [each.pitch for each in read(score(*bars)).parts[0].notes]
+    assert pitches == [67.0, 69.0, 67.0, 71.0]
     jump = '<direction><sound {}="x"/></direction>'
     signs = ("segno", "tocoda", "dalsegno", "", "coda")
     bars = [(jump.format(sign) if sign else "") + FOUR for sign in signs]

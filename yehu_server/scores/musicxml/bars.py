@@ -163,7 +163,8 @@ class BarReader:
         if starts or not lines.endings:  # one that ends and has not begun has one bar
             highest, last = self._last_ending
             follows = highest + 1 if last == self._bars - 1 else 1
-            numbers = numbers or {min(follows, MOST_TIMES)}
+            if not (starts and numbers):  # the number at an end may be left over from before
+                numbers = {min(follows, MOST_TIMES)}
             if starts or self._bar.lines.times:
                 lines.endings, lines.opens = frozenset(numbers), True
         if lines.endings:

@@ -143,11 +143,13 @@ def _timed(
 ) -> tuple[list[tuple[int, Fraction]], Fraction]:
     """The beats at which bars begin, as the fullest part has them, and that of the end."""
     lengths: dict[int, Fraction] = {}
+    metres = _holding(max(parts_bars, key=len, default=[]))
     begin = Fraction(0)
     played = []
     for number in order:
         if number not in lengths:
-            lengths[number] = max(bars[number].length for bars in parts_bars if number < len(bars))
+            own = [bars[number] for bars in parts_bars if number < len(bars)]
+            lengths[number] = _length(own, metres[number])
         played.append((number, begin))
         begin += lengths[number]
         if begin.denominator > FINEST:
@@ -157,12 +159,27 @@ def _timed(
     return played, begin
 
 
+def _length(bars: Sequence[RawBar], metre: Fraction | None) -> Fraction:
+    """How long a bar is, of all parts: a rest that one part has too much does not count."""
+    lengths = {bar.length for bar in bars}
+    if metre is None or len(lengths) == 1 or max(lengths) <= metre:
+        return max(lengths)
+    sounding = [note.at + note.length for bar in bars for note in bar.notes if not note.is_grace]
+    return max([metre, *sounding])
+
+
+def _holding(bars: Sequence[RawBar]) -> list[Fraction | None]:
+    """The metre at each bar as written; None before the first."""
+    holding: list[Fraction | None] = []
+    for bar in bars:
+        holding.append(bar.metre or (holding[-1] if holding else None))
+    return holding
+
+
 def _metres(bars: list[RawBar], played: list[tuple[int, Fraction]]) -> list[Metre]:
     """The time signatures, in order; a short first bar counts back from the second."""
     metres = [COMMON_TIME]
-    holding: list[Fraction | None] = []  # at each bar as written
-    for bar in bars:
-        holding.append(bar.metre or (holding[-1] if holding else None))
+    holding = _holding(bars)
     for number, begin in played:
         quarters = holding[number] if number < len(holding) else None
         if quarters is not None and float(quarters) != metres[-1].quarters:

@@ -14,6 +14,7 @@ whole, and note by note, as in live playing.
 from __future__ import annotations
 
 import argparse
+import re
 import signal
 import warnings
 from bisect import bisect_right
@@ -93,13 +94,19 @@ def read_by_music21(path: Path) -> Reading:
 def read_by_us(written: Written) -> Reading:
     """The same by our own reader."""
     begins = [bar.beat for bar in written.bars]
-    numbers = [bar.number for bar in written.bars]
+    numbers = [_number(bar.number) for bar in written.bars]
     notes = [
         _heard(begins, numbers, note.beat, note.length, note.pitch)
         for part in written.parts
         for note in part.notes
     ]
     return Reading(notes, numbers)
+
+
+def _number(text: str) -> str:
+    """The number of a bar as music21 has it: without the letter of one that a line divides."""
+    found = re.match(r"\d+", text)
+    return found[0] if found else text
 
 
 def _heard(
@@ -127,18 +134,17 @@ class Judged:
 def judged(ours: Reading, theirs: Reading) -> Judged:
     """Compare two readings."""
     kinds = []
-    same_order = [each.split("-")[0] for each in ours.bars] == theirs.bars
     if not theirs.is_unfolded:
         kinds.append(FOLDED)
-    elif len(ours.bars) != len(theirs.bars) or not (same_order or _same_runs(ours, theirs)):
+    elif ours.bars != theirs.bars and not _same_runs(ours, theirs):
         kinds.append(ORDER)
     if kinds:  # each bar once, by its number
         own = Counter({(each.number, each.offset, each.pitch) for each in ours.notes})
         other = Counter({(each.number, each.offset, each.pitch) for each in theirs.notes})
         longer: Counter[Any] = Counter()
     else:
-        own = Counter((each.bar, each.offset, each.pitch) for each in ours.notes)
-        other = Counter((each.bar, each.offset, each.pitch) for each in theirs.notes)
+        own = Counter((str(each.bar), each.offset, each.pitch) for each in ours.notes)
+        other = Counter((str(each.bar), each.offset, each.pitch) for each in theirs.notes)
         longer = Counter((each.bar, each.offset, each.pitch, each.length) for each in ours.notes)
         longer.subtract((each.bar, each.offset, each.pitch, each.length) for each in theirs.notes)
     if not theirs.is_together:

@@ -97,3 +97,24 @@ def test_a_score_is_rendered_and_its_unknown_marks_are_told(command, tune, tmp_p
     assert json.loads(out)["notes_played"] == 5
     assert 'not understood: words "with a smile"' in err
     assert command("render", tune, "-o", tmp_path / "b.wav", "--strict")[0] == 1
+
+
+def test_a_score_is_written_in_either_notation_and_says_what_is_left_out(
+    command, refused, tune, tmp_path
+):
+    for name in ("out.musicxml", "out.jianpu"):
+        target = tmp_path / name
+        code, out, err = command("score", "write", tune, "-o", target)
+        assert (code, out) == (0, "")
+        assert 'not understood: words "with a smile"' in err
+        shown = json.loads(command("score", "show", target, "--json")[1])
+        notes = shown["parts"][0]["notes"]
+        assert [each["length"] for each in notes] == [1.0, 1.5, 1.5, 2.0, 2.0]
+        assert notes[0]["marks"] == [["up-bow", None]]
+        assert "exists; --overwrite replaces it" in refused("score", "write", tune, "-o", target)
+    assert "out.jianpu: is without pitches between semitones" in err
+    assert "ends in none of" in refused("score", "write", tune, "-o", tmp_path / "out.pdf")
+    assert "overwrite an input" in refused("score", "write", tune, "-o", tune)
+    words = ("score", "write", tune, "-o", tmp_path / "b.jianpu", "--part")
+    assert "has no part Flute" in refused(*words, "Flute")
+    assert command(*words, "P1")[0] == 0

@@ -4,21 +4,29 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
-from yehu_server.cli.converters import positive, target
+from yehu_server.cli.converters import number_within, positive, target
 from yehu_server.cli.terminal import print_result, warn
+from yehu_server.errors import OutputError, ScoreError
 
 if TYPE_CHECKING:
     from yehu_server.scores.written.notated import Written
+
+MUSICXML, JIANPU = (".musicxml", ".xml"), (".jianpu", ".txt")
+LOWEST_TEMPO, HIGHEST_TEMPO = 5.0, 1000.0
 
 EXAMPLES = """\
 examples:
   yehu-server score show tune.musicxml
   yehu-server score show tune.jianpu --json
   yehu-server score show tune.mxl --export-midi tune.mid
+  yehu-server score show tune.jianpu --plot tune.png
+  yehu-server score write tune.mid -o tune.musicxml
+  yehu-server score write session.jsonl -o tune.jianpu --tempo 72
 
 The marks that are understood are listed in docs/scores.md.
 """
@@ -29,8 +37,8 @@ def add_to(commands: Any) -> None:
     parser = add_command(
         commands,
         "score",
-        help="show what is understood of a written score: MusicXML, ABC or jianpu",
-        description="Show what is understood of a written score, and what will be played.",
+        help="show what is understood of a score, or write it as MusicXML or jianpu",
+        description="Show what is understood of a score and what will be played, or write it.",
         epilog=EXAMPLES,
     )
     actions = add_actions(parser)
@@ -47,6 +55,23 @@ def add_to(commands: Any) -> None:
         score=Path,
         song=positive,
         export_midi=target,
+    )
+    write = add_action(actions, "write", _write, "write a score as MusicXML or jianpu")
+    add_options(
+        write,
+        """
+        score IN: a MIDI file, a capture, or a file of MusicXML, ABC or jianpu
+        -o --output OUT: the file to write: .musicxml or .xml; .jianpu or .txt
+        --part NAME ...: write this part, by its name, the beginning of that, or its number; may be
+            repeated (default: all)
+        --song N: the N-th song of a MIDI file, or tune of a file of ABC
+        --tempo TEMPO: quarter notes a minute of a capture (default: that which fits its notes)
+        --overwrite: replace OUT if it exists
+        """,
+        score=Path,
+        output={"required": True, "type": target},
+        song=positive,
+        tempo=number_within(LOWEST_TEMPO, HIGHEST_TEMPO, "quarters a minute"),
     )
 
 
@@ -65,19 +90,59 @@ def _show(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _write(arguments: argparse.Namespace) -> int:
+    from yehu_server.scores.chosen_parts import numbers_of
+    from yehu_server.scores.jianpu.writer import jianpu_of
+    from yehu_server.scores.musicxml.writer import musicxml_of
+    from yehu_server.scores.score import naming
+    from yehu_server.scores.transcription import read_to_write
+    from yehu_server.scores.written.notated import times
+    from yehu_server.util.files import check_distinct
+
+    output, ending = arguments.output, arguments.output.suffix.lower()
+    if ending not in (*MUSICXML, *JIANPU):
+        raise OutputError(f"{output}: ends in none of {', '.join((*MUSICXML, *JIANPU))}")
+    check_distinct({"-o": output}, [arguments.score])
+    written, left = read_to_write(arguments.score, arguments.song, arguments.tempo)
+    with naming(arguments.score):
+        if arguments.part:
+            numbers = numbers_of(written.names, arguments.part)
+            written = replace(written, parts=tuple(written.parts[at] for at in numbers))
+        if not any(part.notes for part in written.parts):
+            raise ScoreError("has no note to write")
+    if ending in MUSICXML:
+        data, lost = musicxml_of(written)
+    else:
+        text, lost = jianpu_of(written)
+        data = text.encode()
+    _replace(output, data, overwrite=arguments.overwrite)
+    for warning in (*written.warnings, *written.not_understood):
+        warn(f"{arguments.score}: {warning}")
+    if lost := {**left, **lost}:
+        told = ", ".join(times(name, count) for name, count in sorted(lost.items()))
+        warn(f"{output}: is without {told}")
+    return 0
+
+
+def _replace(output: Path, data: bytes, *, overwrite: bool) -> None:
+    from yehu_server.util.files import anything, nothing, replacing
+
+    with replacing(output, anything if overwrite else nothing) as partial:
+        partial.write_bytes(data)
+
+
 def _export(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.scores.midi_export import midi_file
     from yehu_server.scores.score import naming
     from yehu_server.scores.written.performed import performed
-    from yehu_server.util.files import anything, check_distinct, nothing, replacing
+    from yehu_server.util.files import check_distinct
 
     output = arguments.export_midi
     check_distinct({"--export-midi": output}, [arguments.score])
     with naming(arguments.score):
         score = performed(written)
     data, lost = midi_file(written, score)
-    with replacing(output, anything if arguments.overwrite else nothing) as partial:
-        partial.write_bytes(data)
+    _replace(output, data, overwrite=arguments.overwrite)
     if lost:
         told = ", ".join(f"{address} ({count})" for address, count in sorted(lost.items()))
         warn(f"{output}: MIDI has no controllers for {told}")

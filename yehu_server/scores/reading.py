@@ -263,6 +263,11 @@ def is_written(path: Path) -> bool:
     )
 
 
+def is_capture(path: Path) -> bool:
+    """Whether a file is the capture of a session."""
+    return _beginning(path).lstrip().startswith(b"{")
+
+
 def _beginning(path: Path) -> bytes:
     try:
         return read_bytes(path)[:64]

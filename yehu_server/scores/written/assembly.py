@@ -161,7 +161,7 @@ def _timed(
 
 def _length(bars: Sequence[RawBar], metre: Fraction | None) -> Fraction:
     """How long a bar is, of all parts: a rest that one part has too much does not count."""
-    lengths = {bar.length for bar in bars}
+    lengths = {bar.length for bar in bars if bar.notes} or {bar.length for bar in bars}
     if metre is None or len(lengths) == 1 or max(lengths) <= metre:
         return max(lengths)
     sounding = [note.at + note.length for bar in bars for note in bar.notes if not note.is_grace]

@@ -93,7 +93,8 @@ class Voice:
                 if which != kind or name == "tremolo":
                     continue
                 if kind == "start":
-                    self._open[name, number] = (beat, trill)
+                    value = trill if name == "wavy-line" else None
+                    self._open[name, number] = (beat, value)
                     if name == "wavy-line" and trill is None:
                         raw.marks.append(Mark("vibrato"))
                 elif (name, number) in self._open:

@@ -59,6 +59,16 @@ JUMP_WORDS = (
     (r"coda$", "coda"),
 )
 
+# How signs are written in words, of those that are; each is read as itself.
+WRITTEN_SIGNS: Mapping[tuple[str, float | None], str] = {
+    ("pizz", None): "pizz.", ("arco", None): "arco", ("sul-ponticello", None): "sul pont.",
+    ("flautando", None): "flautando", ("sul-tasto", None): "sul tasto", ("ordinary", None): "ord.",
+    ("non-legato", None): "non legato", ("legato", None): "legato", ("staccato", None): "stacc.",
+    ("tremolo", None): "trem.", ("vibrato", 0.0): "senza vib.", ("vibrato", 50.0): "molto vib.",
+    ("vibrato", None): "vib.", ("inner-string", None): "sul F", ("outer-string", None): "sul C",
+}  # fmt: skip
+WRITTEN_CHANGES: Mapping[str, str] = {"ritardando": "rit.", "accelerando": "accel."}
+
 
 @dataclass(frozen=True)
 class Meaning:

@@ -1,0 +1,148 @@
+"""What was played becomes a written score: beats, lengths, slurs, dynamics, keys."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+from pathlib import Path
+
+import mido
+import numpy as np
+import pytest
+
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.rows import VELOCITY
+from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, STOP, WISH
+from yehu_server.errors import ScoreError
+from yehu_server.scores.capture_header import SessionStart
+from yehu_server.scores.capture_writer import CaptureWriter
+from yehu_server.scores.reading import read_written
+from yehu_server.scores.smf.reader import read_score
+from yehu_server.scores.transcription import (
+    Heard,
+    read_to_write,
+    written_of_midi,
+    written_of_seconds,
+)
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+RATE = 48000.0
+
+
+def test_a_midi_file_becomes_the_tune_that_it_was_made_from():
+    """shi_bei_jiu.mid is that jianpu, with its tempo, bows and accents, played by a script."""
+    written, _ = written_of_midi(read_score(EXAMPLES / "shi_bei_jiu.mid"))
+    tune = read_written(EXAMPLES / "shi_bei_jiu.jianpu")
+    [own], [other] = written.parts, tune.parts
+    assert [(note.beat, note.length, note.pitch) for note in own.notes] == [
+        (note.beat, note.length, note.pitch) for note in other.notes
+    ]
+    assert {*own.spans} == {span for span in other.spans if span.name == "slur"}
+    assert written.tempi[0].quarters_per_minute == tune.tempi[0].quarters_per_minute
+    assert written.metres[-1].quarters == 2.0
+
+
+def midi(path: Path, notes, ticks=480, channel=0) -> Path:
+    """Write notes: from and to a beat, key, velocity."""
+    file = mido.MidiFile(ticks_per_beat=ticks)
+    track = file.add_track()
+    moves = [(begin, 1, key, loud) for begin, _, key, loud in notes]
+    moves += [(end, 0, key, 0) for _, end, key, _ in notes]
+    now = 0
+    for beat, on, key, loud in sorted(moves, key=lambda move: move[:2]):
+        tick = round(beat * ticks)
+        kind = "note_on" if on else "note_off"
+        message = mido.Message(kind, note=key, velocity=loud, channel=channel, time=tick - now)
+        track.append(message)
+        now = tick
+    file.save(path)
+    return path
+
+
+def test_beats_are_divided_as_they_were_written(tmp_path):
+    chance = random.Random(4)
+    groups = [(1,), (Fraction(1, 2),) * 2, (Fraction(1, 3),) * 3, (Fraction(1, 4),) * 4,
+              (Fraction(3, 4), Fraction(1, 4)), (Fraction(1, 6),) * 6, (Fraction(1, 8),) * 8,
+              (Fraction(2, 3), Fraction(1, 3)), (Fraction(1, 5),) * 5, (2,), (4,)]  # fmt: skip
+    wrong = []
+    for number in range(40):
+        beat, expected = Fraction(0), []
+        for _ in range(20):
+            for length in chance.choice(groups):
+                expected.append((beat, Fraction(length), 60 + chance.randrange(24)))
+                beat += length
+        # A program lets go a little early; a rest that is a rest stays one.
+        notes = [(at, at + length * Fraction(19, 20), key, 80) for at, length, key in expected]
+        path = midi(tmp_path / f"{number}.mid", notes)
+        found = read_to_write(path)[0].parts[0].notes
+        if [(note.beat, note.length, int(note.pitch)) for note in found] != expected:
+            wrong.append(number)
+    assert not wrong
+
+
+def test_a_hand_that_is_late_by_a_thirtieth_is_written_in_quavers():
+    chance = random.Random(7)
+    lengths = [chance.choice([0.5, 0.5, 1.0, 1.5]) for _ in range(60)]
+    begins = [sum(lengths[:at]) for at in range(len(lengths))]
+    heard = [
+        Heard((begin + chance.uniform(-0.03, 0.03)) * 0.75, (begin + 0.8 * length) * 0.75, 70.0)
+        for begin, length in zip(begins, lengths, strict=True)
+    ]
+    written, _ = written_of_seconds([("", heard)], tempo=80.0)
+    assert [float(note.beat) for note in written.parts[0].notes] == begins
+    alone, _ = written_of_seconds([("", heard)])
+    assert alone.tempi[0].quarters_per_minute == 80.0
+
+
+def test_loudness_overlaps_and_keys_become_dynamics_slurs_and_signatures(tmp_path):
+    loud = [50] * 4 + [96, 96, 112, 96] + [50, 52, 48, 50]
+    notes = [(at, at + 1.02 - 0.1 * (at % 2), 69 + at % 3, loud[at]) for at in range(12)]
+    written, _ = read_to_write(midi(tmp_path / "a.mid", [*notes, (12, 13, 74, 50)]))
+    [part] = written.parts
+    assert [(sign.beat, sign.name) for sign in part.signs] == [(0, "p"), (4, "f"), (8, "p")]
+    assert [note.beat for note in part.notes if note.marks] == [6]
+    assert {(span.begin, span.end) for span in part.spans} == {
+        (at, at + 1) for at in range(0, 12, 2)
+    }
+    assert [key.fifths for key in written.keys] == [2]  # D, on which it ends
+    plain, left = read_to_write(midi(tmp_path / "b.mid", [(0, 1, 60, 64), (0, 1, 67, 64)]))
+    assert [(note.pitch, note.marks) for note in plain.parts[0].notes] == [(67.0, ())]
+    assert not plain.parts[0].signs
+    assert left == {"lower notes of chords": 1}
+
+
+def test_a_capture_is_written_as_its_players_played(tmp_path):
+    path = tmp_path / "session.jsonl"
+    writer = CaptureWriter(path, beginning=SessionStart((InstrumentSpec(RATE),)))
+    second = int(RATE)
+    wishes = [
+        (0, EXPRESS, VELOCITY, 80 / 127, 0.0),
+        (0, BEGIN, 0, 67.0, 67.0),
+        (second, BEGIN, 0, 60.0, 72.0),  # C4, moved into range; it begins while G4 is held
+        (second + 500, END, 0, 67.0, 0.0),
+        (2 * second, STOP, 0, 0.0, 0.0),
+    ]
+    writer.wishes(np.array(wishes, WISH))
+    writer.close(3 * second)
+    written, left = read_to_write(path, tempo=60.0)
+    [part] = written.parts
+    assert [(note.beat, note.length, note.pitch) for note in part.notes] == [
+        (0, 1, 67.0),
+        (1, 1, 72.0),
+    ]
+    assert [(span.name, span.begin, span.end) for span in part.spans] == [("slur", 0, 1)]
+    assert not left
+    assert [tempo.quarters_per_minute for tempo in written.tempi] == [60.0]
+
+
+def test_what_holds_no_note_is_refused(tmp_path):
+    path = tmp_path / "session.jsonl"
+    writer = CaptureWriter(path, beginning=SessionStart((InstrumentSpec(RATE),)))
+    writer.close(100)
+    with pytest.raises(ScoreError, match=r"session.jsonl: has no note to write"):
+        read_to_write(path)
+    file = mido.MidiFile()
+    file.add_track().append(mido.Message("control_change", control=11, value=90))
+    file.save(tmp_path / "silent.mid")
+    with pytest.raises(ScoreError, match=r"silent.mid: has no note to write"):
+        read_to_write(tmp_path / "silent.mid")

@@ -1,0 +1,337 @@
+"""Write a score as a jianpu text, in the words that `reader` understands: the same score again.
+
+Repeats are written out; a part has a bar a word group, and some bars a line.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+
+from yehu_server.scores.jianpu.mark_words import COMMANDS, FINGERING, Act
+from yehu_server.scores.jianpu.scale import LOWEST_DO, MIDDLE_C
+from yehu_server.scores.jianpu.written_lengths import (
+    FINEST,
+    PICKUPS,
+    SIGN_OF,
+    nested_slurs,
+    signed_lengths,
+    straightened,
+)
+from yehu_server.scores.written.layout import (
+    LETTERS,
+    STEPS,
+    TUPLETS,
+    PageBar,
+    Piece,
+    key_alter,
+    page_bars,
+    pieces_of,
+    rounded,
+    signature,
+    spelled,
+    split,
+    tuplet_of,
+)
+from yehu_server.scores.written.notated import (
+    DYNAMICS,
+    FORCED,
+    LONGEST_CHANGE,
+    SIGNS,
+    Grace,
+    Mark,
+    Note,
+    Part,
+    Span,
+    Tempo,
+    Written,
+)
+from yehu_server.scores.written.words import WRITTEN_CHANGES, WRITTEN_SIGNS
+
+BARS_A_LINE = 4
+GRACES = {Fraction(1, 2): "q", Fraction(1, 4): "s", Fraction(1, 8): "d", Fraction(1, 16): "h"}
+# What these words are read as, where they have no value (semitones).
+USUAL = {"trill": 2.0, "mordent": 1.0, "inverted-mordent": 2.0, "turn": 2.0, "inverted-turn": 2.0}
+HAIRPINS = {"crescendo": "\\<", "diminuendo": "\\>"}
+TEMPO_UNITS = (("4", Fraction(1)), ("8", Fraction(1, 2)), ("4.", Fraction(3, 2)),
+               ("16", Fraction(1, 4)), ("2", Fraction(2)))  # fmt: skip
+DO_FIFTHS = {-6: "Gb", -5: "Db", -4: "Ab", -3: "Eb", -2: "Bb", -1: "F", 0: "C", 1: "G", 2: "D",
+             3: "A", 4: "E", 5: "B", 6: "F#"}  # fmt: skip
+
+
+def _words() -> dict[Mark, str]:
+    """Words of marks, the first of those that are read alike."""
+    found: dict[Mark, str] = {}
+    for words, prefix in ((COMMANDS, "\\"), (FINGERING, "Fr=")):
+        for word, action in words.items():
+            if action.act is Act.MARK:
+                mark = Mark(action.name, action.value)
+                bare = "" if word in ("up", "down", "tilde", "harmonic") else prefix
+                found.setdefault(mark, f"{bare}{word}")
+    return found
+
+
+MARK_WORDS = _words()
+SIGN_WORDS = {name: f"\\{name}" for name in (*DYNAMICS, *FORCED)}
+
+
+def jianpu_of(written: Written) -> tuple[str, dict[str, int]]:
+    """Return a score as a jianpu text, and what that cannot say: names, with counts."""
+    lost: Counter[str] = Counter()
+    written, moved = rounded(written, FINEST)
+    lost["beats finer than 1/16 of a quarter"] += moved
+    bars = page_bars(written)
+    texts = []
+    for number, part in enumerate(written.parts):
+        lines = [f"title={written.title}"] if written.title and number == 0 else []
+        if part.name:
+            lines.append(f"instrument={part.name}")
+        tempi = written.tempi if number == 0 else ()
+        lines += _PartWriter(written, part, bars, tempi, lost).lines()
+        texts.append("\n".join(lines))
+    return "\n\nNextPart\n".join(texts) + "\n", {name: n for name, n in lost.items() if n}
+
+
+class _PartWriter:
+    """Writes one part."""
+
+    def __init__(
+        self,
+        written: Written,
+        part: Part,
+        bars: Sequence[PageBar],
+        tempi: Sequence[Tempo],
+        lost: Counter[str],
+    ) -> None:
+        self._part, self._bars, self._lost = part, bars, lost
+        self._keys = list(written.keys)
+        self._fifths = 0
+        self._do = 0.0  # semitones above middle C
+        self._tempi = list(tempi)
+        self._quarters: Fraction | None = None
+        self._begins = [note.beat for note in part.notes]
+        loud = [sign.beat for sign in part.signs if sign.name in SIGN_WORDS]
+        self._cuts = sorted(loud + [each.begin for each in part.spans if each.name in HAIRPINS])
+        self._nested = set(nested_slurs(part.spans, set(self._begins)))
+        self._spans = [span for span in part.spans if self._can_say(span, written)]
+        self._after = self._words_after()[::-1]
+
+    def lines(self) -> list[str]:
+        """The music, some bars a line."""
+        bars = [
+            " ".join(self._bar(bar, pieces))
+            for bar, pieces in zip(self._bars, pieces_of(self._part, self._bars), strict=True)
+        ]
+        rows = (bars[at : at + BARS_A_LINE] for at in range(0, len(bars), BARS_A_LINE))
+        self._lost["signs after the last note"] += len(self._tempi) + len(self._after)
+        return [" ".join(f"{bar} |" for bar in row) for row in rows]
+
+    # -- what stands beside notes ------------------------------------------------------------
+
+    def _can_say(self, span: Span, written: Written) -> bool:
+        """Whether a span can be written; counts it otherwise."""
+        if span.name in WRITTEN_CHANGES:
+            ends = {tempo.beat for tempo in written.tempi}
+            ends |= {each.begin for each in self._part.spans if each.name in WRITTEN_CHANGES}
+            is_usual = span.end - span.begin == LONGEST_CHANGE or span.end >= written.end
+            if span.value is not None or not (is_usual or span.end in ends):
+                self._lost[f"how far a {span.name} goes"] += 1
+            return True
+        if span.name in HAIRPINS:
+            at = bisect_right(self._cuts, span.begin)
+            cut = at < len(self._cuts) and self._cuts[at] < span.end
+            self._lost[f"how far a {span.name} goes"] += cut
+            return True
+        if span.name == "slur" and span in self._nested:
+            return True
+        if span.name == "glissando" and self._goes_on(span):
+            return True
+        self._lost[span.name] += 1
+        return False
+
+    def _goes_on(self, slide: Span) -> bool:
+        """Whether a slide is from one note to the next."""
+        at = bisect_left(self._begins, slide.begin)
+        return self._begins[at : at + 2] == [slide.begin, slide.end]
+
+    def _words_after(self) -> list[tuple[Fraction, int, str]]:
+        """Words with the beats at which they stand, in order."""
+        found: list[tuple[Fraction, int, str]] = []
+        for span in self._spans:
+            if span.name == "slur":
+                found.append((span.begin, 3, "("))
+                found.append((span.end, 0, ")"))
+            elif span.name == "glissando":
+                found.append((span.begin, 3, "\\glissando"))
+            elif span.name in HAIRPINS:
+                found.append((span.begin, 2, HAIRPINS[span.name]))
+                found.append((span.end, 0, "\\!"))
+            else:
+                found.append((span.begin, 2, f'^"{WRITTEN_CHANGES[span.name]}"'))
+        for sign in self._part.signs:
+            word = SIGN_WORDS.get(sign.name)
+            if word is None and (sign.name, sign.value) in WRITTEN_SIGNS:
+                word = f'^"{WRITTEN_SIGNS[sign.name, sign.value]}"'
+            rest = MARK_WORDS.get(Mark(sign.name, sign.value))
+            if word is not None:
+                found.append((sign.beat, 1, word))
+            elif rest and sign.name in SIGNS and not self._sounds_at(sign.beat):
+                found.append((sign.beat, 1, rest))
+            else:
+                self._lost[sign.name] += 1
+        # Of slurs that begin or end at one note the inner ones are nearer to it.
+        return sorted(found, key=lambda each: each[:2])
+
+    def _sounds_at(self, beat: Fraction) -> bool:
+        at = bisect_right(self._begins, beat) - 1
+        return at >= 0 and beat < self._part.notes[at].end
+
+    def _take_after(self, end: Fraction) -> Iterator[str]:
+        """The words that belong to what ends at a beat."""
+        while self._after and self._after[-1][0] < end:
+            yield self._after.pop()[2]
+
+    # -- bars --------------------------------------------------------------------------------
+
+    def _bar(self, bar: PageBar, pieces: Sequence[Piece]) -> Iterator[str]:
+        yield from self._key(bar)
+        yield from self._metre(bar)
+        left = list(pieces)
+        while left:
+            if tuplet_of(left[0].end.denominator) == 1:
+                yield from self._plain(left.pop(0), Fraction(1))
+            else:
+                yield from self._tuplet(left)
+
+    def _key(self, bar: PageBar) -> Iterator[str]:
+        is_first = bar is self._bars[0]
+        changed = False
+        while self._keys and self._keys[0].beat <= bar.begin:
+            self._fifths = (self._keys.pop(0).fifths + 5) % 12 - 5
+            changed = True
+        if changed or is_first:
+            name = DO_FIFTHS[self._fifths]
+            do = STEPS[LETTERS.index(name[0])]
+            self._do = (do - LOWEST_DO) % 12.0 + LOWEST_DO + {"#": 1, "b": -1}.get(name[1:], 0)
+            if changed:
+                yield f"1={name}"
+
+    def _metre(self, bar: PageBar) -> Iterator[str]:
+        """The metre where it changes; that of a bar that is short or long is its own."""
+        figures = signature(bar.quarters)
+        pickup = PICKUPS.get(bar.length)
+        is_pickup = bar is self._bars[0] and bar.length < bar.quarters
+        if is_pickup and pickup and figures is not None:
+            self._quarters = bar.quarters
+            yield f"{figures[0]}/{figures[1]},{pickup}"
+            return
+        figures = signature(bar.length)
+        if figures is not None and bar.length != self._quarters:
+            self._quarters = bar.length
+            yield f"{figures[0]}/{figures[1]}"
+
+    def _tuplet(self, left: list[Piece]) -> Iterator[str]:
+        """Take pieces until one ends on a beat of no tuplet, and write them in brackets."""
+        group = []
+        while left:
+            group.append(left.pop(0))
+            if tuplet_of(group[-1].end.denominator) == 1:
+                break
+        counts = {tuplet_of(piece.end.denominator) for piece in group} - {1}
+        count = counts.pop() if len(counts) == 1 else None
+        factor = Fraction(TUPLETS[count], count) if count in TUPLETS else None
+        if factor is None or any(16 % (each.length / factor).denominator for each in group):
+            self._lost["tuplets within tuplets"] += 1
+            group, factor = straightened(group), Fraction(1)
+        if factor != 1:
+            yield f"{count}["
+        for piece in group:
+            yield from self._plain(piece, factor)
+        if factor != 1:
+            yield "]"
+
+    def _plain(self, piece: Piece, factor: Fraction) -> Iterator[str]:
+        """A note or rest, with what stands at it."""
+        yield from self._tempo(piece.begin)
+        for cut in split(
+            piece, [factor * each for each in signed_lengths(piece.length / factor, piece)]
+        ):
+            yield from self._signed_piece(cut, factor)
+
+    def _signed_piece(self, piece: Piece, factor: Fraction) -> Iterator[str]:
+        length = piece.length / factor
+        note = piece.note
+        if note is not None and piece.is_first:
+            for grace in note.before:
+                yield f"g[{self._small(grace)}]"
+        beam, dots = SIGN_OF.get(length, ("", ""))
+        figure = "0" if note is None else self._figure(note.pitch)
+        is_tremolo = note is not None and piece.is_first and bool(note.marked("tremolo"))
+        yield f"{beam}{figure}{dots}{'///' if is_tremolo else ''}"
+        if note is not None and piece.is_first:
+            yield from self._marks(note)
+        end = piece.begin + min(piece.length, factor)
+        yield from self._take_after(piece.end if length < 2 else end)
+        for _ in range(int(length) - 1 if length >= 2 else 0):
+            end += factor
+            yield "-"
+            yield from self._take_after(end)
+        if note is not None and not piece.is_last:
+            yield "~"
+        elif note is not None:
+            for grace in note.after:
+                yield f"[{self._small(grace)}]g"
+
+    def _tempo(self, beat: Fraction) -> Iterator[str]:
+        while self._tempi and self._tempi[0].beat <= beat:
+            tempo = self._tempi.pop(0)
+            if tempo.beat != beat:
+                self._lost["tempi that change within a note"] += 1
+            for name, unit in TEMPO_UNITS:
+                count = Fraction(tempo.quarters_per_minute).limit_denominator(1000) / unit
+                if count.denominator == 1 and 0 < count < 10_000:
+                    yield f"{name}={count}"
+                    break
+            else:
+                self._lost["tempi, rounded"] += 1
+                yield f"4={max(round(tempo.quarters_per_minute), 5)}"
+
+    # -- notes -------------------------------------------------------------------------------
+
+    def _marks(self, note: Note) -> Iterator[str]:
+        if note.contour:
+            self._lost["pitches that move within a note"] += 1
+        for mark in note.marks:
+            word = MARK_WORDS.get(mark)
+            if word is None and mark.value is not None:  # the usual one says nearly the same
+                word = MARK_WORDS.get(Mark(mark.name))
+                self._lost[f"{mark.name} {mark.value:g}"] += mark.value != USUAL.get(mark.name)
+            if mark.name == "tremolo" and word is None:  # three strokes are written at the figure
+                self._lost[f"tremolo {mark.value or 0:g}"] += mark.value != 3.0
+                continue
+            if word is None:
+                self._lost[mark.name] += 1
+            else:
+                yield word
+
+    def _figure(self, pitch: float) -> str:
+        """The figure of a pitch, with its accidental and octave."""
+        letter, alter, octave = spelled(pitch, self._fifths)
+        whole = round(alter)
+        if whole != alter:
+            self._lost["pitches between semitones"] += 1
+        do = LETTERS.index(DO_FIFTHS[self._fifths][0])
+        degree = (letter - do) % 7
+        sign = whole - key_alter(letter, self._fifths)
+        written = 12 * (octave + 1) + STEPS[letter] + whole
+        above = written - sign - MIDDLE_C - self._do - STEPS[degree]
+        octaves = round(above / 12)
+        accidental = "#" * sign if sign > 0 else "b" * -sign
+        marks = "'" * octaves if octaves > 0 else "," * -octaves
+        return f"{accidental}{degree + 1}{marks}"
+
+    def _small(self, grace: Grace) -> str:
+        self._lost["marks of grace notes"] += len(grace.marks)
+        return f"{GRACES.get(grace.length, 'q')}{self._figure(grace.pitch)}"

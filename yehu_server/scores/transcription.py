@@ -1,0 +1,354 @@
+"""From notes that were played to a written score: a MIDI file, or the capture of a session.
+
+Each beat is divided as simply as its onsets allow; a note that is let go a little before the next
+one begins is written up to that. Notes that overlap are slurred, as they are played. Loudness
+becomes dynamics and accents where it is shaped at all.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import groupby, pairwise
+from pathlib import Path
+
+from yehu_server.core.player.rows import VELOCITY
+from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, STOP
+from yehu_server.errors import ScoreError
+from yehu_server.scores.capture import Capture, read_capture
+from yehu_server.scores.phrasing import FEW_VELOCITIES, MARKED_SPAN
+from yehu_server.scores.reading import is_capture, is_written, read_written
+from yehu_server.scores.score import (
+    COMMON_TIME,
+    Metre,
+    Score,
+    ScoreEvent,
+    ScorePart,
+    naming,
+    notes_of,
+)
+from yehu_server.scores.smf.reader import read_score
+from yehu_server.scores.smf.tunings import transposed_keys
+from yehu_server.scores.written.notated import (
+    DYNAMICS,
+    HIGHEST_TEMPO,
+    LOWEST_TEMPO,
+    MOST_BEATS,
+    USUAL_TEMPO,
+    KeySign,
+    Mark,
+    Note,
+    Part,
+    Sign,
+    Span,
+    Tempo,
+    Written,
+)
+
+# Parts of a beat, and what each costs (quarters) beside the distance of its onsets.
+DIVISIONS = {1: 0.0, 2: 0.004, 4: 0.008, 3: 0.012, 8: 0.016, 6: 0.02, 5: 0.03, 12: 0.03, 16: 0.03,
+             7: 0.04}  # fmt: skip
+EXACT, PROGRAMS = 0.002, (48, 20, 28)  # quarters from such parts, where a program wrote it
+EARLY = 0.02  # quarters before a beat that belong to it
+HAND = 4.0  # costs are so much higher where a hand played
+SHARE = 0.65  # of the time to the next note, from which a note is written up to it
+OVERLAP = 0.002  # quarters that notes sound together, from which they are slurred
+STEP, ACCENT = 10.0, 12.0  # of velocity: to another dynamic, and of a single note
+TEMPI = range(60, 181)  # quarters a minute, among which that of a capture is sought
+SAME_TEMPO = 0.01  # share
+LEFT_OUT = {"pitchwheel": "pitch bends", "aftertouch": "pressure", "polytouch": "pressure"}
+SELECTING = {0, 6, 32, 38, *range(96, 102), *range(120, 128)}  # of banks, parameters, modes
+
+
+@dataclass(frozen=True)
+class Heard:
+    """A note that was played: from and to a time, in seconds or quarters, and how."""
+
+    begin: float
+    end: float
+    pitch: float
+    velocity: int = 0
+
+
+def read_to_write(
+    path: Path, song: int | None = None, tempo: float | None = None
+) -> tuple[Written, dict[str, int]]:
+    """Read any score, MIDI file or capture as a written score, and what is left out of it.
+
+    Raises
+    ------
+    ScoreError
+        One line naming the file, where it cannot be read or has no note.
+    """
+    if is_capture(path):
+        with naming(path):
+            return written_of_capture(read_capture(path), tempo)
+    if is_written(path):
+        return read_written(path, song), {}
+    score = read_score(path, song=song)
+    with naming(path):
+        written, lost = written_of_midi(score, tempo)
+    return replace(written, warnings=score.warnings), lost
+
+
+def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, dict[str, int]]:
+    """Return a MIDI file as a written score, and what is left out of it, with counts.
+
+    Parameters
+    ----------
+    tempo : float, optional
+        Quarters a minute, of a file that counts frames of a film.
+    """
+    notes = notes_of(score)
+    higher = transposed_keys(score)
+    by_frames = any(math.isnan(note.beat) for note in notes)
+    names = score.parts or (ScorePart(""),)
+    voices: list[tuple[str, list[Heard]]] = [(part.name, []) for part in names]
+    for note in notes:
+        track = score.events[note.begins].track
+        at = next(
+            (at for at, part in enumerate(names)
+             if part.channel in (None, note.channel) and part.track in (None, track)), None,
+        )  # fmt: skip
+        if at is not None:
+            end = score.events[note.ends].beat if note.ends >= 0 else note.beat + 1.0
+            begin, end = (note.start_s, note.end_s) if by_frames else (note.beat, end)
+            pitch = note.key + higher.get(note.begins, 0.0)
+            voices[at][1].append(Heard(begin, end, pitch, note.velocity))
+    lost = Counter(filter(None, map(_left_out, score.events)))
+    if by_frames:
+        written, more = written_of_seconds(voices, tempo)
+        return replace(written, title=score.name), {**lost, **more}
+    whole, chords = _written(voices, _tempi(score), score.metres)
+    lost["lower notes of chords"] += chords
+    return replace(whole, title=score.name), {name: count for name, count in lost.items() if count}
+
+
+def _left_out(event: ScoreEvent) -> str:
+    """What of a message no notation has a sign for; empty where it has."""
+    message = event.message
+    if message.type == "control_change":
+        return "" if message.control in SELECTING else f"controller {message.control}"
+    return LEFT_OUT.get(message.type, "")
+
+
+def written_of_capture(
+    capture: Capture, tempo: float | None = None
+) -> tuple[Written, dict[str, int]]:
+    """Return what the players of a capture played as a written score, and what is left out."""
+    voices: list[tuple[str, list[Heard]]] = []
+    lost: Counter[str] = Counter()
+    players = len(capture.beginning.players)
+    for player in range(players):
+        own = capture.wishes[capture.players == player]
+        heard = sorted(_of_wishes(own, capture.rate, capture.frames), key=lambda each: each.begin)
+        voices.append((f"player {player + 1}" if players > 1 else "", heard))
+        others = [int(each["kind"]) for each in own]
+        lost["moves of bow and fingers"] += sum(
+            kind not in (BEGIN, END, EXPRESS, STOP) for kind in others
+        )
+    written, more = written_of_seconds(voices, tempo)
+    return written, {**{name: count for name, count in lost.items() if count}, **more}
+
+
+def _of_wishes(wishes: Iterable[object], rate: float, frames: int) -> Iterator[Heard]:
+    held: dict[tuple[int, float], tuple[float, float, int]] = {}
+    velocity = 0
+
+    def ended(key: tuple[int, float], now: float) -> Iterator[Heard]:
+        begin, pitch, loud = held.pop(key)
+        if now > begin:
+            yield Heard(begin, now, pitch, loud)
+
+    for wish in wishes:
+        frame, kind, index, value, other = wish.item()  # type: ignore[attr-defined]
+        now, key = frame / rate, (index, value)
+        if kind == EXPRESS and index == VELOCITY:
+            velocity = round(127.0 * value)
+        elif kind == BEGIN:
+            if key in held:
+                yield from ended(key, now)
+            held[key] = now, other, velocity
+        elif kind == END and key in held:
+            yield from ended(key, now)
+        elif kind == STOP:
+            for each in list(held):
+                yield from ended(each, now)
+    for each in list(held):
+        yield from ended(each, frames / rate)
+
+
+def written_of_seconds(
+    voices: Sequence[tuple[str, Sequence[Heard]]], tempo: float | None = None
+) -> tuple[Written, dict[str, int]]:
+    """Return a score of notes in seconds; without a tempo, at that which fits their onsets."""
+    begins = sorted(note.begin for _, heard in voices for note in heard)
+    if not begins:
+        raise ScoreError("has no note to write")
+    quarters = _tempo_of(begins) if tempo is None else tempo
+    rate, first = quarters / 60.0, begins[0]
+    changed = [
+        (name, [replace(n, begin=(n.begin - first) * rate, end=(n.end - first) * rate)
+                for n in heard])
+        for name, heard in voices
+    ]  # fmt: skip
+    written, chords = _written(changed, (Tempo(Fraction(0), float(quarters)),), (COMMON_TIME,))
+    return written, {"lower notes of chords": chords} if chords else {}
+
+
+def _tempo_of(begins: Sequence[float]) -> float:
+    """The tempo at which onsets lie nearest to semiquavers, of those alike the most usual."""
+
+    def cost(tempo: int) -> float:
+        places = [(begin - begins[0]) * tempo / 15.0 for begin in begins]
+        off = sum(abs(place - round(place)) for place in places) / len(places)
+        return off + 0.02 * abs(math.log2(tempo / USUAL_TEMPO))
+
+    return float(min(TEMPI, key=cost))
+
+
+# -- time ---------------------------------------------------------------------------------------
+
+
+def _written(
+    voices: Sequence[tuple[str, Sequence[Heard]]], tempi: Sequence[Tempo], metres: Sequence[Metre]
+) -> tuple[Written, int]:
+    """A score of notes in quarters, and how many lower notes of chords it leaves out."""
+    begins = sorted({note.begin for _, heard in voices for note in heard})
+    if not begins:
+        raise ScoreError("has no note to write")
+    if max(note.end for _, heard in voices for note in heard) > MOST_BEATS:
+        raise ScoreError(f"is longer than {MOST_BEATS} quarters")
+    grid = _Grid(begins)
+    parts = []
+    chords = 0
+    for name, heard in voices:
+        part, more = _part(name, heard, grid)
+        chords += more
+        if part.notes:
+            parts.append(part)
+    keys = (KeySign(Fraction(0), _fifths_of(parts)),)
+    return Written(tuple(parts), tuple(tempi), tuple(metres), keys=keys), chords
+
+
+class _Grid:
+    """How each beat is divided."""
+
+    def __init__(self, begins: Sequence[float]) -> None:
+        exact = sum(
+            min(abs(begin - round(begin * each) / each) for each in PROGRAMS) <= EXACT
+            for begin in begins
+        )
+        self._cost = 1.0 if exact > 0.9 * len(begins) else HAND
+        self._divisions: dict[int, int] = {}
+        for beat, own in groupby(begins, key=lambda begin: math.floor(begin + EARLY)):
+            self._divisions[beat] = self._division([begin - beat for begin in own])
+
+    def _division(self, places: Sequence[float]) -> int:
+        def cost(division: int) -> float:
+            off = [abs(place - round(place * division) / division) for place in places]
+            together = len({round(place * division) for place in places}) < len(places)
+            return max(off) + self._cost * DIVISIONS[division] + 0.05 * together
+
+        return min(DIVISIONS, key=cost)
+
+    def near(self, beat: float, least: int = 1) -> Fraction:
+        """The nearest place that notes may begin at; of ends, at least so many to a beat."""
+        whole = math.floor(beat + EARLY)
+        division = self._divisions.get(whole, least)
+        if division < least:
+            division = division * least // math.gcd(division, least)
+        return whole + Fraction(round((beat - whole) * division), division)
+
+
+def _part(name: str, heard: Sequence[Heard], grid: _Grid) -> tuple[Part, int]:
+    by_beat: dict[Fraction, Heard] = {}
+    chords = 0
+    for note in heard:
+        at = grid.near(note.begin)
+        chords += at in by_beat
+        if at not in by_beat or note.pitch > by_beat[at].pitch:
+            by_beat[at] = note
+    places = sorted(by_beat)
+    notes: list[Note] = []
+    slurred: list[bool] = []  # each to the next one
+    for at, after in zip(places, [*places[1:], None], strict=True):
+        note = by_beat[at]
+        length = note.end - note.begin
+        finest = 1 if length > 1.5 else 2 if length > 0.75 else 4  # of those let go early
+        end = max(grid.near(note.end, finest), at + Fraction(1, 16))
+        if after is not None:
+            to_next = by_beat[after].begin - note.begin
+            slurred.append(note.end > by_beat[after].begin + OVERLAP)
+            if end > after or length >= SHARE * to_next:
+                end = after
+        notes.append(Note(at, end - at, float(note.pitch)))
+    loud = [by_beat[at].velocity for at in places]
+    marked, signs = _loudness(notes, loud)
+    return Part(name, tuple(marked), tuple(_slurs(notes, slurred)), tuple(signs)), chords
+
+
+def _slurs(notes: Sequence[Note], slurred: Sequence[bool]) -> Iterator[Span]:
+    at = 0
+    for is_slurred, run in groupby(slurred):
+        last = at + len(list(run))
+        if is_slurred:
+            yield Span("slur", notes[at].beat, notes[last].beat)
+        at = last
+
+
+def _loudness(notes: Sequence[Note], loud: Sequence[int]) -> tuple[list[Note], list[Sign]]:
+    """Dynamics where the velocities are shaped; a single louder note has an accent."""
+    values = set(loud)
+    if len(values) <= FEW_VELOCITIES and max(loud) - min(loud) <= MARKED_SPAN:
+        return list(notes), []
+    marked = list(notes)
+    signs: list[Sign] = []
+    now = ""
+    for at, velocity in enumerate(loud):
+        around = [loud[near] for near in (at - 1, at + 1) if 0 <= near < len(loud)]
+        if now and all(velocity >= each + ACCENT for each in around):
+            marked[at] = replace(marked[at], marks=(*marked[at].marks, Mark("accent")))
+        elif not now or _stays_off(loud[at : at + 2], DYNAMICS[now]):
+            now = min(DYNAMICS, key=lambda name: abs(DYNAMICS[name] - velocity))
+            signs.append(Sign(notes[at].beat, now))
+    return marked, signs
+
+
+def _stays_off(loud: Sequence[int], level: int) -> bool:
+    """Whether velocities are all softer, or all louder, than a dynamic."""
+    steps = [velocity - level for velocity in loud]
+    return min(steps) > STEP or max(steps) < -STEP
+
+
+def _tempi(score: Score) -> tuple[Tempo, ...]:
+    """The tempi of a MIDI file, from the times and beats of its events."""
+    found: list[Tempo] = []
+    for one, other in pairwise(score.events):
+        if other.beat - one.beat > 1e-6 and other.time_s > one.time_s:
+            tempo = 60.0 * (other.beat - one.beat) / (other.time_s - one.time_s)
+            tempo = min(max(round(tempo, 2), LOWEST_TEMPO), HIGHEST_TEMPO)
+            last = found[-1].quarters_per_minute if found else 0.0
+            if abs(tempo - last) > SAME_TEMPO * tempo:
+                beat = Fraction(round(16 * one.beat) if found else 0, 16)
+                found.append(Tempo(beat, tempo))
+    return tuple({tempo.beat: tempo for tempo in found}.values())
+
+
+def _fifths_of(parts: Sequence[Part]) -> int:
+    """The key signature that most of the notes fit; of those alike, with the last note as do."""
+    counts: Counter[int] = Counter()
+    for part in parts:
+        for note in part.notes:
+            counts[round(note.pitch) % 12] += 1
+    last = round(parts[0].notes[-1].pitch) % 12
+
+    def fit(fifths: int) -> tuple[int, bool, int]:
+        own = {(7 * (fifths + place)) % 12 for place in range(-1, 6)}
+        inside = sum(count for key, count in counts.items() if key in own)
+        return inside, (7 * fifths) % 12 == last, -abs(fifths)
+
+    return max(range(-5, 7), key=fit)

@@ -49,11 +49,14 @@ def add_to(commands: Any) -> None:
         score FILE: a file of MusicXML, ABC or jianpu
         --song N: the N-th tune of a file of ABC (default: the first)
         --json: print one JSON object
+        --plot OUT.png: draw the part that is played as it will be bowed, in jianpu
+        --part NAME: the part to draw (default: the one that plays)
         --export-midi OUT.mid: write what is played as a MIDI file, and say what that cannot hold
-        --overwrite: replace OUT.mid if it exists
+        --overwrite: replace OUT.mid or OUT.png if it exists
         """,
         score=Path,
         song=positive,
+        plot=target,
         export_midi=target,
     )
     write = add_action(actions, "write", _write, "write a score as MusicXML or jianpu")
@@ -82,12 +85,32 @@ def _show(arguments: argparse.Namespace) -> int:
     written = read_written(arguments.score, arguments.song)
     if arguments.export_midi is not None:
         _export(arguments, written)
+    if arguments.plot is not None:
+        _plot(arguments, written)
     if arguments.json:
         print(json.dumps(fields_of(written)))
     else:
         for line in lines_of(written):
             print_result(line)
     return 0
+
+
+def _plot(arguments: argparse.Namespace, written: Written) -> None:
+    from yehu_server.lab.plot.bowed_score import write_bowed_score
+    from yehu_server.lab.plot.png import check_picture
+    from yehu_server.scores.chosen_parts import numbers_of, usual_parts
+    from yehu_server.scores.score import naming
+    from yehu_server.util.files import check_distinct
+
+    output = arguments.plot
+    check_picture(output, "--plot", overwrite=arguments.overwrite)
+    check_distinct({"--plot": output}, [arguments.score])
+    with naming(arguments.score):
+        asked = [arguments.part] if arguments.part else []
+        numbers = numbers_of(written.names, asked) if asked else usual_parts(written)
+        if not numbers or not written.parts[numbers[0]].notes:
+            raise ScoreError("has no note to draw")
+    write_bowed_score(written, numbers[0], output, overwrite=arguments.overwrite)
 
 
 def _write(arguments: argparse.Namespace) -> int:

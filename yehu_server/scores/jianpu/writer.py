@@ -10,8 +10,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
+from yehu_server.scores.jianpu.figures import DO_FIFTHS, figure_of, written_key
 from yehu_server.scores.jianpu.mark_words import COMMANDS, FINGERING, Act
-from yehu_server.scores.jianpu.scale import LOWEST_DO, MIDDLE_C
 from yehu_server.scores.jianpu.written_lengths import (
     FINEST,
     PICKUPS,
@@ -21,17 +21,13 @@ from yehu_server.scores.jianpu.written_lengths import (
     straightened,
 )
 from yehu_server.scores.written.layout import (
-    LETTERS,
-    STEPS,
     TUPLETS,
     PageBar,
     Piece,
-    key_alter,
     page_bars,
     pieces_of,
     rounded,
     signature,
-    spelled,
     split,
     tuplet_of,
 )
@@ -57,8 +53,6 @@ USUAL = {"trill": 2.0, "mordent": 1.0, "inverted-mordent": 2.0, "turn": 2.0, "in
 HAIRPINS = {"crescendo": "\\<", "diminuendo": "\\>"}
 TEMPO_UNITS = (("4", Fraction(1)), ("8", Fraction(1, 2)), ("4.", Fraction(3, 2)),
                ("16", Fraction(1, 4)), ("2", Fraction(2)))  # fmt: skip
-DO_FIFTHS = {-6: "Gb", -5: "Db", -4: "Ab", -3: "Eb", -2: "Bb", -1: "F", 0: "C", 1: "G", 2: "D",
-             3: "A", 4: "E", 5: "B", 6: "F#"}  # fmt: skip
 
 
 def _words() -> dict[Mark, str]:
@@ -108,7 +102,6 @@ class _PartWriter:
         self._part, self._bars, self._lost = part, bars, lost
         self._keys = list(written.keys)
         self._fifths = 0
-        self._do = 0.0  # semitones above middle C
         self._tempi = list(tempi)
         self._quarters: Fraction | None = None
         self._begins = [note.beat for note in part.notes]
@@ -206,17 +199,12 @@ class _PartWriter:
                 yield from self._tuplet(left)
 
     def _key(self, bar: PageBar) -> Iterator[str]:
-        is_first = bar is self._bars[0]
         changed = False
         while self._keys and self._keys[0].beat <= bar.begin:
-            self._fifths = (self._keys.pop(0).fifths + 5) % 12 - 5
+            self._fifths = written_key(self._keys.pop(0).fifths)
             changed = True
-        if changed or is_first:
-            name = DO_FIFTHS[self._fifths]
-            do = STEPS[LETTERS.index(name[0])]
-            self._do = (do - LOWEST_DO) % 12.0 + LOWEST_DO + {"#": 1, "b": -1}.get(name[1:], 0)
-            if changed:
-                yield f"1={name}"
+        if changed:
+            yield f"1={DO_FIFTHS[self._fifths]}"
 
     def _metre(self, bar: PageBar) -> Iterator[str]:
         """The metre where it changes; that of a bar that is short or long is its own."""
@@ -318,19 +306,10 @@ class _PartWriter:
 
     def _figure(self, pitch: float) -> str:
         """The figure of a pitch, with its accidental and octave."""
-        letter, alter, octave = spelled(pitch, self._fifths)
-        whole = round(alter)
-        if whole != alter:
+        if abs(pitch - round(pitch)) > 1e-6:
             self._lost["pitches between semitones"] += 1
-        do = LETTERS.index(DO_FIFTHS[self._fifths][0])
-        degree = (letter - do) % 7
-        sign = whole - key_alter(letter, self._fifths)
-        written = 12 * (octave + 1) + STEPS[letter] + whole
-        above = written - sign - MIDDLE_C - self._do - STEPS[degree]
-        octaves = round(above / 12)
-        accidental = "#" * sign if sign > 0 else "b" * -sign
-        marks = "'" * octaves if octaves > 0 else "," * -octaves
-        return f"{accidental}{degree + 1}{marks}"
+        figure, octaves = figure_of(pitch, self._fifths)
+        return figure + ("'" * octaves if octaves > 0 else "," * -octaves)
 
     def _small(self, grace: Grace) -> str:
         self._lost["marks of grace notes"] += len(grace.marks)

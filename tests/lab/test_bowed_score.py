@@ -1,0 +1,69 @@
+"""The picture of a score as it will be bowed: strokes and strings as the player has them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from yehu_server.lab.plot.bowed_score import string_of, strokes_of, write_bowed_score
+from yehu_server.scores.jianpu.reader import parse_jianpu
+from yehu_server.scores.reading import read_written
+from yehu_server.scores.written.clock import WrittenClock
+from yehu_server.scores.written.mark_settings import DOWN, UP
+from yehu_server.scores.written.notated import Mark, Note
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+def strokes(text: str) -> list[tuple[int, int, float]]:
+    written = parse_jianpu(text.encode())
+    found = strokes_of(written.parts[0], WrittenClock(written))
+    return [(each.first, each.last, each.direction) for each in found]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("1 2 3 4", [(0, 0, DOWN), (1, 1, UP), (2, 2, DOWN), (3, 3, UP)]),
+        ("1 ( 2 3 ) 4", [(0, 2, DOWN), (3, 3, UP)]),
+        ("1 ( 2 ) 3 ( 4 )", [(0, 1, DOWN), (2, 3, UP)]),
+        ("1 \\upbow 2 3", [(0, 0, UP), (1, 1, DOWN), (2, 2, UP)]),
+        ("1 2 \\downbow 3", [(0, 0, DOWN), (1, 1, DOWN), (2, 2, UP)]),
+        (
+            '1 2 ^"pizz." 3 4 ^"arco" 1',
+            [(0, 0, DOWN), (1, 1, 0), (2, 2, 0), (3, 3, UP), (4, 4, DOWN)],
+        ),
+        ("1 ( 1 ) 2", [(0, 1, DOWN), (2, 2, UP)]),  # repeated under a slur: it goes on
+        ('1 ^"legato" 2 3 ^"non legato" 4', [(0, 2, DOWN), (3, 3, UP)]),
+    ],
+)
+def test_the_bow_turns_with_each_stroke_and_stays_under_slurs(text, expected):
+    assert strokes(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("pitch", "marks", "string"),
+    [(65.0, (), "F open"), (72.0, (), "C open"), (71.0, (), "F"), (74.0, (), "C"),
+     (74.0, (Mark("inner-string"),), "F"), (72.0, (Mark("finger", 4.0),), "F")],
+)  # fmt: skip
+def test_a_note_is_on_the_string_where_the_player_has_it(pitch, marks, string):
+    assert string_of(Note(Fraction(0), Fraction(1), pitch, marks)) == string
+
+
+def test_a_score_is_drawn_and_drawn_the_same_again(command, refused, tmp_path):
+    pytest.importorskip("matplotlib")
+    target = tmp_path / "score.png"
+    words = ("score", "show", EXAMPLES / "marks.musicxml", "--plot", target)
+    assert command(*words)[0] == 0
+    data = target.read_bytes()
+    assert data.startswith(b"\x89PNG")
+    assert command(*words)[0] == 0  # its own picture is replaced
+    assert target.read_bytes() == data
+    assert "a picture is a .png file" in refused(*words[:-1], tmp_path / "score.pdf")
+    assert "has no part Flute" in refused(*words, "--part", "Flute")
+    tuplets = tmp_path / "t.jianpu"
+    tuplets.write_text("title=短\n1=F 4/4,4 1 3[ q1 q2 q3 ] R*1 5' - - -\nNextPart\n0 0\n", "utf-8")
+    write_bowed_score(read_written(tuplets), 0, tmp_path / "b.png")
+    assert (tmp_path / "b.png").read_bytes() != data

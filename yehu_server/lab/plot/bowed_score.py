@@ -1,0 +1,285 @@
+"""The picture of a written part as it will be bowed, in lines of jianpu: a player can follow it.
+
+Over each figure stand the bow's direction, marks and dynamics; under it fingers and the string. A
+brace joins the notes of one stroke.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from yehu_server.core.player.fingering import OPEN_WITHIN
+from yehu_server.errors import ParameterError
+from yehu_server.lab.plot import png
+from yehu_server.playing.pitch_and_level import note_name
+from yehu_server.scores.jianpu.figures import figure_of, written_key
+from yehu_server.scores.jianpu.written_lengths import SIGN_OF, signed_lengths
+from yehu_server.scores.written.clock import WrittenClock
+from yehu_server.scores.written.in_range import moved_part
+from yehu_server.scores.written.layout import (
+    TUPLETS,
+    PageBar,
+    Piece,
+    page_bars,
+    pieces_of,
+    signature,
+    split,
+    tuplet_of,
+)
+from yehu_server.scores.written.mark_settings import DOWN, OUTER_OPEN, UP, Active, is_plucked
+from yehu_server.scores.written.notated import DYNAMICS, FORCED, Note, Part, Span, Written
+from yehu_server.scores.written.part_bowing import Played, bowed
+from yehu_server.scores.written.words import WRITTEN_SIGNS
+
+BARS_A_LINE, MOST_LINES = 4, 60
+LINE_INCHES, WIDTH = 1.55, 12.0
+INK, BOW, STRING, LOUD = "#1c2733", "#b5402a", "#3b6ea8", "#5a4a6f"
+BOWS = {DOWN: "\N{SQUARE CAP}", UP: "\N{LOGICAL OR}"}
+MARK_SIGNS = {
+    "staccato": "·", "staccatissimo": "▾", "tenuto": "\N{EN DASH}", "accent": ">", "marcato": "^",
+    "trill": "tr", "mordent": "mord.", "inverted-mordent": "mord.", "turn": "turn",
+    "tremolo": "///", "fermata": "fermata", "pizzicato": "+", "snap-pizzicato": "+",
+    "harmonic": "o", "vibrato": "~", "breath": ",", "slide-in-up": "↗", "slide-in-down": "↘",
+    "slide-out-up": "↗", "slide-out-down": "↘", "spiccato": "▾", "portato": "\N{EN DASH}·",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """Notes on one bow, by their numbers, both included, and its direction; 0: plucked."""
+
+    first: int
+    last: int
+    direction: float
+
+
+def strokes_of(part: Part, clock: WrittenClock) -> list[Stroke]:
+    """Return the strokes of a part, as the player bows it: it turns the bow with each new one."""
+    actives, active, taken = [], Active(), 0
+    signs = sorted(part.signs, key=lambda sign: sign.beat)
+    for note in part.notes:
+        while taken < len(signs) and signs[taken].beat <= note.beat:
+            active.take(signs[taken])
+            taken += 1
+        actives.append(replace(active))
+    found: list[Stroke] = []
+    last: Played | None = None
+    for at, each in enumerate(bowed(part, actives, clock)):
+        wished = _wished(each)
+        if is_plucked(each.note, actives[at]):
+            found.append(Stroke(at, at, 0.0))
+        elif last is not None and _goes_on(last, each, wished, found[-1]):
+            found[-1] = replace(found[-1], last=at)
+        else:
+            usual = next((-old.direction for old in found[::-1] if old.direction), DOWN)
+            found.append(Stroke(at, at, wished or usual))
+        last = each
+    return found
+
+
+def _wished(played: Played) -> float:
+    if played.note.marked("up-bow") or played.note.marked("down-bow"):
+        return UP if played.note.marked("up-bow") else DOWN
+    return played.direction
+
+
+def _goes_on(before: Played, played: Played, wished: float, stroke: Stroke) -> bool:
+    """Whether a note is on the bow of the one before: they overlap, or it is told to go on."""
+    if before.end_s > played.begin_s:
+        return wished in (0.0, stroke.direction)
+    return bool(played.direction) and before.direction == played.direction == stroke.direction
+
+
+def string_of(note: Note) -> str:
+    """How a note is reached where it does not follow another on the same string: F, C, or open."""
+    if note.marked("inner-string"):
+        return "F"
+    if abs(note.pitch - OUTER_OPEN) < OPEN_WITHIN and not note.marked("finger"):
+        return "C open"
+    if note.pitch < 65.0 + OPEN_WITHIN:
+        return "F open"
+    return "C" if note.pitch > OUTER_OPEN or note.marked("outer-string") else "F"
+
+
+def write_bowed_score(
+    written: Written, number: int, target: Path, *, overwrite: bool = False
+) -> None:
+    """Draw a part, counted from 0, moved into range as it is played, and write it to a PNG file.
+
+    Raises
+    ------
+    ParameterError
+        Where it has no note.
+    OutputError
+        Where it cannot be written.
+    """
+    part, octaves = moved_part(written.parts[number])
+    if not part.notes:
+        raise ParameterError("the score has no note to draw")
+    bars = page_bars(written)
+    rows = [range(at, min(at + BARS_A_LINE, len(bars))) for at in range(0, len(bars), BARS_A_LINE)]
+    rows = [row for row in rows if bars[row.start].begin < part.notes[-1].end][:MOST_LINES]
+    page = _Page(written, part, bars)
+
+    def fill(figure: Any) -> None:
+        panels = figure.subplots(len(rows), 1, squeeze=False)[:, 0]
+        for axes, row in zip(panels, rows, strict=True):
+            page.draw(axes, row)
+        told = [written.title, written.names[number], octaves.told]
+        title = png.plain(" - ".join(filter(None, told)))
+        panels[0].set_title(f"{title}\n{page.head}", loc="left", fontsize=12, color=INK)
+
+    size = (WIDTH, 0.9 + LINE_INCHES * len(rows))
+    png.write_picture(target, size, fill, overwrite=overwrite)
+
+
+class _Page:
+    """Draws bars of a part."""
+
+    def __init__(self, written: Written, part: Part, bars: Sequence[PageBar]) -> None:
+        self._part, self._bars, self._written = part, bars, written
+        self._pieces = pieces_of(part, bars)
+        self._strokes = strokes_of(part, WrittenClock(written))
+        self._begins = [note.beat for note in part.notes]
+        keys = [key for key in written.keys if key.beat <= self._begins[0]]
+        self._key = keys[-1] if keys else None
+        self._fifths = 0 if self._key is None else written_key(self._key.fifths)
+
+    @property
+    def head(self) -> str:
+        """Key, metre and tempo of the beginning."""
+        do = "C" if self._key is None else self._key.do
+        tempo = self._written.tempi[0].quarters_per_minute if self._written.tempi else 100.0
+        count, unit = signature(self._bars[0].quarters) or (4, 4)
+        bows = f"{BOWS[DOWN]} down-bow   {BOWS[UP]} up-bow"
+        return f"1={do}   {count}/{unit}   \N{QUARTER NOTE}={tempo:g}   {bows}"
+
+    def draw(self, axes: Any, row: range) -> None:
+        """Draw a line of bars."""
+        axes.set_axis_off()
+        axes.set(xlim=(-0.02, BARS_A_LINE + 0.02), ylim=(-2.6, 3.4))
+        places: dict[Fraction, float] = {}  # of note beats, across
+        for column, at in enumerate(row):
+            self._bar(axes, column, at, places)
+        self._joined(axes, row, places)
+
+    def _bar(self, axes: Any, column: int, at: int, places: dict[Fraction, float]) -> None:
+        bar = self._bars[at]
+        axes.text(column + 0.01, 2.9, bar.number, fontsize=7, color="0.5")
+        axes.plot([column + 1.0] * 2, [-0.7, 1.0], color=INK, lw=0.9)
+        cuts = [(piece, cut) for piece in self._pieces[at] for cut in split(piece, _lengths(piece))]
+        width = sum(_width(cut) for _, cut in cuts)
+        x = column + 0.06
+        for _, cut in cuts:
+            step = 0.9 * _width(cut) / width
+            if cut.is_first and cut.note is not None:
+                places[cut.note.beat] = x
+            self._figure(axes, x, step, cut)
+            x += step
+
+    def _figure(self, axes: Any, x: float, step: float, cut: Piece) -> None:
+        text, octave = "0", 0
+        if cut.note is not None:
+            text, octave = figure_of(cut.note.pitch, self._fifths)
+        if cut.note is not None and not cut.is_first:
+            text = f"({text})"
+        axes.text(x, 0.0, text, fontsize=15, color=INK, ha="center", va="center")
+        factor = _factor(cut)
+        length = cut.length / factor
+        beam, dots = SIGN_OF.get(length, ("", ""))
+        lines = " qsdh".index(beam) if beam else 0
+        for line in range(lines):
+            y = -0.55 - 0.16 * line
+            axes.plot([x - 0.02, x + 0.02], [y, y], color=INK, lw=1.2)
+        for dot in range(abs(octave)):
+            y = 0.62 + 0.2 * dot if octave > 0 else -0.62 - 0.16 * lines - 0.2 * dot
+            axes.plot([x], [y], "o", color=INK, ms=2.2)
+        if dots:
+            axes.text(x + 0.018, -0.05, "." * len(dots), fontsize=13, color=INK, va="center")
+        if factor != 1:
+            axes.text(x + 0.018, 0.55, str(factor.denominator), fontsize=6, color=INK)
+        dashes = int(length) - 1 if length >= 2 and cut.note is not None else 0
+        for dash in range(dashes):
+            place = x + step * (dash + 1) / (dashes + 1)
+            axes.text(place, 0.0, "-", fontsize=15, color=INK, ha="center", va="center")
+        if cut.note is not None and cut.is_first:
+            self._marks(axes, x, cut.note)
+
+    def _marks(self, axes: Any, x: float, note: Note) -> None:
+        at = bisect_right(self._begins, note.beat) - 1
+        signs = " ".join(MARK_SIGNS[mark.name] for mark in note.marks if mark.name in MARK_SIGNS)
+        axes.text(x, 1.25, signs, fontsize=9, color=INK, ha="center", va="center")
+        if note.before:
+            axes.text(x - 0.012, 0.75, f"{len(note.before)}", fontsize=6, color=INK, ha="right")
+        stroke = next((each for each in self._strokes if each.first == at), None)
+        if stroke is not None:
+            sign = BOWS.get(stroke.direction, "")
+            axes.text(x, 2.0, sign, fontsize=11, color=BOW, ha="center", va="center")
+        own, before = string_of(note), string_of(self._part.notes[at - 1]) if at else ""
+        finger = note.marked("finger")
+        told = [f"{finger.value:g}" if finger is not None and finger.value else ""]
+        told.append(own if own != before else "")
+        text = " ".join(filter(None, told))
+        axes.text(x, -1.2, text, fontsize=7, color=STRING, ha="center", va="center")
+        axes.text(x, -2.55, note_name(note.pitch), fontsize=5.5, color="0.6", ha="center")
+
+    def _joined(self, axes: Any, row: range, places: dict[Fraction, float]) -> None:
+        """Join the notes of strokes, and write dynamics and hairpins under the line."""
+        last = self._bars[row[-1]].end
+        for stroke in self._strokes:
+            beats = self._begins[stroke.first : stroke.last + 1]
+            xs = [places[beat] for beat in beats if beat in places]
+            if len(xs) > 1:
+                axes.plot([xs[0], xs[0], xs[-1], xs[-1]], [1.5, 1.65, 1.65, 1.5], color=BOW, lw=1)
+        words: dict[Fraction, list[str]] = {}
+        for sign in self._part.signs:
+            if self._bars[row.start].begin <= sign.beat < last:
+                is_loud = sign.name in DYNAMICS or sign.name in FORCED
+                text = WRITTEN_SIGNS.get((sign.name, sign.value), sign.name)
+                words.setdefault(sign.beat, []).append(text)
+                if is_loud:
+                    words[sign.beat].insert(0, words[sign.beat].pop())
+        for beat, texts in words.items():
+            x, text = _at(places, beat) - 0.02, ", ".join(texts)
+            axes.text(x, -1.85, text, fontsize=8, color=LOUD, style="italic", va="center")
+        for span in self._part.spans:
+            if span.name in ("crescendo", "diminuendo"):
+                self._hairpin(axes, span, self._bars[row.start].begin, last, places)
+
+    def _hairpin(
+        self, axes: Any, span: Span, begin: Fraction, end: Fraction, places: dict[Fraction, float]
+    ) -> None:
+        if span.end <= begin or span.begin >= end or not places:
+            return
+        left = _at(places, max(span.begin, begin))
+        right = max(places.values()) if span.end >= end else _at(places, span.end)
+        left, right = left + 0.08, right - 0.04  # beside the dynamics there
+        narrow, wide = (left, right) if span.name == "crescendo" else (right, left)
+        for y in (-2.0, -1.7):
+            axes.plot([narrow, wide], [-1.85, y], color=LOUD, lw=0.9)
+
+
+def _factor(piece: Piece) -> Fraction:
+    """The tuplet that a piece is in, as a factor of its length."""
+    count = tuplet_of(piece.length.denominator)
+    return Fraction(TUPLETS[count], count) if count in TUPLETS else Fraction(1)
+
+
+def _lengths(piece: Piece) -> list[Fraction]:
+    factor = _factor(piece)
+    return [factor * each for each in signed_lengths(piece.length / factor, piece)]
+
+
+def _width(piece: Piece) -> float:
+    return 0.6 + 0.7 * float(piece.length)
+
+
+def _at(places: dict[Fraction, float], beat: Fraction) -> float:
+    """Where a beat is across the line: at the note that begins there or before it."""
+    before = [at for at in places if at <= beat]
+    return places[max(before)] if before else min(places.values(), default=0.0)

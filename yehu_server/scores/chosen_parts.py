@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from yehu_server.errors import ScoreError, did_you_mean
+from yehu_server.scores.melodic import melodic_part, take_turns
 from yehu_server.scores.octaves import Sounding, octaves_of
 from yehu_server.scores.phrasing import REST_S
 from yehu_server.scores.score import Score, ScorePart, notes_of
@@ -53,9 +54,23 @@ def listed(names: Sequence[str]) -> str:
     return ", ".join(shown)
 
 
-def usual_parts(written: Written) -> list[int]:
-    """The number, from 0, of the first part with notes, if there is one."""
-    return [at for at, part in enumerate(written.parts) if part.notes][:1]
+def usual_midi_part(score: Score) -> Score:
+    """Return the part of a score of MIDI that carries the tune, and name the others in a remark.
+
+    Parts that take turns stay together.
+    """
+    names = [part.name for part in score.parts]
+    parts: list[list[Sounding]] = [[] for _ in names]
+    for note in notes_of(score):
+        at = _number_of(score.parts, note.channel, score.events[note.begins].track)
+        if at is not None:
+            parts[at].append(Sounding(note.start_s, note.end_s, (float(note.key),)))
+    tune = melodic_part(names, parts)
+    if tune is None or take_turns(parts):
+        return score
+    others = [name for at, name in enumerate(names) if at != tune]
+    line = f"plays {names[tune]}; also there: {listed(others)} ({ONE_BY_ONE})"
+    return replace(_only(score, [score.parts[tune]]), remarks=(*score.remarks, line))
 
 
 def told_others(written: Written, plays: Sequence[int]) -> str:
@@ -77,7 +92,11 @@ def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
         Where one is not there.
     """
     names = [part.name for part in score.parts]
-    kept = [score.parts[number] for number in numbers_of(names, asked)]
+    return _only(score, [score.parts[number] for number in numbers_of(names, asked)])
+
+
+def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
+    """A score with the notes of some of its parts alone."""
     heard = {(part.channel, part.track) for part in kept}
     events = []
     for event in score.events:
@@ -148,7 +167,13 @@ def _ends_its_key(score: Score, number: int) -> bool:
 
 
 def _name(parts: Sequence[ScorePart], channel: int, track: int) -> str:
-    for part in parts:
+    at = _number_of(parts, channel, track)
+    return f"channel {channel + 1}" if at is None else parts[at].name
+
+
+def _number_of(parts: Sequence[ScorePart], channel: int, track: int) -> int | None:
+    """The number, from 0, of the part that has what a channel plays in a track."""
+    for at, part in enumerate(parts):
         if part.channel in (channel, None) and part.track in (track, None):
-            return part.name
-    return f"channel {channel + 1}"
+            return at
+    return None

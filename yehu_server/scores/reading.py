@@ -10,13 +10,11 @@ from pathlib import Path
 from yehu_server.core.midi.channels import PERCUSSION
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.scores.chosen_parts import (
-    ONE_BY_ONE,
-    listed,
     midi_in_range,
     numbers_of,
     parts_chosen,
     told_others,
-    usual_parts,
+    usual_midi_part,
 )
 from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, naming
 from yehu_server.scores.smf.faults import DamagedError
@@ -24,6 +22,7 @@ from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.written.in_range import moved
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.performed import performed
+from yehu_server.scores.written.tune import usual_parts
 from yehu_server.util.files import read_bytes
 
 
@@ -118,7 +117,7 @@ class How:
     parts : sequence of str
         Names of the parts to play.
     all_parts : bool
-        Whether all are played where none is named: else a written score plays its first one.
+        Whether all are played where none is named: else the one that carries the tune.
     in_range : bool
         Whether parts are moved by octaves as a whole, to fit the instrument.
     is_mpe : bool
@@ -201,9 +200,7 @@ def _midi_played(score: Score, how: How) -> Score:
     if how.parts:
         score = parts_chosen(score, how.parts)
     elif len(score.parts) > 1 and not (how.all_parts or how.is_mpe):
-        names = listed([part.name for part in score.parts])
-        line = f"{len(score.parts)} parts on one yehu: {names} ({ONE_BY_ONE})"
-        score = replace(score, remarks=(*score.remarks, line))
+        score = usual_midi_part(score)
     if not has_notes([score]):
         line = "has controllers and no note: nothing sounds"
         return replace(score, remarks=(*score.remarks, line))

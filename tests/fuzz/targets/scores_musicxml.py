@@ -10,7 +10,11 @@ from fuzz.target import Program, target, written
 
 from yehu_server.errors import ScoreError
 from yehu_server.params.table import find
-from yehu_server.scores.musicxml.reader import read_musicxml
+from yehu_server.scores.jianpu.reader import parse_jianpu
+from yehu_server.scores.jianpu.writer import jianpu_of
+from yehu_server.scores.musicxml.file import parse
+from yehu_server.scores.musicxml.reader import read_musicxml, written_of
+from yehu_server.scores.musicxml.writer import musicxml_of
 from yehu_server.scores.score import LONGEST_DURATION_H, Setting
 from yehu_server.scores.written.notated import MARKS, SIGNS, SPANS, Written
 from yehu_server.scores.written.performed import performed
@@ -125,12 +129,23 @@ def check_played(score: Written) -> None:
             assert param.lo <= message.value <= param.hi
 
 
+def check_again(score: Written) -> None:
+    """What is written of a score is read again, with as many notes."""
+    count = sum(len(part.notes) for part in score.parts)
+    if not 0 < count <= FEW_NOTES or score.end > FEW_BEATS:
+        return
+    again = written_of(parse(musicxml_of(score)[0]))
+    assert sum(len(part.notes) for part in again.parts) == count
+    assert any(part.notes for part in parse_jianpu(jianpu_of(score)[0].encode()).parts)
+
+
 @target("musicxml", ScoreError, words=WORDS, also=("examples/*.musicxml",))
 def musicxml(data: bytes) -> None:
     """A file is a score of notes in order, within bounds, that can be played, or a ScoreError."""
     score = read_musicxml(written(data, "file.musicxml"))
     check_written(score)
     check_played(score)
+    check_again(score)
 
 
 @target("musicxml-built", ScoreError)
@@ -140,6 +155,7 @@ def musicxml_built(data: bytes) -> None:
     score = read_musicxml(written(text.encode(), "file.musicxml"))
     check_written(score)
     check_played(score)
+    check_again(score)
 
 
 @target("mxl", ScoreError, words=(b"PK\x03\x04", b"PK\x01\x02", b"PK\x05\x06"))

@@ -34,6 +34,7 @@ from yehu_server.scores.score import (
 from yehu_server.scores.smf.chunks import Part, read_parts
 from yehu_server.scores.smf.faults import DamageReport
 from yehu_server.scores.smf.named_tracks import parts_of_tracks
+from yehu_server.scores.smf.sysex_tunings import retuned
 from yehu_server.scores.smf.track import Clock, Placed, Track, checked_division
 from yehu_server.scores.smf.wrapper import unwrapped
 
@@ -97,9 +98,9 @@ def read_score(
 
     Formats 0 and 1 play all tracks together under the tempo changes of all of them.
     Format 2 plays its tracks one after another, as `concatenate` would, each starting
-    at 120 bpm with tempo changes of its own. Files that were joined play in turn too. Sysex,
-    escapes and metas other than tempo and time signature are dropped. A channel message with a
-    data byte above 127 is dropped as a whole.
+    at 120 bpm with tempo changes of its own. Files that were joined play in turn too. Sysex
+    other than tuning, escapes, and metas other than tempo and time signature are dropped. A
+    channel message with a data byte above 127 is dropped as a whole.
 
     Parameters
     ----------
@@ -201,7 +202,15 @@ def _play_together(
     names = {number: track.name for number, track in enumerate(tracks, start=first)}
     signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
     metres = (Metre(clock.beat(tick), quarters) for tick, quarters in signatures)
-    return Score(events, end_s, metres=(COMMON_TIME, *metres), parts=_parts(events, names))
+    tunings = sorted((each for track in tracks for each in track.tunings), key=itemgetter(0))
+    tuned, remarks = retuned(events, [(clock.seconds(tick), body) for tick, body in tunings])
+    return Score(
+        tuned,
+        end_s,
+        metres=(COMMON_TIME, *metres),
+        parts=_parts(events, names),
+        remarks=remarks,
+    )
 
 
 def _parts(events: Sequence[ScoreEvent], names: dict[int, str]) -> tuple[ScorePart, ...]:

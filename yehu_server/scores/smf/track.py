@@ -12,6 +12,8 @@ from functools import lru_cache
 import mido
 
 from yehu_server.scores.smf.faults import DamageReport
+from yehu_server.scores.smf.sysex_tunings import MOST as MOST_TUNINGS
+from yehu_server.scores.smf.sysex_tunings import is_tuning
 
 DEFAULT_TEMPO = 500_000  # microseconds a quarter note, 120 bpm
 USUAL_TICKS = 480  # a quarter note, where a file has 0
@@ -98,6 +100,7 @@ class Track:
     messages: list[Placed] = field(default_factory=list)
     tempos: list[tuple[int, int]] = field(default_factory=list)  # in us a quarter
     metres: list[tuple[int, float]] = field(default_factory=list)  # quarters a bar
+    tunings: list[tuple[int, bytes]] = field(default_factory=list)  # by system exclusive
     end: int = 0  # ticks
     end_at: int = 0  # byte of the last event
     events: int = 0  # of any kind, dropped ones too
@@ -185,7 +188,9 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) 
                     break
                 _keep(track, tick, kind, body, at, faults)
             elif status in (SYSEX, ESCAPE):
-                cursor.take(cursor.number(faults))
+                body = cursor.take(cursor.number(faults))
+                if status == SYSEX and is_tuning(body) and len(track.tunings) < MOST_TUNINGS:
+                    track.tunings.append((tick, body))
             elif status > SYSEX:
                 faults.add("a system message, which no file should hold, skipped", at)
                 cursor.take(SYSTEM_DATA_BYTES.get(status, 0))

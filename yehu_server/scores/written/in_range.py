@@ -18,7 +18,7 @@ def moved_part(part: Part, higher: int = 0) -> tuple[Part, Octaves]:
 
     `higher` counts semitones by which the instrument is tuned higher than a yehu.
     """
-    octaves = octaves_of([_sounding(note) for note in part.notes], REST, higher)
+    octaves = octaves_of([sounding(note) for note in part.notes], REST, higher)
     if not any(octaves.of_notes):
         return part, octaves
     notes = tuple(
@@ -49,7 +49,8 @@ def line_of(told: Sequence[tuple[str, str]], higher: int = 0) -> str:
     return f"moved to fit {range_text(higher)}: {moves}"
 
 
-def _sounding(note: Note) -> Sounding:
+def sounding(note: Note) -> Sounding:
+    """When a note sounds (quarters), and its pitches."""
     # A harmonic is as high as it is written: its finger touches an open string.
     graces = [grace.pitch for grace in (*note.before, *note.after)]
     own = [] if harmonic_of(note) is not None else [note.pitch]

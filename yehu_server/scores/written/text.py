@@ -12,6 +12,7 @@ from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Tempo, Written
+from yehu_server.scores.written.tune import usual_parts
 
 ARTICULATED = {float(number): row.name for number, row in enumerate(ARTICULATIONS)}
 MOST_TEMPI = 20  # that the head shows
@@ -31,7 +32,7 @@ def lines_of(written: Written) -> Iterator[str]:
     for beat, quarters in _metres(written):
         bar = written.place(beat)[0]
         yield f"bar {bar}: {quarters:g} quarter{'' if quarters == 1.0 else 's'} in a bar"
-    played = next((at for at, part in enumerate(written.parts) if part.notes), None)
+    played = next(iter(usual_parts(written)), None)
     for number, (part, name) in enumerate(zip(written.parts, written.names, strict=True), start=1):
         yield ""
         yield f"part {number}: {name}, {_what(part, is_played=number - 1 == played)}"

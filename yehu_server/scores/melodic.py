@@ -1,0 +1,84 @@
+"""Which part of a score carries its tune, as far as its name and its notes tell."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+
+from yehu_server.scores.octaves import Sounding, octaves_of
+
+NAMED = re.compile(
+    r"melod|\btune\b|\blead\b|\bvocals?\b|^voice\b|\bsing|\bsolo\b|旋律|主奏|领奏|領奏|唱",
+    re.IGNORECASE,
+)
+ACCOMPANIES = re.compile(
+    r"\bbass\b|chords|accomp|\bpad\b|drum|perc|伴奏|和弦|低音|鼓", re.IGNORECASE
+)
+# By ear.
+LOWEST_TUNE = 50.0  # mean of MIDI notes, below which a part is a bass
+LONG_ENOUGH = 0.25  # of the time that the longest part sounds
+IN_RANGE = 0.9  # of its notes, moved by octaves as a whole
+TOGETHER, MOST_TOGETHER = 0.02, 0.15  # quarters or seconds apart, and share of notes: chords
+REPEATED = 0.8  # share of notes that are the one before: a drone or an accompaniment
+OVERLAP = 0.05  # of the shorter part's sound, from which two parts sound at once
+
+
+def melodic_part(names: Sequence[str], parts: Sequence[Sequence[Sounding]]) -> int | None:
+    """Return the number, from 0, of the first part that is a melody; else the first with notes.
+
+    A part that is named as one goes before others.
+
+    Parameters
+    ----------
+    names, parts
+        Of all parts: the notes of each, in any one unit of time.
+    """
+    longest = max(map(_sounds, parts), default=0.0)
+    sounding = [at for at, notes in enumerate(parts) if notes]
+    tunes = [
+        at for at in sounding if not ACCOMPANIES.search(names[at]) and _is_tune(parts[at], longest)
+    ]
+    named = [at for at in tunes if NAMED.search(names[at])]
+    return next(iter([*named, *tunes, *sounding]), None)
+
+
+def take_turns(parts: Sequence[Sequence[Sounding]]) -> bool:
+    """Whether no two of the parts sound at once, so that one instrument can play them all."""
+    return not any(
+        _together(one, other) > OVERLAP * min(_sounds(one), _sounds(other))
+        for at, one in enumerate(parts)
+        for other in parts[at + 1 :]
+    )
+
+
+def _sounds(notes: Sequence[Sounding]) -> float:
+    return sum(note.end - note.begin for note in notes)
+
+
+def _is_tune(notes: Sequence[Sounding], longest: float) -> bool:
+    pitches = [max(note.pitches) for note in notes if note.pitches]
+    if not pitches or _sounds(notes) <= LONG_ENOUGH * longest:
+        return False
+    chords = sum(after.begin - note.begin < TOGETHER for note, after in pairwise(notes))
+    same = sum(one == other for one, other in pairwise(pitches))
+    octaves = octaves_of([note for note in notes if note.pitches], rest=float("inf"))
+    return (
+        sum(pitches) / len(pitches) >= LOWEST_TUNE
+        and chords <= MOST_TOGETHER * len(notes)
+        and same <= REPEATED * len(pitches)
+        and octaves.outside <= (1.0 - IN_RANGE) * len(notes)
+    )
+
+
+def _together(one: Sequence[Sounding], other: Sequence[Sounding]) -> float:
+    """For how long notes of both sound, of parts in the order of their beginnings."""
+    together, at = 0.0, 0
+    for note in one:
+        while at < len(other) and other[at].end <= note.begin:
+            at += 1
+        for each in other[at:]:
+            if each.begin >= note.end:
+                break
+            together += max(0.0, min(note.end, each.end) - max(note.begin, each.begin))
+    return together

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import random
+import re
 import shutil
 import subprocess
 from fractions import Fraction
+from pathlib import Path
 
 import mido
 import pytest
@@ -14,7 +16,8 @@ from yehu_server.errors import ScoreError
 from yehu_server.scores.abc.reader import read_abc
 
 ABC2MIDI = shutil.which("abc2midi")
-ROLLED = Fraction(1, 20)  # quarters, a chord
+TUNES = Path(__file__).parent / "tunes.abc"
+ROLLED = Fraction(1, 10)  # quarters, a chord
 HEAD = "X:1\nT:A tune\nM:4/4\nL:1/8\nQ:1/4=120\nK:{}\n"
 # Typed over the features of the standard: the key, and the music.
 TYPED = [
@@ -92,6 +95,13 @@ def differences(tunes, read, folder) -> list[tuple]:
 @pytest.mark.skipif(ABC2MIDI is None, reason="abc2midi is not installed")
 def test_typed_tunes_are_those_of_abc2midi(read, tmp_path):
     assert not differences([HEAD.format(key) + music for key, music in TYPED], read, tmp_path)
+
+
+@pytest.mark.skipif(ABC2MIDI is None, reason="abc2midi is not installed")
+def test_fifty_whole_tunes_are_those_of_abc2midi(read, tmp_path):
+    tunes = re.split(r"\n(?=X:)", TUNES.read_text(encoding="utf-8"))[1:]
+    assert len(tunes) == 50
+    assert not differences([tune + "\n" for tune in tunes], read, tmp_path)
 
 
 def generated(chance: random.Random) -> str:

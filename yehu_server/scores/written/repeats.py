@@ -146,7 +146,8 @@ def _groups(bars: Sequence[BarLines]) -> list[list[_Ending]]:
         _reach_repeat(bars, ending, after)
         before = groups[-1][-1] if groups else None
         follows = before is not None and before.last + 1 == ending.first
-        if follows and min(ending.passes) > max(before.passes if before else {0}):
+        taken = {each for other in groups[-1] for each in other.passes} if groups else {0}
+        if follows and min(ending.passes) > min(taken) and taken.isdisjoint(ending.passes):
             groups[-1].append(ending)
         else:
             groups.append([ending])
@@ -195,7 +196,7 @@ def _reach_repeat(bars: Sequence[BarLines], ending: _Ending, after: _Ending | No
 
 def _fill_passes(group: list[_Ending]) -> None:
     """Let each pass have an ending: where none has its number, the one before it."""
-    for number in range(1, max(group[-1].passes)):
+    for number in range(1, max(max(ending.passes) for ending in group)):
         if not any(number in ending.passes for ending in group):
             before = [ending for ending in group if min(ending.passes) <= number]
             (before or group)[-1 if before else 0].passes.add(number)

@@ -242,7 +242,7 @@ class Comparison:
         self.counts["notes that agree"] += found.same
         self.kinds.update([", ".join(found.kinds) or "the same"])
         if found.kinds:
-            share = 100.0 * found.same / max(found.notes, 1)
+            share = 100.0 * found.same / found.notes if found.notes else 100.0
             kinds = ", ".join(found.kinds)
             self.differences.append(f"{path}: {share:.1f} % of notes; {kinds}; {found.first}")
 

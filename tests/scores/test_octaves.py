@@ -100,6 +100,19 @@ def test_tracks_of_a_midi_file_are_moved_each_as_a_whole(tracks):
     assert keys(read_any(tracks, How(("Cello",)))) == [76, 79]
 
 
+def test_a_file_that_says_it_is_mpe_plays_all_its_channels(tmp_path):
+    file = mido.MidiFile()
+    track = file.add_track()
+    for control, value in ((101, 0), (100, 6), (6, 15)):
+        track.append(mido.Message("control_change", control=control, value=value))
+    for channel, key in ((1, 70), (2, 72)):
+        track.append(mido.Message("note_on", channel=channel, note=key))
+    for channel, key in ((1, 70), (2, 72)):
+        track.append(mido.Message("note_off", channel=channel, note=key, time=480))
+    file.save(tmp_path / "mpe.mid")
+    assert keys(read_any(tmp_path / "mpe.mid")) == [70, 72]
+
+
 def test_channels_of_mpe_are_one_part(tmp_path):
     file = mido.MidiFile()
     track = file.add_track()

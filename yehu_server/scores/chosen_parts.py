@@ -15,6 +15,7 @@ from yehu_server.scores.written.in_range import line_of
 from yehu_server.scores.written.notated import Written
 
 MOST_NAMED = 8  # parts in a line
+RPN_FINE, MPE_CONFIGURATION = 100, 6
 ONE_BY_ONE = "--part NAME plays one of them, --ensemble all, each on a yehu of its own"
 
 
@@ -52,6 +53,15 @@ def listed(names: Sequence[str]) -> str:
     if len(names) > MOST_NAMED:
         shown.append(f"{len(names) - MOST_NAMED} others")
     return ", ".join(shown)
+
+
+def says_mpe(score: Score) -> bool:
+    """Whether a score of MIDI says that its channels are notes of one player (MPE, RPN 6)."""
+    return any(
+        event.message.type == "control_change"
+        and (event.message.control, event.message.value) == (RPN_FINE, MPE_CONFIGURATION)
+        for event in score.events
+    )
 
 
 def usual_midi_part(score: Score) -> Score:

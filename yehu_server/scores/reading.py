@@ -13,6 +13,7 @@ from yehu_server.scores.chosen_parts import (
     midi_in_range,
     numbers_of,
     parts_chosen,
+    says_mpe,
     told_others,
     usual_midi_part,
 )
@@ -199,7 +200,7 @@ def performed_part(written: Written, how: How = USUAL) -> Score:
 def _midi_played(score: Score, how: How) -> Score:
     if how.parts:
         score = parts_chosen(score, how.parts)
-    elif len(score.parts) > 1 and not (how.all_parts or how.is_mpe):
+    elif len(score.parts) > 1 and not (how.all_parts or how.is_mpe or says_mpe(score)):
         score = usual_midi_part(score)
     if not has_notes([score]):
         line = "has controllers and no note: nothing sounds"

@@ -19,6 +19,7 @@ from yehu_server.core.player.rows import VELOCITY
 from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, STOP
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture import Capture, read_capture
+from yehu_server.scores.chosen_parts import says_mpe
 from yehu_server.scores.phrasing import FEW_VELOCITIES, MARKED_SPAN
 from yehu_server.scores.reading import is_capture, is_written, read_written
 from yehu_server.scores.score import (
@@ -105,7 +106,7 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
     notes = notes_of(score)
     higher = transposed_keys(score)
     by_frames = any(math.isnan(note.beat) for note in notes)
-    names = score.parts or (ScorePart(""),)
+    names = (ScorePart(""),) if says_mpe(score) or not score.parts else score.parts
     voices: list[tuple[str, list[Heard]]] = [(part.name, []) for part in names]
     for note in notes:
         track = score.events[note.begins].track

@@ -51,9 +51,11 @@ def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
 
 def _decoded(data: bytes) -> str:
     try:
-        return data.decode("utf-8-sig")
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        return data.decode("latin-1")
+        text = data.decode("latin-1")
+    # Spaces of other kinds are spaces, and what cannot be shown is none of the music.
+    return "".join(sign if sign.isprintable() or sign in "\t\r\n" else " " for sign in text)
 
 
 def _tunes(text: str) -> tuple[list[str], list[list[str]]]:

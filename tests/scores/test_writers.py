@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.jianpu.writer import jianpu_of
 from yehu_server.scores.musicxml.file import parse
@@ -32,7 +33,12 @@ from yehu_server.scores.written.notated import (
     Tempo,
     Written,
 )
-from yehu_server.scores.written.words import WRITTEN_CHANGES, WRITTEN_SIGNS, meaning_of
+from yehu_server.scores.written.words import (
+    WRITTEN_CHANGES,
+    WRITTEN_SIGNS,
+    meaning_of,
+    words_of_sign,
+)
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 LENGTHS = [Fraction(n, 16) for n in (1, 2, 3, 4, 6, 8, 10, 12, 14, 16, 24, 28, 32, 40, 48, 64, 92)]
@@ -161,7 +167,9 @@ def test_each_mark_is_written_or_told():
         missing = []
         for name in MARKS:
             value = 2.0 if name in ("trill", "turn", "inverted-mordent") else None
-            value = {"finger": 2.0, "mordent": 1.0, "inverted-turn": 2.0}.get(name, value)
+            value = {"articulation": 3.0, "finger": 2.0, "mordent": 1.0, "inverted-turn": 2.0}.get(
+                name, value
+            )
             note = Note(Fraction(0), Fraction(4), 67.0, (Mark(name, value),))
             again, lost = write(Written((Part("", (note,)),)))
             names = [mark.name for mark in again.parts[0].notes[0].marks]
@@ -200,4 +208,10 @@ def test_what_a_notation_has_no_sign_for_is_told_and_the_rest_written():
 def test_words_of_signs_are_read_as_what_they_say():
     for (name, value), text in WRITTEN_SIGNS.items():
         assert (meaning_of(text).name, meaning_of(text).value) == (name, value)
+    for number in range(len(ARTICULATIONS)):
+        text = words_of_sign("articulation", float(number))
+        other = words_of_sign("gesture", float(number))
+        for name, written in (("articulation", text), ("gesture", other)):
+            if written is not None:
+                assert (meaning_of(written).name, meaning_of(written).value) == (name, number)
     assert [meaning_of(text).name for text in WRITTEN_CHANGES.values()] == [*WRITTEN_CHANGES]

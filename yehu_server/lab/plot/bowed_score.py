@@ -34,7 +34,7 @@ from yehu_server.scores.written.layout import (
 from yehu_server.scores.written.mark_settings import DOWN, OUTER_OPEN, UP, Active, is_plucked
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, Note, Part, Span, Written
 from yehu_server.scores.written.part_bowing import Played, bowed
-from yehu_server.scores.written.words import WRITTEN_SIGNS
+from yehu_server.scores.written.words import words_of_sign
 
 BARS_A_LINE, MOST_LINES = 4, 60
 LINE_INCHES, WIDTH = 1.55, 12.0
@@ -240,7 +240,7 @@ class _Page:
         for sign in self._part.signs:
             if self._bars[row.start].begin <= sign.beat < last:
                 is_loud = sign.name in DYNAMICS or sign.name in FORCED
-                text = WRITTEN_SIGNS.get((sign.name, sign.value), sign.name)
+                text = words_of_sign(sign.name, sign.value) or sign.name
                 words.setdefault(sign.beat, []).append(text)
                 if is_loud:
                     words[sign.beat].insert(0, words[sign.beat].pop())

@@ -44,7 +44,7 @@ from yehu_server.scores.written.notated import (
     Tempo,
     Written,
 )
-from yehu_server.scores.written.words import WRITTEN_CHANGES, WRITTEN_SIGNS
+from yehu_server.scores.written.words import WRITTEN_CHANGES, words_of_sign
 
 BARS_A_LINE = 4
 GRACES = {Fraction(1, 2): "q", Fraction(1, 4): "s", Fraction(1, 8): "d", Fraction(1, 16): "h"}
@@ -164,9 +164,9 @@ class _PartWriter:
             else:
                 found.append((span.begin, 2, f'^"{WRITTEN_CHANGES[span.name]}"'))
         for sign in self._part.signs:
-            word = SIGN_WORDS.get(sign.name)
-            if word is None and (sign.name, sign.value) in WRITTEN_SIGNS:
-                word = f'^"{WRITTEN_SIGNS[sign.name, sign.value]}"'
+            word, text = SIGN_WORDS.get(sign.name), words_of_sign(sign.name, sign.value)
+            if word is None and text is not None:
+                word = f'^"{text}"'
             rest = MARK_WORDS.get(Mark(sign.name, sign.value))
             if word is not None:
                 found.append((sign.beat, 1, word))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from xml.etree.ElementTree import Element, SubElement
 
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.scores.musicxml.marks import ACCIDENTALS, MARKS, ORNAMENTS, neighbour
 from yehu_server.scores.written.layout import LETTERS as WRITTEN_LETTERS
 from yehu_server.scores.written.layout import spelled
@@ -12,7 +13,7 @@ from yehu_server.scores.written.notated import Mark, Note
 
 # Elements by marks: the first of those that are read alike, and the group that it is in.
 ELEMENTS = {mark: element for element, mark in reversed([*MARKS.items()])}
-ARTICULATIONS = {
+GROUPED = {
     "accent", "strong-accent", "staccato", "tenuto", "detached-legato", "staccatissimo",
     "spiccato", "scoop", "plop", "doit", "falloff", "breath-mark", "caesura", "stress", "unstress",
     "soft-accent",
@@ -44,6 +45,9 @@ class MarkWriter:
                 self._technical(notations, "fingering", f"{value:g}")
             elif name in ("inner-string", "outer-string"):
                 self._technical(notations, "string", "2" if name == "inner-string" else "1")
+            elif name == "articulation" and value is not None:
+                group = SubElement(notations, "articulations")
+                SubElement(group, "other-articulation").text = ARTICULATIONS[int(value)].name
             elif name == "harmonic" and value is None:
                 self._technical(notations, "harmonic")
             elif name == "vibrato" and value is None:
@@ -58,7 +62,7 @@ class MarkWriter:
     def _plain(self, notations: Element, name: str) -> None:
         if name in NOTATIONS:
             SubElement(notations, name)
-        elif name in ARTICULATIONS:
+        elif name in GROUPED:
             SubElement(SubElement(notations, "articulations"), name)
         else:
             self._technical(notations, name)

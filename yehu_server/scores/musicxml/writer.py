@@ -40,7 +40,7 @@ from yehu_server.scores.written.notated import (
     Tempo,
     Written,
 )
-from yehu_server.scores.written.words import WRITTEN_CHANGES, WRITTEN_SIGNS
+from yehu_server.scores.written.words import WRITTEN_CHANGES, words_of_sign
 
 HEAD = (
     b'<?xml version="1.0" encoding="UTF-8"?>\n<!DOCTYPE score-partwise PUBLIC '
@@ -304,7 +304,7 @@ class _PartWriter:
             return what.name in WEDGES or (what.name in WRITTEN_CHANGES and not each.is_end)
         if what.name in DYNAMICS or what.name in FORCED or what.name == "velocity":
             return True
-        if (what.name, what.value) in WRITTEN_SIGNS:
+        if words_of_sign(what.name, what.value) is not None:
             return True
         if what.name != "fermata" or what.beat not in self._rests:
             self._lost[what.name] += 1
@@ -335,8 +335,8 @@ class _PartWriter:
         elif what.name == "velocity":
             SubElement(kind, "words")
             sound = {"dynamics": repr((what.value or 80.0) / 0.9)}
-        elif (what.name, what.value) in WRITTEN_SIGNS:
-            SubElement(kind, "words").text = WRITTEN_SIGNS[what.name, what.value]
+        elif (text := words_of_sign(what.name, what.value)) is not None:
+            SubElement(kind, "words").text = text
         else:
             SubElement(SubElement(kind, "dynamics"), what.name)
         offset = round((each.beat - now) * self._divisions)

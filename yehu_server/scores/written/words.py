@@ -96,3 +96,11 @@ def meaning_of(text: str) -> Meaning | None:
                 return Meaning(kind, name)
     tempo = TEMPI.get(re.split(r"[ ,.;]", words, maxsplit=1)[0])
     return None if tempo is None else Meaning("tempo", value=tempo)
+
+
+def words_of_sign(name: str, value: float | None) -> str | None:
+    """How a sign is written in words, so that they are read as itself; None: it has none."""
+    if (name, value) in WRITTEN_SIGNS:
+        return WRITTEN_SIGNS[name, value]
+    own = (text for text, sign in ARTICULATED.items() if sign == (name, value))
+    return next((text for text in own if meaning_of(text) == Meaning("sign", name, value)), None)

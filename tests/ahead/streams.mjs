@@ -1,13 +1,13 @@
 // Plays steps by the WebAssembly module, for the tests, and writes the memory of the instrument at the
-// end; as streams.c does.
+// end, as streams.c does; and the samples (float32, left and right in turn).
 //
 //   node streams.mjs JOB.json
 //
-// A job has: wasm, rate, lookLength, steps and tables (files), blocks, reporting, memory (file to
-// write).
+// A job has: wasm, rate, lookLength, steps and tables (files), blocks, reporting, memory and samples
+// (files to write).
 
 import { readFileSync, writeFileSync } from "node:fs";
-import { Kernel } from "../../web/sound/kernel.js";
+import { CHANNELS, Kernel } from "../../web/sound/kernel.js";
 
 const BLOCK = 128;
 const ROOM = 1 << 15; // frames: the samples leave room for tables
@@ -46,7 +46,7 @@ function step(name, frame, ...numbers) {
 
 kernel.view.setBigInt64(kernel.rig + 8 * job.reporting, 1n, true);
 const lines = readFileSync(job.steps, "utf8").trimEnd().split("\n");
-let finite = true;
+const samples = new Float32Array(CHANNELS * BLOCK * job.blocks);
 let next = 0;
 for (let block = 1; block <= job.blocks; block += 1) {
   while (next < lines.length && Number(lines[next].split(" ")[1]) < block * BLOCK) {
@@ -54,8 +54,9 @@ for (let block = 1; block <= job.blocks; block += 1) {
     next += 1;
   }
   kernel.compute(BLOCK);
-  finite &&= kernel.out.subarray(0, 2 * BLOCK).every(Number.isFinite);
+  samples.set(kernel.out.subarray(0, CHANNELS * BLOCK), CHANNELS * BLOCK * (block - 1));
 }
 const length = Number(wasm.yehu_size());
+writeFileSync(job.samples, samples);
 writeFileSync(job.memory, new Uint8Array(kernel.view.buffer, kernel.rig, length));
-process.stdout.write(JSON.stringify({ finite, lost: kernel.lost }));
+process.stdout.write(JSON.stringify({ finite: samples.every(Number.isFinite), lost: kernel.lost }));

@@ -34,6 +34,9 @@ from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning, read_tuning
 
 RATE, BLOCK = 48000.0, 128
+_mail, _mail_at = (RIG.fields or {})["mail"][:2]
+# Number of the word of an instrument's memory that lets its wishes be reported.
+REPORTING = (_mail_at + (_mail.fields or {})["reporting"][1]) // 8
 OWN_CALLS = 0.05  # a chance after each
 NATIVE_FUNCTIONS = 40  # frames from one step to the next
 SYSEX, CLOCK = (0xF0, 0x7E, 0x09, 0xF7), (0xF8,)

@@ -16,6 +16,7 @@ from ahead.programs import compiled
 from ahead.streams import (
     BLOCK,
     RATE,
+    REPORTING,
     interpreted,
     messages_of,
     numbers,
@@ -28,7 +29,6 @@ from ahead.streams import (
 from yehu_server.ahead.interface import control, midi, use_tables
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.mailbox import RING
-from yehu_server.core.engine.rig import RIG
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
@@ -40,9 +40,6 @@ from yehu_server.playing.tables import Controls
 HERE = Path(__file__).parent
 SEEDS, PARTS = range(5), 12
 SHORT = 2  # parts of a stream in plain Python
-rig_fields = RIG.fields or {}
-mail, mail_at = rig_fields["mail"][:2]
-REPORTING = (mail_at + (mail.fields or {})["reporting"][1]) // 8
 
 
 @pytest.fixture(scope="module")
@@ -91,8 +88,9 @@ def test_web_assembly_gives_the_same_but_for_the_last_bit_of_a_power(streams, he
     for stream, rig in zip(streams, here, strict=True):
         steps, tables = map(str, stream.write(tmp_path))
         job = {"rate": RATE, "steps": steps, "tables": tables, "count": len(stream.tables)}
-        job |= {"blocks": stream.frames // BLOCK, "memory": str(tmp_path / "memory")}
-        report = node("streams.mjs", **job, reporting=REPORTING)
+        job |= {"blocks": stream.frames // BLOCK, "reporting": REPORTING}
+        files = {name: str(tmp_path / name) for name in ("memory", "samples")}
+        report = node("streams.mjs", **job, **files)
         assert report == {"finite": True, "lost": 0}
         found = record_in(tmp_path / "memory")
         assert_near(wishes_in(found), wishes_in(rig))

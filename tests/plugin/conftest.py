@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ahead.conftest import node, wasm  # noqa: F401 - fixtures
 
 from yehu_server.ahead import build as ahead
 from yehu_server.errors import YehuError
@@ -62,6 +63,8 @@ def play(tmp_path, built, host):
         for line in done.stdout.splitlines():
             word, *values = line.split()
             told.setdefault(word, []).append([float(value) for value in values])
+        assert told["odd"] == [[0.0]]
+        assert "untrue" not in told
         return np.fromfile(samples, np.float32).reshape(-1, 2), told
 
     return run

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ctypes
+from pathlib import Path
 
+import mido
 import numpy as np
 
 PHRASE = [
@@ -18,6 +20,8 @@ PHRASE = [
     (72000, 0xB0, 64, 0),
 ]
 FRAMES = 90000
+TICKS = 1920  # of a beat of half a second: all frames above are whole ticks
+TICK_FRAMES = 24000 / TICKS
 
 
 def script(messages, scale=1.0):
@@ -25,8 +29,23 @@ def script(messages, scale=1.0):
     return [f"{round(frame * scale)} midi {a} {b} {c}" for frame, a, b, c in messages]
 
 
-def by_library(path, messages, frames, rate=48000.0):
-    """What the library for C programs plays of messages [shape=(frames, 2)]."""
+def write_midi(path: Path, messages, frames) -> Path:
+    """Write messages, each a frame and three bytes, to a MIDI file that lasts so many frames."""
+    file = mido.MidiFile(type=0, ticks_per_beat=TICKS)
+    track, tick = file.add_track(), 0
+    end = mido.MetaMessage("end_of_track")
+    timed = [(frame, mido.Message.from_bytes(message)) for frame, *message in messages]
+    for frame, message in [*timed, (frames, end)]:
+        at = frame / TICK_FRAMES
+        assert at == int(at)
+        track.append(message.copy(time=int(at) - tick))
+        tick = int(at)
+    file.save(path)
+    return path
+
+
+def prepared(path, rate=48000.0):
+    """The library for C programs, and memory with an instrument that it has prepared [uint8]."""
     library = ctypes.CDLL(str(path))
     size, rig = ctypes.c_int64, ctypes.c_void_p
     library.yehu_size.restype = size
@@ -34,13 +53,24 @@ def by_library(path, messages, frames, rate=48000.0):
     library.yehu_midi.argtypes = [rig, size, ctypes.c_char_p, size]
     library.yehu_process.argtypes = [rig, rig, size]
     memory = np.zeros(library.yehu_size() + 64, np.uint8)
-    at = (memory.ctypes.data + 63) // 64 * 64
-    assert library.yehu_prepare(at, rate, 2)
+    memory = memory[-memory.ctypes.data % 64 :]
+    assert library.yehu_prepare(memory.ctypes.data, rate, 2)
+    return library, memory
+
+
+def played(library, memory, messages, frames):
+    """What a prepared instrument plays of messages [shape=(frames, 2)]."""
+    at = memory.ctypes.data
     for frame, *message in messages:
         assert library.yehu_midi(at, frame, bytes(message), 3) == 1
     samples = np.zeros((frames, 2), np.float32)
     library.yehu_process(at, samples.ctypes.data, frames)
     return samples
+
+
+def by_library(path, messages, frames, rate=48000.0):
+    """What the library for C programs plays of messages [shape=(frames, 2)]."""
+    return played(*prepared(path, rate), messages, frames)
 
 
 def frequency(samples, rate):

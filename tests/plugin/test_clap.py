@@ -118,6 +118,14 @@ def test_a_bounce_sounds_like_the_last_one(play, shown):
     assert not np.array_equal(samples[:FRAMES], samples[100000:])
 
 
+def test_a_count_in_of_any_length_changes_no_bounce(play):
+    wanted, _ = play([*PLAYS, *script(PHRASE)], FRAMES)
+    for count in (752, 768):  # as Ardour's before an export
+        phrase = script([(frame + count, *message) for frame, *message in PHRASE])
+        samples, _ = play(["0 play -1", f"{count} play 1", *phrase], count + FRAMES)
+        assert np.array_equal(samples[count:], wanted)
+
+
 def test_notes_with_expressions_bend_one_by_one_and_pedals_hold_them(play):
     notes = ["0 on 7 0 69 0.7", "24000 express 2 7 1.5", "40000 off 7 0 69", "44000 on 8 0 69 0.7"]
     samples, _ = play(notes, 64000)

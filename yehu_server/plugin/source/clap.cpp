@@ -206,7 +206,10 @@ bool CLAP_ABI activate(const clap_plugin_t *plugin, double rate, uint32_t, uint3
 clap_process_status CLAP_ABI process(const clap_plugin_t *plugin, const clap_process_t *block) {
     Instrument &instrument = of(plugin).instrument;
     if (block->audio_outputs_count == 0 || block->audio_outputs[0].channel_count < 2) return CLAP_PROCESS_ERROR;
-    if (block->transport) instrument.transport(block->transport->flags & CLAP_TRANSPORT_IS_PLAYING);
+    if (const clap_event_transport_t *time = block->transport) {
+        const bool counts_in = time->flags & CLAP_TRANSPORT_HAS_SECONDS_TIMELINE && time->song_pos_seconds < 0;
+        instrument.transport(time->flags & CLAP_TRANSPORT_IS_PLAYING && !counts_in);
+    }
     instrument.begin_block();
     const clap_input_events_t *in = block->in_events;
     for (uint32_t i = 0, count = in ? in->size(in) : 0; i < count; i++) take(instrument, in->get(in, i));

@@ -4,9 +4,9 @@
 #include "engine.hpp"
 
 #define VERSION_OF(prefix)                                                                         \
-    {prefix##yehu_size, prefix##yehu_prepare, prefix##yehu_reset,   prefix##yehu_post,             \
-     prefix##yehu_midi, prefix##yehu_use_tables, prefix##yehu_process, prefix##yehu_frame,         \
-     prefix##yehu_pitch,   prefix##yehu_look}
+    {prefix##yehu_size, prefix##yehu_prepare,    prefix##yehu_reset,   prefix##yehu_post,           \
+     prefix##yehu_midi, prefix##yehu_use_tables, prefix##yehu_process, prefix##yehu_frame,          \
+     prefix##yehu_value, prefix##yehu_pitch,     prefix##yehu_look}
 
 #ifdef __x86_64__
 #include <cpuid.h>
@@ -20,6 +20,7 @@ decltype(yehu_midi) wide_yehu_midi;
 decltype(yehu_use_tables) wide_yehu_use_tables;
 decltype(yehu_process) wide_yehu_process;
 decltype(yehu_frame) wide_yehu_frame;
+decltype(yehu_value) wide_yehu_value;
 decltype(yehu_pitch) wide_yehu_pitch;
 decltype(yehu_look) wide_yehu_look;
 }

@@ -15,6 +15,7 @@ struct Engine {
     decltype(&yehu_use_tables) use_tables;
     decltype(&yehu_process) process;
     decltype(&yehu_frame) frame;
+    decltype(&yehu_value) value;
     decltype(&yehu_pitch) pitch;
     decltype(&yehu_look) look;
 };

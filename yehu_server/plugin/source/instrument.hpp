@@ -39,7 +39,8 @@ public:
     double tail_seconds() const;
 
     /* From the audio thread; in each block first `transport`, if the host tells, and
-     * `begin_block`, then what happens in it, and at last `process`. */
+     * `begin_block`, then what happens in it, and at last `process`. The transport does not play yet
+     * where a host counts in, before the song: how long that takes may differ from time to time. */
     void reset();
     void transport(bool plays);
     void begin_block();

@@ -160,7 +160,8 @@ void tell_moved(Instrument &instrument, v3_param_changes **changes) {
 v3_result V3_API process(void *self, v3_process_data *data) {
     Instrument &instrument = of<PROCESSOR>(self).instrument;
     if (data->symbolic_sample_size != V3_SAMPLE_32) return V3_INVALID_ARG;
-    if (data->ctx && data->nframes > 0) instrument.transport(data->ctx->state & V3_PROCESS_CTX_PLAYING);
+    if (data->ctx && data->nframes > 0)
+        instrument.transport(data->ctx->state & V3_PROCESS_CTX_PLAYING && data->ctx->project_time_in_samples >= 0);
     instrument.begin_block();
     if (data->input_params) take_parameters(instrument, data->input_params);
     if (data->input_events) take_events(instrument, data->input_events);

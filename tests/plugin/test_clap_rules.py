@@ -1,0 +1,121 @@
+"""What free-audio's clap-validator checks of a plug-in, by the small host.
+
+The host itself looks at factory, features and texts, and at every sample that is written.
+"""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+from plugin.sounds import FRAMES, PHRASE, script
+
+pytestmark = pytest.mark.slow
+RATES = (1234.5678, 8000, 12345.678, 22050, 45678.901, 123456.78, 384000, 768000)
+BLOCKS = (1, 10, 17, 256, 1536, 2027, 16384)
+INTERVALS = (10, 100, 1000)
+KEYS, CHANNELS, IDS = range(-1, 128), range(-1, 16), range(-1, 8)
+
+
+def some_values(chance, shown, *, bounds=False):
+    """A value for each parameter, in its range or at one end of it, by number."""
+    found = {}
+    for each in shown.values():
+        value = chance.choice((each.lo, each.hi)) if bounds else chance.uniform(each.lo, each.hi)
+        found[each.number] = round(value) if each.steps else value
+    return found
+
+
+def told_values(told):
+    return {int(number): value for number, value, _ in told["value"]}
+
+
+def some_events(chance, frames, count):
+    """Notes, expressions and MIDI without order: ends without beginnings, and of any note."""
+    lines = []
+    for frame in sorted(chance.randrange(frames) for _ in range(count)):
+        note = f"{chance.choice(IDS)} {chance.choice(CHANNELS)} {chance.choice(KEYS)}"
+        status, one, two = (
+            chance.randrange(0x80, 0xF0),
+            chance.randrange(128),
+            chance.randrange(128),
+        )
+        begins = f"on {chance.choice(IDS)} {chance.randrange(16)} {chance.randrange(128)}"
+        what = chance.choice(
+            (
+                f"{begins} {chance.random()}",
+                f"off {note}",
+                f"choke {note}",
+                f"express {chance.randrange(7)} {chance.choice(IDS)} {chance.uniform(-4.0, 4.0)}",
+                f"midi {status} {one} {two}",
+                f"time {chance.randrange(2)}",
+            )
+        )
+        lines.append(f"{frame} {what}")
+    return lines
+
+
+def in_order(*lists):
+    return sorted(
+        (line for lines in lists for line in lines), key=lambda line: int(line.split()[0])
+    )
+
+
+def test_unruly_events_do_no_harm_at_any_rate_and_in_any_block(play):
+    chance = random.Random(1)
+    cases = [(rate, 0) for rate in RATES] + [(48000, block) for block in BLOCKS]
+    for rate, block in cases:
+        samples, told = play(["0 play 1", *some_events(chance, 20000, 400)], 20000, rate, block)
+        assert np.abs(samples).max() <= 1.0, (rate, block)
+        assert told["allocated"] == [[0.0]], (rate, block)
+
+
+def test_any_values_do_no_harm(play, shown):
+    chance = random.Random(2)
+    lines = []
+    for interval in INTERVALS:
+        frames = 30 * interval
+        own = [
+            f"{frame} {chance.choice(('set', 'set', 'modulate'))} {number} {value}"
+            for frame in range(0, frames, interval)
+            for number, value in some_values(chance, shown, bounds=frame % 20 == 0).items()
+        ]
+        lines = in_order(own, some_events(chance, frames, 60))
+        samples, _ = play(["0 play 1", *lines], frames + 4000, block=512)
+        assert np.abs(samples).max() <= 1.0
+
+
+def test_a_value_is_the_same_by_an_event_and_by_a_flush(play, shown):
+    wanted = some_values(random.Random(3), shown)
+    usual = {each.number: each.default for each in shown.values()}
+    for word, values in (("set", wanted), ("flush", wanted), ("idle", wanted), ("foreign", usual)):
+        lines = [f"0 {word} {number} {value}" for number, value in wanted.items()]
+        found = told_values(play(lines, 64)[1])
+        assert found == pytest.approx(values, rel=1e-9), word
+
+
+def test_a_state_comes_back_byte_by_byte(play, shown, tmp_path):
+    first, second = tmp_path / "first", tmp_path / "second"
+    values = some_values(random.Random(4), shown)
+    own = play([f"0 flush {n} {v}" for n, v in values.items()] + [f"1 save {first}"], 64)[1]
+    again = play([f"0 load {first}", f"1 save {second}"], 64)[1]
+    assert told_values(again) == told_values(own) == pytest.approx(values, rel=1e-9)
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_what_is_no_state_is_refused(play, shown, tmp_path):
+    state, chance = tmp_path / "state", random.Random(5)
+    usual = {each.number: each.default for each in shown.values()}
+    for size in (0, 1, 1 << 20):
+        state.write_bytes(chance.randbytes(size))
+        told = play([f"0 load {state}"], 64)[1]
+        assert told["loaded"] == [[0.0]], size
+        assert told_values(told) == usual
+
+
+def test_values_that_are_so_already_change_nothing(play, shown):
+    """Hosts tell all of them as they begin."""
+    all_values = [f"0 set {each.number} {each.default}" for each in shown.values()]
+    told_first, _ = play(["0 play 1", *all_values, *script(PHRASE)], FRAMES)
+    assert np.array_equal(told_first, play(["0 play 1", *script(PHRASE)], FRAMES)[0])

@@ -1,0 +1,92 @@
+"""The same MIDI file by `render`, the library for C programs, the page's module and the plug-in."""
+
+from __future__ import annotations
+
+import shutil
+
+import mido
+import numpy as np
+import pytest
+from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
+from ahead.streams import BLOCK, RATE, REPORTING, Step, Stream, record_in, wishes_in
+from ahead.test_streams import assert_near
+from plugin.sounds import PHRASE, played, prepared, script, write_midi
+
+from yehu_server.core.engine.rig import RIG
+from yehu_server.core.player.rows import ROW
+from yehu_server.rendering import performance
+from yehu_server.rendering.options import Options
+from yehu_server.scores.smf.reader import read_score
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(shutil.which("node") is None, reason="there is no node"),
+]
+BLOCKS = 750  # two seconds
+FRAMES = BLOCKS * BLOCK
+REST = 4000  # frames before the first sound, in which there is nothing to compare
+
+
+@pytest.fixture
+def file(tmp_path):
+    return write_midi(tmp_path / "phrase.mid", PHRASE, FRAMES)
+
+
+@pytest.fixture
+def messages(file):
+    """What is in the file, as a host plays it: frames and bytes."""
+    now, found = 0.0, []
+    for message in mido.MidiFile(file):
+        now += message.time
+        if not message.is_meta:
+            found.append((round(now * RATE), *message.bytes()))
+    return found
+
+
+def by_render(file, monkeypatch):
+    """Samples and wishes of `render`, which is told the lengths of notes by the score else."""
+    monkeypatch.setattr(performance, "notes_of", lambda _score: ())
+    options = Options(rate=int(RATE), tail_s=0.0)
+    playing = performance.Performance(read_score(file), options, reports=True)
+    samples = np.concatenate(list(playing.blocks()))[:FRAMES]
+    wishes = wishes_in(playing.ensemble.first._rig)
+    return samples, wishes[wishes["index"] != ROW["/playing/phrasing"]]
+
+
+def by_library(path, messages):
+    library, memory = prepared(path, RATE)
+    record = memory[: RIG.itemsize]
+    record.view(np.int64)[REPORTING] = 1
+    return played(library, memory, messages, FRAMES), wishes_in(record.view(RIG))
+
+
+def by_page(node, messages, folder):
+    steps = [Step("midi", frame, tuple(data), ()) for frame, *data in messages]
+    lines, tables = map(str, Stream(steps, []).write(folder))
+    job = {"rate": RATE, "steps": lines, "tables": tables, "count": 0, "blocks": BLOCKS}
+    files = {name: str(folder / name) for name in ("memory", "samples")}
+    assert node("streams.mjs", **job, **files, reporting=REPORTING) == {"finite": True, "lost": 0}
+    samples = np.fromfile(folder / "samples", np.float32).reshape(-1, 2)
+    return samples, wishes_in(record_in(folder / "memory"))
+
+
+def test_a_file_comes_to_the_same_wishes_and_samples(
+    file, messages, library, node, play, tmp_path, monkeypatch
+):
+    """Nothing tells a plug-in's wishes; its samples are the library's, to the last bit."""
+    assert messages == [(frame, *data) for frame, *data in PHRASE]
+    rendered, wanted = by_render(file, monkeypatch)
+    in_c, found = by_library(library, messages)
+    assert len(wanted) > len(PHRASE)
+    assert found.tobytes() == wanted.tobytes()
+    in_page, found = by_page(node, messages, tmp_path)
+    assert_near(found, wanted)
+    in_host, _ = play(["0 play 1", *script(messages)], FRAMES)
+    assert np.array_equal(in_host, in_c)
+    usual = apart(in_c, rendered)
+    for samples in (in_c, in_page):
+        assert not samples[:REST].any()
+        assert begins_alike(samples[REST:], rendered[REST:])
+    cents, decibels = apart(in_page, rendered)
+    assert cents <= max(2.0 * usual[0], NEAR_CENTS)
+    assert decibels <= max(2.0 * usual[1], NEAR_DB)

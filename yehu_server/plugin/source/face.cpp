@@ -43,7 +43,10 @@ float force_share(double force) { return share_of(log10(fmax(force, 1e-9)), -2.0
 } /* namespace */
 
 bool Face::open(uintptr_t parent) {
-    return canvas.resize(wide, high, (float)wide / WIDTH) && window.open(*this, parent, wide, high);
+    if (!canvas.resize(wide, high, (float)wide / WIDTH) || !window.open(*this, parent, wide, high)) return false;
+    is_stale = true;
+    tick(); /* hosts may be late with their first */
+    return true;
 }
 
 void Face::fit(int *width, int *height) {
@@ -57,10 +60,11 @@ void Face::fit(int *width, int *height) {
 void Face::set_size(int width, int height) {
     fit(&width, &height);
     if (width == wide && height == high) return;
-    wide = width, high = height, is_stale = true;
+    wide = width, high = height;
     if (!window.is_open()) return;
     window.resize(wide, high);
     canvas.resize(wide, high, (float)wide / WIDTH);
+    put();
 }
 
 /* -- what the user does ----------------------------------------------------------------------- */
@@ -122,7 +126,11 @@ void Face::zoom(int steps) {
 
 void Face::tick() {
     window.poll();
-    if (!window.is_open() || !(follow() || is_stale) || canvas.width() == 0) return;
+    if (window.is_open() && (follow() || is_stale)) put();
+}
+
+void Face::put() {
+    if (canvas.width() == 0) return; /* there was no memory */
     draw();
     window.put(canvas.pixels(), canvas.width(), canvas.height());
     is_stale = false;

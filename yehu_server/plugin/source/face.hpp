@@ -36,7 +36,6 @@ public:
 
     /* From the window, and `tick` from a timer. */
     void tick();
-    void uncover() { is_stale = true; }
     void press(int x, int y);
     void turn(int x, int y, int steps);
     void key(Key key);
@@ -45,6 +44,7 @@ private:
     static constexpr int CHOOSERS = 3, SHAPES = 8, POINTS = 64, STRINGS = 2;
 
     bool follow();
+    void put();
     void draw();
     void draw_instrument();
     void draw_string(int string);

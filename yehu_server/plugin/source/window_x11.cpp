@@ -21,6 +21,7 @@ constexpr int LEFT_BUTTON = 1, WHEEL_UP = 4, WHEEL_DOWN = 5;
     each(connect) each(disconnect) each(connection_has_error) each(get_setup) each(flush)          \
     each(setup_roots_iterator) each(generate_id) each(create_window) each(destroy_window)          \
     each(map_window) each(unmap_window) each(configure_window) each(create_gc) each(put_image)     \
+    each(create_pixmap) each(free_pixmap) each(change_window_attributes) each(clear_area)          \
     each(poll_for_event) each(set_input_focus) each(get_keyboard_mapping)                          \
     each(get_keyboard_mapping_reply) each(get_keyboard_mapping_keysyms)                            \
     each(get_keyboard_mapping_keysyms_length) each(intern_atom) each(intern_atom_reply)            \
@@ -63,10 +64,20 @@ struct Window::Native {
     xcb_connection_t *connection;
     xcb_window_t window;
     xcb_gcontext_t pen;
+    xcb_pixmap_t picture; /* what X shows by itself, as the window's background */
     uint8_t depth;
     xcb_get_keyboard_mapping_reply_t *keys; /* from the code `first` on */
     xcb_keycode_t first;
+
+    void make_picture(int width, int height);
 };
+
+void Window::Native::make_picture(int width, int height) {
+    if (picture) x->free_pixmap(connection, picture);
+    picture = x->generate_id(connection);
+    x->create_pixmap(connection, depth, picture, window, (uint16_t)width, (uint16_t)height);
+    x->change_window_attributes(connection, window, XCB_CW_BACK_PIXMAP, &picture);
+}
 
 bool Window::has_timer() { return false; }
 
@@ -78,13 +89,15 @@ bool Window::open(Face &face, uintptr_t parent, int width, int height) {
     if (!made) return x->disconnect(c), false;
     const xcb_setup_t *setup = x->get_setup(c);
     const xcb_screen_t *screen = x->setup_roots_iterator(setup).data;
-    *made = {x, &face, c, x->generate_id(c), x->generate_id(c), screen->root_depth, nullptr, setup->min_keycode};
-    const uint32_t wanted = XCB_EVENT_MASK_EXPOSURE | XCB_EVENT_MASK_BUTTON_PRESS | XCB_EVENT_MASK_KEY_PRESS;
+    *made = {x, &face, c, x->generate_id(c), x->generate_id(c), 0, screen->root_depth, nullptr,
+             setup->min_keycode};
+    const uint32_t wanted = XCB_EVENT_MASK_BUTTON_PRESS | XCB_EVENT_MASK_KEY_PRESS;
     const uint32_t values[] = {0, wanted, screen->default_colormap};
     x->create_window(c, screen->root_depth, made->window, (xcb_window_t)parent, 0, 0, (uint16_t)width, (uint16_t)height,
                      0, XCB_WINDOW_CLASS_INPUT_OUTPUT, screen->root_visual,
                      XCB_CW_BORDER_PIXEL | XCB_CW_EVENT_MASK | XCB_CW_COLORMAP, values);
     x->create_gc(c, made->pen, made->window, 0, nullptr);
+    made->make_picture(width, height);
     const char name[] = "_XEMBED_INFO";
     const auto asked = x->intern_atom(c, 0, sizeof name - 1, name);
     const auto keys = x->get_keyboard_mapping(c, made->first, (uint8_t)(setup->max_keycode - made->first + 1));
@@ -112,6 +125,7 @@ uintptr_t Window::handle() const { return native ? native->window : 0; }
 void Window::resize(int width, int height) {
     const uint32_t values[] = {(uint32_t)width, (uint32_t)height};
     native->x->configure_window(native->connection, native->window, XCB_CONFIG_WINDOW_WIDTH | XCB_CONFIG_WINDOW_HEIGHT, values);
+    native->make_picture(width, height);
     native->x->flush(native->connection);
 }
 
@@ -126,10 +140,11 @@ void Window::put(const uint32_t *pixels, int width, int height) {
     const int rows = MOST_BYTES / (4 * width);
     for (int y = 0; y < height; y += rows) {
         const int now = height - y < rows ? height - y : rows;
-        native->x->put_image(native->connection, XCB_IMAGE_FORMAT_Z_PIXMAP, native->window, native->pen, (uint16_t)width,
+        native->x->put_image(native->connection, XCB_IMAGE_FORMAT_Z_PIXMAP, native->picture, native->pen, (uint16_t)width,
                              (uint16_t)now, 0, (int16_t)y, 0, native->depth, (uint32_t)(4 * width * now),
                              (const uint8_t *)(pixels + y * width));
     }
+    native->x->clear_area(native->connection, 0, native->window, 0, 0, 0, 0); /* all of it */
     native->x->flush(native->connection);
 }
 
@@ -139,7 +154,6 @@ void Window::poll() {
         if (!event) return;
         const int kind = event->response_type & 127;
         const auto *press = (const xcb_button_press_event_t *)event;
-        if (kind == XCB_EXPOSE) native->face->uncover();
         if (kind == XCB_BUTTON_PRESS && press->detail == LEFT_BUTTON) {
             native->x->set_input_focus(native->connection, XCB_INPUT_FOCUS_PARENT, native->window, press->time);
             native->face->press(press->event_x, press->event_y);

@@ -158,7 +158,7 @@ bool Face::follow() {
 
 void Face::draw() {
     canvas.fill(PAPER);
-    canvas.box(12, 10, PANEL_X - 24, 234, 8, SURFACE);
+    canvas.box(12, 10, PANEL_X - 17, 234, 8, SURFACE);
     draw_instrument();
     draw_gauges();
     for (int i = 0; i < CHOOSERS; i++) draw_chooser(i);

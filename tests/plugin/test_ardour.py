@@ -23,6 +23,7 @@ LUA, EXPORT = (
 SCANNER = next(iter(sorted(Path("/usr/lib").glob("ardour*/ardour-vst3-scanner"))), None)
 FORMATS = {"LV2": LV2_URI, "VST3": "".join(f"{word:08X}" for word in VST3_ID)}
 SUPERCLOCKS = 282_240_000  # of a second, in sessions
+BLOCK = 64
 LIMIT_S = 120
 TRIES = 5  # Ardour 7.3 overwrites its memory in one export of twenty: it ends, waits, or roars
 
@@ -106,4 +107,9 @@ def test_ardour_exports_the_samples_of_the_library(ardour, library, tmp_path, na
     assert done.returncode == 0, done.stdout + done.stderr
     add_region(session)
     samples = exported(ardour, session, tmp_path / "sound.wav")
-    assert np.array_equal(samples, by_library(library, PHRASE, FRAMES))
+    wanted = by_library(library, PHRASE, FRAMES)
+    # Ardour's export begins 16 frames late at times.
+    begin, wanted_begin = (np.flatnonzero(sound.any(axis=1))[0] for sound in (samples, wanted))
+    assert abs(begin - wanted_begin) < BLOCK
+    count = FRAMES - BLOCK - wanted_begin
+    assert np.array_equal(samples[begin:][:count], wanted[wanted_begin:][:count])

@@ -7,7 +7,7 @@ import py2tosc
 from boxes import Rect
 
 from yehu_server.params.spec import Curve
-from yehu_server.surfaces import layout
+from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.catalogue import SURFACES, made
 
 SERVER = ("192.168.1.5", 9001)
@@ -32,7 +32,7 @@ class Surface(NamedTuple):
 
 def params():
     """The parameters of all groups, by address."""
-    return {param.address: param for group in layout.groups() for param in group.params}
+    return {param.address: param for group in common_layout.groups() for param in group.params}
 
 
 def text_of(name, part=0):

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import errno
 import os
+import socket
 import threading
 
 import pytest
 
 from yehu_server.util import retry
-from yehu_server.util.retry import LONGEST_TURN_S, AwakeTime, Backoff, run_forever, why
+from yehu_server.util.files import why
+from yehu_server.util.retry import LONGEST_TURN_S, AwakeTime, Backoff, run_forever
 
 TOO_MANY = OSError(errno.EMFILE, os.strerror(errno.EMFILE), "/somewhere")
 
@@ -30,6 +32,13 @@ def test_a_reason_is_news_once():
 
 def test_why_says_what_the_system_says():
     assert why(TOO_MANY) == os.strerror(errno.EMFILE)
+    assert why(OSError(errno.EFBIG, "File too large, above 1 KiB")).endswith("above 1 KiB")
+    with (
+        socket.create_server(("127.0.0.1", 0)) as taken,
+        pytest.raises(OSError, match="in use") as raised,
+    ):
+        socket.create_server(taken.getsockname())
+    assert why(raised.value) == os.strerror(errno.EADDRINUSE)
     assert why(RuntimeError("can't start new thread")) == "can't start new thread"
     assert why(MemoryError()) == "MemoryError"
 

@@ -29,7 +29,7 @@ from measures.intonation import (
 from measures.loudness import centroid_hz
 from measures.shares import Share, share
 from measures.take import NOTES, Setup, Take, held, in_parallel
-from yehu_server.cli.stage_options import is_of_room
+from yehu_server.cli.sound_options import is_of_room
 from yehu_server.core.physics.quantities import Quantities, measured_body
 from yehu_server.core.player.calibration import OPEN_NOTES
 from yehu_server.params.table import STRING_NAMES

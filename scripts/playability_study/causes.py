@@ -18,7 +18,7 @@ from maps import band, median
 from tables import BETA, named, table, write_table
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.lab.regimes.names import HELMHOLTZ
+from yehu_server.lab.regimes.columns import HELMHOLTZ
 from yehu_server.lab.sweeps.running import sweep
 from yehu_server.lab.sweeps.study import study_of
 from yehu_server.params.table import find

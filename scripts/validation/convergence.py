@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.lab.regimes.names import HELMHOLTZ, REGIMES
+from yehu_server.lab.regimes.columns import HELMHOLTZ, REGIMES
 from yehu_server.lab.sweeps.result import Result
 from yehu_server.lab.sweeps.running import sweep
 from yehu_server.lab.sweeps.study import study_of

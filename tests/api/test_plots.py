@@ -12,8 +12,7 @@ import pytest
 
 import yehu_server as yehu
 from yehu_server import YehuError
-from yehu_server.lab.regimes.judge import FINDING
-from yehu_server.lab.regimes.names import HELMHOLTZ
+from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ
 from yehu_server.lab.sweeps.result import Result, result_of
 from yehu_server.lab.sweeps.study import study_of
 

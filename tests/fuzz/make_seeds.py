@@ -298,7 +298,7 @@ def sound(*channels: Any) -> bytes:
 
 
 def result() -> bytes:
-    from yehu_server.lab.regimes.judge import FINDING
+    from yehu_server.lab.regimes.columns import FINDING
     from yehu_server.lab.sweeps.result import result_of
     from yehu_server.lab.sweeps.study import study_of
 

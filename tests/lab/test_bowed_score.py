@@ -10,9 +10,9 @@ import pytest
 from yehu_server.lab.plot.bowed_score import string_of, strokes_of, write_bowed_score
 from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.reading import read_written
-from yehu_server.scores.written.clock import WrittenClock
 from yehu_server.scores.written.mark_settings import DOWN, UP
 from yehu_server.scores.written.notated import Mark, Note
+from yehu_server.scores.written.tempo import WrittenClock
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 

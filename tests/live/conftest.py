@@ -9,7 +9,7 @@ import struct
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -26,7 +26,9 @@ from yehu_server.errors import OutputError
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.osc import clients, handler, schedule
+from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.status import PART_STATUS, STATUS
+from yehu_server.live.part_addresses import part_of
 from yehu_server.live.server import Server
 from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import SLOT
@@ -91,24 +93,22 @@ class Services:
         self.changed: list[str] = []
         self.said: list[str] = []
 
-    def status(self) -> dict[str, float | str]:
+    def context(self, players: Sequence[live_player.LivePlayer]) -> CallContext:
+        return CallContext(
+            players,
+            self.states,
+            self.start_recording,
+            self.stop_recording,
+            self.said.append,
+            lambda action: action(),
+            tree_changed=self.changed.append,
+        )
+
+    def states(self, addressed: str) -> dict[str, float | str]:
+        if addressed:
+            return dict.fromkeys((value.name for value in PART_STATUS), float(part_of(addressed)))
         told = dict.fromkeys((value.name for value in STATUS), 0.0)
         return told | {"load": 0.5, "recording": "".join(self.names[-1:])}
-
-    def part_status(self, part: int) -> dict[str, float]:
-        return dict.fromkeys((value.name for value in PART_STATUS), float(part))
-
-    def call_soon(self, action: Callable[[], None]) -> None:
-        action()
-
-    def run_in_background(self, action: Callable[[], None]) -> None:
-        action()
-
-    def tree_changed(self, path: str) -> None:
-        self.changed.append(path)
-
-    def log(self, line: str) -> None:
-        self.said.append(line)
 
     def start_recording(self, name: str) -> str:
         self.names.append(name)
@@ -141,7 +141,7 @@ class StillServer:
         )
         self.player.write("/playing/variation", 0.0, frame=0)
         self.services = Services()
-        self.handler = handler.OscHandler([self.player], self.services)
+        self.handler = handler.OscHandler(self.services.context([self.player]))
         self.peer = FakePeer()
         self.events: list[tuple[int, str, float]] = []
 

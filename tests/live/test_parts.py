@@ -43,7 +43,7 @@ def players(still) -> list[LivePlayer]:
         instrument.frame_at = still.instrument.frame_at
         still.others.append(instrument)
         more.append(LivePlayer(instrument, PlayingOptions(), delay_ms=3.0, part=part))
-    still.handler = handler.OscHandler([still.player, *more], still.services)
+    still.handler = handler.OscHandler(still.services.context([still.player, *more]))
     return [still.player, *more]
 
 
@@ -330,7 +330,7 @@ def test_the_tree_has_each_part_with_all_that_is_its_own(still, players):
     with_value = {path for path, node in walk(part) if "VALUE" in node}
     assert with_value == {"/yehu/part/2" + address for address in LISTENABLE_OF_PARTS}
     writable = {path for path, node in walk(part) if node["ACCESS"] & 2}
-    known = {"/yehu" + call for call in still.handler._calls if call.startswith("/part/2/")}
+    known = {one for one in still.handler.addresses if one.startswith("/yehu/part/2/")}
     assert writable == known
 
 

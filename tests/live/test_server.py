@@ -8,7 +8,7 @@ import time
 import pytest
 from wire import f32
 
-from yehu_server.live.addresses import Allowed
+from yehu_server.live.network import Allowed
 
 
 def test_a_message_is_heard_a_constant_time_after_it_came(live, busy):

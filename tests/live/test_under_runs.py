@@ -6,8 +6,8 @@ import pytest
 from wire import StillTime
 
 from yehu_server.cli.report import status_line
-from yehu_server.live import under_runs
-from yehu_server.live.under_runs import EVERY_S, UnderRunReport
+from yehu_server.live import housekeeper
+from yehu_server.live.housekeeper import UNDER_RUNS_EVERY_S, UnderRunReport
 
 STATUS = {
     "note": -1.0, "bow_speed": 0.0, "device": "a device with a long name", "peak_db": -160.0,
@@ -18,7 +18,7 @@ STATUS = {
 @pytest.fixture
 def clock(monkeypatch) -> StillTime:
     clock = StillTime(1000.0)
-    monkeypatch.setattr(under_runs, "time", clock)
+    monkeypatch.setattr(housekeeper, "time", clock)
     return clock
 
 
@@ -29,7 +29,7 @@ def test_there_is_a_line_at_once_and_then_one_a_minute(clock) -> None:
         clock.now = 1000.0 + second
         report.look(2 * second)
     assert [line.partition(":")[0] for line in said] == [
-        "2 under-runs", f"120 under-runs in the last {EVERY_S:.0f} s",
+        "2 under-runs", f"120 under-runs in the last {UNDER_RUNS_EVERY_S:.0f} s",
         "120 under-runs in the last 60 s"
     ]  # fmt: skip
     assert "(242 so far)" in said[-1]

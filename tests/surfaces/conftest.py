@@ -6,7 +6,7 @@ import pytest
 
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import TABLE, find
-from yehu_server.surfaces import layout
+from yehu_server.surfaces import common_layout
 
 _ROW = find("/playing/vibrato_rate")
 LARGER = (
@@ -21,6 +21,6 @@ LARGER = (
 @pytest.fixture(params=[TABLE, LARGER], ids=["the table", "a larger table"])
 def any_table(request, monkeypatch):
     """Make surfaces from either table."""
-    groups = layout.groups(request.param)
-    monkeypatch.setattr(layout, "groups", lambda: groups)
+    groups = common_layout.groups(request.param)
+    monkeypatch.setattr(common_layout, "groups", lambda: groups)
     return request.param

@@ -5,7 +5,7 @@ from boxes import overlapping
 from surface_readers import READERS, SERVER
 
 from yehu_server.params.table import BY_ADDRESS
-from yehu_server.surfaces import layout
+from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.catalogue import SURFACES, made
 
 pytestmark = pytest.mark.parametrize("name", READERS)
@@ -24,7 +24,7 @@ def test_a_control_sends_at_its_address_and_has_its_name_and_range_beside_it(nam
     for control in READERS[name]().controls:
         param = BY_ADDRESS[control.address]
         assert control.sends == f"/yehu{param.address}"
-        assert layout.label(param) in control.texts
+        assert common_layout.label(param) in control.texts
         assert param.range_text in control.texts
 
 

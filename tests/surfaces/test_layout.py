@@ -6,34 +6,34 @@ import pytest
 
 from yehu_server.live.osc.call_table import CALLS
 from yehu_server.params.table import TABLE, find
-from yehu_server.surfaces import layout
+from yehu_server.surfaces import common_layout
 
 
 def test_every_parameter_is_in_one_group_of_its_first_word():
-    grouped = [(group.name, param) for group in layout.groups() for param in group.params]
+    grouped = [(group.name, param) for group in common_layout.groups() for param in group.params]
     assert sorted(param.address for _, param in grouped) == sorted(p.address for p in TABLE)
     assert all(param.address.startswith(f"/{name}/") for name, param in grouped)
 
 
 def test_what_the_player_goes_by_comes_first():
-    assert layout.groups()[0].name == "playing"
+    assert common_layout.groups()[0].name == "playing"
 
 
 def test_a_new_word_of_the_table_makes_a_group_of_its_own():
     new = replace(find("/bow/speed"), address="/rosin/amount")
-    *_, last = layout.groups((*TABLE, new))
+    *_, last = common_layout.groups((*TABLE, new))
     assert (last.name, last.params) == ("rosin", (new,))
 
 
 def test_labels_within_a_group_differ_and_keep_the_address_words():
-    for group in layout.groups():
-        labels = [layout.label(param) for param in group.params]
+    for group in common_layout.groups():
+        labels = [common_layout.label(param) for param in group.params]
         assert len(set(labels)) == len(labels)
-    assert layout.label(find("/finger/1/press")) == "1 press"
-    assert layout.label(find("/playing/bow_position")) == "bow position"
+    assert common_layout.label(find("/finger/1/press")) == "1 press"
+    assert common_layout.label(find("/playing/bow_position")) == "bow position"
 
 
-@pytest.mark.parametrize("pad", layout.PADS, ids=lambda pad: pad.name)
+@pytest.mark.parametrize("pad", common_layout.PADS, ids=lambda pad: pad.name)
 def test_a_pad_sends_what_its_calls_take(pad):
     for address, numbers in pad.calls:
         (call,) = (call for call in CALLS if call.address == address)
@@ -43,8 +43,8 @@ def test_a_pad_sends_what_its_calls_take(pad):
 
 
 def test_the_keys_are_the_notes_of_the_instrument():
-    assert list(layout.KEYS) == list(range(65, 90))
+    assert list(common_layout.KEYS) == list(range(65, 90))
 
 
 def test_a_subscription_is_renewed_before_it_ends():
-    assert 2 * layout.SUBSCRIBE_EVERY_S < layout.SUBSCRIBED_S
+    assert 2 * common_layout.SUBSCRIBE_EVERY_S < common_layout.SUBSCRIBED_S

@@ -4,7 +4,7 @@ import pytest
 from surface_readers import READERS
 
 from yehu_server.params.table import TABLE
-from yehu_server.surfaces import layout
+from yehu_server.surfaces import common_layout
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def test_it_speaks_to_the_server_and_names_the_port_it_hears_at(patch):
     assert patch.one("udpreceive 7400")
     subscribe = patch.one("/yehu/subscribe 60 7400")
     assert patch.texts_after(subscribe) == ["udpsend 192.168.1.5 9001"]
-    metro = patch.one(f"metro {1000 * layout.SUBSCRIBE_EVERY_S}")
+    metro = patch.one(f"metro {1000 * common_layout.SUBSCRIBE_EVERY_S}")
     assert patch.texts_after(metro) == [subscribe["text"]]
 
 
@@ -46,15 +46,15 @@ def test_the_panel_ignores_the_server_while_a_dial_is_moved(patch):
 def test_the_keyboard_sends_notes_and_their_ends(patch):
     (keys,) = patch.all("kslider")
     assert keys["mode"] == 2  # a touch screen's: the release is sent too
-    assert keys["offset"] <= layout.KEYS[0]
-    assert keys["offset"] + keys["range"] > layout.KEYS[-1]
+    assert keys["offset"] <= common_layout.KEYS[0]
+    assert keys["offset"] + keys["range"] > common_layout.KEYS[-1]
     ((note, first),) = patch.after(keys)
     ((same, second),) = patch.after(keys, 1)
     assert (note, first, second) == (same, 0, 1)
     assert patch.texts_after(note) == ["prepend /yehu/note"]
 
 
-@pytest.mark.parametrize("pad", layout.PADS, ids=lambda pad: pad.name)
+@pytest.mark.parametrize("pad", common_layout.PADS, ids=lambda pad: pad.name)
 def test_a_pad_sends_its_calls(patch, pad):
     (slider,) = (box for box in patch.all("pictslider") if box["varname"] == pad.name)
     found = {}

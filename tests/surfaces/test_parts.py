@@ -7,7 +7,7 @@ import pytest
 from yehu_server.cli import main
 from yehu_server.live.osc.call_table import CALLS
 from yehu_server.params.table import TABLE
-from yehu_server.surfaces import layout
+from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.catalogue import SURFACES, made
 
 SERVER = ("127.0.0.1", 9000)
@@ -100,6 +100,6 @@ def test_a_part_that_no_stage_has_is_refused_and_nothing_written(tmp_path, capsy
 
 
 def test_after_a_part_surfaces_are_again_for_all():
-    with layout.for_part(2):
-        assert layout.full("/note") == "/yehu/part/2/note"
-    assert layout.full("/note") == "/yehu/note"
+    with common_layout.for_part(2):
+        assert common_layout.full("/note") == "/yehu/part/2/note"
+    assert common_layout.full("/note") == "/yehu/note"

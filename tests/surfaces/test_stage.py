@@ -4,7 +4,7 @@ import pytest
 from surface_readers import READERS
 
 from yehu_server.params.table import TABLE
-from yehu_server.surfaces import layout
+from yehu_server.surfaces import common_layout
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def test_all_that_sends_speaks_to_the_server(widgets):
 def test_pads_keys_and_buttons_say_the_calls(widgets):
     bow, string, keys = widgets["bow pad"], widgets["string pad"], widgets["keys"]
     ends = bow["rangeX"]["max"], bow["rangeY"]["max"]
-    assert ends == (layout.BOW_SPEED.hi, layout.BOW_FORCE.hi)
+    assert ends == (common_layout.BOW_SPEED.hi, common_layout.BOW_FORCE.hi)
     assert bow["address"] == "/yehu/bow"
     assert "send('/yehu/bow', 0, 0)" in bow["onTouch"]
     assert "send('/yehu/pitch', value[0])" in string["onValue"]
@@ -39,4 +39,4 @@ def test_pads_keys_and_buttons_say_the_calls(widgets):
 def test_the_session_subscribes_by_itself(widgets):
     script = widgets["root"]["onCreate"]
     assert script.startswith("send('/yehu/subscribe', 60)")
-    assert f"{1000 * layout.SUBSCRIBE_EVERY_S})" in script
+    assert f"{1000 * common_layout.SUBSCRIBE_EVERY_S})" in script

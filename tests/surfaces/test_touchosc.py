@@ -7,7 +7,7 @@ from surface_readers import READERS, sent, start
 
 from yehu_server.params.table import BY_ADDRESS
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.surfaces import layout
+from yehu_server.surfaces import common_layout
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def test_a_fader_tells_its_value_and_takes_what_it_is_told_without_sending_it(do
 
 def test_the_string_pad_slides_and_presses(document):
     (pad,) = document.find_all("string", type="XY")
-    pitch, press = layout.STRING_PITCH, layout.STRING_PRESS
+    pitch, press = common_layout.STRING_PITCH, common_layout.STRING_PRESS
     assert [sent(message) for message in pad.messages] == [
         ("/yehu/pitch", [("VALUE", "x", pitch.lo, pitch.hi)], [("x", "ANY")]),
         ("/yehu/press", [("VALUE", "y", press.lo, press.hi)], [("y", "ANY")]),
@@ -43,7 +43,7 @@ def test_the_string_pad_slides_and_presses(document):
 
 def test_the_bow_pad_draws_and_lifts_at_its_release(document):
     (pad,) = document.find_all("bow", type="XY")
-    speed, force = layout.BOW_SPEED, layout.BOW_FORCE
+    speed, force = common_layout.BOW_SPEED, common_layout.BOW_FORCE
     draw, lift = (sent(message) for message in pad.messages)
     assert draw == (
         "/yehu/bow",
@@ -57,7 +57,7 @@ def test_the_bow_pad_draws_and_lifts_at_its_release(document):
 
 
 def test_a_key_sends_its_velocity_and_then_0(document):
-    for key in layout.KEYS:
+    for key in common_layout.KEYS:
         (button,) = document.find_all(note_name(key), type="BUTTON")
         (message,) = button.messages
         address, (note, velocity), triggers = sent(message)
@@ -77,7 +77,7 @@ def test_a_button_says_its_call_once_when_pressed(document, name):
 def test_the_layout_subscribes_by_itself(document):
     script = document.root.get("script")
     assert "sendOSC('/yehu/subscribe/unit')" in script
-    assert f"> {1000 * layout.SUBSCRIBE_EVERY_S} then" in script
+    assert f"> {1000 * common_layout.SUBSCRIBE_EVERY_S} then" in script
 
 
 def test_bar_pages_and_tabs_lie_above_each_other(any_table):

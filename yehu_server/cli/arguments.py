@@ -15,7 +15,7 @@ from rich_argparse import RawDescriptionRichHelpFormatter
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import one_line
-from yehu_server.live.addresses import OSC_ADDRESS, format_address, parse_address
+from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
 from yehu_server.util.files import shipped_folder
 
 if TYPE_CHECKING:

@@ -24,6 +24,7 @@ from yehu_server.cli.arguments import (
 from yehu_server.cli.converters import positive
 from yehu_server.cli.terminal import print_report, progress_bar, warn, warn_of_compiling
 from yehu_server.errors import OutputError, ParameterError
+from yehu_server.util.files import why
 
 if TYPE_CHECKING:
     from yehu_server.lab.dataset.making import Part
@@ -130,7 +131,7 @@ def _check_folder(folder: Path) -> None:
     except NotADirectoryError:
         raise OutputError(f"{folder}: is a file; name a folder") from None
     except OSError as error:
-        raise OutputError(f"{folder}: {error.strerror}") from error
+        raise OutputError(f"{folder}: {why(error)}") from error
     if is_other:
         raise OutputError(f"{folder}: is not empty, and is no data set; name a new folder")
 

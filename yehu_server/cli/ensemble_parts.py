@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from yehu_server.cli.stage_options import BY_MIDI, Values, is_of_room, room_of
+from yehu_server.cli.sound_options import BY_MIDI, Values, is_of_room, room_of
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import EnsembleError, ParameterError, YehuError
 

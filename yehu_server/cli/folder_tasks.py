@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import replaceable
 from yehu_server.errors import OutputError, ScoreError, YehuError
+from yehu_server.util.files import why
 
 if TYPE_CHECKING:
     from yehu_server.rendering.folder_tree import Entry
@@ -138,7 +139,7 @@ def _made(task: Task, report_progress: ProgressCallback) -> Done:
     from yehu_server.cli.render_one import rendered
     from yehu_server.lab.plot.png import check_picture
     from yehu_server.rendering import build_records
-    from yehu_server.util.files import check_distinct, check_free, check_target, make_folder, why
+    from yehu_server.util.files import check_distinct, check_free, check_target, make_folder
 
     entry, options = task.entry, task.arguments
     may_replace = replaceable(options)

@@ -15,13 +15,19 @@ from yehu_server.cli.arguments import (
     add_output,
     add_reporting,
     check_output,
-    instrument_of,
 )
-from yehu_server.cli.converters import hours, number_within, target, whole
-from yehu_server.cli.playing_options import add_playing, playing_options_of
-from yehu_server.cli.stage_options import add_room, room_of
+from yehu_server.cli.converters import hours, number_within, target
+from yehu_server.cli.playing_options import add_playing
+from yehu_server.cli.sound_options import (
+    PLOTTED_BLOCK,
+    add_room,
+    add_sound,
+    check_sound,
+    playing_in_room,
+    sound_options_of,
+)
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn
-from yehu_server.errors import OutputError, ParameterError
+from yehu_server.errors import OutputError
 from yehu_server.scores.score import MAX_DURATION_H
 
 if TYPE_CHECKING:
@@ -68,22 +74,16 @@ def add_to(commands: Any) -> None:
             (default: exact)
         --max-duration HOURS: refuse a recording that lasts longer (default: {MAX_DURATION_H:g})
         --plot PNG: also draw the pitch and level that were heard and that are played
-        --rate HZ: sample rate (default: 44100)
         --subtype: sample format (default: 24 bits)
-        --tail SECONDS: time after the end, up to 600 (default: until it is quiet, at most 5 s)
-        --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
-        --normalize: scale the result to a peak of -1 dBFS
         """,
         transpose=number_within(-60.0, 60.0, "semitones"),
         correct={"type": number_within(0.0, 1.0, ""), "default": 0.0},
         style={"choices": STYLES, "default": STYLES[0]},
         max_duration={"type": hours, "default": MAX_DURATION_H},
         plot=target,
-        rate={"type": whole, "default": 44100},
         subtype={"choices": ("16", "24", "float"), "default": "24"},
-        tail=number_within(0.0, 600.0, "s"),
-        gain_db=number_within(-60.0, 24.0, "dB"),
     )
+    add_sound(parser)
     add_room(parser)
     add_instrument(parser)
     add_playing(parser)
@@ -140,19 +140,12 @@ def _options(arguments: argparse.Namespace) -> Options:
     YehuError
         Where something is wrong.
     """
-    from yehu_server.core.physics.grid import check_rate
-    from yehu_server.rendering.options import Options
     from yehu_server.util.files import check_distinct, check_target
     from yehu_server.util.sound_file import check_format, format_of
 
     ending = arguments.output.suffix.lower()
-    check_rate(arguments.rate)
-    if arguments.dry and arguments.room is not None:
-        raise ParameterError("--dry has no room: leave out --room")
-    playing = playing_options_of(arguments)
-    if arguments.room is not None:
-        room = room_of(arguments.room, playing.presets)
-        playing = replace(playing, start=(*playing.start, *room))
+    check_sound(arguments)
+    playing = playing_in_room(arguments)
     outputs = {"-o": arguments.output}
     if arguments.plot is not None:
         from yehu_server.lab.plot.png import check_picture
@@ -170,18 +163,7 @@ def _options(arguments: argparse.Namespace) -> Options:
         form = format_of(arguments.output)
         check_format(form, arguments.subtype)
         check_output(arguments)
-    return Options(
-        rate=arguments.rate,
-        format_name=form,
-        subtype=arguments.subtype,
-        tail_s=arguments.tail,
-        gain_db=arguments.gain_db,
-        normalize=arguments.normalize,
-        playing=playing,
-        quantities=instrument_of(arguments),
-        is_dry=arguments.dry,
-        is_mono=arguments.mono,
-    )
+    return sound_options_of(arguments, playing, form, arguments.subtype)
 
 
 def _write(arguments: argparse.Namespace, options: Options, heard: Heard, found: Performed) -> None:
@@ -236,6 +218,3 @@ def _render(
 
         watch.finish()
         write_followed(heard, found.semitones, watch, arguments.plot, overwrite=arguments.overwrite)
-
-
-PLOTTED_BLOCK = 512  # frames between two readings of the pitch that is asked for

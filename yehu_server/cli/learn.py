@@ -12,7 +12,7 @@ from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import ParameterError, YehuError
 
 if TYPE_CHECKING:
-    from yehu_server.live.osc.client import OscClient
+    from yehu_server.live.osc.command_client import OscClient
 
 EXAMPLES = """\
 examples:
@@ -53,7 +53,7 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.live.osc.client import OscClient
+    from yehu_server.live.osc.command_client import OscClient
 
     with OscClient(server_of(arguments)) as client:
         if arguments.parameters:

@@ -23,7 +23,7 @@ from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import MappingError, ParameterError
 
 if TYPE_CHECKING:
-    from yehu_server.live.osc.client import OscClient
+    from yehu_server.live.osc.command_client import OscClient
     from yehu_server.playing.bind import Bind
     from yehu_server.playing.mapping import Mapping
 
@@ -124,7 +124,7 @@ def _show_live(arguments: argparse.Namespace) -> int:
     from rich.live import Live
 
     from yehu_server.cli.report import bindings_table
-    from yehu_server.live.osc.client import OscClient
+    from yehu_server.live.osc.command_client import OscClient
 
     if arguments.mapping is not None:
         raise ParameterError("--live shows the mapping of the server; name none")

@@ -22,7 +22,6 @@ from yehu_server.cli.converters import (
     number_within,
     positive,
     target,
-    whole,
 )
 from yehu_server.cli.playing_options import add_playing
 from yehu_server.cli.render_one import rendered
@@ -35,7 +34,7 @@ from yehu_server.cli.render_pipe import (
     sound_target,
     tell_beside,
 )
-from yehu_server.cli.stage_options import add_stage
+from yehu_server.cli.sound_options import add_sound, add_stage
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.scores.score import MAX_DURATION_H
 
@@ -77,16 +76,11 @@ def add_to(commands: Any) -> None:
     add_options(
         parser,
         f"""
-        --rate HZ: sample rate (default: 44100)
         --format: file format (default: by the ending of OUT); raw, samples alone, for -o -
         --subtype: sample format (default: 24 bits; of raw, float)
         --channel N: play only this MIDI channel, 1 to 16; may be repeated (default: all but 10)
         --part NAME ...: play this part, by its name, the beginning of that, or its number; may be
             repeated (default: of a written score the first, of a MIDI file all)
-        --tail SECONDS: time after the end of the score, up to 600 (default: until 80 dB below full
-            scale, at most 5 s)
-        --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
-        --normalize: scale the result to a peak of -1 dBFS
         --phrasing SHARE: how much plain notes are shaped, by phrases, accents, slurs, vibrato and
             slides; what a file marks stays: 0 to 1 (default: 0.5; 0: exactly as written)
         --song N: play only the N-th song of each file, where a file has several (default: one after
@@ -96,17 +90,15 @@ def add_to(commands: Any) -> None:
             {MAX_DURATION_H:g})
         --plot PNG: also draw level, pitch asked and played, and spectrogram; of a folder, a folder
         """,
-        rate={"type": whole, "default": 44100},
         format={"choices": ("wav", "flac", "raw")},
         subtype={"choices": ("16", "24", "float")},
         channel={"type": channel, "action": "append"},
-        tail=number_within(0.0, 600.0, "s"),
-        gain_db=number_within(-60.0, 24.0, "dB"),
         phrasing=number_within(0.0, 1.0, ""),
         song=positive,
         max_duration={"type": hours, "default": MAX_DURATION_H},
         plot=target,
     )
+    add_sound(parser)
     add_stage(parser)
     add_instrument(parser)
     add_playing(parser)

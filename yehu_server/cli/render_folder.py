@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _check(arguments: argparse.Namespace) -> str:
     """Check the options before any file is looked at; return the format to write."""
     from yehu_server.cli.playing_options import playing_options_of
-    from yehu_server.cli.stage_options import check_stage
+    from yehu_server.cli.sound_options import check_stage
     from yehu_server.core.physics.grid import check_rate
     from yehu_server.util.sound_file import check_format
 

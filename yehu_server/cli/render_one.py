@@ -8,11 +8,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import check_output, instrument_of
+from yehu_server.cli.arguments import check_output
 from yehu_server.cli.ensemble_parts import Players, players_of
-from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.cli.render_pipe import is_piped
-from yehu_server.cli.stage_options import check_stage, room_of
+from yehu_server.cli.sound_options import (
+    PLOTTED_BLOCK,
+    check_stage,
+    playing_in_room,
+    sound_options_of,
+)
 from yehu_server.cli.terminal import compile_all, progress_bar, warn
 from yehu_server.errors import OutputError
 from yehu_server.util.files import anything, make_folder
@@ -26,7 +30,6 @@ if TYPE_CHECKING:
     from yehu_server.scores.score import Score
 
 PHRASING = 0.5  # of files, where nothing else is asked for
-PLOTTED_BLOCK = 512  # frames between two readings of the pitch that is asked for
 
 
 @dataclass(frozen=True)
@@ -53,19 +56,12 @@ def rendered(
     YehuError
         Where it fails; no partial file is left.
     """
-    from yehu_server.core.physics.grid import check_rate
     from yehu_server.playing.calibration import calibration_key
-    from yehu_server.rendering.options import Options
     from yehu_server.rendering.to_files import render
     from yehu_server.util.files import check_distinct
 
-    check_rate(arguments.rate)
     check_stage(arguments)
-    playing = playing_options_of(arguments)
-    if arguments.room is not None:
-        playing = replace(
-            playing, start=(*playing.start, *room_of(arguments.room, playing.presets))
-        )
+    playing = playing_in_room(arguments)
     phrasing = arguments.phrasing
     if phrasing is None:
         phrasing = dict(playing.settings).get("/playing/phrasing", PHRASING)
@@ -75,19 +71,12 @@ def rendered(
     form = _format(arguments)
     may_replace = anything if is_piped(arguments.output) else check_output(arguments)
     _warn_of_own(arguments, playing)
-    channels = arguments.channel
-    options = Options(
-        rate=arguments.rate,
-        format_name=form,
-        subtype=arguments.subtype or ("float" if form == "raw" else "24"),
-        channels=frozenset(channels) if channels is not None else None,
-        tail_s=arguments.tail,
-        gain_db=arguments.gain_db,
-        normalize=arguments.normalize,
-        playing=playing,
-        quantities=instrument_of(arguments),
-        is_dry=arguments.dry,
-        is_mono=arguments.mono,
+    options = sound_options_of(
+        arguments,
+        playing,
+        form,
+        arguments.subtype or ("float" if form == "raw" else "24"),
+        channels=None if arguments.channel is None else frozenset(arguments.channel),
         jobs=arguments.jobs,
     )
     scores = _scores(arguments, options.playing)
@@ -113,7 +102,7 @@ def rendered(
             parts, arguments.output, options, follow or progress, may_replace, stems, watch
         )
     if watch is not None:
-        from yehu_server.lab.plot.panels import write_picture
+        from yehu_server.lab.plot.rendered import write_picture
 
         watch.finish()
         voices = "" if len(parts) == 1 else f"{len(parts)} parts, "

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError, ScoreError, YehuError
+from yehu_server.util.files import why
 
 STDIN = "standard input"  # also the name of its file
 BROKEN_PIPE = 141  # as the shell tells of a program that the signal for it has ended
@@ -72,7 +73,7 @@ def piped_in(arguments: argparse.Namespace) -> Iterator[None]:
                         raise ScoreError(f"{STDIN}: larger than {MAX_BYTES // 2**20} MiB")
                     file.write(data)
         except OSError as error:
-            raise ScoreError(f"{STDIN}: cannot be read: {error.strerror}") from error
+            raise ScoreError(f"{STDIN}: cannot be read: {why(error)}") from error
         arguments.midi = [path if each == "-" else each for each in arguments.midi]
         try:
             yield

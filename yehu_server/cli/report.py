@@ -12,7 +12,7 @@ import numpy as np
 
 from yehu_server.errors import one_line
 from yehu_server.lab.simulation import Simulation
-from yehu_server.live.addresses import format_address
+from yehu_server.live.network import format_address
 from yehu_server.live.page.guests import LISTEN, OWN, PLAY, Guests
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping

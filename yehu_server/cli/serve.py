@@ -129,8 +129,8 @@ class _Ending:
 def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     """Serve until a signal or the end of --duration; return the exit code."""
     from yehu_server.cli.report import connect_lines, query_line
-    from yehu_server.live.addresses import lan_interface
     from yehu_server.live.audio.devices import ADVICE, NO_OUTPUT
+    from yehu_server.live.network import lan_interface
     from yehu_server.live.server import Server
     from yehu_server.playing.mapping import is_own
 
@@ -176,7 +176,7 @@ def _tell_of_page(
 ) -> None:
     from yehu_server.cli.page import show
     from yehu_server.cli.report import page_for_phones, page_lines
-    from yehu_server.live.addresses import lan_address
+    from yehu_server.live.network import lan_address
 
     where = (pages.host, pages.port, lan_address())
     lines = page_lines(*where, networks=options.networks, guests=options.guests)

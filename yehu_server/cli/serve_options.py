@@ -12,7 +12,7 @@ from yehu_server.cli.converters import number_within, port, positive, target, wh
 from yehu_server.cli.part_options import add_parts, part_options, routes_of
 from yehu_server.cli.playing_options import add_playing
 from yehu_server.cli.terminal import LEVELS
-from yehu_server.live.addresses import (
+from yehu_server.live.network import (
     ANYWHERE,
     HTTP_ADDRESS,
     OSC_ADDRESS,
@@ -146,10 +146,10 @@ def options_of(arguments: argparse.Namespace) -> Any:
     YehuError
         Where a value or file is wrong.
     """
-    from yehu_server.live.addresses import Allowed
     from yehu_server.live.audio.output import OutputOptions
     from yehu_server.live.midi.input_process import check_api
     from yehu_server.live.midi.ports import MidiOptions
+    from yehu_server.live.network import Allowed
     from yehu_server.live.options import ServeOptions
     from yehu_server.live.web.server import WebOptions
     from yehu_server.util.files import check_distinct

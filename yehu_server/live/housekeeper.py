@@ -14,7 +14,6 @@ from functools import partial
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import MappingError
-from yehu_server.live.under_runs import UnderRunReport
 from yehu_server.playing.delay import Delay
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
@@ -24,6 +23,11 @@ from yehu_server.util.retry import run_forever
 from yehu_server.util.token_bucket import TokenBucket
 
 LINES_PER_S, LINES_AT_ONCE = 0.1, 1.0  # of each count
+UNDER_RUNS_EVERY_S = 60.0
+HINT = "a larger --blocksize, or --latency high, leaves more time"
+LOOK_EVERY_S = 0.5  # at a mapping's files
+TURN_EVERY_S = 0.05
+PROGRAMS_EVERY_S = 1.0  # between looks whether files of presets changed
 
 
 class CounterReport:
@@ -57,7 +61,43 @@ class CounterReport:
                 self._on_message(f"{what} ({count} so far)")
 
 
-LOOK_EVERY_S = 0.5
+class UnderRunReport:
+    """Reports under-runs of the device and missed deadlines.
+
+    Parameters
+    ----------
+    on_message : callable
+        Called with each line.
+    """
+
+    def __init__(self, on_message: Callable[[str], None]) -> None:
+        self._on_message = on_message
+        self._began = time.monotonic()
+        self._told_at: float | None = None  # of the last line
+        self._told = 0
+
+    def look(self, under_runs: int) -> None:
+        """Report under-runs, if there are more: the first at once, then those of each minute."""
+        now = time.monotonic()
+        is_due = self._told_at is None or now >= self._told_at + UNDER_RUNS_EVERY_S
+        if under_runs <= self._told or not is_due:
+            return
+        new = _counted(under_runs - self._told, "under-run")
+        since = "" if self._told_at is None else f" in the last {now - self._told_at:.0f} s"
+        self._on_message(f"{new}{since}: the sound had gaps ({under_runs} so far); {HINT}")
+        self._told_at, self._told = now, under_runs
+
+    def sum_up(self, under_runs: int, missed: int) -> None:
+        """Report all at the end, if there were any."""
+        if under_runs or missed:
+            counts = (
+                f"{_counted(under_runs, 'under-run')} and {_counted(missed, 'missed deadline')}"
+            )
+            self._on_message(f"{counts} in {time.monotonic() - self._began:.0f} s")
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 class MappingFollower:
@@ -100,10 +140,6 @@ class MappingFollower:
             self._player.remap(mapping, frame=self._player.frame_of())
             self._on_change()
             self._on_message(f"the mapping {mapping.name} has changed; it is used from now on")
-
-
-TURN_EVERY_S = 0.05
-PROGRAMS_EVERY_S = 1.0  # between looks whether files of presets changed
 
 
 class Housekeeper:

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from platformdirs import user_music_path
 
-from yehu_server.live.addresses import OSC_ADDRESS, Address, Allowed
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.audio.voice_input import FollowOptions
 from yehu_server.live.midi.ports import MidiOptions
+from yehu_server.live.network import OSC_ADDRESS, Address, Allowed
 from yehu_server.live.page.pages import PageOptions
 from yehu_server.live.web.server import WebOptions
 from yehu_server.playing.mapping import Mapping

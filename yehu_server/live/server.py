@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 
@@ -23,11 +24,15 @@ from yehu_server.live.audio.voice_input import VoiceInput
 from yehu_server.live.housekeeper import Housekeeper, MappingFollower
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
+from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.call_table import more_calls
+from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.receiving import OscPorts
+from yehu_server.live.osc.status import PartSources, StatusSources, read_part_status, read_status
 from yehu_server.live.page.pages import Pages
-from yehu_server.live.services import Services
+from yehu_server.live.part_addresses import part_of
+from yehu_server.live.web.query import Snapshot
 from yehu_server.live.web.server import Sources, WebServer
 from yehu_server.playing.calibration import Progress
 from yehu_server.playing.calibration_store import calibration_for
@@ -97,16 +102,19 @@ class Server:
             )
             self.players = tuple(part.player for part in self.parts)
             self.player.presets.all()  # read now, so that listing them is quick later
-            self.services = Services(
-                self.parts,
-                self.ensemble,
-                self.delay,
-                self.output,
-                options.output.blocksize,
+            self.takes = Recordings(self.ensemble, options.recordings, on_message)
+            self._files = ThreadPoolExecutor(1, "files")
+            self.context = CallContext(
+                self.players,
+                self.states,
+                self.takes.start,
+                self.takes.stop,
                 on_message,
+                self._files.submit,
             )
-            self.handler = OscHandler(self.players, self.services)
+            self.handler = OscHandler(self.context)
             self.osc = OscPorts(*options.osc, options.allowed, self.handler)
+            self.context.call_soon = self.osc.call_soon
             undo.callback(self.osc.stop)
             self.pages = self._pages()
             if self.pages is not None:
@@ -114,6 +122,7 @@ class Server:
             self.web = self._web()
             if self.web is not None:
                 undo.callback(self.web.stop)
+                self.context.tree_changed = self.web.tree_changed
             if options.capture is not None:
                 for instrument in self.ensemble.instruments:
                     instrument.report_wishes()
@@ -121,15 +130,9 @@ class Server:
                 for address, value in playing.settings:
                     player.hold(address, value)
             undo.pop_all()
-        self.takes = Recordings(self.ensemble, options.recordings, on_message)
-        self.services.handler, self.services.osc, self.services.takes = (
-            self.handler,
-            self.osc,
-            self.takes,
-        )
         self.is_interruptible = False  # whether `stop` may be interrupted by an exception now
         self.midi = self._midi()
-        self.services.web, self.services.midi = self.web, self.midi
+        self._started = time.monotonic()
         services = announced(self.osc, self.web, options.announce)
         self._announcer = Announcer(services, on_message) if services else None
         self.voice = self._voice()
@@ -150,7 +153,7 @@ class Server:
         return self.ensemble.first
 
     def _make_housekeeper(self) -> Housekeeper:
-        on_change = partial(self.services.tree_changed, "/")
+        on_change = partial(self.context.tree_changed, "/")
         followers = [
             MappingFollower(player, part.reread, on_change, self._on_message)
             for player, part in zip(self.players, self.options.parts, strict=True)
@@ -173,7 +176,7 @@ class Server:
             self.players,
             self.options.page,
             memory,
-            self.services.sound,
+            self._sound,
             self._on_message,
             self._rigs,
         )
@@ -199,7 +202,7 @@ class Server:
         if self.options.http is None:
             return None
         sources = Sources(
-            self.services.snapshot,
+            lambda group: Snapshot(self.context.values(group), self.states(group)),
             shipped_folder("mappings"),
             len(self.parts),
             lambda: more_calls(self.players),
@@ -257,7 +260,7 @@ class Server:
         finally:
             self.is_interruptible = False
             self._housekeeper.stop()
-            self.services.close()
+            self._files.shutdown()
             self.takes.close()
 
     def skip_fade_out(self) -> None:
@@ -289,10 +292,41 @@ class Server:
             if self._hurry.wait(0.005):
                 return
 
+    def states(self, addressed: str) -> dict[str, float | str]:
+        """The status values of a group of addresses, by name; any thread may call."""
+        return {**self.part_status(part_of(addressed))} if addressed else self.status()
+
     def status(self) -> dict[str, float | str]:
         """The status values, by name; any thread may call."""
-        return self.services.status()
+        return read_status(
+            StatusSources(
+                parts=list(map(_sources, self.parts)),
+                ensemble=self.ensemble,
+                delay=self.delay,
+                output=self.output.state,
+                blocksize=self.options.output.blocksize,
+                osc=self.osc.traffic,
+                messages=self.handler.counts,
+                scheduled=self.handler.waiting,
+                subscribers=self.handler.clients.subscribers,
+                web=WebTraffic() if self.web is None else self.web.traffic,
+                midi=self.midi,
+                recording=self.takes.names,
+                uptime_s=time.monotonic() - self._started,
+            )
+        )
 
     def part_status(self, part: int) -> dict[str, float]:
         """The status values of a part, counted from 0; any thread may call."""
-        return self.services.part_status(part)
+        return read_part_status(_sources(self.parts[part]))
+
+    def _sound(self) -> dict[str, float | str | None]:
+        """What pages show of the sound."""
+        state = self.output.state
+        delay_ms = 1e3 * self.player.delay / self.ensemble.rate
+        return {"device": state.device, "latencyMs": state.latency_ms + delay_ms}
+
+
+def _sources(part: Part) -> PartSources:
+    meters = [instrument.meters() for instrument in part.instruments]
+    return PartSources(part.player, part.instruments, meters)

@@ -178,13 +178,8 @@ class LivePlayer:
 
     # -- the mapping -------------------------------------------------------------------------
 
-    @property
-    def addresses(self) -> tuple[str, ...]:
-        """The OSC addresses that the mapping binds."""
-        return self._midi.mapping.addresses
-
     def move(self, address: str, argument: float, *, frame: int) -> None:
-        """Move the targets of one of the `addresses`; others move nothing."""
+        """Move the targets of an OSC address that the mapping binds; others move nothing."""
         with self._lock:
             self._midi.move(address, argument, frame=self._at(frame))
 

@@ -20,6 +20,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from yehu_server.errors import YehuError
+from yehu_server.util.files import why
 
 ProgressCallback = Callable[[float, float], None]  # what is done, and of what
 Perform = Callable[[Any, ProgressCallback], Any]
@@ -70,7 +71,7 @@ class _Worker:
         try:
             self.process.start()
         except OSError as error:
-            raise YehuError(f"a process cannot be started: {error.strerror}") from error
+            raise YehuError(f"a process cannot be started: {why(error)}") from error
         finally:
             theirs.close()
 

@@ -27,7 +27,7 @@ from yehu_server.scores.capture_format import (
 )
 from yehu_server.scores.capture_header import SessionStart, read_header
 from yehu_server.util.documents import Document, Fields
-from yehu_server.util.files import read_lines
+from yehu_server.util.files import read_lines, why
 
 MOST_BYTES = 1 << 30
 MOST_WISHES = 20_000_000  # each takes 40 bytes
@@ -96,7 +96,7 @@ def read_capture(path: Path) -> Capture:
                     raise ScoreError(f"{path}: has more than {MOST_WISHES} events")
         chunks.append((np.array(wishes, WISH), np.array(players, np.int64)))
     except OSError as error:
-        raise ScoreError(f"{path}: {error.strerror}") from error
+        raise ScoreError(f"{path}: {why(error)}") from error
     except ValueError as error:  # no UTF-8, or a NUL in the name
         raise ScoreError(f"{path}: not a capture ({error})") from error
     _put_in_order(path, capture, chunks)

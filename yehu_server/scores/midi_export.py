@@ -16,8 +16,8 @@ from yehu_server.params.table import find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.scores.score import Score, Setting
-from yehu_server.scores.written.clock import WrittenClock
 from yehu_server.scores.written.notated import Written
+from yehu_server.scores.written.tempo import WrittenClock
 
 TICKS = 960  # a quarter note
 BEND = "/playing/bend"

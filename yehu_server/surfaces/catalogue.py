@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from yehu_server.errors import OutputError
-from yehu_server.live.addresses import OSC_ADDRESS, Address
+from yehu_server.live.network import OSC_ADDRESS, Address
 from yehu_server.surfaces import max as max_patch
 from yehu_server.surfaces import open_stage_control, parameter_reference, puredata, touchosc
-from yehu_server.surfaces.layout import ALL, for_part
+from yehu_server.surfaces.common_layout import ALL, for_part
 from yehu_server.util.files import replacing
 
 

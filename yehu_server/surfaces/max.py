@@ -12,10 +12,10 @@ from typing import Any
 from py2max import Box, Patcher
 from py2max.core.common import Rect
 
-from yehu_server.live.addresses import Address
+from yehu_server.live.network import Address
 from yehu_server.params.spec import Param
-from yehu_server.surfaces import layout
-from yehu_server.surfaces.layout import Frame, Group, full
+from yehu_server.surfaces import common_layout
+from yehu_server.surfaces.common_layout import Frame, Group, full
 from yehu_server.surfaces.patch_cords import QUIET_MS, Network, width_of
 
 PORT = 7400  # at which the patch receives values from the server; that of part N at N more
@@ -52,7 +52,7 @@ class Panel(Network[Box]):
     def __init__(self, bottom: float) -> None:
         super().__init__(top=bottom)
         self.patcher = Patcher(
-            title=layout.named("yehu"),
+            title=common_layout.named("yehu"),
             openinpresentation=1,
             on_invalid="raise",
             validate_attrs=False,
@@ -88,19 +88,21 @@ class Panel(Network[Box]):
 
 def make(server: Address) -> bytes:
     """Write the patch as JSON."""
-    shelves = list(_shelves(layout.groups()))
+    shelves = list(_shelves(common_layout.groups()))
     rows = max(row + -(-len(group.params) // COLUMNS) for group, row, _ in shelves)
     panel = Panel(TOP + rows * CELL[1] + MARGIN)
     host, port = server
-    heard_at = layout.port_from(PORT)
-    asking = ", ".join(f"{to} {layout.SUBSCRIBED_S} {heard_at}" for to in layout.subscriptions())
+    heard_at = common_layout.port_from(PORT)
+    asking = ", ".join(
+        f"{to} {common_layout.SUBSCRIBED_S} {heard_at}" for to in common_layout.subscriptions()
+    )
     panel.draw(
         NETWORK.format(
             host=host,
             port=port,
             asking=asking,
             heard_at=heard_at,
-            every_ms=1000 * layout.SUBSCRIBE_EVERY_S,
+            every_ms=1000 * common_layout.SUBSCRIBE_EVERY_S,
             quiet_ms=QUIET_MS,
         )
     )
@@ -129,7 +131,7 @@ def _shelves(groups: Sequence[Group]) -> Iterator[tuple[Group, int, int]]:
 
 def _hands(panel: Panel) -> None:
     """Add two pads, keys and messages to click."""
-    for pad in layout.PADS:
+    for pad in common_layout.PADS:
         frame = pad.frame.on(HANDS, MARGIN / 4)
         panel.show("comment", pad.title, frame._replace(height=LINE))
         slider = panel.show(
@@ -149,18 +151,18 @@ def _hands(panel: Panel) -> None:
                 axis = pad.axes[number]
                 scale = f"scale 0. {STEPS}. {float(axis.lo)} {float(axis.hi)}"
                 panel.draw(f"pad:{number} -> [{scale}] -> {inlet}:both", pad=slider)
-    first, last = layout.KEYS[0], layout.KEYS[-1]
+    first, last = common_layout.KEYS[0], common_layout.KEYS[-1]
     keys = panel.show(
         "textbox",
         "kslider",
-        layout.KEYS_FRAME.on(HANDS, MARGIN / 4),
+        common_layout.KEYS_FRAME.on(HANDS, MARGIN / 4),
         varname="keys",
         mode=2,  # a touch screen's: releasing a key ends its note
         offset=first // 12 * 12,
         range=last // 12 * 12 + 12 - first // 12 * 12,
     )
     panel.draw("keys -> note[pack 0 0] -> [@/note] -> send\nkeys:1 -> 1:note", keys=keys)
-    for place, call in enumerate(("/bow 0 0", *(f"/{name}" for name in layout.BUTTONS))):
+    for place, call in enumerate(("/bow 0 0", *(f"/{name}" for name in common_layout.BUTTONS))):
         frame = Frame(MARGIN + place * 130, MARGIN, 120, LINE)
         panel.draw("said -> send", said=panel.show("message", full(call), frame))
 
@@ -170,7 +172,7 @@ def _dial(panel: Panel, param: Param, x: float, y: float) -> None:
     unit = "" if param.unit == "1" else f" {param.unit}"
     value = {
         "parameter_longname": param.address,
-        "parameter_shortname": layout.label(param),
+        "parameter_shortname": common_layout.label(param),
         "parameter_mmin": param.lo,
         "parameter_mmax": param.hi,
         "parameter_type": FLOAT,

@@ -8,10 +8,10 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from yehu_server.live.addresses import Address
+from yehu_server.live.network import Address
 from yehu_server.params.spec import Curve, Param
-from yehu_server.surfaces import layout
-from yehu_server.surfaces.layout import Frame, Pad, full
+from yehu_server.surfaces import common_layout
+from yehu_server.surfaces.common_layout import Frame, Pad, full
 
 FORMAT = "1.30.1"  # the version of Open Stage Control whose sessions these are
 COLUMNS = 8
@@ -24,10 +24,12 @@ Widget = dict[str, Any]
 def make(server: Address) -> bytes:
     """Write the session as JSON."""
     speaks = {"target": [f"{server[0]}:{server[1]}"]}
-    send = "; ".join(f"send('{to}', {layout.SUBSCRIBED_S})" for to in layout.subscriptions())
-    again = f"setInterval(() => {{ {send} }}, {1000 * layout.SUBSCRIBE_EVERY_S})"
+    send = "; ".join(
+        f"send('{to}', {common_layout.SUBSCRIBED_S})" for to in common_layout.subscriptions()
+    )
+    again = f"setInterval(() => {{ {send} }}, {1000 * common_layout.SUBSCRIBE_EVERY_S})"
     tabs: dict[str, tuple[list[Widget], Widget]] = {"hands": (_hands(), {})}
-    for group in layout.groups():
+    for group in common_layout.groups():
         grid = {"layout": "grid", "gridTemplate": COLUMNS}
         tabs[group.name] = ([_fader(param) for param in group.params], grid)
     root = {
@@ -53,23 +55,23 @@ def _placed(frame: Frame, page: Frame) -> Widget:
 
 def _hands() -> list[Widget]:
     """Return two pads, keys and buttons."""
-    pads = [_pad(pad) | _placed(pad.frame, HANDS) for pad in layout.PADS]
+    pads = [_pad(pad) | _placed(pad.frame, HANDS) for pad in common_layout.PADS]
     keys = {
         "type": "keyboard",
         "id": "keys",
-        **_placed(layout.KEYS_FRAME, HANDS),
+        **_placed(common_layout.KEYS_FRAME, HANDS),
         "address": full("/note"),
-        "start": layout.KEYS[0],
-        "keys": len(layout.KEYS),
-        "on": layout.VELOCITY,
+        "start": common_layout.KEYS[0],
+        "keys": len(common_layout.KEYS),
+        "on": common_layout.VELOCITY,
         "off": 0,
     }
-    width = 1 / len(layout.BUTTONS)
+    width = 1 / len(common_layout.BUTTONS)
     buttons = [
         {"type": "button", "id": name, "label": name, "mode": "momentary"}
         | _placed(Frame(place * width, 0, width, 1), BUTTONS)
         | {"address": full(f"/{name}")}
-        for place, name in enumerate(layout.BUTTONS)
+        for place, name in enumerate(common_layout.BUTTONS)
     ]
     return [*pads, keys, *buttons]
 
@@ -101,7 +103,7 @@ def _fader(param: Param) -> Widget:
     return {
         "type": "fader",
         "id": param.address,
-        "html": f"{layout.label(param)}<br/>{param.range_text}",
+        "html": f"{common_layout.label(param)}<br/>{param.range_text}",
         "address": full(param.address),
         "range": {"min": param.lo, "max": param.hi},
         "logScale": param.curve is Curve.EXP,

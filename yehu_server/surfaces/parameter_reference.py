@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from html import escape
 
-from yehu_server.live.addresses import Address
-from yehu_server.live.osc.call_table import CALLS, Argument
+from yehu_server.live.network import Address
+from yehu_server.live.osc.call import Argument
+from yehu_server.live.osc.call_table import CALLS
 from yehu_server.params.spec import Param
 from yehu_server.params.table import UNIT
-from yehu_server.surfaces import layout
-from yehu_server.surfaces.layout import full
+from yehu_server.surfaces import common_layout
+from yehu_server.surfaces.common_layout import full
 
 STYLE = """\
 :root { color-scheme: light dark; --ink: #2b2622; --paper: #fbf8f2; --line: #d9cfbd;
@@ -59,7 +60,9 @@ CALL_HEADS = ("address", "arguments", "meaning")
 def make(server: Address) -> bytes:
     """Write the page as HTML; it is the same for every server."""
     del server
-    sections = [_section(group.name, HEADS, map(_row, group.params)) for group in layout.groups()]
+    sections = [
+        _section(group.name, HEADS, map(_row, group.params)) for group in common_layout.groups()
+    ]
     calls = [
         (_code(full(call.address)), ", ".join(map(_argument, call.arguments)), escape(call.doc))
         for call in CALLS
@@ -70,11 +73,11 @@ def make(server: Address) -> bytes:
         "<head>",
         '<meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        f"<title>{layout.named('yehu')} parameters</title>",
+        f"<title>{common_layout.named('yehu')} parameters</title>",
         f"<style>\n{STYLE}</style>",
         "</head>",
         "<body>",
-        f"<h1>{layout.named('yehu')} parameters</h1>",
+        f"<h1>{common_layout.named('yehu')} parameters</h1>",
         f"<p>Set each at its address, or as 0 to 1 at <code>ADDRESS{UNIT}</code>.</p>",
         '<p><input type="search" aria-label="Search" placeholder="Search"></p>',
         *sections,

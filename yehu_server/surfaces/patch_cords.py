@@ -6,7 +6,7 @@ import re
 from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
 
-from yehu_server.surfaces.layout import full, local
+from yehu_server.surfaces.common_layout import full, local
 
 # While a control is moved it ignores the server, whose echo would move it back.
 QUIET_MS = 250

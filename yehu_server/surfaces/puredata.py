@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import accumulate
 
-from yehu_server.live.addresses import Address
+from yehu_server.live.network import Address
 from yehu_server.params.spec import Curve, Param
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.surfaces import layout
-from yehu_server.surfaces.layout import Group, full, local
+from yehu_server.surfaces import common_layout
+from yehu_server.surfaces.common_layout import Group, full, local
 from yehu_server.surfaces.patch_cords import QUIET_MS, Network
 
 MOVED = ".moved"
@@ -95,7 +95,7 @@ class Canvas(Network[int]):
 
 def make(server: Address) -> bytes:
     """Write the patch."""
-    columns = _columns(layout.groups())
+    columns = _columns(common_layout.groups())
     height = TOP + ROW * max(sum(len(group.params) + 2 for group in column) for column in columns)
     patch = Canvas(COLUMNS * COLUMN + 40, height + 20, "12")
     _play(patch)
@@ -123,7 +123,7 @@ def _columns(groups: Sequence[Group]) -> list[list[Group]]:
 
 def _play(patch: Canvas) -> None:
     """Add keys and buttons."""
-    keys = layout.KEYS
+    keys = common_layout.KEYS
     patch.text(20, 10, f"keys {note_name(keys[0])} to {note_name(keys[-1])}")
     strip = f"hradio 22 1 0 {len(keys)} {local(KEY)} empty empty 0 -8 0 10 {COLOURS} 0"
     patch.add("obj", 20, 34, strip)
@@ -138,7 +138,7 @@ def _slider(patch: Canvas, param: Param, x: int, y: int) -> None:
     sent, ends = address + MOVED, f"{param.lo:g} {param.hi:g}"
     slider = f"hsl {SLIDER} 16 {ends} {int(param.curve is Curve.EXP)} 0 {sent} {address} empty"
     number = x + NAME + SLIDER + 14
-    patch.text(x, y, layout.label(param))
+    patch.text(x, y, common_layout.label(param))
     patch.add("obj", x + NAME, y, f"{slider} -2 -8 0 10 {COLOURS} 0 1")
     patch.add("floatatom", number, y, f"7 {ends} 0 - {address} {sent}")
     patch.text(number + NUMBER, y, param.range_text)
@@ -152,16 +152,16 @@ def _wires(server: Address) -> Canvas:
         WIRES.format(
             host=host,
             port=port,
-            every_ms=1000 * layout.SUBSCRIBE_EVERY_S,
-            for_s=layout.SUBSCRIBED_S,
+            every_ms=1000 * common_layout.SUBSCRIBE_EVERY_S,
+            for_s=common_layout.SUBSCRIBED_S,
             quiet_ms=QUIET_MS,
-            lowest=layout.KEYS[0],
-            velocity=layout.VELOCITY,
+            lowest=common_layout.KEYS[0],
+            velocity=common_layout.VELOCITY,
         )
     )
-    for address in layout.subscriptions():
+    for address in common_layout.subscriptions():
         wires.draw(f"subscribe -> [{wires.prefixing(address)}] -> send")
-    params = [param for group in layout.groups() for param in group.params]
+    params = [param for group in common_layout.groups() for param in group.params]
     for param in params:
         address = full(param.address)
         wires.draw(WIRED_SLIDER.format(address=address, moved=MOVED, param=param.address))

@@ -25,12 +25,12 @@ from py2tosc import (
     ui,
 )
 
-from yehu_server.live.addresses import Address
+from yehu_server.live.network import Address
 from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import UNIT
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.surfaces import layout
-from yehu_server.surfaces.layout import Axis, Frame, Group, Pad, full
+from yehu_server.surfaces import common_layout
+from yehu_server.surfaces.common_layout import Axis, Frame, Group, Pad, full
 
 WIDTH, HEIGHT = 1024, 768
 BAR, TABS, GAP = 52, 44, 8
@@ -98,13 +98,13 @@ def content(data: bytes) -> bytes:
 
 
 def document() -> py2tosc.Document:
-    """Return the whole layout."""
-    pages = [_hands(), *(page for group in layout.groups() for page in _pages(group))]
+    """Return the whole common_layout."""
+    pages = [_hands(), *(page for group in common_layout.groups() for page in _pages(group))]
     pager = py2tosc.pager(
         name="pages", frame=(0, BAR, WIDTH, HEIGHT - BAR), tabbar_size=TABS, children=pages
     )
-    every_ms = 1000 * layout.SUBSCRIBE_EVERY_S
-    sending = "\n    ".join(f"sendOSC('{to}')" for to in layout.subscriptions(UNIT))
+    every_ms = 1000 * common_layout.SUBSCRIBE_EVERY_S
+    sending = "\n    ".join(f"sendOSC('{to}')" for to in common_layout.subscriptions(UNIT))
     script = SUBSCRIBE.format(every_ms=every_ms, sending=sending)
     root = py2tosc.group(
         name="yehu",
@@ -130,9 +130,9 @@ def _identify(control: Control, path: str) -> None:
 def _bar() -> Iterator[Control]:
     """Return the title and the buttons, which are above all pages."""
     frame = (GAP, GAP, 500, BAR - 2 * GAP)
-    yield _label("title", frame, layout.named("yehu"), text_size=22, text_align_h=1)
-    for place, name in enumerate(layout.BUTTONS):
-        x = WIDTH - (len(layout.BUTTONS) - place) * (150 + GAP)
+    yield _label("title", frame, common_layout.named("yehu"), text_size=22, text_align_h=1)
+    for place, name in enumerate(common_layout.BUTTONS):
+        x = WIDTH - (len(common_layout.BUTTONS) - place) * (150 + GAP)
         frame = (x, GAP, 150, BAR - 2 * GAP)
         press = _message(f"/{name}", [], [Trigger("x", TriggerCondition.RISE)])
         yield py2tosc.button(name=name, frame=frame, color=COLOURS[name], messages=[press])
@@ -141,11 +141,11 @@ def _bar() -> Iterator[Control]:
 
 def _hands() -> Control:
     """Return the page of two pads and keys."""
-    children = [control for pad in layout.PADS for control in _pad(pad)]
-    keys = layout.KEYS_FRAME.on(ON_PAGE, GAP)
-    step, height = keys.width / len(layout.KEYS), keys.height - LINE
-    velocity = Partial(PartialType.VALUE, Conversion.FLOAT, "x", 0.0, layout.VELOCITY)
-    for place, note in enumerate(layout.KEYS):  # each sends 0 when it is released
+    children = [control for pad in common_layout.PADS for control in _pad(pad)]
+    keys = common_layout.KEYS_FRAME.on(ON_PAGE, GAP)
+    step, height = keys.width / len(common_layout.KEYS), keys.height - LINE
+    velocity = Partial(PartialType.VALUE, Conversion.FLOAT, "x", 0.0, common_layout.VELOCITY)
+    for place, note in enumerate(common_layout.KEYS):  # each sends 0 when it is released
         x, name = keys.x + place * step, note_name(note)
         press = _message("/note", [_constant(note), velocity], [Trigger("x")])
         children.append(
@@ -232,7 +232,7 @@ def _strip(param: Param, frame: Frame) -> Control:
         frame=frame,
         **PLAIN,
         children=[
-            _label("name", (0, GAP, width, LINE), layout.label(param)),
+            _label("name", (0, GAP, width, LINE), common_layout.label(param)),
             fader,
             _label("value", (0, height - 2 * LINE - GAP, width, LINE), f"{param.default:.5g}"),
             _label("range", (0, height - LINE - GAP, width, LINE), param.range_text, text_size=10),

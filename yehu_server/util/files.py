@@ -103,9 +103,12 @@ def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
     return read_bytes(path, most_bytes).decode("utf-8")
 
 
-def why(error: OSError) -> str:
-    """The reason of an error, for a message."""
-    return error.strerror or str(error)
+def why(error: BaseException) -> str:
+    """The reason of an error, for a message: ours or the system's, where it has one."""
+    if isinstance(error, OSError) and error.strerror:
+        # `socket.create_server` adds an address, which the message has.
+        return error.strerror.partition(" (while attempting to bind")[0]
+    return str(error) or type(error).__name__
 
 
 def make_folder(folder: Path) -> None:
@@ -163,7 +166,7 @@ def check_target(target: Path) -> None:
         if target.exists() and not stat.S_ISREG(target.stat().st_mode):
             raise OutputError(f"{target}: is not a regular file")
     except OSError as error:
-        raise OutputError(f"{target}: cannot write: {error.strerror}") from error
+        raise OutputError(f"{target}: cannot write: {why(error)}") from error
     if not os.access(folder, os.W_OK):
         raise OutputError(f"{target}: the folder {folder} is not writable")
 

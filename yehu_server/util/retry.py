@@ -8,26 +8,17 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import os
-import socket
 import threading
 import time
 from collections.abc import Callable
+
+from yehu_server.util.files import why
 
 log = logging.getLogger(__name__)
 
 AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 0.5, 5.0
 LONGEST_TURN_S = 0.25
 SHORTAGES = (OSError, MemoryError, RuntimeError)  # of files, of memory, of threads
-
-
-def why(error: BaseException) -> str:
-    """The reason of an error, for a message: the system's own words where it has some."""
-    if isinstance(error, socket.gaierror):
-        return error.strerror or str(error)
-    if isinstance(error, OSError) and error.errno is not None:
-        return os.strerror(error.errno)
-    return str(error) or type(error).__name__
 
 
 class Backoff:

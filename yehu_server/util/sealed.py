@@ -10,7 +10,7 @@ import hashlib
 import secrets
 from pathlib import Path
 
-from yehu_server.util.files import read_bytes
+from yehu_server.util.files import read_bytes, why
 
 MOST_BYTES = 64 * 2**20
 DIGEST_BYTES = 16
@@ -40,7 +40,7 @@ def read_sealed(path: Path) -> bytes | None:
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise SealError(error.strerror) from error
+        raise SealError(why(error)) from error
     seal, payload = data[:DIGEST_BYTES], data[DIGEST_BYTES:]
     if seal != _digest(path, payload):
         raise SealError("it is damaged")

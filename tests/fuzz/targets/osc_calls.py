@@ -7,7 +7,7 @@ import math
 import os
 import shutil
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from unittest.mock import patch
 
@@ -18,8 +18,10 @@ from wire import SINCE_1900_S, FakePeer, StillTime
 from yehu_server.live.osc import clients, schedule
 from yehu_server.live.osc import handler as osc
 from yehu_server.live.osc.call_table import CALLS
+from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.packets import pack, unpack
+from yehu_server.live.part_addresses import part_of
 from yehu_server.params.table import PREFIX, TABLE, UNIT
 from yehu_server.playing import live_player
 from yehu_server.playing.live_player import LivePlayer
@@ -37,35 +39,27 @@ ADDRESSES = [
 NAMES = ["", "/bow/force", "/playing/dynamics", "/*/*", "/[", "../x", "mine", "vibrato", "é" * 9]
 
 
-class Services:
-    """The handler's services: status, recordings, tree changes."""
+def tree_changed(path: str) -> None:
+    assert path.startswith("/")
 
-    def __init__(self) -> None:
-        self.lines: list[str] = []
 
-    def status(self) -> dict[str, float | str]:
-        return {"load": 0.5, "recording": ""}
+def states(addressed: str) -> dict[str, float | str]:
+    if addressed:
+        return {"note": -1.0, "keys": float(part_of(addressed))}
+    return {"load": 0.5, "recording": ""}
 
-    def part_status(self, part: int) -> dict[str, float]:
-        return {"note": -1.0, "keys": float(part)}
 
-    def call_soon(self, action: Callable[[], None]) -> None:
-        action()
-
-    def run_in_background(self, action: Callable[[], None]) -> None:
-        action()
-
-    def tree_changed(self, path: str) -> None:
-        assert path.startswith("/")
-
-    def log(self, line: str) -> None:
-        self.lines.append(line)
-
-    def start_recording(self, name: str) -> str:
-        return f"{name}.wav"
-
-    def stop_recording(self) -> str:
-        return "take.wav"
+def context_of(player: LivePlayer, lines: list[str]) -> CallContext:
+    """What the handler needs of a server."""
+    return CallContext(
+        [player],
+        states,
+        lambda name: f"{name}.wav",
+        lambda: "take.wav",
+        lines.append,
+        lambda action: action(),
+        tree_changed=tree_changed,
+    )
 
 
 @contextmanager
@@ -136,12 +130,13 @@ def osc_calls(data: bytes) -> None:
     The bytes are a program: packets of addresses and arguments, and pauses between them.
     """
     with still_time() as clock:
-        instrument, services, peer = Instrument(), Services(), FakePeer(host="peer")
+        instrument, peer = Instrument(), FakePeer(host="peer")
+        lines: list[str] = []
         playing = PlayingOptions(
             mapping=mapping(), presets=Presets(scratch() / "config" / "presets")
         )
         player = LivePlayer(instrument, playing, delay_ms=3.0, wishes=playing.wishes([instrument]))
-        handler = OscHandler([player], services)
+        handler = OscHandler(context_of(player, lines))
 
         def take(what: bytes) -> None:
             for _ in handler.handle(what, peer, clock.monotonic_ns()):
@@ -173,4 +168,4 @@ def osc_calls(data: bytes) -> None:
             assert all(math.isfinite(value) for value in numbers) or message.address.endswith(
                 "/pong"
             )
-    assert not any("\n" in line for line in services.lines)
+    assert not any("\n" in line for line in lines)

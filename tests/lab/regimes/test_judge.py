@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from yehu_server.errors import ParameterError
+from yehu_server.lab.regimes.columns import REGIMES
 from yehu_server.lab.regimes.judge import judge
-from yehu_server.lab.regimes.names import REGIMES
 
 HERE = Path(__file__).parent
 RATE, NOTE = 44100.0, 441.0

@@ -9,8 +9,7 @@ import pytest
 from lab.regimes.test_judge import LENGTH, NOTE, PERIOD, RATE, SPEED, WIDTH, every, found, slips
 
 from yehu_server.errors import ParameterError
-from yehu_server.lab.regimes.judge import judge, name_regime
-from yehu_server.lab.regimes.names import (
+from yehu_server.lab.regimes.columns import (
     ANOMALOUS_LOW,
     APERIODIC,
     HELMHOLTZ,
@@ -19,6 +18,7 @@ from yehu_server.lab.regimes.names import (
     RAUCOUS,
     SILENT,
 )
+from yehu_server.lab.regimes.judge import judge, name_regime
 from yehu_server.lab.regimes.periods import NOWHERE, refined
 from yehu_server.lab.regimes.slips import times_of_slips
 

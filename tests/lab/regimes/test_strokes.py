@@ -11,8 +11,8 @@ import forks
 import numpy as np
 import pytest
 
-from yehu_server.lab.regimes.judge import FINDING, judge
-from yehu_server.lab.regimes.names import HELMHOLTZ, REGIMES, UNBOWED
+from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ, REGIMES, UNBOWED
+from yehu_server.lab.regimes.judge import judge
 from yehu_server.lab.regimes.strokes import find, value_at
 from yehu_server.lab.simulation import simulate
 from yehu_server.lab.sweeps.study import study_of

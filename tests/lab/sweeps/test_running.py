@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from yehu_server.errors import OutputError, YehuError
-from yehu_server.lab.regimes.names import HELMHOLTZ
+from yehu_server.lab.regimes.columns import HELMHOLTZ
 from yehu_server.lab.sweeps import running
 from yehu_server.lab.sweeps.journal import Journal, journal_of
 from yehu_server.lab.sweeps.running import findings_of, perform, sweep, sweep_to

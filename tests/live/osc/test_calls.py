@@ -12,7 +12,6 @@ from wire import errors, f32, values
 
 from yehu_server.live.osc import handler
 from yehu_server.live.osc.call_table import CALLS
-from yehu_server.params.table import TABLE
 
 HEARD_S = 0.01  # within which what arrives is played: the player's delay and a block
 
@@ -20,14 +19,6 @@ HEARD_S = 0.01  # within which what arrives is played: the player's delay and a 
 def test_every_call_is_in_the_documentation():
     text = (Path(__file__).parents[3] / "docs" / "osc.md").read_text()
     assert [call.address for call in CALLS if f"`/yehu{call.address}" not in text] == []
-
-
-def test_every_call_is_described_and_every_described_call_is_there(still):
-    of_parameters = {p.address for p in TABLE} | {f"{p.address}/unit" for p in TABLE}
-    calls = {address for address in still.handler._calls if not address.startswith("/part/")}
-    assert {call.address for call in CALLS} == calls - of_parameters
-    of_part = {address.removeprefix("/part/1") for address in set(still.handler._calls) - calls}
-    assert {call.address for call in CALLS if not call.is_for_all} == of_part - of_parameters
 
 
 def test_osc_is_the_prefix_of_all_that_is_said():

@@ -7,7 +7,8 @@ from collections import Counter
 import pytest
 from wire import FakePeer
 
-from yehu_server.live.osc import subscriptions as listener_module
+from yehu_server.live.osc import change_publisher as listener_module
+from yehu_server.live.osc.change_publisher import MOST_SENT
 from yehu_server.live.osc.clients import (
     MOST_KNOWN,
     MOST_OF_A_HOST,
@@ -16,7 +17,6 @@ from yehu_server.live.osc.clients import (
     Clients,
 )
 from yehu_server.live.osc.status import STATUS_PREFIX
-from yehu_server.live.osc.subscriptions import MOST_SENT
 from yehu_server.params.table import UNIT
 
 
@@ -311,8 +311,6 @@ def test_errors_are_told_rarely_to_who_makes_many(clients, play, peer):
     patient = FakePeer(2)
     play(10_000, lambda: clients.send_error(peer, "/x", "no"))
     assert 100 <= len(peer.packets) <= 125
-    assert clients.errors_sent == len(peer.packets)
-    assert clients.errors_sent + clients.errors_withheld == 10_000
     clients.send_error(patient, "/x", "no")
     assert len(patient.packets) == 1  # others need not wait
     peer.received()

@@ -49,7 +49,7 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(still, address):
 
 def test_the_file_is_written_aside_so_that_a_slow_disk_holds_up_nothing(still, monkeypatch):
     waiting = []
-    monkeypatch.setattr(still.services, "run_in_background", waiting.append)
+    monkeypatch.setattr(still.handler.context, "run_in_background", waiting.append)
     still.ask("/learn", "/playing/vibrato")
     turn(still, 20, 10, 20, 64)
     assert told(still.peer.received(), "/learned") == []
@@ -97,7 +97,7 @@ def test_an_address_of_the_users_own_is_learned_as_a_knob_is(still, wire):
     assert told(still.peer.received(), "/learned")[0][1] == "/my/fader"
     still.take(wire.message("/my/fader", 1.0))
     assert still.value("/output/gain") == 24.0
-    assert still.player.addresses == ("/my/fader",)
+    assert still.player.mapping.addresses == ("/my/fader",)
 
 
 def test_one_that_moves_something_already_can_be_learned_anew(still, wire):

@@ -146,7 +146,7 @@ def test_presets_are_saved_so_many_at_once_and_one_more_each_second(still, own, 
 
 def test_files_are_written_aside_and_read_in_order(still, own, monkeypatch):
     waiting = []
-    monkeypatch.setattr(still.services, "run_in_background", waiting.append)
+    monkeypatch.setattr(still.handler.context, "run_in_background", waiting.append)
     still.tell("/playing/vibrato", 33.0)
     assert "/preset/saved" not in by_address(still.ask("/preset/save", "mine"))
     still.tell("/playing/vibrato", 5.0)

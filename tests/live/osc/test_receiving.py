@@ -16,7 +16,7 @@ from collections.abc import Iterator
 import pytest
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.addresses import Allowed
+from yehu_server.live.network import Allowed
 from yehu_server.live.osc import open_sockets, receiving
 from yehu_server.live.osc.answering import ANSWERED_BYTES, TO_ALL_HOSTS
 from yehu_server.live.osc.fair_queue import MOST_BYTES

@@ -10,7 +10,8 @@ import sys
 import pytest
 from web_client import walk
 
-from yehu_server.live.osc.call_table import CALLS, Argument, Call
+from yehu_server.live.osc.call import Argument, Call
+from yehu_server.live.osc.call_table import CALLS
 from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
 from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, UNIT_NAMES, Snapshot, find, node_at
 from yehu_server.params.table import TABLE
@@ -130,7 +131,10 @@ def test_an_argument_has_its_own_range(root):
 
 def test_calls_may_come_from_elsewhere():
     words = Argument("name", "s", choices=("wind", "mpe"))
-    more = [Call("/yehu/elsewhere/load", "Loads one.", (words,)), Call("/my/own", "Anything.")]
+    more = [
+        Call("/yehu/elsewhere/load", "Loads one.", (words,), print),
+        Call("/my/own", "Anything.", (), print),
+    ]
     root = tree(Snapshot(VALUES, STANDING), more)
     node = find(root, "/yehu/elsewhere/load")
     assert (node["ACCESS"], node["TYPE"]) == (2, "s")

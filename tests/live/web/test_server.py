@@ -12,7 +12,7 @@ import pytest
 from web_client import ask, walk
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.addresses import Allowed
+from yehu_server.live.network import Allowed
 from yehu_server.live.osc.call_table import CALLS
 from yehu_server.live.osc.status import STATUS, Kind
 from yehu_server.live.web.connections import MOST_OF_A_HOST

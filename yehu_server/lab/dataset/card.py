@@ -12,7 +12,7 @@ from typing import Any
 from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.files import Line
 from yehu_server.lab.labels import Label, as_data, label_of
-from yehu_server.lab.regimes.names import REGIMES
+from yehu_server.lab.regimes.columns import REGIMES
 from yehu_server.scores.gesture import CONTROLS
 from yehu_server.util import __version__
 from yehu_server.util.files import write_text

@@ -12,8 +12,8 @@ import numpy as np
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.lab.dataset.description import A4, Description
+from yehu_server.lab.regimes.columns import REGIMES, UNBOWED
 from yehu_server.lab.regimes.judge import LEAST_PERIODS, PERIODS, judge
-from yehu_server.lab.regimes.names import REGIMES, UNBOWED
 from yehu_server.playing.calibration_store import calibration_for
 
 Array = Any

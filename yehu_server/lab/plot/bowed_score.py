@@ -19,7 +19,6 @@ from yehu_server.lab.plot import png
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.scores.jianpu.figures import figure_of, written_key
 from yehu_server.scores.jianpu.written_lengths import SIGN_OF, signed_lengths
-from yehu_server.scores.written.clock import WrittenClock
 from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.layout import (
     TUPLETS,
@@ -34,6 +33,7 @@ from yehu_server.scores.written.layout import (
 from yehu_server.scores.written.mark_settings import DOWN, OUTER_OPEN, UP, Active, is_plucked
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, Note, Part, Span, Written
 from yehu_server.scores.written.part_bowing import Played, bowed
+from yehu_server.scores.written.tempo import WrittenClock
 from yehu_server.scores.written.words import words_of_sign
 
 BARS_A_LINE, MOST_LINES = 4, 60

@@ -9,12 +9,10 @@ import numpy as np
 
 from yehu_server.following.heard import Heard
 from yehu_server.following.notes import A4_HZ, midi_of
-from yehu_server.lab.plot import png
 from yehu_server.lab.plot.axes import ABOVE
-from yehu_server.lab.plot.panels import ASKED, GRID, HEARD, draw_spectrogram, label_notes
+from yehu_server.lab.plot.rendered import ASKED, GRID, HEARD, label_notes, write_picture
 from yehu_server.rendering.plot_data import PlotData
 
-SIZE = (14.0, 9.0)  # inches
 MARGIN = 1.5  # semitones
 SPAN_DB = 50.0
 
@@ -52,14 +50,12 @@ def write_followed(
     OutputError
         Where it cannot be written.
     """
-
-    def fill(figure: Any) -> None:
-        panels = figure.subplots(3, 1, height_ratios=(1.0, 2.2, 1.8), sharex=True)
-        draw_levels(panels[0], heard, watch)
-        draw_pitches(panels[1], heard, semitones, watch)
-        draw_spectrogram(panels[2], watch)
-        moved = f", {semitones:+g} semitones" if semitones else ""
-        panels[0].set_title(png.plain(f"{Path(heard.name).name}{moved}"), loc="left")
-        panels[2].set(xlim=(0.0, max(watch.duration_s, 0.01)), xlabel="s")
-
-    png.write_picture(target, SIZE, fill, overwrite=overwrite)
+    moved = f", {semitones:+g} semitones" if semitones else ""
+    write_picture(
+        watch,
+        target,
+        f"{Path(heard.name).name}{moved}",
+        lambda axes: draw_levels(axes, heard, watch),
+        lambda axes: draw_pitches(axes, heard, semitones, watch),
+        overwrite=overwrite,
+    )

@@ -8,24 +8,23 @@ meet. docs/sweep.md defines the regimes, and tells how the rule was checked.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import IS_PLAIN, compiled_exactly
-from yehu_server.compile.memory import with_attributes
+from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.ear import SEARCHED, STICKING, count_slips
 from yehu_server.errors import ParameterError
-from yehu_server.lab.regimes.names import (
+from yehu_server.lab.regimes.columns import (
     ANOMALOUS_LOW,
     APERIODIC,
     HELMHOLTZ,
     MULTIPLE_SLIP,
     OCTAVE,
     RAUCOUS,
-    REGIMES,
     SILENT,
+    Finding,
+    new_findings,
 )
 from yehu_server.lab.regimes.periods import (
     NOWHERE,
@@ -53,21 +52,6 @@ AFTER_MORE = 0.8  # after more than a period
 SEVERAL = 1.4  # slips a period
 ONE_EACH = 0.25  # deviation from one slip in each part of a period
 AT_MOST_ONE = 1.05  # slips a period
-
-FINDING = np.dtype(
-    [
-        ("regime", np.uint8),
-        ("faults", np.uint8),  # samples without a solution, and lost states; 255: or more
-        ("slips", np.float32),  # in a period of the note
-        ("certainty", np.float32),  # correlation at the period found
-        ("first_slip_s", np.float32),  # from the beginning; NaN: none
-        ("helmholtz_s", np.float32),  # from the beginning to lasting Helmholtz motion; NaN: never
-        ("pitch_hz", np.float32),  # NaN: none
-        ("level_db", np.float32),  # of the pressure, re 1 Pa (rms)
-        ("brightness_hz", np.float32),  # spectral centroid, by power
-    ],
-    align=True,
-)
 
 
 @compiled_exactly
@@ -224,38 +208,6 @@ def level_db(signal: Array, begin: int, end: int) -> float:
     return 10.0 * math.log10(max(squares / (end - begin) - mean * mean, 1e-30))
 
 
-@dataclass(frozen=True)
-class Finding:
-    """What was found of a stroke.
-
-    Attributes
-    ----------
-    regime : str
-        One of `names.REGIMES`.
-    slips : float
-        In a period of the note, at the end.
-    certainty : float
-        How alike the motion is to that a period before: 1 is the same. 0 where none is found.
-    first_slip_s, helmholtz_s : float
-        When the hair slips first, and from when it slips once a period (s); NaN for never.
-    pitch_hz : float
-        NaN where the motion doesn't repeat.
-    level_db : float
-        Of the pressure at the end, re 1 Pa (rms).
-    brightness_hz : float
-        Centroid of its spectrum, by power; NaN for silence.
-    """
-
-    regime: str
-    slips: float
-    certainty: float
-    first_slip_s: float
-    helmholtz_s: float
-    pitch_hz: float
-    level_db: float
-    brightness_hz: float
-
-
 def judge(
     relative_velocity: Array,
     bow_velocity: Array | float,
@@ -290,18 +242,7 @@ def judge(
     found = new_findings(1)
     work = np.zeros((3, len(velocity)))
     judge_stroke(velocity, bow, sound, len(velocity), rate, frequency_hz, work, found[0])
-    return finding_of(found[0])
-
-
-def new_findings(count: int) -> Array:
-    """Room for findings [shape=(count,), dtype=FINDING]."""
-    return np.zeros(count, with_attributes(FINDING) if IS_PLAIN else FINDING)
-
-
-def finding_of(row: Any) -> Finding:
-    """A record of dtype FINDING, for Python."""
-    names = Finding.__dataclass_fields__.keys() - {"regime"}
-    return Finding(REGIMES[int(row["regime"])], **{name: float(row[name]) for name in names})
+    return Finding.of(found[0])
 
 
 def check_length(frames: int, rate: float, frequency_hz: float) -> None:

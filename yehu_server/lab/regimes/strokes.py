@@ -30,8 +30,8 @@ from yehu_server.core.physics.layout import (
 )
 from yehu_server.core.physics.pluck import pluck_string
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.lab.regimes.judge import FINDING, judge_stroke, new_findings
-from yehu_server.lab.regimes.names import UNBOWED
+from yehu_server.lab.regimes.columns import FINDING, UNBOWED, new_findings
+from yehu_server.lab.regimes.judge import judge_stroke
 
 Array = Any
 

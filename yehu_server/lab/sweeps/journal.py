@@ -18,7 +18,7 @@ import numpy as np
 
 from yehu_server.compile.cache_folder import source_hash
 from yehu_server.errors import OutputError
-from yehu_server.lab.regimes.judge import FINDING
+from yehu_server.lab.regimes.columns import FINDING
 from yehu_server.lab.sweeps.study import Study
 from yehu_server.util import __version__
 from yehu_server.util.files import open_regular, why

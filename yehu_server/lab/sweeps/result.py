@@ -16,8 +16,7 @@ import numpy as np
 
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.lab.labels import as_data, as_json, attributes, hash_of, label_of
-from yehu_server.lab.regimes.judge import FINDING
-from yehu_server.lab.regimes.names import HELMHOLTZ, REGIMES
+from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ, REGIMES
 from yehu_server.lab.sweeps.refining import fill
 from yehu_server.lab.sweeps.study import Study, study_of
 from yehu_server.util import __version__

@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.errors import OutputError, YehuError
-from yehu_server.lab.regimes.judge import FINDING
-from yehu_server.lab.regimes.names import HELMHOLTZ, REGIMES
+from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ, REGIMES
 from yehu_server.lab.regimes.strokes import find
 from yehu_server.lab.sweeps.journal import Done, Journal, journal_of
 from yehu_server.lab.sweeps.refining import coarse_points, finer_points

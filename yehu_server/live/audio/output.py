@@ -25,8 +25,9 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import memory_bytes
 from yehu_server.errors import DeviceError
 from yehu_server.live.audio.devices import OUTPUT
+from yehu_server.util.files import why
 from yehu_server.util.processes import Child, Message
-from yehu_server.util.retry import SHORTAGES, AwakeTime, Backoff, run_forever, why
+from yehu_server.util.retry import SHORTAGES, AwakeTime, Backoff, run_forever
 
 log = logging.getLogger(__name__)
 

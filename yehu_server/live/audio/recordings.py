@@ -10,7 +10,7 @@ from pathlib import Path
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
 from yehu_server.live.audio.recorder import Recorder
-from yehu_server.util.files import inside
+from yehu_server.util.files import inside, why
 from yehu_server.util.token_bucket import TokenBucket
 
 ENDINGS = (".wav", ".flac")
@@ -72,7 +72,7 @@ class Recordings:
             if len(os.listdir(self._folder)) >= MOST_TAKES:  # noqa: PTH208 - names are enough
                 raise OutputError(f"{self._folder} has {MOST_TAKES} files; remove some first")
         except OSError as error:
-            raise OutputError(f"{self._folder}: {error.strerror}") from error
+            raise OutputError(f"{self._folder}: {why(error)}") from error
         self._requested = Recorder(self._tape, target, self._tape.frame, self._on_message)
         self._on_message(f"recording {target}")
         return target.name

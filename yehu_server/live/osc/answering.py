@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from yehu_server.live.addresses import Address
+from yehu_server.live.network import Address
 from yehu_server.live.osc.framing import Framing
 from yehu_server.util.token_bucket import TokenBucket
 

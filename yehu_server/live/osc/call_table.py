@@ -1,115 +1,44 @@
-"""The table of OSC calls beside the parameters, for OSCQuery and the surfaces.
+"""The table of OSC calls beside the parameters: what is acted on, and what clients are told.
 
-``part_calls`` and ``handler`` carry them out; docs/osc.md describes them.
+``part_calls``, ``preset_calls``, ``learn_calls`` and ``server_calls`` have the rows, each beside
+the method that carries it out; docs/osc.md describes them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 
+from yehu_server.live.osc.call import Argument, Call
+from yehu_server.live.osc.context import Act, CallContext, GroupCalls
+from yehu_server.live.osc.learn_calls import LearnCalls
+from yehu_server.live.osc.part_calls import PartCalls
+from yehu_server.live.osc.preset_calls import PRESETS, PresetCalls
+from yehu_server.live.osc.server_calls import ServerCalls
 from yehu_server.live.part_addresses import FIRST, group
-from yehu_server.params.articulations import ARTICULATIONS
-from yehu_server.params.table import PREFIX, find
+from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import is_address
 
-LONGEST_SUBSCRIPTION_S = 3600.0
+_KINDS: tuple[type[GroupCalls], ...] = (PartCalls, PresetCalls, LearnCalls, ServerCalls)
+_ROWS = [(kind, row) for kind in _KINDS for row in vars(kind).values() if isinstance(row, Call)]
+CALLS: tuple[Call, ...] = tuple(row for _, row in _ROWS)
 
 
-@dataclass(frozen=True)
-class Argument:
-    """An argument of a call: a number (``f``) in a range, or a string (``s``), maybe of `choices`.
-
-    `kind` is its OSC type tag; `choices`, where there are any, are all that it may be.
-    """
-
-    name: str
-    kind: str = "f"
-    lo: float | None = None
-    hi: float | None = None
-    unit: str = "1"
-    choices: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Call:
-    """A call: its address after the prefix, what it does, and its arguments.
-
-    `is_for_all` marks calls that no part has of its own.
-    """
-
-    address: str
-    doc: str
-    arguments: tuple[Argument, ...] = ()
-    is_for_all: bool = False
-
-
-def _of(address: str, name: str) -> Argument:
-    """An argument with the range of a parameter."""
-    param = find(address)
-    return Argument(name, lo=param.lo, hi=param.hi, unit=param.unit)
-
-
-NOTE = Argument("note", lo=0.0, hi=127.0, unit="MIDI note")
-SECONDS = Argument("seconds", lo=0.0, hi=LONGEST_SUBSCRIPTION_S, unit="s")
-VELOCITY = Argument("velocity", lo=0.0, hi=127.0)
-ARTICULATION = Argument(
-    "articulation", "s", choices=tuple(articulation.name for articulation in ARTICULATIONS)
-)
-ADDRESS, NAME = Argument("address", "s"), Argument("name", "s")
-FROM, TO = Argument("from", "s"), Argument("to", "s")
-AMOUNT = Argument("amount", lo=0.0, hi=1.0)
-
-CALLS: tuple[Call, ...] = (
-    Call("/note", "Begins a note; velocity 0 ends it.", (NOTE, VELOCITY)),
-    Call("/note/off", "Ends a note.", (NOTE,)),
-    Call("/pitch", "Slides the finger to a pitch: the sounding note's, or the next.", (NOTE,)),
-    Call("/bend", "Slides the finger away from the note.", (_of("/playing/bend", "semitones"),)),
-    Call("/press", "How hard the finger presses the string.", (_of("/playing/press", "newtons"),)),
-    Call("/articulation", "Chooses what both hands do in the next notes.", (ARTICULATION,)),
-    Call(
-        "/bow",
-        "Draws the bow by hand; no speed and no force lifts it.",
-        (_of("/bow/speed", "speed"), _of("/bow/force", "force")),
-    ),
-    Call(
-        "/release",
-        "Gives the bow and fingers that you moved directly back to the player (no time).",
-    ),
-    Call("/panic", "Ends all notes and all sound, and drops messages that wait for their time."),
-    Call("/reset", "The same, and sets every parameter to its default."),
-    Call(
-        "/get",
-        "Sends the value of a parameter, or a status value.",
-        (ADDRESS,),
-        is_for_all=True,
-    ),
-    Call("/params", "Sends all parameters: value, range, default, unit, meaning."),
-    Call("/status", "Sends all status values."),
-    Call("/subscribe", "Sends all parameters, and for some time every change.", (SECONDS,)),
-    Call("/subscribe/unit", "The same, with values as 0 to 1, at ADDRESS/unit.", (SECONDS,)),
-    Call(
-        "/subscribe/status", "Sends all status values, and for some time every change.", (SECONDS,)
-    ),
-    Call("/unsubscribe", "Ends all subscriptions.", is_for_all=True),
-    Call("/preset/load", "Sets the parameters of a preset.", (NAME,)),
-    Call("/preset/morph", "Sets values between those of two presets.", (FROM, TO, AMOUNT)),
-    Call("/preset/save", "Saves the parameters as a preset.", (NAME,)),
-    Call("/preset/delete", "Removes a preset of the player's own.", (NAME,), is_for_all=True),
-    Call("/preset/list", "Sends all presets: name, MIDI program, description.", is_for_all=True),
-    Call(
-        "/learn",
-        "Binds the controller that is moved next to a parameter; without one, ends learning.",
-        (ADDRESS,),
-    ),
-    Call("/unlearn", "Forgets what was learned for a parameter.", (ADDRESS,)),
-    Call("/bindings", "Sends all bindings: source, target, span, curve, place, value."),
-    Call("/record/start", "Records into the recordings folder.", (NAME,), is_for_all=True),
-    Call("/record/stop", "Ends the recording.", is_for_all=True),
-    Call("/ping", "Answers with the same arguments.", is_for_all=True),
-)
+def acts(addressed: str, context: CallContext) -> dict[str, Act]:
+    """What carries out each call of a group, and sets each of its parameters, by address."""
+    carriers = {kind: kind(addressed, context) for kind in _KINDS}
+    part = PartCalls(addressed, context)
+    found: dict[str, Act] = {}
+    for param in part.params:
+        found[param.address] = partial(part.set, address=param.address)
+        found[param.address + UNIT] = partial(part.set_unit, param=param)
+    for kind, row in _ROWS:
+        if not (addressed and row.is_for_all):
+            found[row.address] = partial(row.act, carriers[kind])
+    return {addressed + address: act for address, act in found.items()}
 
 
 def preset_calls(names: tuple[str, ...], addressed: str = FIRST) -> list[Call]:
@@ -117,15 +46,18 @@ def preset_calls(names: tuple[str, ...], addressed: str = FIRST) -> list[Call]:
 
     Addresses include the prefix.
     """
-    choice = replace(NAME, choices=names)
-    takes = {
-        "/preset/load": (choice,),
-        "/preset/morph": (replace(FROM, choices=names), replace(TO, choices=names), AMOUNT),
-    }
+
+    def with_names(argument: Argument) -> Argument:
+        return replace(argument, choices=names) if argument in PRESETS else argument
+
     return [
-        replace(call, address=PREFIX + addressed + call.address, arguments=takes[call.address])
+        replace(
+            call,
+            address=PREFIX + addressed + call.address,
+            arguments=tuple(map(with_names, call.arguments)),
+        )
         for call in CALLS
-        if call.address in takes
+        if not PRESETS.isdisjoint(call.arguments)
     ]
 
 
@@ -139,6 +71,7 @@ def own_calls(mapping: Mapping, addressed: str = FIRST, below: str = "") -> list
             below + bind.source,
             f"Moves {PREFIX}{addressed}{bind.target}, by the mapping {mapping.name}.",
             (Argument("place", lo=min(bind.input_range), hi=max(bind.input_range)),),
+            partial(PartCalls.move, address=bind.source),
         )
         for bind in mapping.binds
         if is_address(bind.source)

@@ -10,9 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from yehu_server.errors import shortened
 from yehu_server.live.osc.answering import Peer
-from yehu_server.live.osc.packets import pack
-from yehu_server.live.osc.status import STATUS_PREFIX
-from yehu_server.live.osc.subscriptions import (
+from yehu_server.live.osc.change_publisher import (
     ERRORS_A_SECOND,
     ERRORS_AT_ONCE,
     ChangePublisher,
@@ -21,6 +19,8 @@ from yehu_server.live.osc.subscriptions import (
     Values,
     topic_of,
 )
+from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.status import STATUS_PREFIX
 from yehu_server.live.part_addresses import FIRST
 
 FLUSH_S = 1.0 / 60.0  # between rounds of sending
@@ -57,8 +57,6 @@ class Clients:
         self._swept = 0.0
         self._is_waiting = False
         self._crowded = MOST_KNOWN  # number of clients at which idle ones are dropped
-        self.errors_sent = 0
-        self.errors_withheld = 0
 
     @property
     def subscribers(self) -> int:
@@ -155,12 +153,9 @@ class Clients:
         if client.muted_until > now:
             return
         client.last_error = now
-        if not client.errors.takes(now):
-            self.errors_withheld += 1
-            return
-        self.errors_sent += 1
-        reason = reason if isinstance(reason, str) else reason()
-        peer.send(pack(f"{self.prefix}/error", shortened(address), shortened(reason)))
+        if client.errors.takes(now):
+            reason = reason if isinstance(reason, str) else reason()
+            peer.send(pack(f"{self.prefix}/error", shortened(address), shortened(reason)))
 
     # -- flushing ----------------------------------------------------------------------------
 

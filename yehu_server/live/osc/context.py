@@ -1,18 +1,19 @@
-"""What the OSC calls of a part share: its player, its addresses, the server's services."""
+"""What OSC calls share: players, clients, and what they need of the server."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Protocol
 
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.request import Request
+from yehu_server.live.osc.status import Counts
+from yehu_server.live.part_addresses import FIRST, PART_PARAMS, group, part_of
 from yehu_server.params.table import PREFIX
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
@@ -23,67 +24,87 @@ SAVES_A_SECOND, SAVES_AT_ONCE = 1.0, 10.0  # of all clients together: each write
 Act = Callable[[Request], None]
 
 
-class ServerServices(Protocol):
-    """The services of the server that OSC calls need beside the player."""
-
-    def status(self) -> Mapping[str, float | str]:
-        """The status values, by name."""
-
-    def part_status(self, part: int) -> Mapping[str, float]:
-        """The status values of a part, counted from 0, by name."""
-
-    def start_recording(self, name: str) -> str:
-        """Record to a file of a plain name; return the file's name. Raises YehuError."""
-
-    def stop_recording(self) -> str:
-        """End the recording; return the file's name. Raises YehuError."""
-
-    def call_soon(self, action: Callable[[], None]) -> None:
-        """Call a function in the thread that handles packets; any thread may call."""
-
-    def run_in_background(self, action: Callable[[], None]) -> None:
-        """Call a function that may take long, such as one that writes a file, in another thread.
-
-        Those that are given one after another are called in this order.
-        """
-
-    def tree_changed(self, path: str) -> None:
-        """Announce that the tree of addresses has changed at a path or below."""
-
-    def log(self, line: str) -> None:
-        """Print or log a line for whoever runs the server."""
-
-
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class CallContext:
-    """What the calls of all parts share."""
+    """What all calls share, and what they need of the server beside its players.
 
-    clients: Clients
-    services: ServerServices
-    send_error: Callable[[Peer, str, str], None]  # to a peer, with the address it sent to
-    drop_scheduled: Callable[[str], None]  # the messages of a group that wait for their time
-    tree_changed: Callable[[str], None]  # announces a change of the tree, below each group
-    remap: Callable[[LivePlayer, ControllerMapping], None]  # a player and its like
-    writes: set[object] = field(default_factory=set)  # a mark for each file that is being written
-    saves: TokenBucket = field(default_factory=lambda: TokenBucket(SAVES_A_SECOND, SAVES_AT_ONCE))
-
-
-class PlayerCalls:
-    """Calls of a player at a group of addresses.
+    Addresses come in groups: `FIRST` has those of the first part and of what all share, and each
+    part has one.
 
     Attributes
     ----------
-    by_address : dict
-        What carries out each address after the group; each raises YehuError where it refuses.
+    players : sequence of LivePlayer
+        Those of all parts.
+    states : callable
+        Returns the status values of a group, by name; any thread may call.
+    start_recording, stop_recording : callable
+        Record to a file of a plain name, or end that; return the file's name. Raise YehuError.
+    log : callable
+        Prints or logs a line for whoever runs the server.
+    run_in_background : callable
+        Calls a function that may take long, such as one that writes a file, in another thread;
+        those that are given one after another in this order.
+    call_soon : callable
+        Calls a function in the thread that handles packets; any thread may call.
+    tree_changed : callable
+        Announces that the tree of addresses has changed at a path or below.
+    drop_scheduled : callable
+        Drops the messages of a group that wait for their time; of `FIRST`, all.
     """
 
-    def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
-        self._player = player
+    players: Sequence[LivePlayer]
+    states: Callable[[str], Mapping[str, float | str]]
+    start_recording: Callable[[str], str]
+    stop_recording: Callable[[], str]
+    log: Callable[[str], None]
+    run_in_background: Callable[[Callable[[], None]], object]
+    # Set by those who serve, as they are made.
+    call_soon: Callable[[Callable[[], None]], object] = lambda action: action()
+    tree_changed: Callable[[str], None] = lambda _path: None
+    drop_scheduled: Callable[[str], None] = lambda _addressed: None
+    counts: Counts = field(default_factory=Counts)
+    writes: set[object] = field(default_factory=set)  # a mark for each file that is being written
+    saves: TokenBucket = field(default_factory=lambda: TokenBucket(SAVES_A_SECOND, SAVES_AT_ONCE))
+
+    def __post_init__(self) -> None:
+        """Make what is sent to clients."""
+        self.groups = (FIRST, *map(group, range(len(self.players))))
+        self.clients = Clients(self.values, PREFIX, self.states)
+
+    def values(self, addressed: str) -> dict[str, float]:
+        """The values of the parameters of a group, by address; any thread may call."""
+        values = self.players[part_of(addressed)].values()
+        return (
+            {param.address: values[param.address] for param in PART_PARAMS} if addressed else values
+        )
+
+    def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
+        """Tell a peer why what it sent to an address was refused."""
+        self.counts.errors += 1
+        self.clients.send_error(peer, address, reason)
+
+    def announce(self, path: str) -> None:
+        """Announce that the tree has changed at a path below each group that it has."""
+        for addressed in self.groups if len(self.players) > 1 else (FIRST,):
+            self.tree_changed(PREFIX + addressed + path)
+
+    def remap(self, player: LivePlayer, mapping: ControllerMapping) -> None:
+        """Give a mapping to a player, and to all others that had the same."""
+        before = player.mapping
+        for one in self.players:
+            if one.mapping == before:
+                one.remap(mapping, frame=one.frame_of())
+
+
+class GroupCalls:
+    """Calls at a group of addresses; each takes a `Request`, and raises YehuError to refuse it."""
+
+    def __init__(self, addressed: str, context: CallContext) -> None:
+        self._player = context.players[part_of(addressed)]
         self._addressed = addressed
         self._prefix = PREFIX + addressed
         self._context = context
-        self._clients, self._services = context.clients, context.services
-        self.by_address: dict[str, Act] = {}
+        self._clients = context.clients
 
     def _check_rate(self) -> None:
         """Refuse what writes a file where that is done too often."""
@@ -99,7 +120,7 @@ class PlayerCalls:
                 then = write()
             except YehuError as error:
                 then = partial(self._send_error, peer, address, str(error))
-            self._services.call_soon(partial(end, then))
+            self._context.call_soon(partial(end, then))
 
         def end(then: Callable[[], None]) -> None:
             self._context.writes.discard(mark)
@@ -109,7 +130,7 @@ class PlayerCalls:
                 self._send_error(peer, address, str(error))
 
         self._context.writes.add(mark)
-        self._services.run_in_background(aside)
+        self._context.run_in_background(aside)
 
     def _after_writes(self, call: Request, address: str, act: Act) -> None:
         """Do what reads files: after those that are being written, where there are any."""

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.live.addresses import Address
+from yehu_server.live.network import Address
 from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, SO_RXQ_OVFL, SO_TIMESTAMPNS
 
 log = logging.getLogger(__name__)

@@ -8,13 +8,13 @@ from functools import partial
 
 from yehu_server.errors import ParameterError
 from yehu_server.live.osc.answering import Peer
-from yehu_server.live.osc.context import CallContext, PlayerCalls
+from yehu_server.live.osc.call import ADDRESS, osc_call
+from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.request import Request
 from yehu_server.live.part_addresses import check_own, split_group
 from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing import learn
 from yehu_server.playing.learn import LearnedSource
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.mapping_values import settable_param
 
@@ -22,24 +22,19 @@ PATIENCE_S = 60.0  # to wait for something to be moved
 NOT_MOVED = -1.0
 
 
-class LearnCalls(PlayerCalls):
+class LearnCalls(GroupCalls):
     """Carries out ``/learn``, ``/unlearn`` and ``/bindings``.
 
     What is learned is learned by the mapping: all parts that use it have it.
     """
 
-    def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
-        super().__init__(player, addressed, context)
-        self._wants = 0  # number of requests, so that what is found for an earlier one is ignored
-        self.by_address = {
-            "/learn": self._learn,
-            "/unlearn": self._unlearn,
-            "/bindings": self._bindings,
-        }
-
+    @osc_call(
+        "/learn",
+        "Binds the controller that is moved next to a parameter; without one, ends learning.",
+        ADDRESS,
+    )
     def _learn(self, call: Request) -> None:
         """``/learn [ADDRESS [SOFT]]``."""
-        self._wants += 1
         self._player.listen(None)
         if not call.arguments or list(call.arguments) == [None]:
             self._send(call.peer, "/learning", "")
@@ -47,10 +42,10 @@ class LearnCalls(PlayerCalls):
         address, soft = call.word_and_flag()
         target = self._target(address, "learn one")
         self._check_rate()
-        wants, until = self._wants, time.monotonic() + PATIENCE_S
+        until = time.monotonic() + PATIENCE_S
 
         def found(source: LearnedSource) -> None:
-            if wants == self._wants and time.monotonic() <= until:
+            if time.monotonic() <= until:
                 learned = partial(self._learned, call.peer, target, source, soft=soft)
                 self._write(call.peer, "/learn", learned)
 
@@ -66,11 +61,12 @@ class LearnCalls(PlayerCalls):
 
         def take() -> None:
             self._take(mapping)
-            self._services.log(f"{source.source} moves {target} from now on ({path})")
+            self._context.log(f"{source.source} moves {target} from now on ({path})")
             self._send(peer, "/learned", self._prefix + target, source.source, str(path), *lost)
 
         return take
 
+    @osc_call("/unlearn", "Forgets what was learned for a parameter.", ADDRESS)
     def _unlearn(self, call: Request) -> None:
         target = self._target(call.word(), "forget one")
         self._check_rate()
@@ -95,8 +91,9 @@ class LearnCalls(PlayerCalls):
 
     def _take(self, mapping: Mapping) -> None:
         self._context.remap(self._player, mapping)
-        self._services.tree_changed("/")
+        self._context.tree_changed("/")
 
+    @osc_call("/bindings", "Sends all bindings: source, target, span, curve, place, value.")
     def _bindings(self, call: Request) -> None:
         call.numbers(0)
         rows = self._player.bindings()

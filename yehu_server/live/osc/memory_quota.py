@@ -6,6 +6,8 @@ from typing import Any, Protocol
 
 OVERHEAD_BYTES = 256  # memory for a stored packet beside its own bytes
 LITTLE_BYTES = 4 << 10  # for which a peer finds room beside greedy ones
+# What a host, and a peer and its host together, may hold for each byte that stays free.
+HOST_TO_FREE_FOR_LITTLE, BOTH_TO_FREE = 4, 2
 
 
 class Owner(Protocol):
@@ -38,7 +40,10 @@ class MemoryQuota:
         """Take bytes for a peer; return whether there were enough (with `always` there are)."""
         of_peer, of_host = self.of(peer) + size, self._by_host.get(peer.host, 0) + size
         free = self._most_bytes - self.taken_bytes - size
-        fits = of_host <= 4 * free if of_peer <= LITTLE_BYTES else of_peer + of_host <= 2 * free
+        if of_peer <= LITTLE_BYTES:
+            fits = of_host <= HOST_TO_FREE_FOR_LITTLE * free
+        else:
+            fits = of_peer + of_host <= BOTH_TO_FREE * free
         if fits or always:
             self._add(peer, size)
         return fits or always

@@ -1,17 +1,22 @@
-"""Open the sockets for OSC, and set what the kernel does for them."""
+"""Open the sockets for OSC, set what the kernel does for them, and tell who uses an address."""
 
 from __future__ import annotations
 
 import contextlib
 import ctypes
+import errno
+import http.client
+import json
 import socket
 import struct
 import sys
+from collections.abc import Callable
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.addresses import format_address
-from yehu_server.live.osc.occupants import by_whom, plays_at
-from yehu_server.util.retry import why
+from yehu_server.live.network import format_address
+from yehu_server.live.osc.packets import PacketError, pack, unpack
+from yehu_server.params.table import PREFIX
+from yehu_server.util.files import why
 
 BUFFER_BYTES = 32 << 20  # asked for; the system may grant less
 DATAGRAM_BYTES = 1 << 14  # longer ones are dropped: a few would fill the system's buffer
@@ -26,6 +31,11 @@ FILTER = (
     (0x06, 0, 0, 0),  # drop
     (0x06, 0, 0, 0xFFFFFFFF),  # keep
 )
+# Of who is asked at an address in use.
+ANSWERS_WITHIN_S = 0.3
+ANSWER_BYTES = 1 << 16
+NAME = "yehu-server"  # in HOST_INFO of OSCQuery
+LOCAL = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - nothing is bound
 
 
 def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
@@ -80,3 +90,34 @@ def widen(udp: socket.socket) -> int:
             described = struct.pack("HP", len(FILTER), ctypes.addressof(buffer))
             udp.setsockopt(socket.SOL_SOCKET, SO_ATTACH_FILTER, described)
     return udp.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+
+
+def by_whom(error: OSError, host: str, port: int, asks: Callable[[str, int], bool]) -> str:
+    """What to add to an error of binding: whether a yehu-server is there; else nothing."""
+    if error.errno != errno.EADDRINUSE or not asks(LOCAL.get(host, host), port):
+        return ""
+    return " by a running yehu-server; end it there, or play beside it: --osc :9010 --http :9011"
+
+
+def plays_at(host: str, port: int) -> bool:
+    """Whether a yehu-server answers OSC at an address."""
+    with contextlib.suppress(OSError, PacketError):
+        family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
+        with socket.socket(family, kind) as asking:
+            asking.settimeout(ANSWERS_WITHIN_S)
+            asking.connect(address)
+            asking.send(pack(f"{PREFIX}/ping"))
+            answers = unpack(asking.recv(ANSWER_BYTES))
+            return any(answer.address == f"{PREFIX}/pong" for answer in answers)
+    return False
+
+
+def serves_at(host: str, port: int) -> bool:
+    """Whether a yehu-server answers OSCQuery at an address."""
+    connection = http.client.HTTPConnection(host, port, timeout=ANSWERS_WITHIN_S)
+    with contextlib.suppress(OSError, http.client.HTTPException, ValueError):
+        with contextlib.closing(connection):
+            connection.request("GET", "/?HOST_INFO")
+            told = json.loads(connection.getresponse().read(ANSWER_BYTES))
+        return isinstance(told, dict) and str(told.get("NAME", "")).startswith(NAME)
+    return False

@@ -1,86 +1,80 @@
-"""Carry out what OSC messages ask of one part: its parameters, its notes, its services."""
+"""The OSC calls that play a part: parameters, notes, values and subscriptions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from functools import partial
+from collections.abc import Iterable, Sequence
 
 from yehu_server.errors import RefusedError
 from yehu_server.live.osc.answering import Peer
-from yehu_server.live.osc.call_table import LONGEST_SUBSCRIPTION_S
-from yehu_server.live.osc.context import CallContext, PlayerCalls
-from yehu_server.live.osc.learn_calls import LearnCalls
-from yehu_server.live.osc.preset_calls import PresetCalls
+from yehu_server.live.osc.call import Argument, like, osc_call
+from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
-from yehu_server.live.part_addresses import PART_PARAMS, part_of
-from yehu_server.params.articulations import number_of
+from yehu_server.live.part_addresses import PART_PARAMS
+from yehu_server.params.articulations import ARTICULATIONS, number_of
 from yehu_server.params.spec import Param
 from yehu_server.params.table import TABLE, UNIT
 from yehu_server.playing.live_player import LivePlayer
 
-SUBSCRIBED_S = 60.0
-ARTICULATION = "/playing/articulation"
+SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
+CHOSEN = "/playing/articulation"
+
+NOTE = Argument("note", lo=0.0, hi=127.0, unit="MIDI note")
+VELOCITY = Argument("velocity", lo=0.0, hi=127.0)
+ARTICULATION = Argument("articulation", "s", choices=tuple(one.name for one in ARTICULATIONS))
+SECONDS = Argument("seconds", lo=0.0, hi=LONGEST_SUBSCRIPTION_S, unit="s")
 
 
-class PartCalls(PlayerCalls):
+class PartCalls(GroupCalls):
     """Carries out the calls of a part, and sets its parameters."""
 
-    def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
-        super().__init__(player, addressed, context)
-        self._params = PART_PARAMS if addressed else TABLE
-        self.by_address = {
-            "/note": self._note,
-            "/note/off": self._note_off,
-            "/pitch": self._pitch,
-            "/bend": partial(self._set, address="/playing/bend"),
-            "/press": partial(self._set, address="/playing/press"),
-            "/articulation": self._articulation,
-            "/bow": self._bow,
-            "/release": self._release,
-            "/panic": self._panic,
-            "/reset": self._reset,
-            "/params": self._send_params,
-            "/status": self._status,
-            "/subscribe": self._subscribe,
-            "/subscribe/unit": partial(self._subscribe, form=UNIT),
-            "/subscribe/status": partial(self._subscribe, form=STATUS_PREFIX),
-        }
-        self.by_address |= PresetCalls(player, addressed, context).by_address
-        self.by_address |= LearnCalls(player, addressed, context).by_address
-        for param in self._params:
-            self.by_address[param.address] = partial(self._set, address=param.address)
-            self.by_address[param.address + UNIT] = partial(self._set_unit, param=param)
+    @property
+    def params(self) -> Sequence[Param]:
+        """The parameters that the group has."""
+        return PART_PARAMS if self._addressed else TABLE
+
+    @property
+    def _players(self) -> Sequence[LivePlayer]:
+        """Those that a call for all of the group is for."""
+        return [self._player] if self._addressed else self._context.players
 
     def _echo(self, peer: Peer, addresses: Iterable[str]) -> None:
-        """Send a peer the values that it has set, of those that the part has."""
-        own = {param.address for param in self._params}
+        """Send a peer the values that it has set, of those that the group has."""
+        own = {param.address for param in self.params}
         told = [self._addressed + one for one in addresses if one.removesuffix(UNIT) in own]
         self._clients.echo(peer, told)
 
     # -- parameters --------------------------------------------------------------------------
 
-    def _set(self, call: Request, address: str) -> None:
+    def set(self, call: Request, address: str) -> None:
+        """Set a parameter."""
         (value,) = call.numbers(1)
         self._player.write(address, value, frame=call.frame)
         self._clients.echo(call.peer, [self._addressed + address])
 
-    def _set_unit(self, call: Request, param: Param) -> None:
+    def set_unit(self, call: Request, param: Param) -> None:
+        """Set a parameter by 0 to 1 of its range."""
         (unit,) = call.numbers(1)
         self._player.write(param.address, param.from_unit(unit), frame=call.frame)
         self._clients.echo(call.peer, [self._addressed + param.address + UNIT])
 
+    def move(self, call: Request, address: str) -> None:
+        """Move what the mapping binds to an address of the user's own."""
+        self._player.move(address, call.numbers(1)[0], frame=call.frame)
+
+    @osc_call("/params", "Sends all parameters: value, range, default, unit, meaning.")
     def _send_params(self, call: Request) -> None:
         call.check_peer()
         values = self._player.values()
-        for param in self._params:
+        for param in self.params:
             value = values[param.address]
             row = (self._prefix + param.address, value, param.lo, param.hi, param.default)
             self._send(call.peer, "/param", *row, param.unit, param.doc)
-        self._send(call.peer, "/params", len(self._params))
+        self._send(call.peer, "/params", len(self.params))
 
     # -- playing -----------------------------------------------------------------------------
 
+    @osc_call("/note", "Begins a note; velocity 0 ends it.", NOTE, VELOCITY)
     def _note(self, call: Request) -> None:
         note, velocity = call.numbers(2)
         if velocity == 0.0:
@@ -88,46 +82,86 @@ class PartCalls(PlayerCalls):
         else:
             self._player.note_on(note, velocity, frame=call.frame)
 
+    @osc_call("/note/off", "Ends a note.", NOTE)
     def _note_off(self, call: Request) -> None:
         self._player.note_off(call.numbers(1, 2)[0], frame=call.frame)
 
+    @osc_call("/pitch", "Slides the finger to a pitch: the sounding note's, or the next.", NOTE)
     def _pitch(self, call: Request) -> None:
         self._player.slide(call.numbers(1)[0], frame=call.frame)
 
+    @osc_call(
+        "/bow",
+        "Draws the bow by hand; no speed and no force lifts it.",
+        like("/bow/speed", "speed"),
+        like("/bow/force", "force"),
+    )
     def _bow(self, call: Request) -> None:
         speed, force = call.numbers(2)
         self._player.draw(speed, force, frame=call.frame)
         self._echo(call.peer, ["/bow/speed", "/bow/force"])
 
+    @osc_call("/bend", "Slides the finger away from the note.", like("/playing/bend", "semitones"))
+    def _bend(self, call: Request) -> None:
+        self.set(call, "/playing/bend")
+
+    @osc_call(
+        "/press", "How hard the finger presses the string.", like("/playing/press", "newtons")
+    )
+    def _press(self, call: Request) -> None:
+        self.set(call, "/playing/press")
+
+    @osc_call("/articulation", "Chooses what both hands do in the next notes.", ARTICULATION)
     def _articulation(self, call: Request) -> None:
         number = number_of(call.word())
-        self._player.write(ARTICULATION, number, frame=call.frame)
-        self._clients.echo(call.peer, [self._addressed + ARTICULATION])
+        self._player.write(CHOSEN, number, frame=call.frame)
+        self._clients.echo(call.peer, [self._addressed + CHOSEN])
 
+    @osc_call(
+        "/release",
+        "Gives the bow and fingers that you moved directly back to the player (no time).",
+    )
     def _release(self, call: Request) -> None:
         self._player.release(frame=call.frame)
 
+    @osc_call(
+        "/panic", "Ends all notes and all sound, and drops messages that wait for their time."
+    )
     def _panic(self, call: Request) -> None:
         self._context.drop_scheduled(self._addressed)
-        self._player.panic(frame=call.frame)
+        for player in self._players:
+            player.panic(frame=call.frame)
 
+    @osc_call("/reset", "The same, and sets every parameter to its default.")
     def _reset(self, call: Request) -> None:
         self._context.drop_scheduled(self._addressed)
-        self._player.reset(frame=call.frame)
-        self._echo(call.peer, [param.address for param in self._params])
+        for player in self._players:
+            player.reset(frame=call.frame)
+        self._echo(call.peer, [param.address for param in self.params])
 
-    # -- services ----------------------------------------------------------------------------
+    # -- values ------------------------------------------------------------------------------
 
-    def _status(self, call: Request) -> None:
+    @osc_call("/status", "Sends all status values.")
+    def _send_status(self, call: Request) -> None:
         call.check_peer()
-        services = self._services
-        status = (
-            services.part_status(part_of(self._addressed)) if self._addressed else services.status()
-        )
-        for name, value in status.items():
+        for name, value in self._context.states(self._addressed).items():
             self._send(call.peer, STATUS_PREFIX + name, as_argument(value))
 
-    def _subscribe(self, call: Request, form: str = "") -> None:
+    @osc_call("/subscribe", "Sends all parameters, and for some time every change.", SECONDS)
+    def _subscribe(self, call: Request) -> None:
+        self._subscribe_to("", call)
+
+    @osc_call("/subscribe/unit", "The same, with values as 0 to 1, at ADDRESS/unit.", SECONDS)
+    def _subscribe_unit(self, call: Request) -> None:
+        self._subscribe_to(UNIT, call)
+
+    @osc_call(
+        "/subscribe/status", "Sends all status values, and for some time every change.", SECONDS
+    )
+    def _subscribe_status(self, call: Request) -> None:
+        self._subscribe_to(STATUS_PREFIX, call)
+
+    def _subscribe_to(self, form: str, call: Request) -> None:
         numbers = call.numbers(0, 2)
         seconds = within_an_hour(numbers[0] if numbers else SUBSCRIBED_S)
         peer = call.peer.at(port_of(numbers[1])) if len(numbers) == 2 else call.peer

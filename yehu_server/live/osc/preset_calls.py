@@ -7,28 +7,27 @@ from dataclasses import replace
 from functools import partial
 
 from yehu_server.errors import PresetError, shortened
-from yehu_server.live.osc.context import CallContext, PlayerCalls
+from yehu_server.live.osc.call import NAME, Argument, osc_call
+from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.request import Request
 from yehu_server.live.part_addresses import OF_PARTS, PLAIN
 from yehu_server.params.preset_file import Preset, morph
 from yehu_server.params.table import PREFIX
-from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.preset_folders import Presets
+
+PRESET, FROM, TO = Argument("preset", "s"), Argument("from", "s"), Argument("to", "s")
+PRESETS = frozenset((PRESET, FROM, TO))  # of which there are only some
+AMOUNT = Argument("amount", lo=0.0, hi=1.0)
 
 
-class PresetCalls(PlayerCalls):
+class PresetCalls(GroupCalls):
     """Carries out the calls under ``/preset``."""
 
-    def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
-        super().__init__(player, addressed, context)
-        self._presets = player.presets
-        self.by_address = {
-            "/preset/load": self._load,
-            "/preset/morph": self._morph,
-            "/preset/save": self._save,
-        }
-        if not addressed:  # presets are everyone's
-            self.by_address |= {"/preset/delete": self._delete, "/preset/list": self._list}
+    @property
+    def _presets(self) -> Presets:
+        return self._player.presets
 
+    @osc_call("/preset/load", "Sets the parameters of a preset.", PRESET)
     def _load(self, call: Request) -> None:
         self._after_writes(call, "/preset/load", self._load_now)
 
@@ -50,6 +49,7 @@ class PresetCalls(PlayerCalls):
             which = f"{', '.join(shared)}: one for all parts, left out; "
             self._send_error(call.peer, address, f"{which}{PREFIX}{address} sets what all share")
 
+    @osc_call("/preset/morph", "Sets values between those of two presets.", FROM, TO, AMOUNT)
     def _morph(self, call: Request) -> None:
         self._after_writes(call, "/preset/morph", self._morph_now)
 
@@ -63,6 +63,7 @@ class PresetCalls(PlayerCalls):
     def _named(self, call: Request, place: int) -> Preset:
         return self._presets.load(replace(call, arguments=call.arguments[place:][:1]).word())
 
+    @osc_call("/preset/save", "Saves the parameters as a preset.", NAME)
     def _save(self, call: Request) -> None:
         name = call.word()
         self._check_rate()
@@ -77,9 +78,10 @@ class PresetCalls(PlayerCalls):
     def _announce(self, call: Request, answer: str, name: str) -> None:
         """Answer, and announce that there are other presets."""
         self._player.know_programs()
-        self._context.tree_changed("/preset")
+        self._context.announce("/preset")
         self._send(call.peer, answer, name)
 
+    @osc_call("/preset/delete", "Removes a preset of the player's own.", NAME, is_for_all=True)
     def _delete(self, call: Request) -> None:
         name = call.word()
 
@@ -89,6 +91,9 @@ class PresetCalls(PlayerCalls):
 
         self._write(call.peer, "/preset/delete", delete)
 
+    @osc_call(
+        "/preset/list", "Sends all presets: name, MIDI program, description.", is_for_all=True
+    )
     def _list(self, call: Request) -> None:
         self._after_writes(call, "/preset/list", self._list_now)
 

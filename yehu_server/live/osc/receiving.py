@@ -20,7 +20,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from functools import lru_cache
 
-from yehu_server.live.addresses import Address, Allowed, is_here
+from yehu_server.live.network import Address, Allowed, is_here
 from yehu_server.live.osc.answering import (
     TO_A_HOST,
     TO_ALL_HOSTS,

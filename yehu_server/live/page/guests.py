@@ -7,7 +7,7 @@ import secrets
 import time
 from dataclasses import dataclass, field
 
-from yehu_server.live.addresses import is_here, plain
+from yehu_server.live.network import is_here, plain
 from yehu_server.util.token_bucket import TokenBucket
 
 LISTEN, PLAY, OWN = ROLES = ("listen", "play", "own")

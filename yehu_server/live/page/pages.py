@@ -10,7 +10,7 @@ from typing import Any
 from yehu_server.core.midi.section_players import OWN
 from yehu_server.core.player.rows import ROW
 from yehu_server.errors import DeviceError
-from yehu_server.live.addresses import Address
+from yehu_server.live.network import Address
 from yehu_server.live.page.guests import Guests
 from yehu_server.live.page.players import CHANNELS, FIRST
 from yehu_server.live.page.sockets import MOST_PAGES

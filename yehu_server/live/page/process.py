@@ -18,7 +18,7 @@ from typing import Any
 
 from aiohttp import web
 
-from yehu_server.live.addresses import Allowed
+from yehu_server.live.network import Allowed
 from yehu_server.live.page.guests import Admission, Guests
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.page.site import HEADERS, Site

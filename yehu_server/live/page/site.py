@@ -20,7 +20,7 @@ from yehu_server.ahead.module_cache import SHIPPED, page_module, shipped_version
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.live.page.examples import examples, write_capture_headers
 from yehu_server.live.page.facts import facts, module, write
-from yehu_server.util.files import replacing, shipped_folder
+from yehu_server.util.files import replacing, shipped_folder, why
 
 INDEX = "index.html"
 # This meta element tells the page that a yehu server serves it; the static page does not have it.
@@ -168,7 +168,7 @@ def write_page(folder: Path) -> list[Path]:
         files += [path.relative_to(folder) for path in beginnings]
         _write_worker(folder, [file for file in files if file != Path(WORKER)])
     except OSError as error:
-        raise OutputError(f"{folder}: {error.strerror}") from error
+        raise OutputError(f"{folder}: {why(error)}") from error
     return files
 
 
@@ -198,7 +198,7 @@ def _copy_all(files: Iterable[Path], source: Path, folder: Path) -> list[Path]:
             _copy(source / file, folder / file)
             copied.append(file)
     except OSError as error:
-        raise OutputError(f"{folder}: {error.strerror}") from error
+        raise OutputError(f"{folder}: {why(error)}") from error
     return copied
 
 
@@ -238,7 +238,7 @@ def server_of(folder: Path, port: int) -> ThreadingHTTPServer:
     try:
         return ThreadingHTTPServer((HOST, port), partial(_Handler, directory=str(folder)))
     except OSError as error:
-        raise OutputError(f"{HOST}:{port}: {error.strerror}") from error
+        raise OutputError(f"{HOST}:{port}: {why(error)}") from error
 
 
 def url_of(server: ThreadingHTTPServer) -> str:

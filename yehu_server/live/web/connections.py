@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from aiohttp import web
 
-from yehu_server.live.addresses import plain
+from yehu_server.live.network import plain
 
 MOST_CONNECTIONS, MOST_OF_A_HOST = 256, 128  # with those that have sent no request
 MOST_WEB_SOCKETS, MOST_SOCKETS_OF_A_HOST = 64, 32

@@ -11,7 +11,8 @@ import time
 from collections.abc import Callable, Coroutine
 from typing import Any
 
-from yehu_server.util.retry import Backoff, why
+from yehu_server.util.files import why
+from yehu_server.util.retry import Backoff
 
 log = logging.getLogger(__name__)
 

@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 
 from aiohttp import web
 
-from yehu_server.live.addresses import Allowed, is_here
+from yehu_server.live.network import Allowed, is_here
 
 LONGEST_NAME = 300
 PORTS = {"http": 80, "https": 443}  # by scheme, where an origin names none

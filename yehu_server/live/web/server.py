@@ -19,11 +19,11 @@ from urllib.parse import urlsplit
 from aiohttp import web
 
 from yehu_server.errors import DeviceError, one_line
-from yehu_server.live.addresses import Address, Allowed, format_address, plain
+from yehu_server.live.network import Address, Allowed, format_address, plain
 from yehu_server.live.osc.answering import WebTraffic
-from yehu_server.live.osc.call_table import Call
+from yehu_server.live.osc.call import Call
 from yehu_server.live.osc.clients import Clients
-from yehu_server.live.osc.occupants import NAME, by_whom, serves_at
+from yehu_server.live.osc.open_sockets import NAME, by_whom, serves_at
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web import query
 from yehu_server.live.web.connections import Connections
@@ -32,7 +32,7 @@ from yehu_server.live.web.metrics import Metrics
 from yehu_server.live.web.origin_check import check, own_names
 from yehu_server.live.web.web_sockets import WebSockets
 from yehu_server.params.table import PREFIX
-from yehu_server.util.retry import why
+from yehu_server.util.files import why
 
 log = logging.getLogger(__name__)
 

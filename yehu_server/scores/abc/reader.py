@@ -21,7 +21,6 @@ from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MOST_PARTS, Written
 
 MOST_BYTES = 4 << 20
-BEGINNINGS = (b"X:", b"%abc")
 MUSIC_FIELDS = "KLMQ"
 _FIELD = re.compile(r"([A-Za-z+]):\s*(.*)")
 _NAME = re.compile(r'(?:name|nm)="([^"]*)"')

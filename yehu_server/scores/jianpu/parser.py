@@ -130,18 +130,20 @@ class PartParser:
             return False
         self.scale.shift(note.shift, word)
         if note.kind is Kind.DASH:
-            length = self._length(note)
-            for _ in range(note.dashes):
-                self._add(Sounding(Kind.DASH, length), word)
+            self._add_dashes(note, self._length(note), word)
             return True
         if note.unsure:
             self.notices["octave marks between two figures, read as of the one before"] += 1
         melody = len(note.figures) > 1 and not note.figures[0].sign.isascii()
         for group in [(figure,) for figure in note.figures] if melody else [note.figures]:
             self._sound(note, group, word)
-        for _ in range(note.dashes):
-            self._add(Sounding(Kind.DASH, self._tuplet), word)
+        self._add_dashes(note, self._tuplet, word)
         return True
+
+    def _add_dashes(self, note: NoteWord, length: Fraction, word: Word) -> None:
+        """Each dash holds the note before it for a length; ``part`` joins them."""
+        for _ in range(note.dashes):
+            self._add(Sounding(Kind.DASH, length), word)
 
     def _sound(self, note: NoteWord, figures: tuple[Figure, ...], word: Word) -> None:
         sounding = Sounding(note.kind, self._length(note))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from bisect import bisect_right
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
 from operator import itemgetter
@@ -33,7 +33,6 @@ from yehu_server.scores.score import (
 )
 from yehu_server.scores.smf.chunks import Part, read_parts
 from yehu_server.scores.smf.faults import DamageReport
-from yehu_server.scores.smf.named_tracks import parts_of_tracks
 from yehu_server.scores.smf.sysex_tunings import retuned
 from yehu_server.scores.smf.track import Clock, Placed, Track, checked_division
 from yehu_server.scores.smf.wrapper import unwrapped
@@ -220,7 +219,7 @@ def _parts(events: Sequence[ScoreEvent], names: dict[int, str]) -> tuple[ScorePa
         for event in events
         if event.message.type == "note_on" and event.message.channel != PERCUSSION
     }
-    return parts_of_tracks(places, names)
+    return _parts_of_tracks(places, names)
 
 
 def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> str:
@@ -229,3 +228,40 @@ def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> s
     longest = ((clock.seconds(tick) - clock.seconds(tick - delta), at) for delta, tick, at in rests)
     seconds, at = max(longest)
     return f" (most of it is the rest before byte {at})" if 2.0 * seconds > duration_s else ""
+
+
+def _parts_of_tracks(places: set[tuple[int, int]], names: dict[int, str]) -> tuple[ScorePart, ...]:
+    """Name the parts of a MIDI file: its tracks with notes, or the channels of a single one.
+
+    Parameters
+    ----------
+    places : set of (int, int)
+        Tracks and channels that have notes.
+    names : dict
+        Of tracks, as far as they have one.
+    """
+    if not places:
+        return ()
+    tracks = sorted({track for track, _ in places})
+    if len(tracks) > 1:
+        found = [
+            ScorePart(names.get(track) or _unnamed(track, places), track=track) for track in tracks
+        ]
+    else:
+        channels = sorted({channel for _, channel in places})
+        alone = names.get(tracks[0], "") if len(channels) == 1 else ""
+        found = [
+            ScorePart(alone or f"channel {channel + 1}", channel=channel) for channel in channels
+        ]
+    counts = Counter(part.name for part in found)
+    return tuple(
+        replace(part, name=f"{part.name} ({part.track})") if counts[part.name] > 1 else part
+        for part in found
+    )
+
+
+def _unnamed(track: int, places: set[tuple[int, int]]) -> str:
+    own = {channel for each, channel in places if each == track}
+    others = {channel for each, channel in places if each != track}
+    is_alone = len(own) == 1 and own.isdisjoint(others)
+    return f"channel {min(own) + 1}" if is_alone else f"track {track}"

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 
-from yehu_server.scores.written.clock import CAESURA_S, WrittenClock
 from yehu_server.scores.written.mark_settings import DOWN, UP, Active, is_plucked
 from yehu_server.scores.written.notated import Note, Part, Span
 from yehu_server.scores.written.ornaments import OVERLAP_S
+from yehu_server.scores.written.tempo import CAESURA_S, WrittenClock
 
 # Sounding shares of the written length, by ear. The shortest that is marked counts.
 SHARES = {

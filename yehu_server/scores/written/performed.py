@@ -16,8 +16,7 @@ import mido
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import Score, ScoreEvent, ScorePart, Setting
-from yehu_server.scores.written.clock import WrittenClock
-from yehu_server.scores.written.loudness import Loudness
+from yehu_server.scores.written.dynamics import Loudness
 from yehu_server.scores.written.mark_settings import (
     BEND,
     DIRECTION,
@@ -34,6 +33,7 @@ from yehu_server.scores.written.notated import Note, Part, Written, times
 from yehu_server.scores.written.ornaments import touches_of
 from yehu_server.scores.written.part_bowing import Played, bowed, has_bowing
 from yehu_server.scores.written.pitch_curve import curve_of
+from yehu_server.scores.written.tempo import WrittenClock
 
 CHANNELS = tuple(channel for channel in range(16) if channel != 9)
 NOTE_OFF, NOTE_ON, CONTROL = 0x80, 0x90, 0xB0

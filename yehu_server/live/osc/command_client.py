@@ -9,10 +9,10 @@ from collections.abc import Iterator
 from typing import Self
 
 from yehu_server.errors import DeviceError, RefusedError
-from yehu_server.live.addresses import Address, format_address
+from yehu_server.live.network import Address, format_address
 from yehu_server.live.osc.packets import Message, PacketError, pack, unpack
 from yehu_server.params.table import PREFIX
-from yehu_server.util.retry import why
+from yehu_server.util.files import why
 
 ANSWERS_WITHIN_S = 2.0
 DATAGRAM_BYTES = 1 << 16

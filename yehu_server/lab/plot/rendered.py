@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -84,10 +86,24 @@ def draw_spectrogram(axes: Any, watch: PlotData, *, has_pitch: bool = False) -> 
 
 
 SIZE = (14.0, 9.0)  # inches
+Draw = Callable[[Any], None]  # into axes
 
 
-def write_picture(watch: PlotData, target: Path, title: str, *, overwrite: bool = False) -> None:
+def write_picture(
+    watch: PlotData,
+    target: Path,
+    title: str,
+    level: Draw | None = None,
+    pitch: Draw | None = None,
+    *,
+    overwrite: bool = False,
+) -> None:
     """Draw what was gathered of a rendering, and write it to a PNG file.
+
+    Parameters
+    ----------
+    level, pitch : callable
+        What draws these panels; by default `draw_level` and `draw_pitch`.
 
     Raises
     ------
@@ -97,8 +113,8 @@ def write_picture(watch: PlotData, target: Path, title: str, *, overwrite: bool 
 
     def fill(figure: Any) -> None:
         panels = figure.subplots(3, 1, height_ratios=(1.0, 2.2, 1.8), sharex=True)
-        draw_level(panels[0], watch)
-        draw_pitch(panels[1], watch)
+        (level or partial(draw_level, watch=watch))(panels[0])
+        (pitch or partial(draw_pitch, watch=watch))(panels[1])
         draw_spectrogram(panels[2], watch)
         panels[0].set_title(png.plain(title), loc="left")
         panels[2].set(xlim=(0.0, max(watch.duration_s, 0.01)), xlabel="s")

@@ -1,4 +1,4 @@
-"""Subscriptions: who is sent which changes, in small steps between other messages.
+"""Publish changes of values: who is sent which, in small steps between other messages.
 
 Values are looked at once a round, topic by topic, and then sent. What a
 subscriber asks for during a round waits for the next one, so that it is sent what then holds.

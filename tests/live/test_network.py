@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yehu_server.errors import ParameterError
-from yehu_server.live import addresses
-from yehu_server.live.addresses import Allowed, format_address, lan_interface, parse_address
+from yehu_server.live.network import Allowed, format_address, lan_interface, parse_address
 
 
 @pytest.mark.parametrize(
@@ -87,6 +86,6 @@ def test_any_text_is_an_address_or_refused(text):
 def test_the_network_is_as_wide_as_the_interface_says(monkeypatch, own, network):
     told = [("::1", 128), ("127.0.0.1", 8), ("192.168.5.5", 22)]
     ips = [SimpleNamespace(ip=ip, network_prefix=prefix) for ip, prefix in told]
-    monkeypatch.setattr(addresses, "lan_address", lambda: own)
+    monkeypatch.setattr("yehu_server.live.network.lan_address", lambda: own)
     monkeypatch.setattr(ifaddr, "get_adapters", lambda: [SimpleNamespace(ips=ips)])
     assert str(lan_interface().network) == network

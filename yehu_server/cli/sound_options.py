@@ -1,0 +1,157 @@
+"""Options of how something sounds in a file: rate, level and room; of render, also the stage."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from yehu_server.cli.arguments import add_options, instrument_of
+from yehu_server.cli.converters import number_within, positive, target, whole
+from yehu_server.cli.playing_options import playing_options_of
+from yehu_server.errors import ParameterError
+
+if TYPE_CHECKING:
+    from yehu_server.playing.options import PlayingOptions
+    from yehu_server.playing.preset_folders import Presets
+    from yehu_server.rendering.options import Options
+
+Values = tuple[tuple[str, float], ...]  # addresses and values
+
+PLOTTED_BLOCK = 512  # frames between two readings of the pitch that is asked for
+
+BY_MIDI = Path()  # --ensemble without a file
+
+
+def add_sound(group: Any) -> None:
+    """Add the options of rate and level."""
+    add_options(
+        group,
+        """
+        --rate HZ: sample rate (default: 44100)
+        --tail SECONDS: time after the end, up to 600 (default: until 80 dB below full scale, at
+            most 5 s)
+        --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
+        --normalize: scale the result to a peak of -1 dBFS
+        """,
+        rate={"type": whole, "default": 44100},
+        tail=number_within(0.0, 600.0, "s"),
+        gain_db=number_within(-60.0, 24.0, "dB"),
+    )
+
+
+def add_room(group: Any) -> None:
+    """Add the options of the room and the channels of the sound."""
+    add_options(
+        group,
+        """
+        --dry: no room, and a body that sounds alike to both sides (default: a small, quiet room)
+        --mono: write one channel, the mean of both
+        --room NAME: the room: a preset of rooms, such as hall, or a file
+        """,
+    )
+
+
+def add_stage(parser: Any) -> None:
+    """Add the options of a stage: room, channels, ensemble, stems."""
+    group = parser.add_argument_group("the stage")
+    add_room(group)
+    add_options(
+        group,
+        """
+        --ensemble FILE.toml: each MIDI channel but 10 a yehu of its own, up to 16; a file tells who
+            plays what and sits where
+        --by: with --ensemble: whether each channel or each track is a part (default: channel)
+        --stems FOLDER: also write what each part, and the room, gives to the mix: 01-NAME.wav ...
+            room.wav
+        --jobs N: number of cores for an ensemble or a folder (default: all); the sound is the same
+        """,
+        ensemble={"nargs": "?", "type": _ensemble_file, "const": BY_MIDI},
+        by={"choices": ("channel", "track"), "default": "channel"},
+        stems=target,
+        jobs=positive,
+    )
+
+
+def _ensemble_file(text: str) -> Path:
+    if not text.endswith(".toml"):
+        raise argparse.ArgumentTypeError(
+            f"{text} is no ensemble file, which ends in .toml; name MIDI files before --ensemble"
+        )
+    return Path(text)
+
+
+def check_sound(arguments: argparse.Namespace) -> None:
+    """Refuse a rate that no instrument has, and a room without a room: raises ParameterError."""
+    from yehu_server.core.physics.grid import check_rate
+
+    check_rate(arguments.rate)
+    if arguments.dry and arguments.room is not None:
+        raise ParameterError("--dry has no room: leave out --room")
+
+
+def check_stage(arguments: argparse.Namespace) -> None:
+    """Refuse options that exclude each other, and those that `check_sound` does.
+
+    Raises
+    ------
+    ParameterError
+        Where there are some.
+    """
+    check_sound(arguments)
+    if arguments.by == "track" and arguments.ensemble is None:
+        raise ParameterError("--by track is for --ensemble")
+    if arguments.by == "track" and arguments.ensemble != BY_MIDI:
+        raise ParameterError("--by track: the ensemble file names channels and tracks itself")
+
+
+def playing_in_room(arguments: argparse.Namespace) -> PlayingOptions:
+    """How to play, in the room that is asked for; raises YehuError where something is wrong."""
+    playing = playing_options_of(arguments)
+    if arguments.room is None:
+        return playing
+    room = room_of(arguments.room, playing.presets)
+    return replace(playing, start=(*playing.start, *room))
+
+
+def sound_options_of(
+    arguments: argparse.Namespace, playing: PlayingOptions, form: str, subtype: str, **more: Any
+) -> Options:
+    """How to render, by all these options; `more` are fields of `Options`."""
+    from yehu_server.rendering.options import Options
+
+    return Options(
+        rate=arguments.rate,
+        format_name=form,
+        subtype=subtype,
+        tail_s=arguments.tail,
+        gain_db=arguments.gain_db,
+        normalize=arguments.normalize,
+        playing=playing,
+        quantities=instrument_of(arguments),
+        is_dry=arguments.dry,
+        is_mono=arguments.mono,
+        **more,
+    )
+
+
+def room_of(name: str, presets: Presets) -> Values:
+    """The values of a preset of rooms.
+
+    Raises
+    ------
+    YehuError
+        Where there is no such preset, or it is none of a room alone.
+    """
+    preset = presets.find(name)
+    other = [each for each in preset.values if not is_of_room(each)]
+    if other or not preset.values:
+        what = f"it sets {other[0]}" if other else "it sets nothing"
+        raise ParameterError(f"{name}: not a room: {what}")
+    return tuple(preset.values.items())
+
+
+def is_of_room(address: str) -> bool:
+    """Whether a parameter is one of the room, or how the body sounds in it."""
+    return address.startswith("/room/") or address == "/body/width"

@@ -192,7 +192,7 @@ def test_all_errors_of_a_file_are_told_in_the_order_of_its_lines(read):
 
 def test_of_very_many_errors_the_first_are_told(read):
     with pytest.raises(MappingError) as caught:
-        read(BIND.replace("pressure", "presure") * 500)
+        read(BIND.replace("pressure", "presure") * 200)
     assert len(caught.value.more) == MOST_ERRORS - 1
 
 

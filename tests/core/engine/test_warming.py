@@ -12,6 +12,7 @@ import pytest
 from yehu_server.compile.jit import Native
 from yehu_server.core.engine import warming
 from yehu_server.core.engine.sounding import sound
+from yehu_server.util.processes import python_command
 
 
 def beginnings(monkeypatch) -> list[list[str]]:
@@ -49,7 +50,7 @@ def test_the_model_is_compiled_beside_where_there_is_a_second_processor(monkeypa
     monkeypatch.setattr(warming.machine_code, "loaded", cache(lambda *_: {}))
     assert not warming.is_warm()
     warming.warm_up()
-    expected = [[sys.executable, "-m", "yehu_server.core.engine.warming"]]
+    expected = [python_command("yehu_server.core.engine.warming")]
     assert begun == (expected if processors > 1 else [])
 
 

@@ -69,7 +69,7 @@ BUTTERWORTH = (0.541196, 1.306563)  # Q of the sections of a filter of fourth or
 @compiled_exactly
 def prepare_hearing(h: Any, rate: float) -> None:
     """Set up a record that is all 0 for a rate (Hz) of the sound."""
-    h.step = max(1, int(rate // THINNED_HZ))
+    h.step = max(1, int(rate / THINNED_HZ))
     h.rate = thinned = rate / h.step
     h.hop, h.span = int(HOP_S * thinned), int(SPAN_S * thinned)
     h.lags = min(math.ceil(thinned / LOWEST_HZ), MOST_LAGS - 2)

@@ -93,11 +93,15 @@ def own_presets(_config_home) -> Path:
 
 
 @pytest.fixture(autouse=True)
-def _signals() -> Iterator[None]:
-    """Restore the handler of SIGTERM, which commands replace in this process."""
+def _as_before() -> Iterator[None]:
+    """Restore what commands change in this process: the handler of SIGTERM, and where Pythons look.
+
+    Without the latter, scripts that are started later would not find what lies beside them.
+    """
     before = signal.getsignal(signal.SIGTERM)
     yield
     signal.signal(signal.SIGTERM, before)
+    os.environ.pop("PYTHONSAFEPATH", None)
 
 
 @pytest.fixture

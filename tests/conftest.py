@@ -94,13 +94,14 @@ def own_presets(_config_home) -> Path:
 
 @pytest.fixture(autouse=True)
 def _as_before() -> Iterator[None]:
-    """Restore what commands change in this process: the handler of SIGTERM, and where Pythons look.
+    """Restore what commands change in this process: handlers of signals, and where Pythons look.
 
     Without the latter, scripts that are started later would not find what lies beside them.
     """
-    before = signal.getsignal(signal.SIGTERM)
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
     yield
-    signal.signal(signal.SIGTERM, before)
+    for number, handler in before.items():
+        signal.signal(number, handler)
     os.environ.pop("PYTHONSAFEPATH", None)
 
 

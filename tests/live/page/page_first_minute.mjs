@@ -48,8 +48,12 @@ await run(async (browser, url) => {
   found.said.push(await words());
   for (let step = 1; step <= 10; step++) await touch("touchMove", [finger(0.3 + step * 0.01)]);
   found.said.push(await words());
-  for (let step = 0; step < 40; step++) {
-    await touch("touchMove", [finger(0.4 + 0.006 * Math.sin((2 * Math.PI * step) / 8))]);
+  // Six times a second, however slow this machine is; until it is noticed.
+  const [before] = await words();
+  const began = Date.now();
+  const elapsed = () => (Date.now() - began) / 1000;
+  while (elapsed() < 1 || (elapsed() < 10 && (await words())[0] === before)) {
+    await touch("touchMove", [finger(0.4 + 0.006 * Math.sin(2 * Math.PI * 6 * elapsed()))]);
     await page.waitForTimeout(20);
   }
   found.rocked = await wishes(page);

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from yehu_server.errors import ScoreError
-from yehu_server.following.decoder import NOT_VOICED, decoded, gate_of
 from yehu_server.following.frames import (
     BACK,
     BATCH,
@@ -22,6 +21,7 @@ from yehu_server.following.frames import (
     Frames,
     measured,
 )
+from yehu_server.following.pitch_path import NOT_VOICED, decoded, gate_of
 from yehu_server.following.recording import RATE, Recording, form_of, heard_blocks
 from yehu_server.following.tracker import (
     PERIOD_S,

@@ -23,7 +23,7 @@ from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.written.in_range import moved
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.performed import performed
-from yehu_server.scores.written.tune import usual_parts
+from yehu_server.scores.written.usual_part import usual_parts
 from yehu_server.util.files import read_bytes
 
 

@@ -98,7 +98,7 @@ def content(data: bytes) -> bytes:
 
 
 def document() -> py2tosc.Document:
-    """Return the whole common_layout."""
+    """Return the whole layout."""
     pages = [_hands(), *(page for group in common_layout.groups() for page in _pages(group))]
     pager = py2tosc.pager(
         name="pages", frame=(0, BAR, WIDTH, HEIGHT - BAR), tabbar_size=TABS, children=pages

@@ -1,4 +1,4 @@
-"""Parse TOML and JSON, refusing what is not safe to process and print; the lines of TOML."""
+"""Parse the bytes of TOML and JSON to values; refuse what is not safe to process and print."""
 
 from __future__ import annotations
 

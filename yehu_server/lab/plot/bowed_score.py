@@ -18,7 +18,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.lab.plot import png
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.scores.jianpu.figures import figure_of, written_key
-from yehu_server.scores.jianpu.written_lengths import SIGN_OF, signed_lengths
+from yehu_server.scores.jianpu.writer_lengths import SIGN_OF, signed_lengths
 from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.layout import (
     TUPLETS,

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from yehu_server.scores.jianpu.figures import DO_FIFTHS, figure_of, written_key
 from yehu_server.scores.jianpu.mark_words import COMMANDS, FINGERING, Act
-from yehu_server.scores.jianpu.written_lengths import (
+from yehu_server.scores.jianpu.writer_lengths import (
     FINEST,
     PICKUPS,
     SIGN_OF,

@@ -1,4 +1,4 @@
-"""Lengths as jianpu writes them: lines under figures, dots, dashes; and slurs within each other."""
+"""For the writer: lengths in jianpu: lines under figures, dots, dashes; slurs within each other."""
 
 from __future__ import annotations
 

@@ -190,13 +190,13 @@ def test_a_held_setting_stays_through_notes_and_controllers(live):
 
 
 def test_many_threads_take_turns_without_a_torn_note(live, instrument):
-    def hammer(port: int) -> None:
+    def hammer(thread: int) -> None:
         for turn in range(200):
-            note = 65 + (turn * 7 + port) % 24
-            receive(live, mido.Message("note_on", note=note, velocity=90), frame=turn, port=port)
-            receive(live, mido.Message("note_off", note=note), frame=turn, port=port)
+            note = 65.0 + (turn * 7 + thread) % 24
+            live.note_on(note, 90.0, frame=turn)
+            live.note_off(note, frame=turn)
 
-    threads = [threading.Thread(target=hammer, args=(port,)) for port in range(4)]
+    threads = [threading.Thread(target=hammer, args=(thread,)) for thread in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:

@@ -534,12 +534,17 @@ HUNG = """
 import ctypes
 from yehu_server.cli.terminal import ending_at_once, interrupt
 import signal
+import threading
 signal.signal(signal.SIGTERM, interrupt)
-libc, lock = ctypes.CDLL(None), ctypes.create_string_buffer(256)
+libc = ctypes.CDLL(None)
+lock, condition = ctypes.create_string_buffer(256), ctypes.create_string_buffer(256)
+def tell():
+    libc.pthread_mutex_lock(lock)  # free as soon as the main thread waits
+    print("begun", flush=True)
 with ending_at_once():
     libc.pthread_mutex_lock(lock)
-    print("begun", flush=True)
-    libc.pthread_mutex_lock(lock)  # as in a compiler: no signal brings it back to Python
+    threading.Thread(target=tell, daemon=True).start()
+    libc.pthread_cond_wait(condition, lock)  # as in a compiler: no signal brings it back to Python
 """
 
 

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from plugin.sounds import FRAMES, PHRASE, by_library, frequency, level_db, script
 
+from yehu_server.playing.preset_folders import Presets
+
 pytestmark = pytest.mark.slow
 PLAYS = ["0 play 1"]
 
@@ -57,9 +59,10 @@ def test_a_preset_moves_what_it_names_and_tells_the_host(play, shown):
     hall = shown["/preset"].choices.index("hall")
     _, told = play([*PLAYS, f"100 set {shown['/preset'].number} {hall}"], 2000)
     moved = {int(number): value for number, value in told["moved"]}
-    assert moved[shown["/room/size"].number] == 25.0
+    preset = Presets(user_first=False).find("hall").values
+    assert moved[shown["/room/size"].number] == preset["/room/size"]
     values = {int(number): value for number, value, _ in told["value"]}
-    assert values[shown["/room/decay"].number] == 1.6
+    assert values[shown["/room/decay"].number] == preset["/room/decay"]
     assert values[shown["/playing/speed"].number] == shown["/playing/speed"].default
 
 

@@ -11,6 +11,7 @@ from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import FIRST, LAST, YehuError
 from yehu_server.following.recording import recording_of_file
 from yehu_server.lab.body import read as measure
+from yehu_server.lab.simulation import Simulation
 from yehu_server.lab.sweeps.result import Result
 from yehu_server.playing.mapping import load
 from yehu_server.playing.preset_folders import read_preset
@@ -40,6 +41,7 @@ READERS = {
     "t.csv": lambda path: measure([path]),
     "t.uff": lambda path: measure([path]),
     "r.npz": Result.load,
+    "n.npz": Simulation.load,
 }
 CONTENTS = {
     "nothing": b"\0",

@@ -20,8 +20,9 @@ from yehu_server.core.physics.energy import stored_energy
 from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
 from yehu_server.core.physics.pluck import pluck_string
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.errors import OutputError, ScoreError
+from yehu_server.errors import OutputError
 from yehu_server.lab.labels import as_data, as_json, attributes, dimensions, hash_of, label_of
+from yehu_server.lab.npz_file import read_npz
 from yehu_server.scores.gesture import CONTROLS, Gesture
 from yehu_server.util import __version__
 from yehu_server.util.extras import need
@@ -115,14 +116,7 @@ class Simulation:
         ScoreError
             Where it cannot be read, or is none.
         """
-        target = Path(path)
-        try:
-            with target.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-                return cls._of({name: file[name] for name in file.files})
-        except OSError as error:
-            raise ScoreError(f"{target}: {error.strerror or error}") from error
-        except Exception as error:  # damaged archives raise whatever they lead to
-            raise ScoreError(f"{target}: is not the result of a simulation") from error
+        return read_npz(Path(path), cls._of, "the result of a simulation")
 
     @classmethod
     def _of(cls, arrays: dict[str, Floats]) -> Simulation:

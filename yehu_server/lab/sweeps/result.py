@@ -6,22 +6,22 @@ import json
 import math
 import os
 import warnings
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.errors import ParameterError
 from yehu_server.lab.labels import as_data, as_json, attributes, hash_of, label_of
+from yehu_server.lab.npz_file import read_npz
 from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ, REGIMES
 from yehu_server.lab.sweeps.refining import fill
 from yehu_server.lab.sweeps.study import Study, study_of
 from yehu_server.util import __version__
 from yehu_server.util.extras import need
-from yehu_server.util.files import anything, open_regular, replacing
+from yehu_server.util.files import anything, replacing
 
 if TYPE_CHECKING:
     import xarray
@@ -30,8 +30,7 @@ Array = Any
 
 FORMAT, VERSION = "yehu-server sweep", 1
 COLUMNS = tuple(FINDING.names or ())
-# What a file may claim, so that a small one cannot fill the memory: results are noise, mostly.
-LEAST_CLAIM, MOST_RATIO = 2**26, 30  # bytes; times the bytes of the file
+# Of a file, so that a small one cannot fill the memory.
 LEAST_GRID, MOST_EMPTY = 2**23, 1024  # points of the finest grid; times the computed ones
 OF_BOW = {"force", "position", "speed", "acceleration", "noise", "seed"}
 OF_BOW |= {"bow_force", "bow_position", "bow_velocity", "bow_acceleration", "bow_noise"}
@@ -196,16 +195,7 @@ class Result:
         ScoreError
             Where it cannot be read, or is none.
         """
-        path = Path(path)
-        try:
-            with open_regular(path) as opened:
-                _check_sizes(opened)
-                with np.load(opened, allow_pickle=False) as file:
-                    return cls.of({name: file[name] for name in file.files})
-        except OSError as error:
-            raise ScoreError(f"{path}: {error.strerror or error}") from error
-        except Exception as error:  # damaged archives raise whatever they lead to
-            raise ScoreError(f"{path}: is not the result of a sweep") from error
+        return read_npz(Path(path), cls.of, "the result of a sweep")
 
     @classmethod
     def of(cls, arrays: Mapping[str, Array]) -> Result:
@@ -236,21 +226,6 @@ class Result:
         if len(numbers) == 0 or numbers.min() < 0 or numbers.max() >= size:
             raise ValueError("points off the grid")
         return cls(meta, axes, numbers, columns)
-
-
-def _check_sizes(file: BinaryIO) -> None:
-    """Refuse an archive that claims to hold much more than results in so many bytes do.
-
-    Raises
-    ------
-    ValueError, zipfile.BadZipFile
-    """
-    with zipfile.ZipFile(file) as archive:
-        claimed = sum(entry.file_size for entry in archive.infolist())
-    most = max(LEAST_CLAIM, MOST_RATIO * os.fstat(file.fileno()).st_size)
-    if claimed > most:
-        raise ValueError("it claims to hold more than it can")
-    file.seek(0)
 
 
 def result_of(study: Study, numbers: Array, findings: Array) -> Result:

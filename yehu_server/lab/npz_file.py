@@ -1,0 +1,60 @@
+"""Reads arrays from npz files of anybody: at once, and no more than such a file may hold."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, BinaryIO, TypeVar
+
+import numpy as np
+
+from yehu_server.errors import ScoreError
+from yehu_server.util.files import open_regular
+
+T = TypeVar("T")
+
+# What a file may claim, so that a small one cannot fill the memory: results are noise, mostly.
+LEAST_CLAIM, MOST_RATIO = 2**26, 30  # bytes; times the bytes of the file
+
+
+def read_npz(path: Path, build: Callable[[dict[str, Any]], T], what: str) -> T:
+    """Build something from the arrays of a file, by their names.
+
+    Parameters
+    ----------
+    build : callable
+        Raises whatever it likes where the arrays are wrong.
+    what : str
+        What the file should be, for the error's message.
+
+    Raises
+    ------
+    ScoreError
+        Where it cannot be read, or is something else.
+    """
+    try:
+        with open_regular(path) as opened:
+            _check_sizes(opened)
+            with np.load(opened, allow_pickle=False) as file:
+                return build({name: file[name] for name in file.files})
+    except OSError as error:
+        raise ScoreError(f"{path}: {error.strerror or error}") from error
+    except Exception as error:  # damaged archives raise whatever they lead to
+        raise ScoreError(f"{path}: is not {what}") from error
+
+
+def _check_sizes(file: BinaryIO) -> None:
+    """Refuse an archive that claims to hold much more than results in so many bytes do.
+
+    Raises
+    ------
+    ValueError, zipfile.BadZipFile
+    """
+    with zipfile.ZipFile(file) as archive:
+        claimed = sum(entry.file_size for entry in archive.infolist())
+    most = max(LEAST_CLAIM, MOST_RATIO * os.fstat(file.fileno()).st_size)
+    if claimed > most:
+        raise ValueError("it claims to hold more than it can")
+    file.seek(0)

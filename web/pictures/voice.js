@@ -37,7 +37,7 @@ export class Voice extends Picture {
     const there = pitches.filter((pitch) => !Number.isNaN(pitch));
     if (!there.length) return;
     const middle = (Math.min(...there) + Math.max(...there)) / 2;
-    const span = Math.max(Math.max(...there) - Math.min(...there) + 1, LEAST);
+    const span = Math.max(Math.max(...there) - Math.min(...there) + 2, LEAST);
     const y = (/** @type {number} */ pitch) => (0.5 - (pitch - middle) / span) * this.height;
     const x = (/** @type {number} */ time) => (1 - (now - time) / LASTS) * this.width;
     context.font = font(11);
@@ -49,7 +49,7 @@ export class Voice extends Picture {
       if (span < 2 * OCTAVE) context.fillText(nameOf(note), 2, y(note));
     }
     this.#line(context, "heard", this.colours.accent, 3, x, y);
-    this.#line(context, "played", this.colours.inner, 1.5, x, y);
+    this.#line(context, "played", this.colours.outer, 1.5, x, y);
   }
 
   /**

@@ -93,7 +93,11 @@ export class Engine {
   /** @param {boolean} isSung whether there is a voice to follow from now on */
   #follow(isSung) {
     if (isSung) this.kernel.prepareVoice(this.rate);
-    else if (this.follows) this.hear(new Float32Array(0));
+    else if (this.follows) {
+      this.hear(new Float32Array(0));
+      this.sleeps = false; // it tells anew that it sleeps, as the device may rest then
+      this.restless = this.frame;
+    }
     this.follows = isSung;
   }
 

@@ -9,10 +9,6 @@ const PAGE_BYTES = 65536; // of WebAssembly's memory
 const ALIGNED = 64; // bytes
 const SECOND_NS = 1_000_000_000n;
 
-/** Numbers of a wish of a voice: kind, index, value, other; and room for those of a block. */
-export const VOICE_WISH = 4;
-const VOICE_WISHES = 64;
-
 /** Wishes for the frame that is computed next, whichever it is, have this one. */
 export const NOW = -1;
 
@@ -21,6 +17,10 @@ export const CHANNELS = 2;
 
 /** Numbers of a wish in a message: frame or NOW, kind, index, value, other. */
 export const WISH = 5;
+
+/** Numbers of a wish of a voice, which has no frame; and the most of a block. */
+export const VOICE_WISH = WISH - 1;
+const VOICE_WISHES = 64;
 
 /**
  * What the module needs of its surroundings.

@@ -122,6 +122,7 @@ export class Sound extends EventTarget {
   #sleep() {
     this.loadPercent = 0;
     this.suspending = window.setTimeout(() => {
+      if (this.microphone) return; // it would hear nothing any more
       this.isAsleep = true;
       this.context.suspend();
     }, SUSPENDS_AFTER_MS);
@@ -140,7 +141,7 @@ export class Sound extends EventTarget {
 
   /** @param {Told} told */
   #hear({ seen, sleeps, load, recorded, isLast, kept, heard = NaN }) {
-    this.heard = heard;
+    if (seen) this.heard = heard;
     if (sleeps) this.#sleep();
     if (kept) this.kept?.(kept);
     if (recorded && this.chunks) {
@@ -171,6 +172,7 @@ export class Sound extends EventTarget {
   }
 
   #stopVoice() {
+    clearTimeout(this.suspending); // it may have begun before the voice did
     this.microphone?.disconnect();
     for (const track of this.microphone?.mediaStream.getTracks() ?? []) track.stop();
     this.microphone = null;

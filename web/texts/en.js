@@ -203,6 +203,7 @@ export default {
   "voice.begin": "Use the microphone",
   "voice.headphones": "It listens. Wear headphones, or it follows itself.",
   "voice.refused": "There is no microphone that this page may use.",
+  "voice.lines": "Thick: your voice, in the octave that is played. Thin: what is played.",
   "voice.picture": "Pitches in the last seconds: of your voice, and of what is played",
   "keep.sound": "Record the sound",
   "keep.sound.about": "A stereo WAV file of all that is heard.",

@@ -200,6 +200,7 @@ export default {
   "voice.begin": "使用麦克风",
   "voice.headphones": "正在聆听。请戴耳机，否则它会跟随自己的声音。",
   "voice.refused": "没有本页可用的麦克风。",
+  "voice.lines": "粗线：您的声音（移到所奏的八度）。细线：所演奏的。",
   "voice.picture": "最近几秒的音高：您的声音，与所演奏的",
   "keep.sound": "录制声音",
   "keep.sound.about": "录下听到的一切，存为立体声 WAV 文件。",

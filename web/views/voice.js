@@ -2,20 +2,13 @@
 
 /** @typedef {import('../main.js').Page} Page */
 
-import { allow, make, toggle } from "../elements.js";
+import { allow, find, make, toggle } from "../elements.js";
 import { Voice } from "../pictures/voice.js";
-import { find } from "../playing/table.js";
+import facts from "../facts.js";
 import { onLanguage, translate } from "../i18n.js";
 
-const NEUTRAL = find("/playing/velocity").default;
-
-/** A voice varies by itself, so hands do not; its attacks are the bow's. */
-const STEADY = {
-  "/playing/variation": 0,
-  "/playing/vibrato": 0,
-  "/playing/attack": 20,
-  "/playing/velocity": NEUTRAL,
-};
+/** @type {[string, number][]} */
+const AS_IT_SINGS = Object.entries(facts.asItSings);
 
 /**
  * @param {Page} page
@@ -29,6 +22,7 @@ export function makeVoice({ instrument, gallery }) {
     hidden: true,
     "aria-label": () => translate("voice.picture"),
   });
+  const lines = make("p", { class: "soft", hidden: true }, [() => translate("voice.lines")]);
   gallery.add(new Voice(canvas, () => instrument.sound?.heard ?? NaN));
   /** What is given back at the end. @type {[string, number][]} */
   let before = [];
@@ -36,16 +30,19 @@ export function makeVoice({ instrument, gallery }) {
 
   async function begin() {
     await instrument.start();
+    const voice = instrument.sound?.voice;
     try {
-      await instrument.sound?.voice?.start();
+      if (!voice) throw new Error("a sound elsewhere follows no voice");
+      await voice.start();
     } catch {
       hum.set(false);
-      word.textContent = translate("voice.refused");
+      word.textContent = translate(voice ? "voice.refused" : "missing");
       return;
     }
-    before = Object.keys(STEADY).map((address) => [address, player.value(address)]);
-    for (const [address, value] of Object.entries(STEADY)) player.write(address, value);
-    canvas.hidden = false;
+    before = AS_IT_SINGS.map(([address]) => [address, player.value(address)]);
+    for (const [address, value] of AS_IT_SINGS) player.write(address, value);
+    canvas.hidden = lines.hidden = false;
+    find("invite", HTMLElement).hidden = true; // it plays without a touch
     word.textContent = translate("voice.headphones");
   }
 
@@ -73,5 +70,6 @@ export function makeVoice({ instrument, gallery }) {
     make("div", { class: "row" }, [hum.button]),
     word,
     canvas,
+    lines,
   ]);
 }

@@ -25,6 +25,7 @@ from yehu_server.errors import ScoreError
 from yehu_server.following.frames import HOP_S
 from yehu_server.following.heard import Heard
 from yehu_server.following.notes import A4_HZ, AT_NOTE, SLIDE_S, HeardNote, Stroke
+from yehu_server.playing.options import STILL_HANDS
 from yehu_server.playing.tuning import EQUAL, KEYS, STANDARD_A4, Tuning
 from yehu_server.scores.score import Score, ScoreEvent, Setting
 
@@ -45,8 +46,6 @@ SHORTEST_ATTACK_MS, LONGEST_ATTACK_MS, USUAL_ATTACK_MS = 12.0, 200.0, 40.0
 # What is asked for so much later is heard: the finger slides for 8 ms, the string follows. Measured
 # by round trips (bench/following.py).
 LATER_MS = 10.0
-# A voice varies by itself; so hands do not.
-STEADY = (("/playing/variation", 0.0), ("/playing/vibrato", 0.0))
 
 
 @dataclass(frozen=True)
@@ -115,7 +114,7 @@ def performed(heard: Heard, strokes: list[Stroke], wanted: Wanted) -> Performed:
     if semitones is None:
         semitones = _octaves(notes, sharper)
     maker = _Maker(heard, wanted, sharper + semitones)
-    for address, value in STEADY:
+    for address, value in STILL_HANDS.items():
         maker.set(0, address, value)
     for stroke in strokes:
         maker.add(stroke)

@@ -13,6 +13,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
+from yehu_server.core.player.velocity import NEUTRAL
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.practice_files import shipped_practice
@@ -21,6 +22,11 @@ from yehu_server.playing.stringing import higher_of
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning
 from yehu_server.playing.wishes import WishPoster
+
+# Where a voice is followed. It varies by itself, so hands do not; as it sings, nobody can know its
+# attacks nor how hard they are, so the bow has quick ones of its own.
+STILL_HANDS = {"/playing/variation": 0.0, "/playing/vibrato": 0.0}
+AS_IT_SINGS = {**STILL_HANDS, "/playing/attack": 20.0, "/playing/velocity": NEUTRAL}
 
 
 @dataclass(frozen=True)

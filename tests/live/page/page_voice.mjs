@@ -25,6 +25,10 @@ await run(
     await word.waitFor();
     await page.waitForTimeout(4000);
     await page.locator("#panel-keep canvas").scrollIntoViewIfNeeded();
+    const colours = await page.locator("#panel-keep canvas").evaluate((canvas) => {
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      return new Set(new Uint32Array(data.buffer)).size;
+    });
     await page.screenshot({ path: `${folder}/voice.png` });
     const pressed = page.locator("#panel-keep button[aria-pressed=true]");
     const names = await pressed.allTextContents();
@@ -38,7 +42,7 @@ await run(
       await button.click();
       await (await download).saveAs(`${folder}/${name}`);
     }
-    return { errors, names, still: await word.count() };
+    return { errors, names, colours, still: await word.count() };
   },
   { args: [...FLAGS, ...MICROPHONE] },
 );

@@ -49,6 +49,11 @@ def test_it_follows_without_an_error_until_it_is_stopped(found):
     assert told["still"] == 0
 
 
+def test_what_is_heard_is_drawn_over_what_is_played(found):
+    told, _ = found
+    assert told["colours"] > 10  # lines of two colours, smoothed; and none where it has no height
+
+
 def test_what_is_kept_has_the_notes_that_were_hummed(found):
     _, folder = found
     wishes = [json.loads(line) for line in (folder / "hum.jsonl").read_text().splitlines()[1:]]

@@ -8,21 +8,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from yehu_server.core.following.deciding import KEYS, VOICE
-from yehu_server.core.player.velocity import NEUTRAL
 from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.output import OutputOptions, SharedMemory
 from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.options import AS_IT_SINGS
 from yehu_server.playing.wishes import Key
 from yehu_server.util.processes import Child, Message, Supervisor
 
 ADVICE = "wear headphones, or it follows itself"
-# A voice varies by itself: so hands do not. Its attacks are the bow's.
-STEADY = {
-    "/playing/variation": 0.0,
-    "/playing/vibrato": 0.0,
-    "/playing/attack": 20.0,
-    "/playing/velocity": NEUTRAL,
-}
 
 
 @dataclass
@@ -68,7 +61,7 @@ class VoiceInput:
 
     def start(self) -> None:
         """Start to follow."""
-        for address, value in STEADY.items():
+        for address, value in AS_IT_SINGS.items():
             self._player.write(address, value, frame=self._player.frame_of())
         self._supervisor.start()
 

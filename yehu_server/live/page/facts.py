@@ -31,6 +31,7 @@ from yehu_server.playing.bind import Bind
 from yehu_server.playing.live_player import ELSEWHERE
 from yehu_server.playing.mapping import DEFAULT, load, shipped_mappings
 from yehu_server.playing.mapping import Mapping as ControllerMapping
+from yehu_server.playing.options import AS_IT_SINGS
 from yehu_server.playing.pitch_and_level import NOTE_NAMES
 from yehu_server.playing.preset_folders import read_preset
 from yehu_server.playing.tables import CURVES, WORDS, Controls, make_tables
@@ -191,6 +192,7 @@ def facts() -> dict[str, Any]:
         "mappings": mappings(),
         "defaultMapping": DEFAULT,
         "articulations": [[row.name, row.chinese] for row in ARTICULATIONS],
+        "asItSings": AS_IT_SINGS,
         "presets": presets(),
         "tunings": tunings(),
         "look": look_layout(),

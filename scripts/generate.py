@@ -218,6 +218,23 @@ def followed_again() -> str:
     )
 
 
+def followed_live() -> str:
+    return table(
+        "sound, pitch, within 10 cents, wrong octave, for at most, later, onsets",
+        (
+            [
+                name,
+                *(f"{100.0 * row[each]:.1f} %" for each in ("RPA", "within 10 cents")),
+                f"{100.0 * row['octave errors']:.1f} %",
+                f"{row['longest, ms']:.0f} ms",
+                f"{row['later, ms']:.0f} ms",
+                f"{row['onsets F1']:.2f}",
+            ]
+            for name, row in measured("following_live").items()
+        ),
+    )
+
+
 MADE: dict[str, Callable[[], str]] = {
     "layers": layers,
     "parameters-of-the-player": lambda: parameters(Place.PLAYER),
@@ -233,6 +250,7 @@ MADE: dict[str, Callable[[], str]] = {
     "budget": budget,
     "followed": followed,
     "followed-again": followed_again,
+    "followed-live": followed_live,
     "controls-of-gestures": lambda: table(
         "control, unit, range, default, what",
         (

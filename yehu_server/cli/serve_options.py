@@ -44,7 +44,7 @@ def add_arguments(parser: Parser) -> None:
         --follow NAME: play what a voice sings into an audio input, named as the output is (default
             name: the system's input)
         --follow-transpose SEMITONES: how far from the voice it is played (default: by octaves, so
-            that the first note is in the middle)
+            that the first note is in the lower half)
         """,
         rate=_rate,
         blocksize={"type": whole_within(1, 8192, "is not within 1 to 8192 frames"), "default": 128},

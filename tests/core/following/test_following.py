@@ -179,6 +179,23 @@ def test_dynamics_follow_the_level_but_not_that_of_the_microphone():
         assert 0.2 < dynamics[-1] < 0.5
 
 
+def test_a_second_partial_stronger_than_the_first_is_not_the_note():
+    """As of an oboe; up to 12 dB stronger."""
+    time = np.arange(int(1.0 * RATE)) / RATE
+    wrong = {}
+    for weak in (0.25, 0.4, 0.6):
+        phase = 2.0 * np.pi * 392.0 * time
+        partials = weak * np.sin(phase) + np.sin(2.0 * phase + 1.0) + 0.5 * np.sin(4.0 * phase)
+        heard = followed(0.1 * partials)
+        wrong[weak] = float(np.mean(np.abs(heard.pitch[heard.times > 0.1] - 67.0) > 0.5))
+    assert max(wrong.values()) == 0.0, wrong
+
+
+def test_a_tune_that_begins_low_in_range_stays_where_it_is():
+    [(_, key)] = followed(sung(lambda t: np.full(len(t), 67.0))).of(BEGIN)
+    assert key == pytest.approx(67.0, abs=0.05)
+
+
 @pytest.mark.parametrize("pitch", [36.5, 50.0, 88.0])
 def test_all_is_played_within_the_range_of_the_instrument(pitch):
     def climbing(time: np.ndarray) -> np.ndarray:

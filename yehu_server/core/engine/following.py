@@ -33,7 +33,7 @@ def voice_prepare(voice: Any, rate: float, transpose: float) -> None:
     """Make a follower of a voice at a rate (Hz), in memory that is all 0.
 
     What is played is so many semitones above the voice; where that is NaN, by octaves, so that the
-    first note is in the middle of the range.
+    first note is in the lower half of the range.
     """
     prepare_follower(record_at(voice, 0, FOLLOWER), rate, transpose)
 

@@ -40,7 +40,7 @@ LEAST_DYNAMICS = 0.03  # at which a note still speaks
 FALL_DB, RISE_DB, SWELL_DB, PEAK_DB = 3.0, 5.0, 90.0 * HOP_S, 40.0 * HOP_S
 STROKE = 12  # hearings that a stroke lasts at least
 # -- pitch
-MIDDLE = 0.5 * (LOWEST_NOTE + HIGHEST_NOTE) - 3.0  # where the first note comes near to: D5
+START = LOWEST_NOTE + 6.0  # where the first note comes near to: tunes tend to rise from it
 FELT = 0.01  # semitones: pitches less apart are the same
 ON_INNER, ON_OUTER = 74.5, HIGHEST_ON_F - 0.3  # up to, and from: the string asked for
 INNER, EITHER = 1.0, 0.0
@@ -153,7 +153,7 @@ def await_note(f: Any, h: Any) -> None:
 def begin(f: Any, pitch: float) -> None:
     """Begin a note of a pitch, in range."""
     if math.isnan(f.transpose):
-        f.transpose = 12.0 * np.rint((MIDDLE - pitch) / 12.0)
+        f.transpose = 12.0 * np.rint((START - pitch) / 12.0)
     played = pitch + f.transpose
     f.octaves = 0.0
     while played + f.octaves < LOWEST_NOTE - 0.5:

@@ -25,7 +25,7 @@ REFINED_S = 0.012  # multiples of the period up to here refine it
 # A first peak so high beside the highest is that of the period. One within NEAR of the period of
 # before needs less, and a shorter one instead of that must be so high beside it: the second partial
 # may be strong, but of twice the period all is alike.
-FIRST, SAME, INSTEAD, NEAR = 0.9, 0.8, 0.96, 1.06
+FIRST, SAME, INSTEAD, NEAR = 0.97, 0.8, 0.98, 1.06
 CUTOFF_HZ, OF_RATE = 3000.0, 0.35  # of the low-pass, or this part of the thinned rate
 STEADY_HZ = 40.0  # of the high-pass, for what is steady
 # Loudness is that of what is above this: roughly as A-weighting has it for a voice.

@@ -99,13 +99,7 @@ class Performed:
 
 
 def performed(heard: Heard, strokes: list[Stroke], wanted: Wanted) -> Performed:
-    """Make a performance of what was heard.
-
-    Raises
-    ------
-    ScoreError
-        Where there is no note in it.
-    """
+    """Make a performance of what was heard. Raises ScoreError where there is no note in it."""
     notes = [note for stroke in strokes for note in stroke.notes]
     if not notes:
         raise ScoreError(f"{heard.name}: there is no note in it")

@@ -72,10 +72,8 @@ class Form:
 def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Recording:
     """A sound file as a recording.
 
-    Raises
-    ------
-    ScoreError
-        One line with the name: where it cannot be read, is no sound, or lasts too long.
+    Raises ScoreError, one line with the name: where it cannot be read, is no sound, or lasts too
+    long.
     """
     import soundfile
 
@@ -108,10 +106,7 @@ def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Rec
 def recording_of_samples(samples: Array, rate: int, name: str = "the recording") -> Recording:
     """An array [shape=(frames,) or (frames, channels)] as a recording.
 
-    Raises
-    ------
-    ScoreError
-        Where it is none.
+    Raises ScoreError where it is none.
     """
     sound = np.asarray(samples)
     sound = sound[:, None] if sound.ndim == 1 else sound
@@ -140,10 +135,8 @@ def _check_rate(name: str, rate: int) -> None:
 def form_of(recording: Recording) -> Form:
     """Read a recording once, to tell how one channel is made of it.
 
-    Raises
-    ------
-    ScoreError
-        Where it cannot be followed: too short, silent, or with samples that are no numbers.
+    Raises ScoreError where it cannot be followed: too short, silent, or with samples that are no
+    numbers.
     """
     frames, clipped = 0, 0
     total: Array = 0.0

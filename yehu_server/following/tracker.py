@@ -41,10 +41,7 @@ class Tracker(Protocol):
 class SwiftTracker:
     """Estimates pitches from 47 to 2093 Hz by SwiftF0.
 
-    Raises
-    ------
-    ParameterError
-        Where its package is missing.
+    Raises ParameterError where its package is missing.
     """
 
     def __init__(self) -> None:

@@ -22,17 +22,14 @@ LEAST_CLAIM, MOST_RATIO = 2**26, 30  # bytes; times the bytes of the file
 def read_npz(path: Path, build: Callable[[dict[str, Any]], T], what: str) -> T:
     """Build something from the arrays of a file, by their names.
 
+    Raises ScoreError where it cannot be read, or is something else.
+
     Parameters
     ----------
     build : callable
         Raises whatever it likes where the arrays are wrong.
     what : str
         What the file should be, for the error's message.
-
-    Raises
-    ------
-    ScoreError
-        Where it cannot be read, or is something else.
     """
     try:
         with open_regular(path) as opened:
@@ -48,9 +45,7 @@ def read_npz(path: Path, build: Callable[[dict[str, Any]], T], what: str) -> T:
 def _check_sizes(file: BinaryIO) -> None:
     """Refuse an archive that claims to hold much more than results in so many bytes do.
 
-    Raises
-    ------
-    ValueError, zipfile.BadZipFile
+    Raises ValueError, zipfile.BadZipFile.
     """
     with zipfile.ZipFile(file) as archive:
         claimed = sum(entry.file_size for entry in archive.infolist())

@@ -39,15 +39,13 @@ def line_of(fields: Mapping[str, Any]) -> str:
 def checked_line(line: Any, **wanted: object) -> dict[str, Any]:
     """A line of a manifest that came from elsewhere.
 
+    Raises ValueError, TypeError where it is none: not of texts and numbers, about something else,
+    an error without text.
+
     Parameters
     ----------
     **wanted
         The entries that are known beforehand, such as ``file``.
-
-    Raises
-    ------
-    ValueError, TypeError
-        Where it is none: not of texts and numbers, about something else, an error without text.
     """
     if not isinstance(line, dict) or any(line.get(name) != known for name, known in wanted.items()):
         raise ValueError("a line about something else")
@@ -60,10 +58,7 @@ def checked_line(line: Any, **wanted: object) -> dict[str, Any]:
 def write_manifest(folder: Path, lines: Iterable[Mapping[str, Any]], order: str = "file") -> None:
     """Write the manifest, in the order of the names, or of another entry.
 
-    Raises
-    ------
-    OutputError
-        Where it cannot be written.
+    Raises OutputError where it cannot be written.
     """
     ordered = sorted(lines, key=lambda line: line[order])
     write_text(folder / NAME, "".join(f"{line_of(line)}\n" for line in ordered))
@@ -72,10 +67,7 @@ def write_manifest(folder: Path, lines: Iterable[Mapping[str, Any]], order: str 
 def check_manifest(folder: Path) -> None:
     """Check that the manifest may be written.
 
-    Raises
-    ------
-    OutputError
-        Where a file of its name is none.
+    Raises OutputError where a file of its name is none.
     """
     path = folder / NAME
     try:
@@ -128,13 +120,7 @@ def record_of(target: Path) -> Path:
 
 
 def make_folder_for(target: Path) -> None:
-    """Make the folders of a result.
-
-    Raises
-    ------
-    OutputError
-        Where they cannot be made.
-    """
+    """Make the folders of a result. Raises OutputError where they cannot be made."""
     make_folder(target.parent / HIDDEN)
 
 
@@ -234,10 +220,7 @@ LOCK = "lock"
 def alone_in(folder: Path) -> Iterator[None]:
     """Keep other processes from writing results to a folder.
 
-    Raises
-    ------
-    OutputError
-        Where one does, or the folder cannot be written.
+    Raises OutputError where one does, or the folder cannot be written.
     """
     path = folder / HIDDEN / LOCK
     try:

@@ -33,10 +33,7 @@ _ADDRESS = re.compile(r"(?:(tcp|tls|ucx|ws|wss)://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[
 def scheduler_address(text: str) -> str:
     """Complete an address: ``HOST``, ``HOST:PORT``, ``tls://HOST:PORT``, or a scheduler's file.
 
-    Raises
-    ------
-    YehuError
-        Where it is none.
+    Raises YehuError where it is none.
     """
     if text.endswith(".json"):
         return _in_file(Path(text))
@@ -71,6 +68,9 @@ BATCHES = 4  # in which they are sent off
 class Cluster:
     """A connection to a Dask scheduler, for the time of a `with` block.
 
+    Raises YehuError where there is no such scheduler, no worker, or one that has another version;
+    where Dask is not installed.
+
     Parameters
     ----------
     address : str
@@ -80,12 +80,6 @@ class Cluster:
         time. It has to be picklable.
     warn : callable
         Told, in one line, what is no error.
-
-    Raises
-    ------
-    YehuError
-        Where there is no such scheduler, no worker, or one that has another version; where Dask is
-        not installed.
     """
 
     def __init__(
@@ -135,6 +129,8 @@ class Cluster:
     def perform_all(self, perform: Perform, tasks: Iterable[Any]) -> Generator[Event]:
         """Do all tasks; yield what becomes of them, in the order in which they end.
 
+        Raises YehuError where the scheduler is lost, or a worker has another version.
+
         Parameters
         ----------
         perform : callable
@@ -147,11 +143,6 @@ class Cluster:
         Event
             Its result is of plain values: None, numbers, texts, bytes, and lists and dicts of
             them. Whoever takes it checks it: anybody who reaches the scheduler may have sent it.
-
-        Raises
-        ------
-        YehuError
-            Where the scheduler is lost, or a worker has another version.
         """
         name = f"yehu-{secrets.token_hex(8)}"
         waiting = enumerate(tasks)

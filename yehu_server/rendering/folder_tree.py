@@ -57,18 +57,14 @@ def is_score(name: str) -> bool:
 def tree_of(folder: Path, output: Path, ending: str) -> Tree:
     """Find all scores below a folder.
 
-    Hidden files and folders are left out, and the output's own folder where that is within.
-    Links are followed, unless they lead back to a folder they are in.
+    Hidden files and folders are left out, and the output's own folder where that is within. Links
+    are followed, unless they lead back to a folder they are in. Raises ScoreError where the folder
+    cannot be read, or has more than `MOST_SCORES`.
 
     Parameters
     ----------
     ending : str
         Of the files to write, such as ".wav".
-
-    Raises
-    ------
-    ScoreError
-        Where the folder cannot be read, or has more than `MOST_SCORES`.
     """
     problems: list[tuple[str, str]] = []
     skipped: list[tuple[str, str]] = []

@@ -62,12 +62,7 @@ class _Raw:
 class PipeWriter(SoundWriter):
     """Writes sound to a pipe, of any length.
 
-    Raises
-    ------
-    BrokenPipeError
-        Where the reader has gone.
-    OutputError
-        Where writing fails otherwise.
+    Raises BrokenPipeError where the reader has gone; OutputError where writing fails otherwise.
     """
 
     def __init__(  # the file's own has a limit, and a header that it writes again
@@ -103,10 +98,7 @@ class PipeWriter(SoundWriter):
 def check_pipe(format_name: str) -> None:
     """Check that sound of a format may go to standard output.
 
-    Raises
-    ------
-    OutputError
-        Where it is a terminal, or the format needs a file.
+    Raises OutputError where it is a terminal, or the format needs a file.
     """
     if format_name not in FORMATS:
         raise OutputError(f"a {format_name} file cannot be piped; use --format wav or raw")
@@ -118,12 +110,8 @@ def check_pipe(format_name: str) -> None:
 def sound_pipe(rate: int, format_name: str, subtype: str, channels: int) -> Iterator[SoundWriter]:
     """Open standard output for sound.
 
-    Raises
-    ------
-    OutputError
-        As `check_pipe`, or where it is closed.
-    BrokenPipeError
-        In writing, where the reader has gone.
+    Raises OutputError as `check_pipe` does, or where it is closed; BrokenPipeError in writing,
+    where the reader has gone.
     """
     check_pipe(format_name)
     try:

@@ -28,10 +28,7 @@ class ForeignError(Exception):
 def plain(data: Any, *, buffers: Any = ()) -> Any:
     """Unpickle numbers, texts, bytes, and lists, tuples, dicts of them; the rest as ForeignError.
 
-    Raises
-    ------
-    Exception
-        Any, where the bytes are damaged.
+    Raises any exception where the bytes are damaged.
     """
     return _PlainUnpickler(io.BytesIO(data), buffers=buffers).load()
 
@@ -55,10 +52,7 @@ _KNOWN: dict[str, Callable[..., Any]] = {
 def plain_client(address: str, timeout: float) -> Iterator[Any]:
     """Connect to a scheduler for the time of a block, in which all of Dask unpickles by `plain`.
 
-    Raises
-    ------
-    OSError, ValueError, TypeError, ImportError, TimeoutError
-        Where no scheduler answers.
+    Raises OSError, ValueError, TypeError, ImportError, TimeoutError where no scheduler answers.
     """
     from distributed import Client, client
     from distributed.protocol import pickle as protocol

@@ -71,10 +71,7 @@ def replay(
 ) -> Replayed:
     """Render a capture to a sound file.
 
-    Raises
-    ------
-    YehuError
-        Where it fails; no partial file is left.
+    Raises YehuError where it fails; no partial file is left.
     """
     hours = capture.frames / capture.rate / 3600.0
     if hours > max_duration_h:

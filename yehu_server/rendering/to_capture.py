@@ -23,15 +23,12 @@ def render_capture(
 ) -> Performance:
     """Play a score, and write its capture: replayed, it gives the same samples as a rendering.
 
+    Raises YehuError where it fails; no partial file is left.
+
     Returns
     -------
     Performance
         That has been played.
-
-    Raises
-    ------
-    YehuError
-        Where it fails; no partial file is left.
     """
     performance = Performance(played, replace(options, jobs=1, is_mono=False), reports=True)
     wrong: list[str] = []

@@ -41,17 +41,14 @@ def write_normalized(
 ) -> None:
     """Write blocks, scaled so that the first file has a peak of NORMALIZED_PEAK.
 
+    Raises OutputError where the disk is full or cannot be written.
+
     Parameters
     ----------
     takes : iterable
         Of each block, the samples for each of the files; all are scaled alike.
     folder : Path
         Where the temporary files are; None: where the system has its own.
-
-    Raises
-    ------
-    OutputError
-        Where the disk is full or cannot be written.
     """
     peak, shape = 0.0, (-1,)
     with contextlib.ExitStack() as stack:
@@ -85,6 +82,8 @@ def render(
 ) -> Summary:
     """Render a score on one instrument, or parts on one each, to a sound file.
 
+    Raises YehuError where it fails; no partial file is left.
+
     Parameters
     ----------
     progress : callable, optional
@@ -98,11 +97,6 @@ def render(
         the mix.
     watch : PlotData, optional
         Gathers what a picture shows.
-
-    Raises
-    ------
-    YehuError
-        Where it fails; no partial file is left.
     """
     channels = options.sound_channels
     if target is not PIPE:

@@ -93,6 +93,8 @@ class _Worker:
 def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generator[Event]:
     """Do all tasks; yield what becomes of them, as it does.
 
+    Raises YehuError where no process can be started.
+
     Parameters
     ----------
     perform : callable
@@ -101,11 +103,6 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
         raise.
     workers : int
         Number of processes at most.
-
-    Raises
-    ------
-    YehuError
-        Where no process can be started.
     """
     context = multiprocessing.get_context("spawn")
     waiting = deque((job, 1) for job in range(len(tasks)))

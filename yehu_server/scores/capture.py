@@ -67,10 +67,7 @@ class Capture:
 def read_capture(path: Path) -> Capture:
     """Read a capture, also one that a crash has cut short.
 
-    Raises
-    ------
-    ScoreError
-        Where it cannot be read or is no capture.
+    Raises ScoreError where it cannot be read or is no capture.
     """
     lines = read_lines(path, MOST_BYTES)
     try:

@@ -74,10 +74,7 @@ def as_line(wish: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one for
 def from_line(line: list[Any]) -> WishRow:
     """The fields of a wish, from its JSON value without the player.
 
-    Raises
-    ------
-    ValueError, TypeError, KeyError
-        Where it is none, or a value is out of range.
+    Raises ValueError, TypeError, KeyError where it is none, or a value is out of range.
     """
     frame, kind, values = frames_of(line[0]), NUMBERS[line[1]], line[2:]
     index, value, other = 0, 0.0, 0.0

@@ -108,10 +108,8 @@ def _changes(own: Any, usual: Any) -> dict[str, Any]:
 def read_header(table: Fields, version: int) -> SessionStart:
     """What a session starts from, by the first line of its capture.
 
-    Raises
-    ------
-    YehuError
-        That of the document, or ParameterError, where a value is missing, none or out of range.
+    Raises YehuError, that of the document, or ParameterError, where a value is missing, none or out
+    of range.
     """
     rate = table.need("rate", sample_rate)
     if version < VERSION:

@@ -25,17 +25,14 @@ ROOM_BYTES = 1 << 16  # free space needed to begin a capture
 class CaptureWriter:
     """Writes a capture; each line of the file is complete, however writing ends.
 
+    Raises OutputError where it cannot be written.
+
     Parameters
     ----------
     beginning : SessionStart
         What the session starts from.
     overwrite : bool
         Whether to replace an older file.
-
-    Raises
-    ------
-    OutputError
-        Where it cannot be written.
     """
 
     def __init__(
@@ -84,6 +81,8 @@ class CaptureWriter:
 class LiveCapture:
     """Writes the wishes that players fulfil to a file; a full disk ends only the capture.
 
+    Raises OutputError where the file cannot be written, or is there.
+
     Parameters
     ----------
     ensemble : Ensemble
@@ -95,11 +94,6 @@ class LiveCapture:
         Called with a line when the capture ends by itself.
     overwrite : bool
         Whether to replace an older file.
-
-    Raises
-    ------
-    OutputError
-        Where the file cannot be written, or is there.
     """
 
     def __init__(

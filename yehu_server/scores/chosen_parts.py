@@ -22,13 +22,8 @@ ONE_BY_ONE = "--part NAME plays one of them, --ensemble all, each on a yehu of i
 def numbers_of(names: Sequence[str], asked: Sequence[str]) -> list[int]:
     """Return the numbers, from 0, of the parts that are asked for, in their order.
 
-    A part is named as it is, in capitals or not; by its beginning, where no other begins alike;
-    or by its number from 1.
-
-    Raises
-    ------
-    ScoreError
-        Where there is no such part, or several.
+    A part is named as it is, in capitals or not; by its beginning, where no other begins alike; or
+    by its number from 1. Raises ScoreError where there is no such part, or several.
     """
     found: set[int] = set()
     for wish in asked:
@@ -96,10 +91,7 @@ def told_others(written: Written, plays: Sequence[int]) -> str:
 def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
     """Return the parts of a score of MIDI that are asked for.
 
-    Raises
-    ------
-    ScoreError
-        Where one is not there.
+    Raises ScoreError where one is not there.
     """
     names = [part.name for part in score.parts]
     return _only(score, [score.parts[number] for number in numbers_of(names, asked)])

@@ -69,10 +69,7 @@ class EnsembleFile:
 def read_ensemble(path: Path) -> EnsembleFile:
     """Read an ensemble file.
 
-    Raises
-    ------
-    EnsembleError
-        Naming file and line; its `more` are further errors.
+    Raises EnsembleError, naming file and line; its `more` are further errors.
     """
     document = Document(path, "an ensemble file", EnsembleError, most_errors=MOST_ERRORS)
     table = document.read(path).toml()

@@ -107,12 +107,8 @@ class Gesture:
 def read_gesture(path: Path) -> Gesture:
     """Read a gesture file.
 
-    Raises
-    ------
-    ScoreError
-        Where it cannot be read or is not JSON.
-    ParameterError
-        Where an entry is wrong.
+    Raises ScoreError where it cannot be read or is not JSON; ParameterError where an entry is
+    wrong.
     """
     document = Document(path, "a gesture file", unreadable=ScoreError).read(path, MOST_BYTES)
     return gesture_from(document.json(), path.parent)
@@ -121,10 +117,7 @@ def read_gesture(path: Path) -> Gesture:
 def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
     """Build a gesture from the data of a gesture file in `folder`.
 
-    Raises
-    ------
-    ParameterError
-        Where an entry is wrong.
+    Raises ParameterError where an entry is wrong.
     """
     table = Fields.of(data, "gesture")
     rate = table.read("sample_rate", sample_rate, 44100.0)

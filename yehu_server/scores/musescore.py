@@ -21,11 +21,8 @@ LONGEST_S = 120.0
 def read_musescore(path: Path) -> Written:
     """Read a file of MuseScore as its program exports it.
 
-    Raises
-    ------
-    ScoreError
-        One line naming the file: where it cannot be read, or there is no such program, how to
-        export it.
+    Raises ScoreError, one line naming the file: where it cannot be read, or there is no such
+    program, how to export it.
     """
     with naming(path):
         read_score_bytes(path, MOST_BYTES)

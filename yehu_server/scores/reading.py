@@ -147,19 +147,15 @@ def read_any(
 ) -> Score:
     """Read a MIDI file, or a written score as it is played.
 
+    Raises DamagedError with `strict`: one line naming the file and what is first wrong; ScoreError,
+    one line naming the file, where it cannot be read, has nothing to play, no part of a name, or
+    lasts too long.
+
     Parameters
     ----------
     song, strict, max_duration_h
         As `smf.read_score` has them. A written score is one song; marks that are not understood
         are its damage.
-
-    Raises
-    ------
-    DamagedError
-        With `strict`: one line naming the file and what is first wrong.
-    ScoreError
-        One line naming the file, where it cannot be read, has nothing to play, no part of a name,
-        or lasts too long.
     """
     path = Path(path)
     if not is_written(path):
@@ -178,10 +174,7 @@ def read_any(
 def performed_part(written: Written, how: How = USUAL) -> Score:
     """Return the parts of a written score that are asked for, as they are played.
 
-    Raises
-    ------
-    ScoreError
-        Where there is no such part, or no note.
+    Raises ScoreError where there is no such part, or no note.
     """
     if how.parts:
         plays = numbers_of(written.names, how.parts)
@@ -213,10 +206,7 @@ def _midi_played(score: Score, how: How) -> Score:
 def read_written(path: Path, song: int | None = None) -> Written:
     """Read a written score: MusicXML, jianpu, two-four notation, or a tune of a file of ABC.
 
-    Raises
-    ------
-    ScoreError
-        One line naming the file, where it cannot be read or is none of these.
+    Raises ScoreError, one line naming the file, where it cannot be read or is none of these.
     """
     kind = path.suffix.lower()
     is_abc = kind in ABC or _beginning(path).startswith(ABC_BEGINNINGS)

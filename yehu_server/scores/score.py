@@ -41,10 +41,8 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
 def read_score_bytes(path: str | os.PathLike[str], most_bytes: int) -> bytes:
     """Read the file of a score.
 
-    Raises
-    ------
-    ScoreError
-        One line, without the file's name: where it cannot be read, is too large or empty.
+    Raises ScoreError, one line, without the file's name: where it cannot be read, is too large or
+    empty.
     """
     try:
         data = read_bytes(Path(path), most_bytes)
@@ -120,6 +118,8 @@ class ScorePart:
 class Score:
     """A performance: events in order, and warnings about damage in the file.
 
+    Raises ScoreError if the score lasts longer than 1000 hours.
+
     Parameters
     ----------
     events : tuple of ScoreEvent
@@ -137,11 +137,6 @@ class Score:
         Those with notes, as far as they are known.
     remarks : tuple of str
         One line each, of what a player should know and no file is to blame for.
-
-    Raises
-    ------
-    ScoreError
-        If the score lasts longer than 1000 hours.
     """
 
     events: tuple[ScoreEvent, ...]

@@ -79,10 +79,7 @@ def read_to_write(
 ) -> tuple[Written, dict[str, int]]:
     """Read any score, MIDI file or capture as a written score, and what is left out of it.
 
-    Raises
-    ------
-    ScoreError
-        One line naming the file, where it cannot be read or has no note.
+    Raises ScoreError, one line naming the file, where it cannot be read or has no note.
     """
     if is_capture(path):
         with naming(path):

@@ -34,15 +34,12 @@ class Averaged:
 def average_taps(taps: Sequence[Tap]) -> Averaged:
     """Average taps, leaving out faulty ones while others remain.
 
+    Raises MeasurementError where they differ in rate or responses, or no tap is without fault.
+
     Parameters
     ----------
     taps : sequence of Tap
         All with the same sample rate and the same responses.
-
-    Raises
-    ------
-    MeasurementError
-        Where they differ in rate or responses, or no tap is without fault.
 
     Notes
     -----

@@ -116,10 +116,8 @@ def body_file_of(target: Path) -> Path:
 def check_targets(target: Path, *, overwrite: bool = False) -> None:
     """Check that `Fit.save` may write.
 
-    Raises
-    ------
-    OutputError
-        Where it may not, or the name ends otherwise than an instrument or body file's.
+    Raises OutputError where it may not, or the name ends otherwise than an instrument or body
+    file's.
     """
     if target.suffix.lower() not in (".toml", ".json"):
         raise OutputError(f"{target}: name an instrument file, .toml, or a body file, .json")
@@ -192,12 +190,8 @@ def quality_of(fit: Fit) -> dict[str, Any]:
 def read_fit(path: Path) -> Fit:
     """Read a body file, or the body that an instrument file names, with what was measured of it.
 
-    Raises
-    ------
-    ParameterError
-        Where the body cannot be read.
-    MeasurementError
-        Where the file cannot, or what was measured.
+    Raises ParameterError where the body cannot be read; MeasurementError where the file cannot, or
+    what was measured.
     """
     if path.suffix.lower() == ".toml":
         named = _document(path).toml().data.get("body")

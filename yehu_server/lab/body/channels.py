@@ -32,10 +32,8 @@ class Channel:
 def parse_channels(text: str) -> tuple[Channel, ...]:
     """Read channels as users write them, in their order: ``force=100,velocity=0.5``.
 
-    Raises
-    ------
-    MeasurementError
-        For an unknown quantity, one that is given twice, or a scale that is none.
+    Raises MeasurementError for an unknown quantity, one that is given twice, or a scale that is
+    none.
     """
     channels = []
     for item in text.split(","):
@@ -49,13 +47,7 @@ def parse_channels(text: str) -> tuple[Channel, ...]:
 
 
 def check_channels(channels: list[Channel], where: str) -> None:
-    """Refuse a quantity that is given twice.
-
-    Raises
-    ------
-    MeasurementError
-        Naming it.
-    """
+    """Refuse a quantity that is given twice. Raises MeasurementError, naming it."""
     names = [channel.quantity for channel in channels if channel.quantity != SKIPPED]
     for name in names:
         if names.count(name) > 1:
@@ -84,10 +76,7 @@ def _scale(name: str, text: str) -> float:
 def parse_heading(text: str) -> Channel | None:
     """Read the heading of a column: ``force_N``, ``velocity (mm/s)``; None where it is no quantity.
 
-    Raises
-    ------
-    MeasurementError
-        For a unit that is not known.
+    Raises MeasurementError for a unit that is not known.
     """
     match = re.fullmatch(r"\s*([a-z]+)[\s_]*[(\[]?\s*([^)\]]*?)\s*[)\]]?\s*", text.lower())
     if match is None or match[1] not in QUANTITIES:

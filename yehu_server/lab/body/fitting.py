@@ -101,10 +101,7 @@ def fit(
 def fit_modes(curve: Curve, count: int | None = None) -> Modes:
     """Fit bridge modes to an admittance (s/kg); `count` of them, or as many as it shows.
 
-    Raises
-    ------
-    MeasurementError
-        Where it shows none.
+    Raises MeasurementError where it shows none.
     """
     weight = 1.0 / np.hypot(curve.deviation, FLOOR * np.abs(curve.values))
     found = Search(Problem(curve.frequency_hz, curve.values, weight)).find(MAX_MODES, count)

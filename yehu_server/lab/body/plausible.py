@@ -32,10 +32,7 @@ LOUD, LOUDEST = (1e-2, 50.0), (1e-4, 500.0)  # Pa/N, at the highest peak
 def check_admittance(curve: Curve, kind: str) -> list[str]:
     """Check a mobility (s/kg) that was measured as `kind`; return warnings.
 
-    Raises
-    ------
-    MeasurementError
-        Where it is none: of another kind, of the wrong sign, in other units.
+    Raises MeasurementError where it is none: of another kind, of the wrong sign, in other units.
     """
     need("scipy", "the body workshop", "body")
     _check_numbers(curve, "admittance")
@@ -76,10 +73,7 @@ def _check_numbers(curve: Curve, what: str) -> None:
 def check_radiation(curve: Curve) -> list[str]:
     """Check a radiation (Pa/N); return warnings.
 
-    Raises
-    ------
-    MeasurementError
-        Where it is in other units.
+    Raises MeasurementError where it is in other units.
     """
     _check_numbers(curve, "radiation")
     peak = float(np.abs(curve.values).max())

@@ -44,6 +44,8 @@ class Sections:
 def fit_sections(curve: Curve, count: int = 32, rate: float = 44100.0) -> Sections:
     """Fit sections to a radiation.
 
+    Raises MeasurementError where there are fewer lines than numbers to find.
+
     Parameters
     ----------
     curve : Curve
@@ -53,11 +55,6 @@ def fit_sections(curve: Curve, count: int = 32, rate: float = 44100.0) -> Sectio
         Number of sections.
     rate : float
         Sample rate (Hz) that the sections are for.
-
-    Raises
-    ------
-    MeasurementError
-        Where there are fewer lines than numbers to find.
 
     Notes
     -----

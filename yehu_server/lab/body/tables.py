@@ -44,17 +44,14 @@ def read_table(
 ) -> list[Tap] | list[Response]:
     """Read a table: the taps in it, or a response over frequency.
 
+    Raises MeasurementError where it cannot be read, or what it holds is not told.
+
     Parameters
     ----------
     channels : sequence of Channel, optional
         What the columns after the time are; by default as their headings say.
     kind : str, optional
         What the response is; by default as the headings say.
-
-    Raises
-    ------
-    MeasurementError
-        Where it cannot be read, or what it holds is not told.
     """
     headings, numbers = _parsed(path)
     first = headings[0].lower()
@@ -186,10 +183,7 @@ def kind_in(text: str) -> str | None:
 def rising(curve: Curve, where: str) -> Curve:
     """The curve by rising frequency, above 0 Hz.
 
-    Raises
-    ------
-    MeasurementError
-        Where two lines have one frequency, or too few are left.
+    Raises MeasurementError where two lines have one frequency, or too few are left.
     """
     order = np.argsort(curve.frequency_hz, kind="stable")
     found = curve.at(order[curve.frequency_hz[order] > 0.0])

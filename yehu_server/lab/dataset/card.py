@@ -31,10 +31,7 @@ AUDIO = {"strokes": Label("Pa", "radiated sound pressure"), "notes": Label("1", 
 def write_card(folder: Path, description: Description, lines: Sequence[Line]) -> None:
     """Write the card and the facts of a data set, which are the same for the same sounds.
 
-    Raises
-    ------
-    OutputError
-        Where they cannot be written.
+    Raises OutputError where they cannot be written.
     """
     facts = facts_of(description, lines)
     write_text(folder / FACTS, json.dumps(facts, indent=1, ensure_ascii=False) + "\n")

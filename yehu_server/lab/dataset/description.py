@@ -129,13 +129,7 @@ class Description:
 
 
 def read_description(path: Path) -> Description:
-    """Read the description of a data set.
-
-    Raises
-    ------
-    ParameterError
-        Naming the file and the entry.
-    """
+    """Read the description of a data set. Raises ParameterError, naming the file and the entry."""
     document = Document(path, "a description of a data set").read(path)
     return description_of(document.toml(), path.parent)
 
@@ -143,10 +137,7 @@ def read_description(path: Path) -> Description:
 def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> Description:
     """Check the data of a description, which is in a folder.
 
-    Raises
-    ------
-    ParameterError
-        Naming the entry.
+    Raises ParameterError, naming the entry.
     """
     table = Fields.of(data)
     kind = table.read("kind", choice, KINDS[0], KINDS)

@@ -102,10 +102,7 @@ class Normal(Distribution):
 def read_distribution(entry: Any) -> Distribution:
     """Read how a value is drawn: a number, or a table as docs/dataset.md describes.
 
-    Raises
-    ------
-    ParameterError
-        Where it is none of them.
+    Raises ParameterError where it is none of them.
     """
     if not isinstance(entry, Mapping):
         value = number(entry)
@@ -156,26 +153,14 @@ def _weights(value: Any, count: int) -> tuple[float, ...]:
 
 
 def shares_of(weights: Sequence[float]) -> tuple[float, ...]:
-    """Sums of weights, the last of which is 1.
-
-    Raises
-    ------
-    ParameterError
-        Where they are no weights.
-    """
+    """Sums of weights, the last of which is 1. Raises ParameterError where they are no weights."""
     if min(weights) < 0.0 or not sum(weights) > 0.0:
         raise ParameterError("numbers from 0, not all of them 0")
     return tuple(total / sum(weights) for total in itertools.accumulate(weights))
 
 
 def numbers(value: Any) -> list[float]:
-    """A list of numbers, not empty.
-
-    Raises
-    ------
-    ParameterError
-        Where it is none.
-    """
+    """A list of numbers, not empty. Raises ParameterError where it is none."""
     if not isinstance(value, list) or not 0 < len(value) <= MOST_CHOICES:
         raise ParameterError(f"expected a list of 1 to {MOST_CHOICES} numbers")
     return [number(each) for each in value]

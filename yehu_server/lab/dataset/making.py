@@ -139,10 +139,7 @@ def make_all(
 ) -> Generator[tuple[float, Sequence[Line]]]:
     """Make all parts; yield how many sounds are done, and the lines of those that just were.
 
-    Raises
-    ------
-    OutputError
-        Where what has travelled cannot be written.
+    Raises OutputError where what has travelled cannot be written.
     """
     shares = [0.0] * len(parts)
     for event in perform_all(parts):
@@ -163,15 +160,12 @@ def make_all(
 def received(part: Part, told: Any) -> Sequence[Line]:
     """Put files that have travelled in their places, and keep a record where all is well.
 
+    Raises OutputError where it is something else, or cannot be written.
+
     Parameters
     ----------
     told : dict
         What `perform` returned; anybody who reaches a cluster may have made it.
-
-    Raises
-    ------
-    OutputError
-        Where it is something else, or cannot be written.
     """
     lines, files = _checked(part, told)
     for name, data in files.items():
@@ -204,9 +198,6 @@ def _checked(part: Part, told: Any) -> tuple[list[Line], dict[str, bytes]]:
 def write_lines(folder: Path, lines: Iterable[Line]) -> None:
     """Write the manifest, in the order of the numbers.
 
-    Raises
-    ------
-    OutputError
-        Where it cannot be written.
+    Raises OutputError where it cannot be written.
     """
     write_manifest(folder, lines, order="number")

@@ -28,10 +28,7 @@ SHORTEST_S = 0.02  # from one beginning to the next
 def melody(description: Description, number: int) -> Sound:
     """Make a sound of a description of kind "notes".
 
-    Raises
-    ------
-    ParameterError
-        Where it would last too long.
+    Raises ParameterError where it would last too long.
     """
     rate = description.rate
     drawn: dict[str, Any] = {

@@ -111,12 +111,7 @@ def write_bowed_score(
 ) -> None:
     """Draw a part, counted from 0, moved into range as it is played, and write it to a PNG file.
 
-    Raises
-    ------
-    ParameterError
-        Where it has no note.
-    OutputError
-        Where it cannot be written.
+    Raises ParameterError where it has no note; OutputError where it cannot be written.
     """
     part, octaves = moved_part(written.parts[number])
     if not part.notes:

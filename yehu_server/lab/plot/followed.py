@@ -45,10 +45,7 @@ def write_followed(
 ) -> None:
     """Draw what was heard over what is played, and write it to a PNG file.
 
-    Raises
-    ------
-    OutputError
-        Where it cannot be written.
+    Raises OutputError where it cannot be written.
     """
     moved = f", {semitones:+g} semitones" if semitones else ""
     write_picture(

@@ -19,17 +19,13 @@ MOST_TEXT = 120  # characters
 def check_picture(target: Path, what: str, *, overwrite: bool = False) -> None:
     """Check that a picture can be drawn, and may be written.
 
+    Raises ParameterError where matplotlib is missing; OutputError where it may not, or its name
+    ends otherwise than in .png.
+
     Parameters
     ----------
     what : str
         What needs it, for the message, such as ``--plot``.
-
-    Raises
-    ------
-    ParameterError
-        Where matplotlib is missing.
-    OutputError
-        Where it may not, or its name ends otherwise than in .png.
     """
     need("matplotlib", what, "plots")
     if target.suffix.lower() != ".png":
@@ -58,6 +54,8 @@ def write_picture(
 ) -> None:
     """Draw a picture and write it to a PNG file. The same picture has the same bytes.
 
+    Raises OutputError where it cannot be written.
+
     Parameters
     ----------
     size : tuple of float, inches
@@ -65,11 +63,6 @@ def write_picture(
         Draws into a matplotlib Figure.
     dpi : int
         Pixels to an inch.
-
-    Raises
-    ------
-    OutputError
-        Where it cannot be written.
     """
     data = drawn(size, fill, dpi)
     with replacing(target, anything if overwrite else is_ours) as partial:

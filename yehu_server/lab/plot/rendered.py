@@ -100,15 +100,12 @@ def write_picture(
 ) -> None:
     """Draw what was gathered of a rendering, and write it to a PNG file.
 
+    Raises OutputError where it cannot be written.
+
     Parameters
     ----------
     level, pitch : callable
         What draws these panels; by default `draw_level` and `draw_pitch`.
-
-    Raises
-    ------
-    OutputError
-        Where it cannot be written.
     """
 
     def fill(figure: Any) -> None:

@@ -32,17 +32,13 @@ def write_picture(
 ) -> None:
     """Write a picture (PNG) of a result.
 
+    Raises ParameterError where matplotlib is missing, or there is no such column; OutputError where
+    it cannot be written.
+
     Parameters
     ----------
     what : str
         A column; ``helmholtz_s`` is drawn in periods of the note after the first slip.
-
-    Raises
-    ------
-    ParameterError
-        Where matplotlib is missing, or there is no such column.
-    OutputError
-        Where it cannot be written.
     """
     png.check_picture(target, "a picture", overwrite=overwrite)
     grid = result.onset_periods() if what == "helmholtz_s" else result.grid(what)

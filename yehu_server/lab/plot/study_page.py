@@ -35,12 +35,8 @@ SCALE = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 3
 def write_page(result: Result, target: Path) -> None:
     """Write a page (HTML) of a result.
 
-    Raises
-    ------
-    ParameterError
-        Where the result has too few axes for a map, or too many points.
-    OutputError
-        Where it cannot be written.
+    Raises ParameterError where the result has too few axes for a map, or too many points;
+    OutputError where it cannot be written.
     """
     x, y = plane_of({name: len(values) for name, values in result.axes.items()})
     if y is None:

@@ -217,6 +217,8 @@ def judge(
 ) -> Finding:
     """Judge the end of a stroke, and when its Helmholtz motion began.
 
+    Raises ParameterError where the stroke has less than LEAST_PERIODS.
+
     Parameters
     ----------
     relative_velocity : ndarray [shape=(frames,)]
@@ -229,11 +231,6 @@ def judge(
         Sample rate (Hz).
     frequency_hz : float
         Of the note that is fingered. It may be off by 6 %.
-
-    Raises
-    ------
-    ParameterError
-        Where the stroke has less than LEAST_PERIODS.
     """
     velocity = np.ascontiguousarray(relative_velocity, np.float64)
     check_length(len(velocity), rate, frequency_hz)
@@ -248,10 +245,7 @@ def judge(
 def check_length(frames: int, rate: float, frequency_hz: float) -> None:
     """Refuse a stroke that is too short to be judged.
 
-    Raises
-    ------
-    ParameterError
-        Where it has less than LEAST_PERIODS of the note.
+    Raises ParameterError where it has less than LEAST_PERIODS of the note.
     """
     if not frames * frequency_hz >= LEAST_PERIODS * rate:
         raise ParameterError(

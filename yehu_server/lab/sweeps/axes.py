@@ -38,10 +38,7 @@ class Axis:
     def refined(self, levels: int) -> Axis:
         """The axis with 2**levels steps where it has one.
 
-        Raises
-        ------
-        ParameterError
-            Where it is a list.
+        Raises ParameterError where it is a list.
         """
         if levels == 0:
             return self
@@ -59,10 +56,7 @@ class Axis:
 def spread_axis(name: str, first: float, last: float, steps: int, spread: str) -> Axis:
     """An axis of values from `first` to `last`, both with.
 
-    Raises
-    ------
-    ParameterError
-        Where these are none.
+    Raises ParameterError where these are none.
     """
     whole(steps, 2, MOST_VALUES)
     choice(spread, SPREADS)
@@ -79,10 +73,7 @@ def spread_axis(name: str, first: float, last: float, steps: int, spread: str) -
 def axis_of(text: str) -> Axis:
     """Read ``NAME=V1,V2,...``, ``NAME=FROM:TO:STEPS`` or ``NAME=FROM:TO:STEPS:log``.
 
-    Raises
-    ------
-    ParameterError
-        Where the text has another form.
+    Raises ParameterError where the text has another form.
     """
     name, equals, values = (part.strip() for part in text.partition("="))
     if not equals or not all(name.split(".")):
@@ -110,10 +101,7 @@ def _value(text: str) -> Value:
 def axis_from(name: str, entry: Any) -> Axis:
     """Read an axis of a study: a list, or a table of ``from``, ``to``, ``steps``, ``spread``.
 
-    Raises
-    ------
-    ParameterError
-        Where it is none.
+    Raises ParameterError where it is none.
     """
     if isinstance(entry, list):
         if not 1 <= len(entry) <= MOST_VALUES:

@@ -49,13 +49,7 @@ class GestureBow:
 
     @classmethod
     def of(cls, table: Fields, folder: Path) -> GestureBow:
-        """Read the entries of a study.
-
-        Raises
-        ------
-        ParameterError
-            Where one is wrong.
-        """
+        """Read the entries of a study. Raises ParameterError where one is wrong."""
         for name in BESIDE:
             if name in table.data:
                 table.wrong(name, "belongs into the gesture")
@@ -64,13 +58,7 @@ class GestureBow:
         return cls(gesture.data, folder)
 
     def check(self, axes: Sequence[Axis]) -> None:
-        """Refuse axes that are none, or out of bounds.
-
-        Raises
-        ------
-        ParameterError
-            Where one is.
-        """
+        """Refuse axes that are none, or out of bounds. Raises ParameterError where one is."""
         for axis in axes:
             if axis.name == ACCELERATION:
                 self._check_acceleration(axis)
@@ -220,10 +208,7 @@ def _is_control(name: str) -> bool:
 def _set(data: Any, name: str, value: Any) -> None:
     """Set an entry of a gesture's data, in place; a curve is scaled to the value at its largest.
 
-    Raises
-    ------
-    ParameterError
-        Where there is no such entry.
+    Raises ParameterError where there is no such entry.
     """
     path = name.split(".")
     *tables, last = ["controls", *path] if path[0] in CONTROLS else path

@@ -71,15 +71,12 @@ class Done:
 class Journal(Done):
     """The journal of one study: what is done, and a file that more is added to.
 
+    Raises OutputError where there is a journal of another study, or it cannot be written.
+
     Parameters
     ----------
     target : Path
         The result to come.
-
-    Raises
-    ------
-    OutputError
-        Where there is a journal of another study, or it cannot be written.
     """
 
     def __init__(self, target: Path, study: Study, *, overwrite: bool = False) -> None:
@@ -103,10 +100,7 @@ class Journal(Done):
     def add(self, numbers: Array, findings: Array) -> None:
         """Add points, safe against the end of this process.
 
-        Raises
-        ------
-        OutputError
-            Where they cannot be written.
+        Raises OutputError where they cannot be written.
         """
         payload = numbers.astype("<i8").tobytes() + findings.tobytes()
         try:

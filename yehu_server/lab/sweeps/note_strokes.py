@@ -93,13 +93,7 @@ class NoteBow:
 
     @classmethod
     def of(cls, table: Fields, folder: Path) -> NoteBow:
-        """Read the entries of a study.
-
-        Raises
-        ------
-        ParameterError
-            Where one is wrong.
-        """
+        """Read the entries of a study. Raises ParameterError where one is wrong."""
         rate = table.read("sample_rate", played_rate, 44100.0)
         duration = table.read("duration", number, 0.3, BOW_MOVES, LONGEST, "s")
         if duration == BOW_MOVES:
@@ -111,13 +105,7 @@ class NoteBow:
         return cls(rate, duration, instrument.data, fixed, folder)
 
     def check(self, axes: Sequence[Axis]) -> None:
-        """Refuse axes that are none, or out of bounds.
-
-        Raises
-        ------
-        ParameterError
-            Where one is.
-        """
+        """Refuse axes that are none, or out of bounds. Raises ParameterError where one is."""
         values: dict[str, Sequence[Any]] = {name: [value] for name, value in self.fixed.items()}
         for axis in axes:
             if axis.name.startswith("instrument."):

@@ -199,13 +199,7 @@ class Result:
 
     @classmethod
     def of(cls, arrays: Mapping[str, Array]) -> Result:
-        """Build it of the arrays of a file.
-
-        Raises
-        ------
-        ValueError
-            Where they are no result.
-        """
+        """Build it of the arrays of a file. Raises ValueError where they are no result."""
         meta = json.loads(str(arrays["meta"]))
         if meta["format"] != FORMAT or meta["version"] != VERSION:
             raise ValueError("another format")

@@ -64,7 +64,8 @@ def sweep_to(
     """Run a study, and write what it finds to a file.
 
     Where it is interrupted, what is done is in a journal beside the file, and the next call with
-    the same study goes on; a KeyboardInterrupt has a text that says so.
+    the same study goes on; a KeyboardInterrupt has a text that says so. Raises OutputError where
+    there is a result, or the file cannot be written.
 
     Parameters
     ----------
@@ -72,11 +73,6 @@ def sweep_to(
         Whether to replace a result, or a journal, that is there.
     workers, cluster, progress
         As of `sweep`.
-
-    Raises
-    ------
-    OutputError
-        Where there is a result, or the file cannot be written.
     """
     check_free_result(target, overwrite=overwrite)
     journal = Journal(target, study, overwrite=overwrite)
@@ -95,13 +91,7 @@ def sweep_to(
 
 
 def check_free_result(target: Path, *, overwrite: bool = False) -> None:
-    """Check that a result may be written.
-
-    Raises
-    ------
-    OutputError
-        Where it may not.
-    """
+    """Check that a result may be written. Raises OutputError where it may not."""
     if target.suffix != ".npz":
         raise OutputError(f"{target}: name a file that ends in .npz")
     check_target(target)
@@ -186,10 +176,7 @@ def _on_cluster(study: Study, chunks: list[Array], cluster: Any) -> Iterator[tup
 def _received(found: Any, count: int) -> Array:
     """The findings that came back from a cluster; anybody who reaches it may have made them.
 
-    Raises
-    ------
-    YehuError
-        Where they are none.
+    Raises YehuError where they are none.
     """
     if type(found) is bytes and len(found) == count * FINDING.itemsize:
         findings = np.frombuffer(found, FINDING)

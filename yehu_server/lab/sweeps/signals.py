@@ -35,8 +35,9 @@ def keep_signals(
 ) -> int:
     """Simulate the strokes of a result again, and write the arrays of each to ``NUMBER.npz``.
 
-    The number is that of the stroke in the result, from 0. A file that is there is kept, so that
-    an interrupted call goes on. `prepare_folder` comes first.
+    The number is that of the stroke in the result, from 0. A file that is there is kept, so that an
+    interrupted call goes on. `prepare_folder` comes first. Raises OutputError where one cannot be
+    written.
 
     Parameters
     ----------
@@ -51,11 +52,6 @@ def keep_signals(
     -------
     int
         The number of files.
-
-    Raises
-    ------
-    OutputError
-        Where one cannot be written.
     """
     width = len(str(len(result) - 1))
 
@@ -80,12 +76,8 @@ def keep_signals(
 def prepare_folder(study: Study, folder: Path, *, overwrite: bool = False) -> None:
     """Make the folder for signals, or check the one that is there.
 
-    Raises
-    ------
-    ParameterError
-        Where the study has more strokes than MOST_FILES, or is refined.
-    OutputError
-        Where the folder has signals of another sweep and `overwrite` is false.
+    Raises ParameterError where the study has more strokes than MOST_FILES, or is refined;
+    OutputError where the folder has signals of another sweep and `overwrite` is false.
     """
     if study.levels:
         raise ParameterError("--signals: a study that is refined keeps none")

@@ -29,10 +29,8 @@ _NAME = re.compile(r'(?:name|nm)="([^"]*)"')
 def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
     """Read a tune of a file, the first where no other is asked for.
 
-    Raises
-    ------
-    ScoreError
-        One line naming the file: where it cannot be read, has no tune, or no such one.
+    Raises ScoreError, one line naming the file: where it cannot be read, has no tune, or no such
+    one.
     """
     with naming(path):
         head, tunes = _tunes(_decoded(read_score_bytes(path, MOST_BYTES)))

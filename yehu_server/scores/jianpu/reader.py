@@ -45,12 +45,9 @@ Words = list[Word | Header]  # of a part
 def read_jianpu(path: str | os.PathLike[str]) -> Written:
     """Read a file of jianpu or 二四谱.
 
-    Raises
-    ------
-    ScoreError
-        One line that names the file, and the line and column of what cannot be read: where it is
-        missing, larger than 1 MiB or no text; has no notes, or more than
-        `form.MOST_UNFOLDED` in a part; where a repeat or tuplet does not end.
+    Raises ScoreError, one line that names the file, and the line and column of what cannot be read:
+    where it is missing, larger than 1 MiB or no text; has no notes, or more than
+    `form.MOST_UNFOLDED` in a part; where a repeat or tuplet does not end.
     """
     with naming(path):
         return parse_jianpu(read_score_bytes(path, MOST_BYTES))

@@ -65,10 +65,7 @@ def printable(text: str) -> str:
 def decoded(data: bytes) -> tuple[str, str]:
     """Return the text of a file, and a warning where its encoding was guessed.
 
-    Raises
-    ------
-    ScoreError
-        Where it is no text in UTF-8, UTF-16 or GB 18030.
+    Raises ScoreError where it is no text in UTF-8, UTF-16 or GB 18030.
     """
     try:
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):

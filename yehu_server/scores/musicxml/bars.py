@@ -52,10 +52,7 @@ class BarReader:
     def read(self, measure: Element) -> RawBar:
         """Read one <measure>.
 
-        Raises
-        ------
-        ScoreError
-            Where it is longer, or has more notes, than any music.
+        Raises ScoreError where it is longer, or has more notes, than any music.
         """
         lines = BarLines(endings=self._ending)
         self._bar = bar = RawBar(measure.get("number", "")[:8], lines)

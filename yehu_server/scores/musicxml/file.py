@@ -38,13 +38,7 @@ DAMAGED = (
 
 
 def read_root(path: str | os.PathLike[str]) -> ET.Element:
-    """Read the root element of a file.
-
-    Raises
-    ------
-    ScoreError
-        One line, without the file's name.
-    """
+    """Read the root element of a file. Raises ScoreError, one line, without the file's name."""
     data = read_score_bytes(path, MOST_XML_BYTES)
     return parse(unpacked(data) if data.startswith(ZIP) else data)
 
@@ -52,10 +46,7 @@ def read_root(path: str | os.PathLike[str]) -> ET.Element:
 def unpacked(data: bytes) -> bytes:
     """Return the score in a compressed file, as its container names it.
 
-    Raises
-    ------
-    ScoreError
-        Where the archive is damaged, too large or holds no score.
+    Raises ScoreError where the archive is damaged, too large or holds no score.
     """
     if len(data) > MOST_BYTES:
         raise ScoreError(f"is an archive larger than {MOST_BYTES >> 20} MiB")
@@ -97,10 +88,7 @@ def _member(archive: zipfile.ZipFile, name: str, most_bytes: int) -> bytes:
 def parse(data: bytes) -> ET.Element:
     """Parse XML of bounded size and depth, without namespaces.
 
-    Raises
-    ------
-    ScoreError
-        With the line, where there is one.
+    Raises ScoreError with the line, where there is one.
     """
     builder = _Builder()
     says_utf16 = _SAYS_UTF16.match(data) is not None  # in bytes that are none

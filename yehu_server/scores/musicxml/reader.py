@@ -21,24 +21,15 @@ from yehu_server.scores.written.notated import MOST_PARTS, Written
 def read_musicxml(path: str | os.PathLike[str]) -> Written:
     """Read a MusicXML file, plain or compressed.
 
-    Raises
-    ------
-    ScoreError
-        One line naming the file, whatever its bytes: where it cannot be read, is no MusicXML or
-        is beyond all bounds.
+    Raises ScoreError, one line naming the file, whatever its bytes: where it cannot be read, is no
+    MusicXML or is beyond all bounds.
     """
     with naming(path):
         return written_of(read_root(path))
 
 
 def written_of(root: Element) -> Written:
-    """Return the score of a root element.
-
-    Raises
-    ------
-    ScoreError
-        Where it is none, or beyond bounds.
-    """
+    """Return the score of a root element. Raises ScoreError where it is none, or beyond bounds."""
     if root.tag == "score-timewise":
         root = _partwise(root)
     if root.tag != "score-partwise":

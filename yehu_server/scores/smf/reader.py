@@ -95,11 +95,14 @@ def read_score(
 ) -> Score:
     """Read a Standard MIDI File, bare or in a wrapper.
 
-    Formats 0 and 1 play all tracks together under the tempo changes of all of them.
-    Format 2 plays its tracks one after another, as `concatenate` would, each starting
-    at 120 bpm with tempo changes of its own. Files that were joined play in turn too. Sysex
-    other than tuning, escapes, and metas other than tempo and time signature are dropped. A
-    channel message with a data byte above 127 is dropped as a whole.
+    Formats 0 and 1 play all tracks together under the tempo changes of all of them. Format 2 plays
+    its tracks one after another, as `concatenate` would, each starting at 120 bpm with tempo
+    changes of its own. Files that were joined play in turn too. Sysex other than tuning, escapes,
+    and metas other than tempo and time signature are dropped. A channel message with a data byte
+    above 127 is dropped as a whole. Raises DamagedError with `strict`: one line naming the file,
+    its first damage and the byte of that; ScoreError, one line naming the file, whatever its bytes:
+    missing, unreadable, too large or too long, not a MIDI file, or without one channel message to
+    play.
 
     Parameters
     ----------
@@ -109,14 +112,6 @@ def read_score(
         Whether to refuse a file with any damage.
     max_duration_h : float
         How long the score may last (hours).
-
-    Raises
-    ------
-    DamagedError
-        With `strict`: one line naming the file, its first damage and the byte of that.
-    ScoreError
-        One line naming the file, whatever its bytes: missing, unreadable, too large or
-        too long, not a MIDI file, or without one channel message to play.
     """
     faults = DamageReport()
     with naming(path):

@@ -57,10 +57,7 @@ OTHERS: tuple[tuple[int, bytes, str], ...] = (
 def unwrapped(data: bytes, faults: DamageReport) -> tuple[int, int]:
     """Return where the MIDI file begins and where it ends.
 
-    Raises
-    ------
-    ScoreError
-        Where no header is found.
+    Raises ScoreError where no header is found.
     """
     start, end = _of_macintosh(data)
     if data[start : start + 4] == b"RIFF" and data[start + 8 : start + 12] == b"RMID":

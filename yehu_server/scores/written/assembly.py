@@ -36,6 +36,8 @@ def assembled(
 ) -> Written:
     """Return a score of the bars of its parts, which are named.
 
+    Raises ScoreError where it is beyond bounds.
+
     Parameters
     ----------
     unknown, warnings : Counter
@@ -43,11 +45,6 @@ def assembled(
     sections : sequence of range, optional
         Bars that are played one after another, each with repeats of its own, as a header of ABC
         tells; without them all bars.
-
-    Raises
-    ------
-    ScoreError
-        Where it is beyond bounds.
     """
     parts_bars = [bars for _, bars in parts]
     count = max(map(len, parts_bars), default=0)

@@ -79,12 +79,8 @@ def order_of(bars: Sequence[BarLines]) -> list[int]:
 
     After da capo and dal segno no repeat is taken, and the last of several endings, up to the bar
     from which was jumped. Each jump is taken once. Where Fine ends the music before its last bars
-    were played, it goes on with those, as with another movement.
-
-    Raises
-    ------
-    ScoreError
-        Where that would be more than MOST_BARS.
+    were played, it goes on with those, as with another movement. Raises ScoreError where that would
+    be more than MOST_BARS.
     """
     return _Player(bars, _passages(bars)).order()
 

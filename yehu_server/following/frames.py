@@ -54,26 +54,15 @@ _BANDS = _band_weights()
 
 @dataclass(frozen=True)
 class Frames:
-    """What was heard of some frames.
+    """What was heard of some frames."""
 
-    Attributes
-    ----------
-    level_db : ndarray [shape=(frames,)]
-        A-weighted (dB of full scale).
-    bands_db : ndarray [shape=(frames, bands)]
-        Levels of the bands of the spectrum.
-    pitch_hz, likeness : ndarray [shape=(frames, CANDIDATES)]
-        The candidates, the tracker's first, and how like the sound is to itself a period before, up
-        to 1; NaN and 0 where there is none.
-    certainty : ndarray [shape=(frames,)]
-        The tracker's.
-    """
-
-    level_db: Array
-    bands_db: Array
+    level_db: Array  # [shape=(frames,)] A-weighted (dB of full scale)
+    bands_db: Array  # [shape=(frames, bands)] levels of the bands of the spectrum
+    # [shape=(frames, CANDIDATES)] the candidates, the tracker's first, and how like the sound is
+    # to itself a period before, up to 1; NaN and 0 where there is none.
     pitch_hz: Array
     likeness: Array
-    certainty: Array
+    certainty: Array  # [shape=(frames,)] the tracker's
 
 
 def measured(sound: Array, pitch_hz: Array, certainty: Array) -> Frames:

@@ -42,27 +42,13 @@ LOUD_DB = 25.0  # below the loudest
 
 @dataclass(frozen=True)
 class Heard:
-    """What was heard; all arrays have the shape (frames,).
+    """What was heard; all arrays have the shape (frames,)."""
 
-    Attributes
-    ----------
-    name : str
-        Of the recording.
-    pitch_hz : ndarray
-        NaN where there is no pitch.
-    level_db : ndarray
-        A-weighted, in dB of full scale.
-    flux_db : ndarray
-        How much louder the bands of the spectrum are than 20 ms before, on the mean.
-    likeness : ndarray
-        How like the sound is to itself a period before, up to 1; 0 where there is no pitch.
-    warnings : tuple of str
-    """
-
-    name: str
-    pitch_hz: Array
-    level_db: Array
-    flux_db: Array
+    name: str  # of the recording
+    pitch_hz: Array  # NaN where there is no pitch
+    level_db: Array  # A-weighted, in dB of full scale
+    flux_db: Array  # how much louder the bands of the spectrum are than 20 ms before, on the mean
+    # How like the sound is to itself a period before, up to 1; 0 where there is no pitch.
     likeness: Array
     warnings: tuple[str, ...] = ()
 

@@ -44,20 +44,11 @@ class HeardNote:
 
 @dataclass(frozen=True)
 class Stroke:
-    """Notes that sound without a new attack.
-
-    Attributes
-    ----------
-    notes : tuple of HeardNote
-    pitch : ndarray [shape=(frames,)]
-        Of each of its frames (fractional MIDI note).
-    attack_s : float
-        Until it has its level.
-    """
+    """Notes that sound without a new attack."""
 
     notes: tuple[HeardNote, ...]
-    pitch: Array
-    attack_s: float
+    pitch: Array  # [shape=(frames,)] of each of its frames (fractional MIDI note)
+    attack_s: float  # until it has its level
 
     @property
     def start(self) -> int:

@@ -65,26 +65,15 @@ STYLES = {
 
 @dataclass(frozen=True)
 class Wanted:
-    """How a recording is to be played.
+    """How a recording is to be played."""
 
-    Attributes
-    ----------
-    transpose : float, optional
-        Semitones; None: by octaves into the range of the instrument.
-    correct : float
-        How far notes are moved to the tuning, 0 to 1.
-    keeps_vibrato : bool
-        Whether a correction moves notes as they are; else it also narrows what moves in them.
-    a4 : float
-        Hz.
-    """
-
-    transpose: float | None = None
-    correct: float = 0.0
+    transpose: float | None = None  # semitones; None: by octaves into the range of the instrument
+    correct: float = 0.0  # how far notes are moved to the tuning, 0 to 1
+    # Whether a correction moves notes as they are; else it also narrows what moves in them.
     keeps_vibrato: bool = False
     style: Style = field(default_factory=Style)
     tuning: Tuning = EQUAL
-    a4: float = STANDARD_A4
+    a4: float = STANDARD_A4  # Hz
 
 
 @dataclass(frozen=True)

@@ -31,40 +31,21 @@ LEAST_SHARE = 0.3
 
 @dataclass(frozen=True)
 class Recording:
-    """A sound that can be read more than once.
+    """A sound that can be read more than once."""
 
-    Attributes
-    ----------
-    name : str
-        For messages.
-    rate : int
-        Hz.
-    blocks : callable
-        Returns an iterator over its blocks: ndarrays [shape=(frames, channels), float32].
-    """
-
-    name: str
-    rate: int
+    name: str  # for messages
+    rate: int  # Hz
+    # Returns an iterator over its blocks: ndarrays [shape=(frames, channels), float32].
     blocks: Callable[[], Iterator[Array]]
 
 
 @dataclass(frozen=True)
 class Form:
-    """How one channel is made of a recording, and what is wrong with it.
+    """How one channel is made of a recording, and what is wrong with it."""
 
-    Attributes
-    ----------
-    weights : ndarray [shape=(channels,)]
-        Of the channels, with the scale to WORKING_PEAK.
-    offset : float
-        What is subtracted then.
-    gain_db : float
-        By how much louder the result is.
-    """
-
-    weights: Array
-    offset: float
-    gain_db: float
+    weights: Array  # [shape=(channels,)] of the channels, with the scale to WORKING_PEAK
+    offset: float  # what is subtracted then
+    gain_db: float  # by how much louder the result is
     duration_s: float
     warnings: tuple[str, ...]
 

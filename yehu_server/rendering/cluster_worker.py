@@ -26,20 +26,11 @@ DONE, FAILED, UNLIKE = range(3)
 
 @dataclass(frozen=True)
 class Identity:
-    """What has to be the same for the same samples, and what may differ in the last bit.
-
-    Attributes
-    ----------
-    version : str
-    code : str
-        Key of all of the package's code.
-    processor : str
-        As LLVM names it, where that is installed.
-    """
+    """What has to be the same for the same samples, and what may differ in the last bit."""
 
     version: str
-    code: str
-    processor: str
+    code: str  # key of all of the package's code
+    processor: str  # as LLVM names it, where that is installed
 
     @property
     def shown(self) -> str:

@@ -28,20 +28,12 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Sounded:
-    """A block that is computed.
+    """A block that is computed."""
 
-    Attributes
-    ----------
-    first : int
-        Number of its first frame.
-    pieces : list of (frames, ndarray [shape=(instruments, chunks), dtype=SOUNDED])
-    mixed : ndarray, optional
-        Its samples, where the callback made them on one core.
-    """
-
-    first: int
+    first: int  # number of its first frame
+    # Frames, and ndarray [shape=(instruments, chunks), dtype=SOUNDED], of each piece.
     pieces: list[tuple[int, Array]] = field(default_factory=list)
-    mixed: Array | None = None
+    mixed: Array | None = None  # its samples, where the callback made them on one core
 
 
 class Cores:

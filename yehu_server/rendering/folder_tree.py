@@ -33,19 +33,11 @@ class Entry:
 
 @dataclass(frozen=True)
 class Tree:
-    """The scores of a folder in order, and by name what is not looked at, and why.
-
-    Attributes
-    ----------
-    problems
-        What should have been rendered.
-    skipped
-        Links that lead round in a circle.
-    """
+    """The scores of a folder in order, and by name what is not looked at, and why."""
 
     entries: tuple[Entry, ...]
-    problems: tuple[tuple[str, str], ...]
-    skipped: tuple[tuple[str, str], ...] = ()
+    problems: tuple[tuple[str, str], ...]  # what should have been rendered
+    skipped: tuple[tuple[str, str], ...] = ()  # links that lead round in a circle
 
 
 def is_score(name: str) -> bool:

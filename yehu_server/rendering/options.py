@@ -16,28 +16,17 @@ BLOCK = 1 << 14  # frames; the sound does not depend on it
 
 @dataclass(frozen=True)
 class Part:
-    """A player on the stage, or a section of them: what they play, and how.
-
-    Attributes
-    ----------
-    channels : frozenset of int, optional
-        Those that it plays, counted from 0; by default all but percussion.
-    phrasing : float
-        Of the player; the score is shaped before (``scores.phrasing``).
-    calibration : Calibration, optional
-        By default looked up or measured.
-    gain_db : float, optional
-        By default that of the preset.
-    """
+    """A player on the stage, or a section of them: what they play, and how."""
 
     score: Score
     name: str = ""
     playing: PlayingOptions = field(default_factory=PlayingOptions)
+    # Those that it plays, counted from 0; by default all but percussion.
     channels: frozenset[int] | None = None
-    phrasing: float = 0.0
+    phrasing: float = 0.0  # of the player; the score is shaped before (``scores.phrasing``)
     quantities: Quantities = field(default_factory=Quantities)
-    calibration: Calibration | None = None
-    gain_db: float | None = None
+    calibration: Calibration | None = None  # by default looked up or measured
+    gain_db: float | None = None  # by default that of the preset
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "playing", self.playing.for_instrument(self.quantities))

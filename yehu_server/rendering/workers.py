@@ -28,27 +28,14 @@ Perform = Callable[[Any, ProgressCallback], Any]
 
 @dataclass(frozen=True)
 class Event:
-    """What became of a job: its share done, or its result, or why its processes died.
+    """What became of a job: its share done, or its result, or why its processes died."""
 
-    Attributes
-    ----------
-    job : int
-        The number of its task, from 0.
-    share : float
-        Of the job; 1 when it is over.
-    total : float
-        What the job does in all, such as seconds of sound; 0 if it is not known yet.
-    result : object
-        What was returned.
-    died : str
-        How its process ended, such as "killed by signal 9".
-    """
-
-    job: int
-    share: float = 0.0
+    job: int  # the number of its task, from 0
+    share: float = 0.0  # of the job; 1 when it is over
+    # What the job does in all, such as seconds of sound; 0 if it is not known yet.
     total: float = 0.0
-    result: Any = None
-    died: str = ""
+    result: Any = None  # what was returned
+    died: str = ""  # how its process ended, such as "killed by signal 9"
 
     @property
     def is_end(self) -> bool:

@@ -24,34 +24,20 @@ Values = tuple[tuple[str, float], ...]  # addresses and values
 
 @dataclass(frozen=True)
 class PartEntry:
-    """One ``[[part]]``; what it leaves out is None.
+    """One ``[[part]]``; what it leaves out is None."""
 
-    Attributes
-    ----------
-    where : str
-        File and line, for errors.
-    channel : int, optional
-        Counted from 0.
-    track : int, optional
-        Counted from 1.
-    section : int, optional
-        Number of people who play it.
-    gain_db : float
-        Over what it would be without this entry.
-    """
-
-    where: str
+    where: str  # file and line, for errors
     name: str | None = None
-    channel: int | None = None
-    track: int | None = None
+    channel: int | None = None  # counted from 0
+    track: int | None = None  # counted from 1
     preset: str | None = None
     mapping: str | None = None
     instrument: Path | None = None
-    section: int | None = None
+    section: int | None = None  # number of people who play it
     seed: int | None = None
     pan: float | None = None
     distance: float | None = None
-    gain_db: float = 0.0
+    gain_db: float = 0.0  # over what it would be without this entry
     settings: Values = ()
 
 

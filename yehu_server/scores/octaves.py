@@ -27,25 +27,14 @@ class Sounding:
 
 @dataclass(frozen=True)
 class Octaves:
-    """By how many octaves notes are moved.
+    """By how many octaves notes are moved."""
 
-    Attributes
-    ----------
-    of_notes : tuple of int
-        For each note.
-    whole : int
-        Of most of the part.
-    phrases, others : int
-        How many phrases there are, and how many of them are moved otherwise.
-    outside : int
-        Notes that are outside the range still.
-    """
-
-    of_notes: tuple[int, ...]
-    whole: int
+    of_notes: tuple[int, ...]  # for each note
+    whole: int  # of most of the part
+    # How many phrases there are, and how many of them are moved otherwise.
     phrases: int
     others: int
-    outside: int
+    outside: int  # notes that are outside the range still
 
     @property
     def told(self) -> str:

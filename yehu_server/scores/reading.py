@@ -111,27 +111,14 @@ BYTE_ORDER_MARKS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
 
 @dataclass(frozen=True)
 class How:
-    """How a score is to be played.
+    """How a score is to be played."""
 
-    Attributes
-    ----------
-    parts : sequence of str
-        Names of the parts to play.
-    all_parts : bool
-        Whether all are played where none is named: else the one that carries the tune.
-    in_range : bool
-        Whether parts are moved by octaves as a whole, to fit the instrument.
-    is_mpe : bool
-        Whether the channels of a MIDI file are notes, and not parts.
-    higher : int
-        Semitones by which the instrument is tuned higher than a yehu.
-    """
-
-    parts: Sequence[str] = ()
+    parts: Sequence[str] = ()  # names of the parts to play
+    # Whether all are played where none is named: else the one that carries the tune.
     all_parts: bool = False
-    in_range: bool = True
-    is_mpe: bool = False
-    higher: int = 0
+    in_range: bool = True  # whether parts are moved by octaves as a whole, to fit the instrument
+    is_mpe: bool = False  # whether the channels of a MIDI file are notes, and not parts
+    higher: int = 0  # semitones by which the instrument is tuned higher than a yehu
 
 
 USUAL = How()

@@ -59,21 +59,11 @@ def read_score_bytes(path: str | os.PathLike[str], most_bytes: int) -> bytes:
 
 @dataclass(frozen=True)
 class Setting:
-    """Stands among the messages of a score's events.
+    """Stands among the messages of a score's events."""
 
-    Parameters
-    ----------
-    address : str
-        Of `params/table.py`.
-    value : float or None
-        None: what it was before the score set it.
-    channel : int
-        Of the part, counted from 0; where that is not played, nothing is set.
-    """
-
-    address: str
-    value: float | None
-    channel: int = 0
+    address: str  # of `params/table.py`
+    value: float | None  # None: what it was before the score set it
+    channel: int = 0  # of the part, counted from 0; where that is not played, nothing is set
     type: ClassVar[str] = "setting"  # as messages have one
 
 
@@ -119,32 +109,19 @@ class Score:
     """A performance: events in order, and warnings about damage in the file.
 
     Raises ScoreError if the score lasts longer than 1000 hours.
-
-    Parameters
-    ----------
-    events : tuple of ScoreEvent
-        Sorted by time; at equal times, in the order of the tracks, then of the file.
-    duration_s : float
-        Up to the last event or end-of-track of the longest track, but not more than 30 s
-        beyond the last event.
-    name : str
-        The file's name, without folder and extension.
-    warnings : tuple of str
-        One line for each kind of damage, with its count and the byte where it is first.
-    metres : tuple of Metre
-        The time signatures, in order.
-    parts : tuple of ScorePart
-        Those with notes, as far as they are known.
-    remarks : tuple of str
-        One line each, of what a player should know and no file is to blame for.
     """
 
+    # Sorted by time; at equal times, in the order of the tracks, then of the file.
     events: tuple[ScoreEvent, ...]
+    # Up to the last event or end-of-track of the longest track, but not more than 30 s beyond the
+    # last event.
     duration_s: float
-    name: str = ""
+    name: str = ""  # the file's name, without folder and extension
+    # One line for each kind of damage, with its count and the byte where it is first.
     warnings: tuple[str, ...] = ()
-    metres: tuple[Metre, ...] = (COMMON_TIME,)
-    parts: tuple[ScorePart, ...] = ()
+    metres: tuple[Metre, ...] = (COMMON_TIME,)  # the time signatures, in order
+    parts: tuple[ScorePart, ...] = ()  # those with notes, as far as they are known
+    # One line each, of what a player should know and no file is to blame for.
     remarks: tuple[str, ...] = ()
 
     def bar_at(self, beat: float) -> tuple[float, float]:
@@ -181,16 +158,9 @@ def concatenate(scores: Sequence[Score]) -> Score:
 
 @dataclass(frozen=True)
 class ScoreNote:
-    """A note of a score, by the numbers of its events; times in seconds.
+    """A note of a score, by the numbers of its events; times in seconds."""
 
-    Attributes
-    ----------
-    begins, ends : int
-        Numbers of its note-on and its note-off; `ends` is -1 where nothing ends it.
-    beat : float
-        Quarter notes since the beginning of the score; NaN where it has none.
-    """
-
+    # Numbers of its note-on and its note-off; `ends` is -1 where nothing ends it.
     begins: int
     ends: int
     channel: int
@@ -198,7 +168,7 @@ class ScoreNote:
     velocity: int
     start_s: float
     end_s: float
-    beat: float
+    beat: float  # quarter notes since the beginning of the score; NaN where it has none
 
     @property
     def length_s(self) -> float:

@@ -55,19 +55,12 @@ LEAST_SHARE = 1e-9  # of the largest amount: less is none
 
 @dataclass(frozen=True)
 class Problem:
-    """A measured admittance, weighted.
+    """A measured admittance, weighted."""
 
-    Parameters
-    ----------
-    frequency_hz : ndarray [shape=(lines,)]
-    mobility : ndarray [shape=(lines,)]
-        Velocity per force (s/kg).
-    weight : ndarray [shape=(lines,)]
-        By which errors are multiplied (kg/s): one by the size of an error that does not matter.
-    """
-
-    frequency_hz: Floats
-    mobility: Complexes
+    frequency_hz: Floats  # [shape=(lines,)]
+    mobility: Complexes  # [shape=(lines,)] velocity per force (s/kg)
+    # [shape=(lines,)] by which errors are multiplied (kg/s): one by the size of an error that
+    # does not matter.
     weight: Floats
 
     @property

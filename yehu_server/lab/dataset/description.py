@@ -75,43 +75,24 @@ SIGNALS = (
 
 @dataclass(frozen=True)
 class Description:
-    """What a data set is made of.
+    """What a data set is made of."""
 
-    Attributes
-    ----------
-    kind : str
-        Of KINDS.
-    draws : mapping
-        Of each value, by name; for notes, also parameters by their addresses.
-    splits : tuple of (name, share)
-        The shares are sums: the last is 1.
-    every : int
-        Samples between two that are kept of each control.
-    signals : tuple of str
-        Of SIGNALS, kept at each sample.
-    quantities : Quantities
-        The instrument before it is tuned.
-    about, license : str
-        A sentence for people, and the licence of the sounds (its SPDX name).
-    data : mapping
-        The entries of its file.
-    key : str
-        Hash of all that a sound depends on beside the code; how many there are is no part of it.
-    """
-
-    kind: str
+    kind: str  # of KINDS
     count: int
     seed: int
     rate: float
+    # Of each value, by name; for notes, also parameters by their addresses.
     draws: Mapping[str, Distribution]
-    splits: tuple[tuple[str, float], ...]
-    every: int
-    signals: tuple[str, ...]
-    quantities: Quantities
+    splits: tuple[tuple[str, float], ...]  # the shares are sums: the last is 1
+    every: int  # samples between two that are kept of each control
+    signals: tuple[str, ...]  # of SIGNALS, kept at each sample
+    quantities: Quantities  # the instrument before it is tuned
+    # Hash of all that a sound depends on beside the code; how many there are is no part of it.
     key: str
+    # A sentence for people, and the licence of the sounds (its SPDX name).
     about: str = ""
     license: str = LICENCE
-    data: Mapping[str, Any] = field(default_factory=dict)
+    data: Mapping[str, Any] = field(default_factory=dict)  # the entries of its file
 
     def drawn(self, number: int) -> dict[str, float]:
         """The values of a sound, by name."""

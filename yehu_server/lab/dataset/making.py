@@ -21,24 +21,13 @@ TOGETHER = 16  # sounds that are made, and kept in the records, as one
 
 @dataclass(frozen=True)
 class Part:
-    """Some sounds of a data set, for another process.
-
-    Attributes
-    ----------
-    numbers : range
-        Those of the sounds.
-    folder : Path
-        Of the data set.
-    mark : Path, optional
-        A file in it, by which a worker knows whether it sees the folder; None: it does.
-    key : str
-        Of description and code.
-    """
+    """Some sounds of a data set, for another process."""
 
     description: Description
-    numbers: range
-    folder: Path
-    key: str
+    numbers: range  # those of the sounds
+    folder: Path  # of the data set
+    key: str  # of description and code
+    # A file in it, by which a worker knows whether it sees the folder; None: it does.
     mark: Path | None = None
 
     @property

@@ -26,29 +26,16 @@ STEADY_CENTS = 50.0  # by which the pitch asked for may move in what is judged
 
 @dataclass(frozen=True)
 class Sound:
-    """A sound, and what the model was given and did for it.
+    """A sound, and what the model was given and did for it."""
 
-    Attributes
-    ----------
-    audio : ndarray [shape=(frames,), float32]
-        For strokes the pressure (Pa); for notes full scale is 1.
-    arrays : mapping
-        Signals and controls at each sample, as of ``simulation.signals``.
-    drawn : mapping
-        What chance gave.
-    found : mapping
-        `regime` (uint8), `regime_time` (s), and `asked_hz`, the pitch that is fingered then.
-    faults : int
-        Number of samples without a solution, and of lost states.
-    stroke : mapping
-        Of one stroke, as ``lab.regimes.judge.Finding`` has it: how it ends, and how it began.
-    """
-
+    # [shape=(frames,), float32] for strokes the pressure (Pa); for notes full scale is 1.
     audio: Array
-    arrays: Mapping[str, Array]
-    drawn: Mapping[str, Any]
+    arrays: Mapping[str, Array]  # signals and controls at each sample, as of ``simulation.signals``
+    drawn: Mapping[str, Any]  # what chance gave
+    # `regime` (uint8), `regime_time` (s), and `asked_hz`, the pitch that is fingered then.
     found: Mapping[str, Array]
-    faults: int
+    faults: int  # number of samples without a solution, and of lost states
+    # Of one stroke, as ``lab.regimes.judge.Finding`` has it: how it ends, and how it began.
     stroke: Mapping[str, Any] = field(default_factory=dict)
 
     @property

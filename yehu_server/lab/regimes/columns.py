@@ -47,34 +47,18 @@ FINDING = np.dtype(
 
 @dataclass(frozen=True)
 class Finding:
-    """What was found of a stroke.
+    """What was found of a stroke."""
 
-    Attributes
-    ----------
-    regime : str
-        One of `REGIMES`.
-    slips : float
-        In a period of the note, at the end.
-    certainty : float
-        How alike the motion is to that a period before: 1 is the same. 0 where none is found.
-    first_slip_s, helmholtz_s : float
-        When the hair slips first, and from when it slips once a period (s); NaN for never.
-    pitch_hz : float
-        NaN where the motion doesn't repeat.
-    level_db : float
-        Of the pressure at the end, re 1 Pa (rms).
-    brightness_hz : float
-        Centroid of its spectrum, by power; NaN for silence.
-    """
-
-    regime: str
-    slips: float
+    regime: str  # one of `REGIMES`
+    slips: float  # in a period of the note, at the end
+    # How alike the motion is to that a period before: 1 is the same. 0 where none is found.
     certainty: float
+    # When the hair slips first, and from when it slips once a period (s); NaN for never.
     first_slip_s: float
     helmholtz_s: float
-    pitch_hz: float
-    level_db: float
-    brightness_hz: float
+    pitch_hz: float  # NaN where the motion doesn't repeat
+    level_db: float  # of the pressure at the end, re 1 Pa (rms)
+    brightness_hz: float  # centroid of its spectrum, by power; NaN for silence
 
     @classmethod
     def of(cls, row: Any) -> Finding:

@@ -56,17 +56,12 @@ STROKE = np.dtype(
 
 @dataclass(frozen=True)
 class ControlCurves:
-    """The curves of all controls, one after another.
+    """The curves of all controls, one after another."""
 
-    Attributes
-    ----------
-    first : ndarray [shape=(control columns + 1,), dtype=int64]
-        Where in the points the curve of each control begins; a control without points is 0.
-    times, values : ndarray
-        The points; times (s) do not go back, and values are held before and after.
-    """
-
+    # [shape=(control columns + 1,), dtype=int64] where in the points the curve of each control
+    # begins; a control without points is 0.
     first: Array
+    # The points; times (s) do not go back, and values are held before and after.
     times: Array
     values: Array
 

@@ -22,17 +22,12 @@ Value = float | str
 
 @dataclass(frozen=True)
 class Axis:
-    """A name that is varied, and its values in order.
-
-    Attributes
-    ----------
-    spread : str
-        How values lie between each other: "linear", "log", or "" for a list, between whose values
-        there are no others.
-    """
+    """A name that is varied, and its values in order."""
 
     name: str
     values: tuple[Value, ...]
+    # How values lie between each other: "linear", "log", or "" for a list, between whose values
+    # there are no others.
     spread: str = ""
 
     def refined(self, levels: int) -> Axis:

@@ -34,18 +34,10 @@ TOUCHING = 1e-9  # N of press, above which a finger stops the strings
 
 @dataclass(frozen=True)
 class GestureBow:
-    """Makes strokes of a gesture.
+    """Makes strokes of a gesture."""
 
-    Attributes
-    ----------
-    source : dict
-        The data of the gesture file.
-    folder : Path
-        Where it is.
-    """
-
-    source: Mapping[str, Any]
-    folder: Path
+    source: Mapping[str, Any]  # the data of the gesture file
+    folder: Path  # where it is
 
     @classmethod
     def of(cls, table: Fields, folder: Path) -> GestureBow:

@@ -77,18 +77,12 @@ HANDS = control_curves_of(
 
 @dataclass(frozen=True)
 class NoteBow:
-    """Makes strokes of notes on the tuned instrument.
-
-    Attributes
-    ----------
-    fixed : dict
-        The values that are not varied.
-    """
+    """Makes strokes of notes on the tuned instrument."""
 
     rate: float
     duration: float
     instrument: Mapping[str, Any]
-    fixed: Mapping[str, float]
+    fixed: Mapping[str, float]  # the values that are not varied
     folder: Path
 
     @classmethod

@@ -47,30 +47,15 @@ class Bow(Protocol):
 
 @dataclass(frozen=True)
 class Study:
-    """A study.
+    """A study."""
 
-    Attributes
-    ----------
-    data : dict
-        The entries of its file, as JSON values, with what was asked for beside it.
-    axes : tuple of Axis
-        With all values of the finest grid.
-    refine : tuple of int
-        Axes that are refined where regimes meet.
-    levels : int
-        How often a step may be halved.
-    border : str
-        One of BORDERS: between all regimes, or between Helmholtz motion and all others.
-    bow
-        Makes the strokes.
-    """
-
+    # The entries of its file, as JSON values, with what was asked for beside it.
     data: Mapping[str, Any]
-    axes: tuple[Axis, ...]
-    refine: tuple[int, ...]
-    levels: int
-    border: str
-    bow: Bow
+    axes: tuple[Axis, ...]  # with all values of the finest grid
+    refine: tuple[int, ...]  # axes that are refined where regimes meet
+    levels: int  # how often a step may be halved
+    border: str  # one of BORDERS: between all regimes, or between Helmholtz motion and all others
+    bow: Bow  # makes the strokes
 
     @property
     def shape(self) -> tuple[int, ...]:

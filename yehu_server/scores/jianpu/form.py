@@ -21,28 +21,16 @@ MOST_TIMES = 100
 
 @dataclass(slots=True)
 class Sounding:
-    """A note, rest or dash as it will be played, perhaps several times.
-
-    Attributes
-    ----------
-    pitch : float or None
-        MIDI note; None for a rest or dash.
-    other : float or None
-        The other note of a tremolo between two.
-    living : str
-        The character, of a living note of 二四谱.
-    actions : list of Action
-        What the words after it do, in order.
-    """
+    """A note, rest or dash as it will be played, perhaps several times."""
 
     kind: Kind
     length: Fraction
-    pitch: float | None = None
-    other: float | None = None
-    living: str = ""
+    pitch: float | None = None  # MIDI note; None for a rest or dash
+    other: float | None = None  # the other note of a tremolo between two
+    living: str = ""  # the character, of a living note of 二四谱
     before: tuple[Grace, ...] = ()
     after: tuple[Grace, ...] = ()
-    actions: list[Action] = field(default_factory=list)
+    actions: list[Action] = field(default_factory=list)  # what the words after it do, in order
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,28 +48,16 @@ class Figure:
 
 @dataclass(frozen=True, slots=True)
 class NoteWord:
-    """A word of figures as written.
-
-    Attributes
-    ----------
-    beams : int or None
-        0 for a crotchet, 1 for a quaver and so on; None where none is written.
-    dashes : int
-        Dashes written onto the note; of a DASH, how many there are.
-    shift : int
-        Octaves by which the base octave moves from this word on.
-    unsure : bool
-        An octave mark stands between two figures, and nothing says to which it belongs.
-    """
+    """A word of figures as written."""
 
     kind: Kind
     figures: tuple[Figure, ...]
-    beams: int | None
+    beams: int | None  # 0 for a crotchet, 1 for a quaver and so on; None where none is written
     dots: int
-    dashes: int
-    shift: int
+    dashes: int  # dashes written onto the note; of a DASH, how many there are
+    shift: int  # octaves by which the base octave moves from this word on
     tremolo: bool
-    unsure: bool
+    unsure: bool  # an octave mark stands between two figures, and nothing says to which it belongs
 
 
 @dataclass(frozen=True, slots=True)

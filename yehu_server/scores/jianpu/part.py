@@ -51,23 +51,15 @@ class _Draft:
 
 @dataclass
 class Played:
-    """What a part plays.
+    """What a part plays."""
 
-    Attributes
-    ----------
-    end : Fraction
-        The beat after the last note or rest.
-    has_pickup : bool
-        Whether a metre begins with a short bar.
-    """
-
-    end: Fraction
+    end: Fraction  # the beat after the last note or rest
     notes: list[Note] = field(default_factory=list)
     spans: list[Span] = field(default_factory=list)
     signs: list[Sign] = field(default_factory=list)
     tempi: list[Tempo] = field(default_factory=list)
     metres: list[Metre] = field(default_factory=list)
-    has_pickup: bool = False
+    has_pickup: bool = False  # whether a metre begins with a short bar
 
 
 class PartPlayer:

@@ -140,27 +140,18 @@ class Grace:
 
 @dataclass(frozen=True)
 class Note:
-    """A note as written, with tied ones joined to one.
+    """A note as written, with tied ones joined to one."""
 
-    Parameters
-    ----------
-    beat, length : Fraction
-        Where it begins and how long it is written, in quarters; the length is above 0.
-    pitch : float
-        As it sounds; of a harmonic, what is heard.
-    before, after : tuple of Grace
-        Grace notes, in their order.
-    contour : tuple of (float, float)
-        How the pitch moves within the note: points of a share of its length, 0 to 1 and
-        ascending, and of semitones from `pitch`, joined by straight lines. Empty: it stays.
-    """
-
+    # Where it begins and how long it is written, in quarters; the length is above 0.
     beat: Fraction
     length: Fraction
-    pitch: float
+    pitch: float  # as it sounds; of a harmonic, what is heard
     marks: tuple[Mark, ...] = ()
+    # Grace notes, in their order.
     before: tuple[Grace, ...] = ()
     after: tuple[Grace, ...] = ()
+    # How the pitch moves within the note: points of a share of its length, 0 to 1 and ascending,
+    # and of semitones from `pitch`, joined by straight lines. Empty: it stays.
     contour: tuple[tuple[float, float], ...] = ()
 
     @property
@@ -266,30 +257,19 @@ class Bar:
 
 @dataclass(frozen=True)
 class Written:
-    """A score as written.
-
-    Parameters
-    ----------
-    tempi, metres, bars : tuple
-        In order of beats. Without bars they are counted by the metres.
-    unknown : mapping of str to int
-        Marks that were not understood: each as written (one printable line), and how often.
-    warnings : tuple of str
-        One line each, about anything else that is not as it should be.
-    keys : tuple of KeySign
-        In order of beats; empty where none is written.
-    remarks : tuple of str
-        One line each, of what a player should know and nothing is wrong with.
-    """
+    """A score as written."""
 
     parts: tuple[Part, ...]
+    # In order of beats. Without bars they are counted by the metres.
     tempi: tuple[Tempo, ...] = ()
     metres: tuple[Metre, ...] = (COMMON_TIME,)
     bars: tuple[Bar, ...] = ()
     title: str = ""
+    # Marks that were not understood: each as written (one printable line), and how often.
     unknown: Mapping[str, int] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
-    keys: tuple[KeySign, ...] = ()
+    warnings: tuple[str, ...] = ()  # one line each, about anything else that is not as it should be
+    keys: tuple[KeySign, ...] = ()  # in order of beats; empty where none is written
+    # One line each, of what a player should know and nothing is wrong with.
     remarks: tuple[str, ...] = ()
 
     @property

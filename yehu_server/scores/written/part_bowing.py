@@ -34,24 +34,14 @@ BOWING_SIGNS = {"pizz", "legato", "non-legato", "staccato", "tremolo"}
 
 @dataclass(frozen=True)
 class Played:
-    """A note as the hands play it.
-
-    Parameters
-    ----------
-    direction : float
-        Of its bow, as `/playing/direction` has it; 0: the next one.
-    slide_s : float
-        How long the finger slides to it from the note before; 0: it does not.
-    trill : float or None
-        Semitones to the other note of a trill that goes on over it.
-    """
+    """A note as the hands play it."""
 
     note: Note
     begin_s: float
     end_s: float
-    direction: float = 0.0
-    slide_s: float = 0.0
-    trill: float | None = None
+    direction: float = 0.0  # of its bow, as `/playing/direction` has it; 0: the next one
+    slide_s: float = 0.0  # how long the finger slides to it from the note before; 0: it does not
+    trill: float | None = None  # semitones to the other note of a trill that goes on over it
 
 
 def has_bowing(part: Part) -> bool:

@@ -33,24 +33,16 @@ class RawNote:
 
 @dataclass(frozen=True)
 class RawDirection:
-    """What a direction says, at a beat of its bar.
-
-    Attributes
-    ----------
-    kind : str
-        sign, wedge, hairpin (words, until the next dynamic), dashes, change (of tempo), back (to
-        the tempo before) or tempo.
-    name : str
-        Of the sign or span; of a wedge also `stop`; of a tempo where it is from, in RANKS.
-    number : str
-        By which a wedge's end finds its beginning.
-    """
+    """What a direction says, at a beat of its bar."""
 
     at: Fraction
+    # Sign, wedge, hairpin (words, until the next dynamic), dashes, change (of tempo), back (to
+    # the tempo before) or tempo.
     kind: str
+    # Of the sign or span; of a wedge also `stop`; of a tempo where it is from, in RANKS.
     name: str = ""
     value: float | None = None
-    number: str = ""
+    number: str = ""  # by which a wedge's end finds its beginning
 
 
 # Where a tempo is from: of several at one beat the highest counts. What a program plays goes over
@@ -60,13 +52,7 @@ RANKS = {"words": 0, "figures": 1, "playback": 2}
 
 @dataclass
 class RawBar:
-    """A bar as written.
-
-    Attributes
-    ----------
-    fifths : int or None
-        Sharps of a key signature that stands here, below 0 flats.
-    """
+    """A bar as written."""
 
     number: str
     lines: BarLines
@@ -74,4 +60,4 @@ class RawBar:
     directions: list[RawDirection] = field(default_factory=list)
     length: Fraction = Fraction(0)  # as filled
     metre: Fraction | None = None  # quarters in a bar, where a time signature stands
-    fifths: int | None = None
+    fifths: int | None = None  # sharps of a key signature that stands here, below 0 flats

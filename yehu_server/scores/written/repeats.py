@@ -20,24 +20,14 @@ ENDS = {"fine", "dacapo", "dalsegno"}  # after which something else begins
 
 @dataclass
 class BarLines:
-    """What a bar says of the order.
-
-    Attributes
-    ----------
-    times : int
-        How often the passage that ends here is played, 2 or more; 0: no repeat ends here.
-    endings : frozenset of int
-        The passes in which it is played; empty: in all.
-    opens : bool
-        Whether an ending begins here.
-    jumps : set of str
-        Of dacapo, dalsegno, tocoda and fine, at its end; segno and coda, at its beginning.
-    """
+    """What a bar says of the order."""
 
     forward: bool = False
+    # How often the passage that ends here is played, 2 or more; 0: no repeat ends here.
     times: int = 0
-    endings: frozenset[int] = frozenset()
-    opens: bool = False
+    endings: frozenset[int] = frozenset()  # the passes in which it is played; empty: in all
+    opens: bool = False  # whether an ending begins here
+    # Of dacapo, dalsegno, tocoda and fine, at its end; segno and coda, at its beginning.
     jumps: set[str] = field(default_factory=set)
 
 

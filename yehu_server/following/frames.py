@@ -68,11 +68,8 @@ class Frames:
 def measured(sound: Array, pitch_hz: Array, certainty: Array) -> Frames:
     """Measure frames whose middles are HALF, HALF + HOP, ... samples into a sound.
 
-    Parameters
-    ----------
-    sound : ndarray [shape=(samples,)]
-    pitch_hz, certainty : ndarray [shape=(frames,)]
-        What the tracker has there.
+    The tracker has `pitch_hz` and `certainty` [shape=(frames,)] there; the sound has the shape
+    (samples,).
     """
     count = len(pitch_hz)
     windows = np.lib.stride_tricks.sliding_window_view(sound, LONG)[::HOP][:count]
@@ -99,14 +96,8 @@ def _db(power: Array) -> Array:
 def likeness(frames: Array) -> Array:
     """The normalised square difference of frames, at lags of half samples.
 
-    Parameters
-    ----------
-    frames : ndarray [shape=(frames, samples)]
-
-    Returns
-    -------
-    ndarray [shape=(frames, lags)]
-        1 where a frame is the same again, 0 where unrelated.
+    Of frames [shape=(frames, samples)] an ndarray [shape=(frames, lags)]: 1 where a frame is the
+    same again, 0 where unrelated.
     """
     x = frames - frames.mean(axis=1, keepdims=True)
     size = x.shape[1]
@@ -137,12 +128,8 @@ def most_alike(alike: Array) -> Array:
 def refined(alike: Array, row: Array, wanted_hz: Array) -> tuple[Array, Array]:
     """The pitches (Hz) of peaks near those wanted, and the likeness a period before.
 
-    Parameters
-    ----------
-    alike : ndarray [shape=(frames, lags)]
-        Of `likeness`.
-    row : ndarray [shape=(pitches,)]
-        Which of the frames each is of.
+    `alike` is that of `likeness`, and `row` [shape=(pitches,)] tells which of its frames each is
+    of.
     """
     period = 2.0 * RATE / wanted_hz  # lags
     near, like = _peak(alike, row, period, np.maximum(SEARCHED * period, 2.0))

@@ -73,15 +73,9 @@ def hear(
 ) -> Heard:
     """Listen to a recording.
 
-    Raises ScoreError, one line: where it cannot be read, or no single voice is heard;
+    The tracker is SwiftF0 by default; `progress` is called with the seconds heard and those there
+    are. Raises ScoreError, one line: where it cannot be read, or no single voice is heard;
     ParameterError where the libraries of the extra are missing.
-
-    Parameters
-    ----------
-    tracker : Tracker, optional
-        By default SwiftF0.
-    progress : callable, optional
-        Called with the seconds heard and those there are.
     """
     need_follow()
     form = form_of(recording)

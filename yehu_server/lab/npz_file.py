@@ -22,14 +22,8 @@ LEAST_CLAIM, MOST_RATIO = 2**26, 30  # bytes; times the bytes of the file
 def read_npz(path: Path, build: Callable[[dict[str, Any]], T], what: str) -> T:
     """Build something from the arrays of a file, by their names.
 
-    Raises ScoreError where it cannot be read, or is something else.
-
-    Parameters
-    ----------
-    build : callable
-        Raises whatever it likes where the arrays are wrong.
-    what : str
-        What the file should be, for the error's message.
+    `build` raises whatever it likes where the arrays are wrong; `what` the file should be, the
+    error tells. Raises ScoreError where it cannot be read, or is something else.
     """
     try:
         with open_regular(path) as opened:

@@ -214,15 +214,9 @@ def simulate(
 def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, Floats]:
     """Name the columns of what the kernel gave and was given.
 
-    Parameters
-    ----------
-    probes, controls : ndarray [shape=(frames, columns)]
-        See ``physics.layout``; with one finger or more.
-
-    Returns
-    -------
-    dict of ndarray
-        By name; first axis frames. With more than one finger, those of fingers have one axis more.
+    Of probes and controls [shape=(frames, columns)] as ``physics.layout`` has them, with one finger
+    or more: arrays by name, their first axis frames. With more than one finger, those of fingers
+    have one axis more.
     """
     fingers = (controls.shape[1] - layout.FINGER_CONTROLS) // layout.CONTROLS_PER_FINGER
     shape = (len(probes), fingers, layout.PROBES_PER_FINGER)
@@ -268,10 +262,7 @@ def about(m: Any, state: Any, frames: int, quantities: Quantities) -> dict[str, 
 def shape_of(m: Any, motion: Any, string: int) -> Floats:
     """Displacement (m) of the nodes of string 0 or 1 now, from its end at the loop.
 
-    Parameters
-    ----------
-    m, motion
-        Records of ``layout.MODEL`` and ``layout.MOTION``.
+    `m` and `motion` are records of ``layout.MODEL`` and ``layout.MOTION``.
     """
     now: Floats = motion["u"][int(motion["level"]), string]
     return now[GHOST : GHOST + int(m["N"][string]) + 1].copy()

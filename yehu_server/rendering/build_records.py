@@ -39,13 +39,8 @@ def line_of(fields: Mapping[str, Any]) -> str:
 def checked_line(line: Any, **wanted: object) -> dict[str, Any]:
     """A line of a manifest that came from elsewhere.
 
-    Raises ValueError, TypeError where it is none: not of texts and numbers, about something else,
-    an error without text.
-
-    Parameters
-    ----------
-    **wanted
-        The entries that are known beforehand, such as ``file``.
+    The entries `wanted` are known beforehand, such as ``file``. Raises ValueError, TypeError where
+    it is none: not of texts and numbers, about something else, an error without text.
     """
     if not isinstance(line, dict) or any(line.get(name) != known for name, known in wanted.items()):
         raise ValueError("a line about something else")
@@ -156,10 +151,7 @@ def up_to_date(
 ) -> Record | None:
     """Return the manifest line of a result or failure that is up to date; None if there is none.
 
-    Parameters
-    ----------
-    results : iterable of Path
-        The target, and what is wanted beside it.
+    `results` are the target, and what is wanted beside it.
     """
     try:
         record = _read(target)

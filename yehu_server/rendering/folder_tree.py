@@ -50,13 +50,9 @@ def tree_of(folder: Path, output: Path, ending: str) -> Tree:
     """Find all scores below a folder.
 
     Hidden files and folders are left out, and the output's own folder where that is within. Links
-    are followed, unless they lead back to a folder they are in. Raises ScoreError where the folder
-    cannot be read, or has more than `MOST_SCORES`.
-
-    Parameters
-    ----------
-    ending : str
-        Of the files to write, such as ".wav".
+    are followed, unless they lead back to a folder they are in. `ending` is that of the files to
+    write, such as ".wav". Raises ScoreError where the folder cannot be read, or has more than
+    `MOST_SCORES`.
     """
     problems: list[tuple[str, str]] = []
     skipped: list[tuple[str, str]] = []

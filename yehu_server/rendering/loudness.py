@@ -53,10 +53,8 @@ def _second_order(x: Array, b: tuple[float, float, float], k: float, q: float) -
 def loudness_lufs(blocks: Iterable[Array], rate: float) -> float:
     """Return the integrated loudness of a recording; -inf where all of it is below the gate.
 
-    Parameters
-    ----------
-    blocks : iterable of ndarray [shape=(frames,) or (frames, channels); full scale 1]
-        The recording in pieces; of one or two channels.
+    It comes in blocks [shape=(frames,) or (frames, channels); full scale 1], of one or two
+    channels.
     """
     response = weighting(rate)
     hop = round(HOP_S * rate)

@@ -97,15 +97,9 @@ LEAST_AHEAD = 2048  # frames of a block for which another thread costs less than
 class Performance:
     """Plays a score on one instrument, or each part on one of its own; a section has several.
 
-    Raises ParameterError where the players are more than a stage has room for.
-
-    Parameters
-    ----------
-    played : Score, or sequence of Part
-    has_stems : bool
-        Whether `stems` has what each part gives.
-    reports : bool
-        Whether the instruments report the wishes that they fulfil, for a capture.
+    With `has_stems`, `stems` has what each part gives; with `reports` the instruments report the
+    wishes that they fulfil, for a capture. Raises ParameterError where the players are more than a
+    stage has room for.
     """
 
     def __init__(

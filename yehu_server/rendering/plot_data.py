@@ -56,10 +56,7 @@ class PlotData:
     def take(self, samples: Array, asked: Sequence[float | None]) -> None:
         """Take the next samples [shape=(frames,) or (frames, channels)].
 
-        Parameters
-        ----------
-        asked : sequence
-            The pitch that each instrument is asked for at their end (fractional MIDI note).
+        `asked` is the pitch that each instrument is asked for at their end (fractional MIDI note).
         """
         sound = np.asarray(samples, np.float64)
         self._frames += len(sound)

@@ -23,12 +23,8 @@ def render_capture(
 ) -> Performance:
     """Play a score, and write its capture: replayed, it gives the same samples as a rendering.
 
-    Raises YehuError where it fails; no partial file is left.
-
-    Returns
-    -------
-    Performance
-        That has been played.
+    Returns the performance, which has been played. Raises YehuError where it fails; no partial file
+    is left.
     """
     performance = Performance(played, replace(options, jobs=1, is_mono=False), reports=True)
     wrong: list[str] = []

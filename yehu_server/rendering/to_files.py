@@ -41,14 +41,9 @@ def write_normalized(
 ) -> None:
     """Write blocks, scaled so that the first file has a peak of NORMALIZED_PEAK.
 
-    Raises OutputError where the disk is full or cannot be written.
-
-    Parameters
-    ----------
-    takes : iterable
-        Of each block, the samples for each of the files; all are scaled alike.
-    folder : Path
-        Where the temporary files are; None: where the system has its own.
+    `takes` has of each block the samples for each of the files; all are scaled alike. Temporary
+    files are in `folder`; None: where the system has its own. Raises OutputError where the disk is
+    full or cannot be written.
     """
     peak, shape = 0.0, (-1,)
     with contextlib.ExitStack() as stack:

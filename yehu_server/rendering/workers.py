@@ -80,16 +80,9 @@ class _Worker:
 def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generator[Event]:
     """Do all tasks; yield what becomes of them, as it does.
 
-    Raises YehuError where no process can be started.
-
-    Parameters
-    ----------
-    perform : callable
-        A function of a module, called in another process with a task and a function to tell the
-        progress: what is done, of what. Its result, and tasks, have to be picklable; it must not
-        raise.
-    workers : int
-        Number of processes at most.
+    `perform` is a function of a module, called in another process with a task and a function to
+    tell the progress: what is done, of what. Its result, and tasks, have to be picklable; it must
+    not raise. At most `workers` processes run. Raises YehuError where no process can be started.
     """
     context = multiprocessing.get_context("spawn")
     waiting = deque((job, 1) for job in range(len(tasks)))

@@ -25,14 +25,8 @@ ROOM_BYTES = 1 << 16  # free space needed to begin a capture
 class CaptureWriter:
     """Writes a capture; each line of the file is complete, however writing ends.
 
-    Raises OutputError where it cannot be written.
-
-    Parameters
-    ----------
-    beginning : SessionStart
-        What the session starts from.
-    overwrite : bool
-        Whether to replace an older file.
+    `beginning` is what the session starts from; `overwrite` replaces an older file. Raises
+    OutputError where it cannot be written.
     """
 
     def __init__(

@@ -114,12 +114,8 @@ def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
 def midi_in_range(score: Score, *, is_mpe: bool, higher: int = 0) -> Score:
     """Return a score of MIDI with each part moved by octaves into range, and a remark of that.
 
-    Parameters
-    ----------
-    is_mpe : bool
-        Whether the notes of a part are on channels of their own: all are one part then.
-    higher : int
-        Semitones by which the instrument is tuned higher than a yehu.
+    With `is_mpe` the notes of a part are on channels of their own, and all are one part. `higher`
+    counts semitones by which the instrument is tuned higher than a yehu.
     """
     notes = notes_of(score)
     transposed = transposed_keys(score)

@@ -27,12 +27,8 @@ OVERLAP = 0.05  # of the shorter part's sound, from which two parts sound at onc
 def melodic_part(names: Sequence[str], parts: Sequence[Sequence[Sounding]]) -> int | None:
     """Return the number, from 0, of the first part that is a melody; else the first with notes.
 
-    A part that is named as one goes before others.
-
-    Parameters
-    ----------
-    names, parts
-        Of all parts: the notes of each, in any one unit of time.
+    A part that is named as one goes before others. Names and parts are those of all parts: the
+    notes of each, in any one unit of time.
     """
     longest = max(map(_sounds, parts), default=0.0)
     sounding = [at for at, notes in enumerate(parts) if notes]

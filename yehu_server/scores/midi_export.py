@@ -29,10 +29,7 @@ SLOWEST = 0xFFFFFF  # microseconds a quarter, the longest that a file can say
 def midi_file(written: Written, score: Score) -> tuple[bytes, dict[str, int]]:
     """Return a MIDI file of format 1, and what it cannot say: settings by address, with counts.
 
-    Parameters
-    ----------
-    score : Score
-        What `performed` made of the written one.
+    `score` is what `performed` made of the written one.
     """
     clock = WrittenClock(written)
     names = [part.name for part in written.parts if part.notes]

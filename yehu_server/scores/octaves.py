@@ -53,14 +53,8 @@ class Octaves:
 def octaves_of(notes: Sequence[Sounding], rest: float, higher: int = 0) -> Octaves:
     """Return by how many octaves each of some notes is moved.
 
-    Parameters
-    ----------
-    notes : sequence of Sounding
-        In the order of their beginnings.
-    rest : float
-        How long a silence is that parts phrases, in the unit of the notes.
-    higher : int
-        Semitones by which the instrument is tuned higher than a yehu.
+    Notes come in the order of their beginnings. A silence of `rest`, in their unit, parts phrases;
+    the instrument is tuned `higher` than a yehu by so many semitones.
     """
     if higher:
         notes = [

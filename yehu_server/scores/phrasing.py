@@ -114,11 +114,7 @@ def shaped(
     """Return the velocities of a phrase's notes, by the numbers of their events.
 
     An arch whose mean is where the velocities were, accents of the metre, and higher notes louder.
-
-    Parameters
-    ----------
-    usual : float
-        The mean pitch of the part (MIDI note).
+    `usual` is the mean pitch of the part (MIDI note).
     """
     begin, end = phrase[0].start_s, phrase[-1].start_s
     arch = []

@@ -134,15 +134,10 @@ def read_any(
 ) -> Score:
     """Read a MIDI file, or a written score as it is played.
 
-    Raises DamagedError with `strict`: one line naming the file and what is first wrong; ScoreError,
-    one line naming the file, where it cannot be read, has nothing to play, no part of a name, or
-    lasts too long.
-
-    Parameters
-    ----------
-    song, strict, max_duration_h
-        As `smf.read_score` has them. A written score is one song; marks that are not understood
-        are its damage.
+    `song`, `strict` and `max_duration_h` are as of `smf.read_score`. A written score is one song;
+    marks that are not understood are its damage. Raises DamagedError with `strict`: one line naming
+    the file and what is first wrong; ScoreError, one line naming the file, where it cannot be read,
+    has nothing to play, no part of a name, or lasts too long.
     """
     path = Path(path)
     if not is_written(path):

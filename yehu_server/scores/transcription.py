@@ -95,10 +95,7 @@ def read_to_write(
 def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, dict[str, int]]:
     """Return a MIDI file as a written score, and what is left out of it, with counts.
 
-    Parameters
-    ----------
-    tempo : float, optional
-        Quarters a minute, of a file that counts frames of a film.
+    `tempo` is that of a file that counts frames of a film (quarters a minute).
     """
     notes = notes_of(score)
     higher = transposed_keys(score)

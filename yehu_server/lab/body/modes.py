@@ -71,15 +71,8 @@ class Problem:
     def columns(self, points: Floats) -> tuple[Floats, Floats]:
         """Weighted admittances of modes, each scaled to length one, and the lengths they had.
 
-        Parameters
-        ----------
-        points : ndarray [shape=(modes, 2)]
-            Logarithms of frequency (Hz) and damping ratio.
-
-        Returns
-        -------
-        columns : ndarray [shape=(2 lines, modes)]
-        lengths : ndarray [shape=(modes,)]
+        Of points [shape=(modes, 2)], logarithms of frequency (Hz) and damping ratio: columns
+        [shape=(2 lines, modes)] and lengths [shape=(modes,)].
         """
         plain = mode_columns(self.frequency_hz, *np.exp(points.T))
         columns = stacked(plain * self.weight[:, np.newaxis])

@@ -44,14 +44,8 @@ def read_table(
 ) -> list[Tap] | list[Response]:
     """Read a table: the taps in it, or a response over frequency.
 
-    Raises MeasurementError where it cannot be read, or what it holds is not told.
-
-    Parameters
-    ----------
-    channels : sequence of Channel, optional
-        What the columns after the time are; by default as their headings say.
-    kind : str, optional
-        What the response is; by default as the headings say.
+    What the columns after the time are, `channels`, and what a response is, `kind`, the headings
+    say by default. Raises MeasurementError where it cannot be read, or what it holds is not told.
     """
     headings, numbers = _parsed(path)
     first = headings[0].lower()

@@ -48,17 +48,9 @@ class Tap:
 def cut(rate: float, channels: Mapping[str, Floats], name: str) -> list[Tap]:
     """Cut a recording of one tap or several into taps.
 
-    Raises MeasurementError where there is no hit in it, or something else is measured than hammer
-    and response.
-
-    Parameters
-    ----------
-    rate : float
-        Sample rate (Hz).
-    channels : mapping
-        ``force`` and responses, each [shape=(samples,)].
-    name : str
-        Of the recording, for messages.
+    Channels are ``force`` and responses, each [shape=(samples,)], at a rate (Hz); the name is for
+    messages. Raises MeasurementError where there is no hit in it, or something else is measured
+    than hammer and response.
     """
     responses = {what: values for what, values in channels.items() if what != "force"}
     if "force" not in channels or not responses:

@@ -22,12 +22,8 @@ ENDINGS = (".wav", ".wave", ".flac", ".aif", ".aiff")
 def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
     """Read the taps of a sound file.
 
-    Raises MeasurementError where it cannot be read, holds other channels, or no tap.
-
-    Parameters
-    ----------
-    channels : sequence of Channel
-        What each channel is, and how many SI units full scale is.
+    `channels` tells what each is, and how many SI units full scale is. Raises MeasurementError
+    where it cannot be read, holds other channels, or no tap.
     """
     import soundfile
 
@@ -64,13 +60,8 @@ def write_taps(
 ) -> tuple[list[Path], str]:
     """Write a WAV file for each tap.
 
-    Raises OutputError where they cannot be written, or are there already.
-
-    Returns
-    -------
-    files : list of Path
-    channels : str
-        What their channels are, as `measurement.read` takes it.
+    Return the files, and what their channels are, as `measurement.read` takes it. Raises
+    OutputError where they cannot be written, or are there already.
     """
     import soundfile
 

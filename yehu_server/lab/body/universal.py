@@ -31,13 +31,8 @@ LENGTHS = {"displacement": 1, "velocity": 1, "acceleration": 1, "pressure": -2, 
 def read_universal(path: Path, kind: str | None) -> list[Tap] | list[Response]:
     """Read the responses of a file, or its taps where it holds signals over time.
 
-    Raises MeasurementError where it cannot be read, or no response in it was measured where the
-    hammer struck.
-
-    Parameters
-    ----------
-    kind : str, optional
-        What responses are whose type the file leaves open.
+    `kind` is that of responses whose type the file leaves open. Raises MeasurementError where it
+    cannot be read, or no response in it was measured where the hammer struck.
     """
     sets = _sets(path)
     length, force = _units(sets)

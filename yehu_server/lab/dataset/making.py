@@ -44,10 +44,8 @@ class Part:
 def perform(part: Part, report_progress: ProgressCallback) -> dict[str, Any]:
     """Make some sounds, where the folder is; where it is not seen, they are sent back.
 
-    Returns
-    -------
-    dict
-        ``lines`` of the manifest; ``files``, the bytes of each by its name, where they travel.
+    Returns ``lines`` of the manifest and ``files``, the bytes of each by its name, where they
+    travel.
     """
     if part.mark is None or part.mark.is_file():
         return {"lines": _made(part, part.folder, report_progress), "files": {}}
@@ -149,12 +147,8 @@ def make_all(
 def received(part: Part, told: Any) -> Sequence[Line]:
     """Put files that have travelled in their places, and keep a record where all is well.
 
-    Raises OutputError where it is something else, or cannot be written.
-
-    Parameters
-    ----------
-    told : dict
-        What `perform` returned; anybody who reaches a cluster may have made it.
+    `told` is what `perform` returned; anybody who reaches a cluster may have made it. Raises
+    OutputError where it is something else, or cannot be written.
     """
     lines, files = _checked(part, told)
     for name, data in files.items():

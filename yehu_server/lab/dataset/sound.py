@@ -62,17 +62,8 @@ class Sound:
 def regimes(arrays: Mapping[str, Array], asked_hz: Array, rate: float) -> dict[str, Array]:
     """Judge the regime every HOP_S, by the last periods before.
 
-    Parameters
-    ----------
-    arrays : mapping
-        Signals and controls.
-    asked_hz : ndarray [shape=(frames,)]
-        The pitch that is fingered; NaN where none is.
-
-    Returns
-    -------
-    dict
-        As `Sound.found`.
+    Of signals and controls, and the pitch that is fingered [shape=(frames,)], NaN where none is,
+    this is `Sound.found`.
     """
     frames = len(asked_hz)
     ends = np.arange(round(HOP_S * rate), frames + 1, round(HOP_S * rate))

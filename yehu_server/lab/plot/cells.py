@@ -21,11 +21,7 @@ LIMITS = {"upper": ("k-", "Schelleng's upper limit"), "lower": ("k--", "Schellen
 def is_log(values: Array, spread: str = "") -> bool:
     """Whether values are drawn by logarithms.
 
-    Parameters
-    ----------
-    values : ndarray
-    spread : str
-        How they lie, where that is known: "linear" or "log".
+    How they lie, "linear" or "log", is told by `spread` where that is known.
     """
     if spread or values.dtype.kind == "U":
         return spread == "log"

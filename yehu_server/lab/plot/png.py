@@ -19,13 +19,8 @@ MOST_TEXT = 120  # characters
 def check_picture(target: Path, what: str, *, overwrite: bool = False) -> None:
     """Check that a picture can be drawn, and may be written.
 
-    Raises ParameterError where matplotlib is missing; OutputError where it may not, or its name
-    ends otherwise than in .png.
-
-    Parameters
-    ----------
-    what : str
-        What needs it, for the message, such as ``--plot``.
+    `what` needs it, such as ``--plot``, for the message. Raises ParameterError where matplotlib is
+    missing; OutputError where it may not, or its name ends otherwise than in .png.
     """
     need("matplotlib", what, "plots")
     if target.suffix.lower() != ".png":
@@ -54,15 +49,8 @@ def write_picture(
 ) -> None:
     """Draw a picture and write it to a PNG file. The same picture has the same bytes.
 
-    Raises OutputError where it cannot be written.
-
-    Parameters
-    ----------
-    size : tuple of float, inches
-    fill : callable
-        Draws into a matplotlib Figure.
-    dpi : int
-        Pixels to an inch.
+    `fill` draws into a matplotlib Figure of a size in inches. Raises OutputError where it cannot be
+    written.
     """
     data = drawn(size, fill, dpi)
     with replacing(target, anything if overwrite else is_ours) as partial:

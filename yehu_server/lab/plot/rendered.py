@@ -100,12 +100,8 @@ def write_picture(
 ) -> None:
     """Draw what was gathered of a rendering, and write it to a PNG file.
 
-    Raises OutputError where it cannot be written.
-
-    Parameters
-    ----------
-    level, pitch : callable
-        What draws these panels; by default `draw_level` and `draw_pitch`.
+    `level` and `pitch` draw these panels; by default `draw_level` and `draw_pitch`. Raises
+    OutputError where it cannot be written.
     """
 
     def fill(figure: Any) -> None:

@@ -32,13 +32,9 @@ def write_picture(
 ) -> None:
     """Write a picture (PNG) of a result.
 
-    Raises ParameterError where matplotlib is missing, or there is no such column; OutputError where
-    it cannot be written.
-
-    Parameters
-    ----------
-    what : str
-        A column; ``helmholtz_s`` is drawn in periods of the note after the first slip.
+    `what` is a column; ``helmholtz_s`` is drawn in periods of the note after the first slip. Raises
+    ParameterError where matplotlib is missing, or there is no such column; OutputError where it
+    cannot be written.
     """
     png.check_picture(target, "a picture", overwrite=overwrite)
     grid = result.onset_periods() if what == "helmholtz_s" else result.grid(what)
@@ -87,10 +83,7 @@ def write_picture(
 def plane_of(axes: Mapping[str, int]) -> tuple[str, str | None]:
     """Which axis to draw along x, and which along y, if there are two.
 
-    Parameters
-    ----------
-    axes : dict
-        Number of values by name, in order.
+    `axes` has the number of values by name, in order.
     """
     varied = [name for name, count in axes.items() if count > 1] or list(axes)[:1]
     # The seed repeats a map, and a note names one, where others span a plane.
@@ -128,12 +121,8 @@ def limits_along(
 ) -> tuple[Array, Array, Array] | None:
     """Schelleng's limits at some places along x of a map, where y is the bow's force.
 
-    Returns
-    -------
-    places : ndarray
-        On the axis.
-    lower, upper : ndarray
-        N; negative as the forces of the axis are, which are those of the other string.
+    Return places on the axis, and the lower and upper limits (N) there; negative as the forces of
+    the axis are, which are those of the other string.
     """
     if y not in FORCE or result.axes[x].dtype.kind == "U":
         return None

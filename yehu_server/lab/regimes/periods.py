@@ -36,11 +36,8 @@ def inner(one: Array, other: Array, count: int) -> float:
 def correlate(signal: Array, end: int, span: int, alike: Array, count: int) -> None:
     """Write how alike the last `span` samples before `end` are to those each lag before.
 
-    Parameters
-    ----------
-    alike : ndarray
-        Written up to `count`: 1 where they are the same but for a factor, 0 where unrelated. So
-        many samples, and one more, lie before the last `span`.
+    `alike` is written up to `count`: 1 where they are the same but for a factor, 0 where unrelated.
+    So many samples, and one more, lie before the last `span`.
     """
     last = signal[end - span : end]
     power = inner(last, last, span)

@@ -31,16 +31,8 @@ def times_of_slips(
 ) -> tuple[int, int]:
     """The frames of the first slip, and of the slip from which LASTING follow one a period.
 
-    A slip begins and ends as the player's ear has it, relative to the largest of late.
-
-    Parameters
-    ----------
-    slipping : ndarray
-        As of `rectify`.
-    period : float
-        Of the note (samples).
-
-    Returns: frames, -1 for never.
+    A slip begins and ends as the player's ear has it, relative to the largest of late. `slipping`
+    is as of `rectify`, the period (samples) that of the note. Returns frames, -1 for never.
     """
     fade = math.exp(-1.0 / (FADING * period))
     largest, is_slipping = 0.0, False

@@ -58,10 +58,7 @@ def transform(real: Array, imaginary: Array, size: int) -> None:
 def centroid_hz(signal: Array, end: int, rate: float, work: Array) -> float:
     """The mean frequency, by power, of the sound before `end`; NaN for silence.
 
-    Parameters
-    ----------
-    work : ndarray [shape=(2, at least the window)]
-        Written.
+    `work` [shape=(2, at least the window)] is written.
     """
     size = window_frames(rate, end)
     real, imaginary = work[0], work[1]

@@ -79,10 +79,7 @@ def prepared(
 ) -> tuple[Array, Array]:
     """Models, and their states at rest, for `bow_strokes`.
 
-    Parameters
-    ----------
-    plucks : sequence
-        From where the string of each is let go (`gesture.Pluck`), or None.
+    `plucks` tells from where the string of each is let go (`gesture.Pluck`), or None.
     """
     models, rests = np.zeros(len(quantities), MODEL), np.zeros(len(quantities), STATE)
     for i, (instrument, rate) in enumerate(zip(quantities, rates, strict=True)):
@@ -191,11 +188,7 @@ def find(models: Array, rests: Array, strokes: Array, hands: ControlCurves) -> A
     """Bow strokes, and judge each: findings [shape=(strokes,), dtype=FINDING].
 
     The strokes do not touch each other: any order of them, in any number of calls, finds the same.
-
-    Parameters
-    ----------
-    models, rests : ndarray
-        As of `bow_strokes`; they are not changed.
+    `models` and `rests` are as of `bow_strokes`, and are not changed.
     """
     findings = new_findings(len(strokes))
     strokes = np.ascontiguousarray(strokes)

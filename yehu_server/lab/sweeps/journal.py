@@ -71,12 +71,8 @@ class Done:
 class Journal(Done):
     """The journal of one study: what is done, and a file that more is added to.
 
-    Raises OutputError where there is a journal of another study, or it cannot be written.
-
-    Parameters
-    ----------
-    target : Path
-        The result to come.
+    `target` is the result to come. Raises OutputError where there is a journal of another study, or
+    it cannot be written.
     """
 
     def __init__(self, target: Path, study: Study, *, overwrite: bool = False) -> None:

@@ -28,10 +28,7 @@ class Limits:
 def limits_of(study: Study, at: Mapping[str, int]) -> Limits:
     """Schelleng's limits at a point of a study, for the bow's speed at the end.
 
-    Parameters
-    ----------
-    at : mapping
-        The place on each axis, by name; 0 where it has none.
+    `at` is the place on each axis, by name; 0 where it has none.
     """
     index = np.array([[at.get(axis.name, 0) for axis in study.axes]])
     models, _, strokes, hands = study.bow.strokes(study.axes, index)

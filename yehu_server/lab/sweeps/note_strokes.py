@@ -128,10 +128,7 @@ class NoteBow:
     ) -> tuple[Array, Array, Array, ControlCurves]:
         """Models, states at rest, strokes and curves of some points.
 
-        Parameters
-        ----------
-        index : ndarray [shape=(points, axes)]
-            The place of each point on each axis.
+        `index` [shape=(points, axes)] is the place of each point on each axis.
         """
         count = len(index)
         columns = {axis.name: axis.as_array()[index[:, i]] for i, axis in enumerate(axes)}

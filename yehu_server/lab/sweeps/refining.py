@@ -72,12 +72,8 @@ def fill(
 ) -> Array:
     """The values on the finest grid: a point that is not known is as the known one below it.
 
-    Parameters
-    ----------
-    halved : int
-        How often steps were halved so far; points of finer grids are left 0.
-
-    Returns: ndarray [shape=shape].
+    Steps were `halved` so often so far; points of finer grids are left 0. Returns an ndarray
+    [shape=shape].
     """
     source = np.full(math.prod(shape), -1, np.int64)
     source[known] = np.arange(len(known))

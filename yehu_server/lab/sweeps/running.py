@@ -36,16 +36,10 @@ def sweep(
 ) -> Result:
     """Run a study, and keep what it finds in memory.
 
-    The same study finds the same, to the bit, with any number of workers.
-
-    Parameters
-    ----------
-    workers : int
-        Number of threads; by default one per core. The model runs without the GIL.
-    cluster : jobs.cluster.Cluster
-        Where to run it instead.
-    progress : callable
-        Called with the number of strokes done, and of those known to be wanted.
+    The same study finds the same, to the bit, with any number of workers. It runs in so many
+    threads, `workers`, by default one per core, since the model runs without the GIL; or on a
+    cluster (`rendering.cluster.Cluster`). `progress` is called with the number of strokes done, and
+    of those known to be wanted.
     """
     known = Done()
     run_levels(study, known, workers, cluster, progress)
@@ -64,15 +58,9 @@ def sweep_to(
     """Run a study, and write what it finds to a file.
 
     Where it is interrupted, what is done is in a journal beside the file, and the next call with
-    the same study goes on; a KeyboardInterrupt has a text that says so. Raises OutputError where
-    there is a result, or the file cannot be written.
-
-    Parameters
-    ----------
-    overwrite : bool
-        Whether to replace a result, or a journal, that is there.
-    workers, cluster, progress
-        As of `sweep`.
+    the same study goes on; a KeyboardInterrupt has a text that says so. `overwrite` replaces a
+    result, or a journal, that is there; the rest is as of `sweep`. Raises OutputError where there
+    is a result, or the file cannot be written.
     """
     check_free_result(target, overwrite=overwrite)
     journal = Journal(target, study, overwrite=overwrite)

@@ -79,12 +79,8 @@ class Study:
 def read_study(path: Path, vary: Sequence[Axis] = ()) -> Study:
     """Read a study (TOML), or a gesture (JSON) that is to be varied.
 
-    Raises ScoreError where the file cannot be read; ParameterError where it is wrong.
-
-    Parameters
-    ----------
-    vary : sequence of Axis
-        Axes beside those of the file; they replace axes of the same name.
+    `vary` are axes beside those of the file; they replace axes of the same name. Raises ScoreError
+    where the file cannot be read; ParameterError where it is wrong.
     """
     document = Document(path, "a study", unreadable=ScoreError).read(path, MOST_BYTES)
     if path.suffix == ".json":
@@ -124,14 +120,8 @@ def as_entry(axis: Axis) -> Any:
 def study_of(data: Any, folder: Path = Path()) -> Study:
     """Build a study from the data of its file.
 
-    Raises ParameterError where an entry is wrong.
-
-    Parameters
-    ----------
-    data : mapping
-        With the contents of a gesture file, where it has a gesture.
-    folder : Path
-        Where files that it names, such as a body, are looked for.
+    It has the contents of a gesture file, where it has a gesture; files that it names, such as a
+    body, are looked for in a folder. Raises ParameterError where an entry is wrong.
     """
     table = Fields.of(data)
     table.only(*KNOWN)

@@ -48,9 +48,7 @@ TOKEN = re.compile(
 class VoiceReader:
     """Reads the music of a voice, line by line.
 
-    Attributes
-    ----------
-    bars : list of RawBar
+    `bars` are those read.
     """
 
     def __init__(self, unknown: Counter[str], warnings: Counter[str]) -> None:

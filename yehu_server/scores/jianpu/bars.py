@@ -13,14 +13,8 @@ UNFIT = "bar lines do not fit the metre"
 class Bars:
     """The place within the bar, in the order of the page.
 
-    Only once a metre is written are notes held against it.
-
-    Attributes
-    ----------
-    length : Fraction
-        Of a whole bar, in quarters.
-    place : Fraction
-        Quarters since its beginning.
+    Only once a metre is written are notes held against it. `length` is that of a whole bar, `place`
+    what has passed of it, both in quarters.
     """
 
     def __init__(self, notices: Counter[str]) -> None:

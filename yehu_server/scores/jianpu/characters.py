@@ -71,10 +71,7 @@ def mode_named(name: str) -> Mode | None:
 def semitones_of(character: str, weight: str, mode: Mode) -> float:
     """Semitones above do of a character of 二四谱.
 
-    Parameters
-    ----------
-    weight : str
-        LIGHT, HEAVY or LIVING where that is written before it, else empty.
+    `weight` is LIGHT, HEAVY or LIVING where that is written before it, else empty.
     """
     if character == WU and is_living(character, weight, mode):
         return LIVING_SEMITONES

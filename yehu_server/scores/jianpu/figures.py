@@ -17,12 +17,7 @@ def written_key(fifths: int) -> int:
 def figure_of(pitch: float, fifths: int) -> tuple[str, int]:
     """Return the figure of a pitch with its accidental, and by how many octaves it is marked.
 
-    Parameters
-    ----------
-    pitch : float
-        MIDI note; the nearest semitone is written.
-    fifths : int
-        Of `written_key`.
+    Of a MIDI note the nearest semitone is written; `fifths` is that of `written_key`.
     """
     letter, alter, octave = spelled(pitch, fifths)
     name = DO_FIFTHS[fifths]

@@ -58,12 +58,8 @@ class Scale:
     def pitch(self, figure: Figure, word: Word, *, shifted: bool = False) -> float:
         """The MIDI note of a figure.
 
+        `shifted` tells whether the base octave counts: it does not in chords and grace notes.
         Raises ScoreError beyond MIDI's range, or where the notation has no such character.
-
-        Parameters
-        ----------
-        shifted : bool
-            Whether the base octave counts: it does not in chords and grace notes.
         """
         key = MIDDLE_C if figure.sign.isascii() else USUAL_CHARACTER_KEY
         if self._key is not None:

@@ -71,10 +71,7 @@ def printable(text: str) -> str:
 def neighbour(letter: str, octave: int, steps: int, fifths: int, alter: float | None) -> float:
     """The pitch (MIDI note) of the next or last note of the scale of a key.
 
-    Parameters
-    ----------
-    alter : float or None
-        Its accidental (semitones), where one is written over the ornament.
+    `alter` is its accidental (semitones), where one is written over the ornament.
     """
     at = LETTERS.index(letter) + steps
     octave += at // 7
@@ -91,13 +88,8 @@ def neighbour(letter: str, octave: int, steps: int, fifths: int, alter: float | 
 class NoteMarks:
     """Reads the <notations> of one note.
 
-    Parameters
-    ----------
-    interval : callable
-        Semitones from the note to its neighbour above (1) or below (-1) in the key, with an
-        accidental of its own or None.
-    count : callable
-        Told of each mark that is not understood.
+    `interval` tells the semitones from the note to its neighbour above (1) or below (-1) in the
+    key, with an accidental of its own or None; `count` is told each mark that is not understood.
     """
 
     def __init__(self, interval: Callable[[int, float | None], float], count: Count) -> None:

@@ -33,13 +33,8 @@ class Part:
 def read_parts(data: bytes, start: int, end: int, faults: DamageReport) -> list[Part]:
     """Read the header and the tracks of a file, or of several that were joined.
 
-    Raises ScoreError where the first header is damaged, or where there is more than memory should
-    hold.
-
-    Parameters
-    ----------
-    start, end : int
-        Bytes of the file's begin, a header, and of its end.
+    They lie from byte `start`, where a header begins, to `end`. Raises ScoreError where the first
+    header is damaged, or where there is more than memory should hold.
     """
     parts: list[Part] = []
     tracks, room, pos = 0, MAX_EVENTS, start

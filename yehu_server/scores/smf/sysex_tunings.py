@@ -75,10 +75,7 @@ def retuned(
 ) -> tuple[tuple[ScoreEvent, ...], tuple[str, ...]]:
     """Return events as tunings at their times (s) move them, and remarks.
 
-    Parameters
-    ----------
-    tunings : sequence of (float, bytes)
-        In order, each of `is_tuning`.
+    `tunings` come in order, each of `is_tuning`.
     """
     if not tunings:
         return tuple(events), ()

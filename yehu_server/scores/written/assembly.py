@@ -36,15 +36,9 @@ def assembled(
 ) -> Written:
     """Return a score of the bars of its parts, which are named.
 
-    Raises ScoreError where it is beyond bounds.
-
-    Parameters
-    ----------
-    unknown, warnings : Counter
-        Marks that were not understood, and whatever else is to be told.
-    sections : sequence of range, optional
-        Bars that are played one after another, each with repeats of its own, as a header of ABC
-        tells; without them all bars.
+    `unknown` counts marks that were not understood, `warnings` whatever else is to be told.
+    `sections` are bars that are played one after another, each with repeats of its own, as a header
+    of ABC tells; without them all bars. Raises ScoreError where it is beyond bounds.
     """
     parts_bars = [bars for _, bars in parts]
     count = max(map(len, parts_bars), default=0)

@@ -24,10 +24,7 @@ LEVELS = {**DYNAMICS, **{name: DYNAMICS[then] for name, (_, then) in FORCED.item
 class Loudness:
     """The loudness of a part at each beat.
 
-    Attributes
-    ----------
-    is_marked : bool
-        Whether the part says anything of it.
+    `is_marked` tells whether the part says anything of it.
     """
 
     def __init__(self, part: Part) -> None:

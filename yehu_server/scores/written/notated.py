@@ -177,12 +177,7 @@ class Span:
 class OpenSpan:
     """What words such as cresc. or rit. begin: it acts until something else ends it.
 
-    Parameters
-    ----------
-    spans : list of Span
-        Where it is put when it ends.
-    longest : Fraction, optional
-        Quarters after which it acts no more.
+    It is put into `spans` when it ends; after `longest` quarters it acts no more.
     """
 
     def __init__(self, spans: list[Span], longest: Fraction | None = None) -> None:

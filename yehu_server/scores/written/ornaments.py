@@ -34,10 +34,7 @@ class Touch:
 def touches_of(note: Note, begin_s: float, end_s: float, trill: float | None) -> list[Touch]:
     """Return the touches of a note, its own among them, in the order of their beginnings.
 
-    Parameters
-    ----------
-    trill : float or None
-        Semitones to the other note of a trill that goes on from before, if one does.
+    `trill` is the semitones to the other note of a trill that goes on from before, if one does.
     """
     length_s = end_s - begin_s
     before = _graces(note.before, begin_s, length_s)

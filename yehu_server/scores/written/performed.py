@@ -54,12 +54,8 @@ Timed = tuple[float, int, int, ScoreEvent]  # time, order, number, event
 def performed(written: Written, plays: Sequence[int] | None = None) -> Score:
     """Return a written score as it is played.
 
-    Raises ScoreError where there is no note, or it lasts longer than a day.
-
-    Parameters
-    ----------
-    plays : sequence of int, optional
-        Numbers of the parts to play, from 0; by default all. Tempo and waits are of all.
+    `plays` are the numbers of the parts to play, from 0; by default all. Tempo and waits are of
+    all. Raises ScoreError where there is no note, or it lasts longer than a day.
     """
     clock = WrittenClock(written)
     warnings = [*written.warnings, *written.not_understood]

@@ -173,10 +173,7 @@ def parts_of(
 ) -> tuple[list[Part], dict[Fraction, tuple[int, float]]]:
     """Return the voices of one part, and its tempi with their ranks (`raw.RANKS`), by beats.
 
-    Parameters
-    ----------
-    played : list of (int, Fraction)
-        The numbers of the bars in the order in which they are played, and their beats.
+    `played` are the numbers of the bars in the order in which they are played, and their beats.
     """
     voices: dict[tuple[str, str], Voice] = {}
     for bar in bars:

@@ -100,7 +100,7 @@ def _plot(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.lab.plot.png import check_picture
     from yehu_server.scores.chosen_parts import numbers_of
     from yehu_server.scores.score import naming
-    from yehu_server.scores.written.usual_part import usual_parts
+    from yehu_server.scores.written.in_range import usual_parts
     from yehu_server.util.files import check_distinct
 
     output = arguments.plot

@@ -14,13 +14,7 @@ import mido
 import numpy as np
 
 from yehu_server.core.following.deciding import dynamics_of
-from yehu_server.core.player.fingering import (
-    HIGHEST_NOTE,
-    HIGHEST_ON_F,
-    LOWEST_NOTE,
-    OPEN_WITHIN,
-    SECOND_OPEN,
-)
+from yehu_server.core.player import fingering
 from yehu_server.errors import ScoreError
 from yehu_server.following.frames import HOP_S
 from yehu_server.following.heard import Heard
@@ -118,7 +112,7 @@ def _octaves(notes: list[HeardNote], sharper: float) -> float:
 
 
 def _is_in_range(pitches: Array) -> Array:
-    return (pitches > LOWEST_NOTE - 0.5) & (pitches < HIGHEST_NOTE + 0.5)
+    return (pitches > fingering.LOWEST_NOTE - 0.5) & (pitches < fingering.HIGHEST_NOTE + 0.5)
 
 
 class _Maker:
@@ -174,9 +168,9 @@ class _Maker:
 
     def _choose_string(self, frame: int, pitch: Array) -> None:
         """Ask for the inner string where the open outer one would not follow a pitch."""
-        off = np.abs(pitch - SECOND_OPEN)
-        is_about = off.min() < OPEN_WITHIN and pitch.max() <= HIGHEST_ON_F
-        wanted = bool(is_about and np.quantile(off[off < OPEN_WITHIN], MOSTLY) > STILL)
+        off = np.abs(pitch - fingering.SECOND_OPEN)
+        is_about = off.min() < fingering.OPEN_WITHIN and pitch.max() <= fingering.HIGHEST_ON_F
+        wanted = bool(is_about and np.quantile(off[off < fingering.OPEN_WITHIN], MOSTLY) > STILL)
         if wanted != self._is_inner:
             self.set(frame, STRING, INNER if wanted else None)
             self._is_inner = wanted
@@ -197,14 +191,14 @@ class _Maker:
             moves.append(correct * (wanted - note.pitch - self._shift))
             pitch[part] += octaves
         pitch += np.interp(np.arange(len(pitch)), middles, moves)
-        return np.clip(pitch, LOWEST_NOTE, HIGHEST_NOTE)
+        return np.clip(pitch, fingering.LOWEST_NOTE, fingering.HIGHEST_NOTE)
 
     def _fit(self, pitch: float) -> float:
         """The octaves (semitones) that bring a note into range."""
         octaves = 0.0
-        while pitch + octaves <= LOWEST_NOTE - 0.5:
+        while pitch + octaves <= fingering.LOWEST_NOTE - 0.5:
             octaves += 12.0
-        while pitch + octaves >= HIGHEST_NOTE + 0.5:
+        while pitch + octaves >= fingering.HIGHEST_NOTE + 0.5:
             octaves -= 12.0
         self.moved += octaves != 0.0
         return octaves

@@ -11,18 +11,7 @@ from llvmlite import binding
 
 from yehu_server.compile.cache_folder import source_hash
 from yehu_server.core.controls.slots import SILENCE
-from yehu_server.core.player.wishes import (
-    BEGIN,
-    DRAW,
-    END,
-    EXPRESS,
-    HOLD,
-    KINDS,
-    RAMP,
-    SLIDE,
-    STOP,
-    WRITE,
-)
+from yehu_server.core.player import wishes
 from yehu_server.params.table import ENGINE, SLOT, TABLE
 from yehu_server.util import __version__
 
@@ -35,7 +24,7 @@ SILENCED = "silence"
 ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: SILENCED}
 INDICES = {address: slot for slot, address in ADDRESSES.items()}
 ROWS = {param.address: row for row, param in enumerate(TABLE)}
-NUMBERS = {name: kind for kind, name in enumerate(KINDS)}
+NUMBERS = {name: kind for kind, name in enumerate(wishes.KINDS)}
 
 WishRow = tuple[int, int, int, float, float]  # of a wish
 
@@ -55,20 +44,20 @@ def build() -> dict[str, str]:
 def as_line(wish: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one for each kind
     """The JSON value of a wish, a record of dtype WISH, of a player, counted from 0."""
     frame, kind, index, value, other = wish.item()
-    line: list[Any] = [frame, player + 1, KINDS[kind]]
-    if kind == RAMP:
+    line: list[Any] = [frame, player + 1, wishes.KINDS[kind]]
+    if kind == wishes.RAMP:
         return [*line, ADDRESSES[index], value, int(other)]
-    if kind in (WRITE, HOLD):
+    if kind in (wishes.WRITE, wishes.HOLD):
         return [*line, TABLE[index].address, value, other]
-    if kind == EXPRESS:
+    if kind == wishes.EXPRESS:
         return [*line, TABLE[index].address, value]
-    if kind == BEGIN:
+    if kind == wishes.BEGIN:
         return [*line, index, value, other]
-    if kind == END:
+    if kind == wishes.END:
         return [*line, index, value, int(other)]
-    if kind in (SLIDE, STOP):
+    if kind in (wishes.SLIDE, wishes.STOP):
         return [*line, value]
-    return [*line, value, other] if kind == DRAW else line
+    return [*line, value, other] if kind == wishes.DRAW else line
 
 
 def from_line(line: list[Any]) -> WishRow:
@@ -78,26 +67,27 @@ def from_line(line: list[Any]) -> WishRow:
     """
     frame, kind, values = frames_of(line[0]), NUMBERS[line[1]], line[2:]
     index, value, other = 0, 0.0, 0.0
-    if kind == RAMP:
+    if kind == wishes.RAMP:
         return (frame, *ramp_of(*values))
-    if kind in (WRITE, HOLD):
+    if kind in (wishes.WRITE, wishes.HOLD):
         address, number, glide_ms = values
         index, value = _setting(address, number)
         other = _within(glide_ms, 0.0, MOST_MS)
-    elif kind == EXPRESS:
+    elif kind == wishes.EXPRESS:
         index, value = _setting(*values)
-    elif kind in (BEGIN, END):
+    elif kind in (wishes.BEGIN, wishes.END):
         channel, key, last = values
         index = _whole(channel, -MOST_CHANNELS, MOST_CHANNELS)  # below 0: no MIDI channel
         value = _within(key, 0.0, HIGHEST_KEY)
-        other = _within(last, 0.0, HIGHEST_KEY) if kind == BEGIN else float(_whole(last, 0, 1))
-    elif kind == STOP:
+        is_key = kind == wishes.BEGIN
+        other = _within(last, 0.0, HIGHEST_KEY) if is_key else float(_whole(last, 0, 1))
+    elif kind == wishes.STOP:
         (panic,) = values
         value = _within(panic, 0.0, 1.0)
-    elif kind == SLIDE:
+    elif kind == wishes.SLIDE:
         (pitch,) = values
         value = _within(pitch, 0.0, HIGHEST_KEY)
-    elif kind == DRAW:
+    elif kind == wishes.DRAW:
         speed, force = values
         value, other = _setting("/bow/speed", speed)[1], _setting("/bow/force", force)[1]
     elif values:
@@ -109,7 +99,7 @@ def ramp_of(address: str, target: Any, ramp: Any) -> tuple[int, int, float, floa
     """The fields of a ramp after its frame: also the events of version 1."""
     index = INDICES[address]
     lo, hi = (0.0, 0.0) if index == SILENCE else (ENGINE[index].lo, ENGINE[index].hi)
-    return RAMP, index, _within(target, lo, hi), float(frames_of(ramp))
+    return wishes.RAMP, index, _within(target, lo, hi), float(frames_of(ramp))
 
 
 def player_of(number: Any, players: int) -> int:

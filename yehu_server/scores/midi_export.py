@@ -70,7 +70,7 @@ def _file(
         file.tracks.append(_track([(0, title), *by_channel[channel]]))
     data = io.BytesIO()
     file.save(file=data)
-    return data.getvalue(), {address: count for address, count in lost.items() if count}
+    return data.getvalue(), dict(+lost)
 
 
 def _tick(beat: float) -> int:

@@ -9,21 +9,13 @@ from pathlib import Path
 
 from yehu_server.core.midi.channels import PERCUSSION
 from yehu_server.errors import ScoreError, one_line
-from yehu_server.scores.chosen_parts import (
-    midi_in_range,
-    numbers_of,
-    parts_chosen,
-    says_mpe,
-    told_others,
-    usual_midi_part,
-)
+from yehu_server.scores import chosen_parts
 from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, naming
 from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
-from yehu_server.scores.written.in_range import moved
+from yehu_server.scores.written.in_range import moved, usual_parts
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.performed import performed
-from yehu_server.scores.written.usual_part import usual_parts
 from yehu_server.util.files import read_bytes
 
 
@@ -159,12 +151,12 @@ def performed_part(written: Written, how: How = USUAL) -> Score:
     Raises ScoreError where there is no such part, or no note.
     """
     if how.parts:
-        plays = numbers_of(written.names, how.parts)
+        plays = chosen_parts.numbers_of(written.names, how.parts)
     elif how.all_parts:
         plays = [*range(len(written.parts))]
     else:
         plays = usual_parts(written)
-    remarks = [*written.remarks, told_others(written, plays)]
+    remarks = [*written.remarks, chosen_parts.told_others(written, plays)]
     if how.in_range:
         written, line = moved(written, plays, how.higher)
         remarks.append(line)
@@ -174,15 +166,15 @@ def performed_part(written: Written, how: How = USUAL) -> Score:
 
 def _midi_played(score: Score, how: How) -> Score:
     if how.parts:
-        score = parts_chosen(score, how.parts)
-    elif len(score.parts) > 1 and not (how.all_parts or how.is_mpe or says_mpe(score)):
-        score = usual_midi_part(score)
+        score = chosen_parts.parts_chosen(score, how.parts)
+    elif len(score.parts) > 1 and not (how.all_parts or how.is_mpe or chosen_parts.says_mpe(score)):
+        score = chosen_parts.usual_midi_part(score)
     if not has_notes([score]):
         line = "has controllers and no note: nothing sounds"
         return replace(score, remarks=(*score.remarks, line))
     if not how.in_range:
         return score
-    return midi_in_range(score, is_mpe=how.is_mpe, higher=how.higher)
+    return chosen_parts.midi_in_range(score, is_mpe=how.is_mpe, higher=how.higher)
 
 
 def read_written(path: Path, song: int | None = None) -> Written:

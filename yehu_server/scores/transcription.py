@@ -33,21 +33,8 @@ from yehu_server.scores.score import (
 )
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.tunings import transposed_keys
-from yehu_server.scores.written.notated import (
-    DYNAMICS,
-    HIGHEST_TEMPO,
-    LOWEST_TEMPO,
-    MOST_BEATS,
-    USUAL_TEMPO,
-    KeySign,
-    Mark,
-    Note,
-    Part,
-    Sign,
-    Span,
-    Tempo,
-    Written,
-)
+from yehu_server.scores.written import notated
+from yehu_server.scores.written.notated import KeySign, Mark, Note, Part, Sign, Span, Tempo, Written
 
 # Parts of a beat, and what each costs (quarters) beside the distance of its onsets.
 DIVISIONS = {1: 0.0, 2: 0.004, 4: 0.008, 3: 0.012, 8: 0.016, 6: 0.02, 5: 0.03, 12: 0.03, 16: 0.03,
@@ -119,7 +106,7 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
         return replace(written, title=score.name), {**lost, **more}
     whole, chords = _written(voices, _tempi(score), score.metres)
     lost["lower notes of chords"] += chords
-    return replace(whole, title=score.name), {name: count for name, count in lost.items() if count}
+    return replace(whole, title=score.name), dict(+lost)
 
 
 def _left_out(event: ScoreEvent) -> str:
@@ -146,7 +133,7 @@ def written_of_capture(
             kind not in (BEGIN, END, EXPRESS, STOP) for kind in others
         )
     written, more = written_of_seconds(voices, tempo)
-    return written, {**{name: count for name, count in lost.items() if count}, **more}
+    return written, {**+lost, **more}
 
 
 def _of_wishes(wishes: Iterable[object], rate: float, frames: int) -> Iterator[Heard]:
@@ -200,7 +187,7 @@ def _tempo_of(begins: Sequence[float]) -> float:
     def cost(tempo: int) -> float:
         places = [(begin - begins[0]) * tempo / 15.0 for begin in begins]
         off = sum(abs(place - round(place)) for place in places) / len(places)
-        return off + 0.02 * abs(math.log2(tempo / USUAL_TEMPO))
+        return off + 0.02 * abs(math.log2(tempo / notated.USUAL_TEMPO))
 
     return float(min(TEMPI, key=cost))
 
@@ -215,8 +202,8 @@ def _written(
     begins = sorted({note.begin for _, heard in voices for note in heard})
     if not begins:
         raise ScoreError("has no note to write")
-    if max(note.end for _, heard in voices for note in heard) > MOST_BEATS:
-        raise ScoreError(f"is longer than {MOST_BEATS} quarters")
+    if max(note.end for _, heard in voices for note in heard) > notated.MOST_BEATS:
+        raise ScoreError(f"is longer than {notated.MOST_BEATS} quarters")
     grid = _Grid(begins)
     parts = []
     chords = 0
@@ -307,8 +294,8 @@ def _loudness(notes: Sequence[Note], loud: Sequence[int]) -> tuple[list[Note], l
         around = [loud[near] for near in (at - 1, at + 1) if 0 <= near < len(loud)]
         if now and all(velocity >= each + ACCENT for each in around):
             marked[at] = replace(marked[at], marks=(*marked[at].marks, Mark("accent")))
-        elif not now or _stays_off(loud[at : at + 2], DYNAMICS[now]):
-            now = min(DYNAMICS, key=lambda name: abs(DYNAMICS[name] - velocity))
+        elif not now or _stays_off(loud[at : at + 2], notated.DYNAMICS[now]):
+            now = min(notated.DYNAMICS, key=lambda name: abs(notated.DYNAMICS[name] - velocity))
             signs.append(Sign(notes[at].beat, now))
     return marked, signs
 
@@ -325,7 +312,7 @@ def _tempi(score: Score) -> tuple[Tempo, ...]:
     for one, other in pairwise(score.events):
         if other.beat - one.beat > 1e-6 and other.time_s > one.time_s:
             tempo = 60.0 * (other.beat - one.beat) / (other.time_s - one.time_s)
-            tempo = min(max(round(tempo, 2), LOWEST_TEMPO), HIGHEST_TEMPO)
+            tempo = min(max(round(tempo, 2), notated.LOWEST_TEMPO), notated.HIGHEST_TEMPO)
             last = found[-1].quarters_per_minute if found else 0.0
             if abs(tempo - last) > SAME_TEMPO * tempo:
                 beat = Fraction(round(16 * one.beat) if found else 0, 16)

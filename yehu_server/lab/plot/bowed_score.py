@@ -17,19 +17,10 @@ from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.errors import ParameterError
 from yehu_server.lab.plot import png
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.scores.jianpu.figures import figure_of, written_key
-from yehu_server.scores.jianpu.writer_lengths import SIGN_OF, signed_lengths
+from yehu_server.scores.jianpu.figures import SIGN_OF, figure_of, signed_lengths, written_key
+from yehu_server.scores.written import layout
 from yehu_server.scores.written.in_range import moved_part
-from yehu_server.scores.written.layout import (
-    TUPLETS,
-    PageBar,
-    Piece,
-    page_bars,
-    pieces_of,
-    signature,
-    split,
-    tuplet_of,
-)
+from yehu_server.scores.written.layout import PageBar, Piece
 from yehu_server.scores.written.mark_settings import DOWN, OUTER_OPEN, UP, Active, is_plucked
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, Note, Part, Span, Written
 from yehu_server.scores.written.part_bowing import Played, bowed
@@ -116,7 +107,7 @@ def write_bowed_score(
     part, octaves = moved_part(written.parts[number])
     if not part.notes:
         raise ParameterError("the score has no note to draw")
-    bars = page_bars(written)
+    bars = layout.page_bars(written)
     rows = [range(at, min(at + BARS_A_LINE, len(bars))) for at in range(0, len(bars), BARS_A_LINE)]
     rows = [row for row in rows if bars[row.start].begin < part.notes[-1].end][:MOST_LINES]
     page = _Page(written, part, bars)
@@ -138,7 +129,7 @@ class _Page:
 
     def __init__(self, written: Written, part: Part, bars: Sequence[PageBar]) -> None:
         self._part, self._bars, self._written = part, bars, written
-        self._pieces = pieces_of(part, bars)
+        self._pieces = layout.pieces_of(part, bars)
         self._strokes = strokes_of(part, WrittenClock(written))
         self._begins = [note.beat for note in part.notes]
         keys = [key for key in written.keys if key.beat <= self._begins[0]]
@@ -150,7 +141,7 @@ class _Page:
         """Key, metre and tempo of the beginning."""
         do = "C" if self._key is None else self._key.do
         tempo = self._written.tempi[0].quarters_per_minute if self._written.tempi else 100.0
-        count, unit = signature(self._bars[0].quarters) or (4, 4)
+        count, unit = layout.signature(self._bars[0].quarters) or (4, 4)
         bows = f"{BOWS[DOWN]} down-bow   {BOWS[UP]} up-bow"
         return f"1={do}   {count}/{unit}   \N{QUARTER NOTE}={tempo:g}   {bows}"
 
@@ -167,10 +158,10 @@ class _Page:
         bar = self._bars[at]
         axes.text(column + 0.01, 2.9, bar.number, fontsize=7, color="0.5")
         axes.plot([column + 1.0] * 2, [-0.7, 1.0], color=INK, lw=0.9)
-        cuts = [(piece, cut) for piece in self._pieces[at] for cut in split(piece, _lengths(piece))]
-        width = sum(_width(cut) for _, cut in cuts)
+        cuts = [cut for each in self._pieces[at] for cut in layout.split(each, _lengths(each))]
+        width = sum(map(_width, cuts))
         x = column + 0.06
-        for _, cut in cuts:
+        for cut in cuts:
             step = 0.9 * _width(cut) / width
             if cut.is_first and cut.note is not None:
                 places[cut.note.beat] = x
@@ -184,7 +175,7 @@ class _Page:
         if cut.note is not None and not cut.is_first:
             text = f"({text})"
         axes.text(x, 0.0, text, fontsize=15, color=INK, ha="center", va="center")
-        factor = _factor(cut)
+        factor = cut.factor
         length = cut.length / factor
         beam, dots = SIGN_OF.get(length, ("", ""))
         lines = " qsdh".index(beam) if beam else 0
@@ -259,15 +250,8 @@ class _Page:
             axes.plot([narrow, wide], [-1.85, y], color=LOUD, lw=0.9)
 
 
-def _factor(piece: Piece) -> Fraction:
-    """The tuplet that a piece is in, as a factor of its length."""
-    count = tuplet_of(piece.length.denominator)
-    return Fraction(TUPLETS[count], count) if count in TUPLETS else Fraction(1)
-
-
 def _lengths(piece: Piece) -> list[Fraction]:
-    factor = _factor(piece)
-    return [factor * each for each in signed_lengths(piece.length / factor, piece)]
+    return [piece.factor * each for each in signed_lengths(piece.length / piece.factor, piece)]
 
 
 def _width(piece: Piece) -> float:

@@ -1,10 +1,12 @@
-"""Fields of ABC: key, metre, unit length, tempo, and the order of parts."""
+"""Fields of ABC, such as key, metre and tempo; and its decorations, in the names of `notated`."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from fractions import Fraction
 
+from yehu_server.scores.written.layout import LETTERS, key_alter
 from yehu_server.scores.written.notated import HIGHEST_TEMPO, LOWEST_TEMPO
 
 SHARPS = "FCGDAEB"  # in the order in which keys get them
@@ -12,6 +14,41 @@ MODES = {"maj": 0, "ion": 0, "mix": -1, "dor": -2, "min": -3, "m": -3, "aeo": -3
          "loc": -5, "lyd": 1}  # fmt: skip
 ALTERS = {"^^": 2.0, "^": 1.0, "=": 0.0, "_": -1.0, "__": -2.0}
 MOST_ORDER = 200  # parts as they are played
+
+DECORATIONS: Mapping[str, tuple[str, float | None]] = {
+    "trill": ("trill", None), "lowermordent": ("mordent", None), "mordent": ("mordent", None),
+    "uppermordent": ("inverted-mordent", None), "pralltriller": ("inverted-mordent", None),
+    "roll": ("turn", None), "turn": ("turn", None), "turnx": ("turn", None),
+    "invertedturn": ("inverted-turn", None), "invertedturnx": ("inverted-turn", None),
+    "staccato": ("staccato", None), "wedge": ("staccatissimo", None), "tenuto": ("tenuto", None),
+    ">": ("accent", None), "accent": ("accent", None), "emphasis": ("accent", None),
+    "^": ("marcato", None), "marcato": ("marcato", None), "fermata": ("fermata", None),
+    "invertedfermata": ("fermata", None), "upbow": ("up-bow", None), "downbow": ("down-bow", None),
+    "open": ("open-string", None), "snap": ("snap-pizzicato", None), "slide": ("slide-in-up", None),
+    "breath": ("breath", None), "arpeggio": ("arpeggio", None), "plus": ("pizzicato", None),
+    "spiccato": ("spiccato", None), "tremolo": ("tremolo", None), "harmonic": ("harmonic", None),
+    "vibrato": ("vibrato", None), "slideup": ("slide-in-up", None),
+    "slidedown": ("slide-in-down", None), "fall": ("slide-out-down", None),
+    "doit": ("slide-out-up", None), "espressivo": ("soft-accent", None),
+    "staccatissimo": ("staccatissimo", None), "portato": ("portato", None),
+    **{str(finger): ("finger", float(finger)) for finger in range(5)},
+    **{"/" * strokes: ("tremolo", float(strokes)) for strokes in range(1, 5)},
+}  # fmt: skip
+SHORTCUTS: Mapping[str, str] = {
+    ".": "staccato", "~": "roll", "H": "fermata", "L": "accent", "M": "lowermordent", "O": "coda",
+    "P": "uppermordent", "S": "segno", "T": "trill", "u": "upbow", "v": "downbow",
+}  # fmt: skip
+WEDGES: Mapping[str, str] = {
+    "<(": "crescendo", "crescendo(": "crescendo", ">(": "diminuendo", "diminuendo(": "diminuendo",
+    "<)": "stop", "crescendo)": "stop", ">)": "stop", "diminuendo)": "stop",
+}  # fmt: skip
+JUMPS: Mapping[str, str] = {
+    "segno": "segno", "coda": "coda", "fine": "fine", "d.c.": "dacapo", "dacapo": "dacapo",
+    "d.s.": "dalsegno", "dalsegno": "dalsegno", "dacoda": "tocoda", "tocoda": "tocoda",
+    "d.c.alfine": "dacapo", "d.c.alcoda": "dacapo", "d.s.alfine": "dalsegno",
+    "d.s.alcoda": "dalsegno",
+}  # fmt: skip
+SILENT = frozenset({"thumb", "shortphrase", "mediumphrase", "longphrase", "5", "editorial"})
 
 _KEY = re.compile(r"([A-G])([#b]?)\s*([A-Za-z]*)")
 _ACCIDENTAL = re.compile(r"(\^\^|\^|__|_|=)([A-Ga-g])")
@@ -41,12 +78,8 @@ def key_of(text: str) -> tuple[int, dict[str, float], int] | None:
         mode = "m" if mode == "m" else mode[:3]
         fifths = SHARPS.index(found[1]) - 1 + 7 * {"#": 1, "b": -1, "": 0}[found[2]]
         fifths += MODES.get(mode, 0)
-    alters = dict.fromkeys(SHARPS, 0.0)
-    for number in range(abs(fifths)):
-        letter = SHARPS[number % 7] if fifths > 0 else SHARPS[6 - number % 7]
-        alters[letter] += 1.0 if fifths > 0 else -1.0
-    for sign, letter in _ACCIDENTAL.findall(text):
-        alters[letter.upper()] = ALTERS[sign]
+    alters = {letter: float(key_alter(at, fifths)) for at, letter in enumerate(LETTERS)}
+    alters |= {letter.upper(): ALTERS[sign] for sign, letter in _ACCIDENTAL.findall(text)}
     return max(min(fifths, 7), -7), alters, shift
 
 

@@ -8,14 +8,14 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from yehu_server.errors import ScoreError, one_line
-from yehu_server.scores.abc.decorations import DECORATIONS, JUMPS, SHORTCUTS, SILENT, WEDGES
-from yehu_server.scores.abc.fields import ALTERS, key_of, length_of, metre_of, tempo_of
+from yehu_server.scores.abc import fields
+from yehu_server.scores.abc.fields import ALTERS, DECORATIONS, JUMPS, WEDGES
+from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MOST_NOTES, Mark
 from yehu_server.scores.written.raw import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.repeats import MOST_TIMES, BarLines
 from yehu_server.scores.written.words import meaning_of
 
-STEPS = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
 MIDDLE_C = 60.0
 TIMES = {2: 3, 3: 2, 4: 3, 6: 2, 8: 3}  # of tuplets; others depend on the metre
 LONGEST = 64  # quarters of a note
@@ -54,9 +54,9 @@ class VoiceReader:
     def __init__(self, unknown: Counter[str], warnings: Counter[str]) -> None:
         self.bars: list[RawBar] = []
         self.unit = Fraction(1, 2)
-        self.shortcuts = dict(SHORTCUTS)
+        self.shortcuts = dict(fields.SHORTCUTS)
         self._unknown, self._warnings = unknown, warnings
-        self._alters = dict.fromkeys(STEPS, 0.0)
+        self._alters = dict.fromkeys(LETTERS, 0.0)
         self._fifths: int | None = 0
         self._octave = 0
         self._metre: Fraction | None = Fraction(4)
@@ -87,18 +87,18 @@ class VoiceReader:
     def field(self, letter: str, value: str) -> None:
         """Take a field that holds from here on."""
         if letter == "K":
-            key = key_of(value)
+            key = fields.key_of(value)
             if key is not None:
                 self._fifths, self._alters, self._octave = key
                 self._bar.fifths = self._fifths
         elif letter == "M":
-            self._metre = metre_of(value)
+            self._metre = fields.metre_of(value)
             self._bar.metre = self._metre
             self._odd_times = 3 if value.strip() in ("6/8", "9/8", "12/8") else 2
         elif letter == "L":
-            self.unit = length_of(value) or self.unit
+            self.unit = fields.length_of(value) or self.unit
         elif letter == "Q":
-            tempo = tempo_of(value, self.unit)
+            tempo = fields.tempo_of(value, self.unit)
             if tempo is not None:
                 self._direct("tempo", "figures", tempo)
             elif value.strip():
@@ -169,7 +169,7 @@ class VoiceReader:
         else:
             alter = self._in_bar.get(name, self._alters[name])
         self._place = name, octave, alter
-        pitch = MIDDLE_C + STEPS[name] + alter + 12.0 * octave
+        pitch = MIDDLE_C + SEMITONES[name] + alter + 12.0 * octave
         return min(max(pitch, 0.0), 127.0), _length(length) * self.unit
 
     def _notes(
@@ -259,7 +259,7 @@ class VoiceReader:
             self._direct("wedge", WEDGES[name])
         elif name.lower() in JUMPS:
             self._bar.lines.jumps.add(JUMPS[name.lower()])
-        elif name not in SILENT:
+        elif name not in fields.SILENT:
             self._unknown[one_line(name[:40])] += 1
 
     def _text(self, text: str) -> None:

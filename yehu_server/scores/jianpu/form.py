@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from enum import Enum
 from fractions import Fraction
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.bars import Bars
-from yehu_server.scores.jianpu.mark_words import Action
 from yehu_server.scores.jianpu.note_words import Kind
 from yehu_server.scores.jianpu.text import Word, failure
 from yehu_server.scores.written.notated import Grace
+from yehu_server.scores.written.words import Meaning
 
+FINE, SEGNO, TO_CODA, DA_CAPO, DAL_SEGNO = JUMPS = ("Fine", "Segno", "ToCoda", "DC", "DS")
+BACK = (DA_CAPO, DAL_SEGNO)
 MOST_UNFOLDED = 50_000  # notes, rests and dashes of a part
 MOST_DEPTH = 8  # repeats within repeats
 MOST_TIMES = 100
@@ -30,14 +31,7 @@ class Sounding:
     living: str = ""  # the character, of a living note of 二四谱
     before: tuple[Grace, ...] = ()
     after: tuple[Grace, ...] = ()
-    actions: list[Action] = field(default_factory=list)  # what the words after it do, in order
-
-
-@dataclass(frozen=True, slots=True)
-class TempoMark:
-    """A tempo from here on."""
-
-    quarters_per_minute: float
+    actions: list[Meaning] = field(default_factory=list)  # what the words after it do, in order
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,19 +40,6 @@ class MetreMark:
 
     bar: Fraction
     first: Fraction
-
-
-class Jump(Enum):
-    """A sign of the form; its value is its word."""
-
-    FINE = "Fine"
-    SEGNO = "Segno"
-    TO_CODA = "ToCoda"
-    DA_CAPO = "DC"
-    DAL_SEGNO = "DS"
-
-
-BACK = (Jump.DA_CAPO, Jump.DAL_SEGNO)
 
 
 @dataclass
@@ -149,10 +130,9 @@ class RepeatStack:
             self._stack.pop()
             return
         elements = self._elements()
-        begin = 1 + max(
-            (at for at, each in enumerate(elements) if isinstance(each, Repeat)), default=-1
-        )
-        while begin < len(elements) and isinstance(elements[begin], (MetreMark, TempoMark)):
+        repeats = [at for at, each in enumerate(elements) if isinstance(each, Repeat)]
+        begin = repeats[-1] + 1 if repeats else 0
+        while begin < len(elements) and isinstance(elements[begin], (MetreMark, Meaning)):
             begin += 1
         elements[begin:] = [Repeat(2, elements[begin:])]
 
@@ -199,8 +179,8 @@ def unfolded(written: Sequence[object]) -> tuple[list[object], list[str]]:
     again = _flat(written, repeated=False)
     turn = next(at for at, each in enumerate(again) if each in BACK)
     start = 0
-    if once[back] is Jump.DAL_SEGNO:
-        signs = [at for at, each in enumerate(again[:turn]) if each is Jump.SEGNO]
+    if once[back] == DAL_SEGNO:
+        signs = [at for at, each in enumerate(again[:turn]) if each == SEGNO]
         if not signs:
             warnings.append("a DS without a Segno: played from the beginning")
         start = signs[-1] if signs else 0
@@ -212,15 +192,13 @@ def unfolded(written: Sequence[object]) -> tuple[list[object], list[str]]:
 def _to_the_end(again: list[object], start: int, turn: int, rest: list[object]) -> list[object]:
     """From a place to Fine and on with what was not played yet, or by the coda, or to the end."""
     for at in range(start, len(again)):
-        if again[at] is Jump.FINE:
-            return again[start:at] + rest
-        if again[at] is Jump.TO_CODA and at < turn:
+        if again[at] == FINE or (again[at] == TO_CODA and at < turn):
             return again[start:at] + rest
     return again[start:turn] + rest
 
 
 def _without_jumps(elements: list[object]) -> list[object]:
-    return [each for each in elements if not isinstance(each, Jump)]
+    return [each for each in elements if not isinstance(each, str)]
 
 
 def _flat(written: Sequence[object], *, repeated: bool) -> list[object]:

@@ -3,59 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from enum import Enum, auto
 from functools import lru_cache
 
 from yehu_server.scores.written.notated import DYNAMICS, FORCED
-from yehu_server.scores.written.words import meaning_of
+from yehu_server.scores.written.words import Meaning, meaning_of
+
+# What words do at the note, rest or dash before them has the kinds of `words`, but for jumps, and
+# these: a mark; a slur, a tie or a hairpin that begins or ends; a slide to the next note
+# (glissando), or there and back (contour).
 
 
-class Act(Enum):
-    """What a word does at the note, rest or dash before it."""
-
-    MARK = auto()  # value: a Mark of that note
-    SIGN = auto()  # a sign of notated.SIGNS from there on
-    SLUR = auto()  # begins
-    SLUR_END = auto()
-    TIE = auto()
-    HAIRPIN = auto()
-    HAIRPIN_END = auto()
-    GLISSANDO = auto()  # to the next note
-    CONTOUR = auto()  # there and back
-    TEMPO = auto()  # value: quarter notes a minute
-    TEMPO_CHANGE = auto()  # ritardando or accelerando, by its name
-    TEMPO_AGAIN = auto()
-
-
-@dataclass(frozen=True, slots=True)
-class Action:
-    """One thing that a word does; `name` and `value` as its kind has them."""
-
-    act: Act
-    name: str = ""
-    value: float | None = None
-
-
-def _mark(name: str, value: float | None = None) -> Action:
-    return Action(Act.MARK, name, value)
-
-
-def _sign(name: str, value: float | None = None) -> Action:
-    return Action(Act.SIGN, name, value)
-
-
-def _marks(names: Mapping[str, str]) -> dict[str, Action]:
-    return {word: _mark(name) for word, name in names.items()}
+def _marks(names: Mapping[str, str]) -> dict[str, Meaning]:
+    return {word: Meaning("mark", name) for word, name in names.items()}
 
 
 # LilyPond's commands, with a backslash before them, and their short forms.
-COMMANDS: Mapping[str, Action] = {
-    **{name: _sign(name) for name in (*DYNAMICS, *FORCED)},
-    **dict.fromkeys(("<", "cresc"), Action(Act.HAIRPIN, "crescendo")),
-    **dict.fromkeys((">", "decresc", "dim"), Action(Act.HAIRPIN, "diminuendo")),
-    "!": Action(Act.HAIRPIN_END),
-    "glissando": Action(Act.GLISSANDO),
+COMMANDS: Mapping[str, Meaning] = {
+    **{name: Meaning("sign", name) for name in (*DYNAMICS, *FORCED)},
+    **dict.fromkeys(("<", "cresc"), Meaning("hairpin", "crescendo")),
+    **dict.fromkeys((">", "decresc", "dim"), Meaning("hairpin", "diminuendo")),
+    "!": Meaning("hairpin end"),
+    "glissando": Meaning("glissando"),
     **_marks({
         "upbow": "up-bow", "downbow": "down-bow", "staccato": "staccato",
         "staccatissimo": "staccatissimo", "tenuto": "tenuto", "portato": "portato",
@@ -72,48 +40,35 @@ COMMANDS: Mapping[str, Action] = {
 SHORT = {".": "staccato", "!": "staccatissimo", "_": "portato", ">": "accent", "^": "marcato"}
 
 # Of the erhu; with or without Fr= before them.
-FINGERING: Mapping[str, Action] = {
-    **{sign: _mark("finger", number) for number, sign in enumerate("01234")},
-    **{sign: _mark("finger", number) for number, sign in enumerate("空一二三四")},
+FINGERING: Mapping[str, Meaning] = {
+    **{sign: Meaning("mark", "finger", number) for number, sign in enumerate("01234")},
+    **{sign: Meaning("mark", "finger", number) for number, sign in enumerate("空一二三四")},
     **_marks({
         "内": "inner-string", "外": "outer-string", "harmonic": "harmonic", "up": "slide-in-up",
         "down": "slide-in-down", "tilde": "vibrato", "staccato": "staccato",
     }),
-    "bend": Action(Act.CONTOUR),
+    "bend": Meaning("contour"),
 }  # fmt: skip
 NAMED = ("harmonic", "up", "down", "bend", "tilde", "staccato", "souyin")
 THERE_AND_BACK = ((0.0, 0.0), (0.4, 0.0), (0.6, -2.0), (0.8, 0.0))  # by ear
 
 # Before the note that they belong to.
-AHEAD: Mapping[str, Action] = {
+AHEAD: Mapping[str, Meaning] = {
     **_marks({"slideUp": "slide-in-up", "slideDown": "slide-in-down"}),
-    **dict.fromkeys(("glis", "gliss"), Action(Act.GLISSANDO)),
+    **dict.fromkeys(("glis", "gliss"), Meaning("glissando")),
 }
 
 # Texts above or below the notes that mean something in jianpu alone.
-TEXTS: Mapping[str, Action] = {
-    "内": _sign("inner-string"),
-    "外": _sign("outer-string"),
-    "拨": _sign("pizz"),
-    "拉": _sign("arco"),
-    "不揉": _sign("vibrato", 0.0),
-    **_marks(
-        {
-            "tr": "trill",
-            "颤音": "trill",
-            "泛音": "harmonic",
-            "上滑音": "slide-in-up",
-            "下滑音": "slide-in-down",
-            "揉": "vibrato",
-        }
-    ),
-}
-
-SLURS_AND_TIES: Mapping[str, Action] = {
-    "(": Action(Act.SLUR),
-    ")": Action(Act.SLUR_END),
-    "~": Action(Act.TIE),
-}
+TEXTS: Mapping[str, Meaning] = {
+    "内": Meaning("sign", "inner-string"), "外": Meaning("sign", "outer-string"),
+    "拨": Meaning("sign", "pizz"), "拉": Meaning("sign", "arco"),
+    "不揉": Meaning("sign", "vibrato", 0.0),
+    **_marks({
+        "tr": "trill", "颤音": "trill", "泛音": "harmonic", "上滑音": "slide-in-up",
+        "下滑音": "slide-in-down", "揉": "vibrato",
+    }),
+}  # fmt: skip
+SLURS_AND_TIES = {"(": Meaning("slur"), ")": Meaning("slur end"), "~": Meaning("tie")}
 
 # Understood, and nothing to hear.
 SILENT = frozenset({
@@ -128,7 +83,7 @@ SILENT_HEADERS = frozenset({
 
 
 @lru_cache(maxsize=1024)
-def action_of(word: str) -> Action | None:
+def action_of(word: str) -> Meaning | None:
     """What a word does at the note before it; None where it is not understood."""
     bare = word.lstrip("_^") if word[:2] in ("_\\", "^\\") else word
     if bare.startswith("\\"):
@@ -142,13 +97,6 @@ def action_of(word: str) -> Action | None:
     return SLURS_AND_TIES.get(word)
 
 
-def _text(text: str) -> Action | None:
-    known = TEXTS.get(text.strip().rstrip("."))
-    meaning = meaning_of(text)
-    if known is not None or meaning is None:
-        return known
-    acts = {"hairpin": Act.HAIRPIN, "change": Act.TEMPO_CHANGE, "tempo": Act.TEMPO}
-    acts |= {"sign": Act.SIGN, "back": Act.TEMPO_AGAIN}
-    if meaning.kind not in acts:  # a da capo as a text
-        return None
-    return Action(acts[meaning.kind], meaning.name, meaning.value)
+def _text(text: str) -> Meaning | None:
+    meaning = TEXTS.get(text.strip().rstrip(".")) or meaning_of(text)
+    return meaning if meaning is not None and meaning.kind != "jump" else None

@@ -8,15 +8,8 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from yehu_server.scores.jianpu.bars import Bars
-from yehu_server.scores.jianpu.form import (
-    MOST_UNFOLDED,
-    Jump,
-    MetreMark,
-    RepeatStack,
-    Sounding,
-    TempoMark,
-)
-from yehu_server.scores.jianpu.mark_words import AHEAD, SILENT, Act, Action, action_of
+from yehu_server.scores.jianpu.form import JUMPS, MOST_UNFOLDED, MetreMark, RepeatStack, Sounding
+from yehu_server.scores.jianpu.mark_words import AHEAD, SILENT, action_of
 from yehu_server.scores.jianpu.note_words import (
     Figure,
     Kind,
@@ -29,6 +22,7 @@ from yehu_server.scores.jianpu.note_words import (
 from yehu_server.scores.jianpu.scale import Scale
 from yehu_server.scores.jianpu.text import Word, failure, printable
 from yehu_server.scores.written.notated import HIGHEST_TEMPO, LOWEST_TEMPO, Grace
+from yehu_server.scores.written.words import Meaning
 
 MOST_TUPLET, MOST_BARS_REST = 64, 1000
 
@@ -42,34 +36,21 @@ _BAR_SIGNS = re.compile(  # ‖ is a double one
     r"(:+[|\u2016]+:+|::|[|\u2016\[]*[|\u2016]:+|:+[|\u2016]+\]?|[|\u2016]+\]|\[[|\u2016]+|[|\u2016]+)"
 )
 _ATTACHED = re.compile(r"(\(*)([^()~|]+)([()~]*)")
-_JUMPS = {jump.value: jump for jump in Jump}
+Counts = Counter[str]
 
 
 class PartParser:
     """Reads the words of a part, one after another.
 
-    Attributes
-    ----------
-    unknown : Counter
-        Words that were not understood, shared by all parts.
-    notices : Counter
-        Other things to warn of, shared by all parts.
-    scale : Scale
-        What figures sound like; headers change it too.
-    metre : MetreMark or None
-        That with which the part begins, where it names one. `metre` of the call is that of the part
-        before, which holds until then.
+    All parts share the counts of words that are `unknown`, and of other things to warn of. `metre`
+    is that with which the part begins, where it names one; that of the call holds until then.
     """
 
     def __init__(
-        self,
-        unknown: Counter[str],
-        notices: Counter[str],
-        scale: Scale,
-        metre: MetreMark | None = None,
+        self, unknown: Counts, notices: Counts, scale: Scale, metre: MetreMark | None
     ) -> None:
         self.unknown, self.notices = unknown, notices
-        self.scale = scale
+        self.scale = scale  # headers change it too
         self._bars = Bars(notices)
         self.metre: MetreMark | None = None
         if metre is not None:
@@ -80,7 +61,7 @@ class PartParser:
         self._tuplet = Fraction(1)
         self._tuplet_word: Word | None = None
         self._in_harmonics = False
-        self._ahead: list[Action] = []
+        self._ahead: list[Meaning] = []
         self._graces: tuple[Grace, ...] = ()
         self._last: Sounding | None = None
         self._count = 0
@@ -110,10 +91,9 @@ class PartParser:
             self.unknown[printable(word.text)] += 1
 
     def end(self) -> list[object]:
-        """Return all elements in the order of the page.
+        """Return all elements in the order of the page: soundings, tempi, metres, repeats, jumps.
 
-        That is Soundings, TempoMarks, MetreMarks, Repeats and Jumps. Raises ScoreError where a
-        repeat or a tuplet has no end.
+        Raises ScoreError where a repeat or a tuplet has no end.
         """
         elements = self._braces.all_closed()
         if self._tuplet_word is not None:
@@ -156,7 +136,7 @@ class PartParser:
             sounding.actions += ahead
             sounding.before, self._graces = self._graces, ()
             if self._in_harmonics:
-                sounding.actions.append(Action(Act.MARK, "harmonic"))
+                sounding.actions.append(Meaning("mark", "harmonic"))
         else:
             self._ahead = ahead
         self._add(sounding, word)
@@ -170,7 +150,7 @@ class PartParser:
         if tremolo and len(figures) == 2:
             sounding.pitch, sounding.other = pitches
         elif tremolo:
-            sounding.actions.append(Action(Act.MARK, "tremolo", 3.0))
+            sounding.actions.append(Meaning("mark", "tremolo", 3.0))
         elif not single:
             self.notices[
                 "chords, of which the highest note is played (if they are no chords, write a "
@@ -266,7 +246,7 @@ class PartParser:
         if not LOWEST_TEMPO <= tempo <= HIGHEST_TEMPO:
             lowest, highest = f"{LOWEST_TEMPO:g}", f"{HIGHEST_TEMPO:g}"
             raise failure(word, f"a tempo of {tempo:g} is not within {lowest} to {highest}")
-        self._braces.add(TempoMark(tempo))
+        self._braces.add(Meaning("tempo", value=tempo))
         return True
 
     def _as_metre(self, word: Word) -> bool:
@@ -298,8 +278,8 @@ class PartParser:
 
     def _as_form(self, word: Word) -> bool:
         text = word.text
-        if text in _JUMPS:
-            self._braces.add(_JUMPS[text])
+        if text in JUMPS:
+            self._braces.add(text)
         elif _BAR_SIGNS.fullmatch(text):
             self._bar_line(text, word)
         elif text == "}":
@@ -327,8 +307,6 @@ class PartParser:
     def _begin_tuplet(self, notes: int, word: Word) -> None:
         if notes > MOST_TUPLET:
             raise failure(word, f"more than {MOST_TUPLET} notes in a tuplet")
-        power = 2
-        while power < notes:
-            power *= 2
+        power = 1 << max(1, (notes - 1).bit_length())
         room = notes * 3 // 2 if power == notes else power // 2
         self._tuplet, self._tuplet_word = Fraction(room, notes), word

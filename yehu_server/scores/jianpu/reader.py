@@ -18,21 +18,12 @@ from yehu_server.scores.jianpu.characters import NOTATIONS, mode_named
 from yehu_server.scores.jianpu.form import unfolded
 from yehu_server.scores.jianpu.mark_words import SILENT_HEADERS
 from yehu_server.scores.jianpu.parser import PartParser
-from yehu_server.scores.jianpu.part import PartPlayer, Played
+from yehu_server.scores.jianpu.part import PartPlayer
 from yehu_server.scores.jianpu.scale import Scale
 from yehu_server.scores.jianpu.text import Header, Word, decoded, printable, words_of
 from yehu_server.scores.score import COMMON_TIME, Metre, naming, read_score_bytes
-from yehu_server.scores.written.notated import (
-    MOST_BEATS,
-    MOST_PARTS,
-    Bar,
-    KeySign,
-    Part,
-    Sign,
-    Span,
-    Tempo,
-    Written,
-)
+from yehu_server.scores.written import notated
+from yehu_server.scores.written.notated import Bar, KeySign, Part, Tempo, Written
 
 MOST_BYTES = 1 << 20
 MOST_MOVEMENTS = 64
@@ -79,8 +70,8 @@ def _movements(text: str) -> list[list[Words]]:
             if word.text == "NextScore":
                 movements.append([])
             movements[-1].append([])
-            if len(movements[-1]) > MOST_PARTS or len(movements) > MOST_MOVEMENTS:
-                raise ScoreError(f"has more than {MOST_PARTS} parts or movements")
+            if len(movements[-1]) > notated.MOST_PARTS or len(movements) > MOST_MOVEMENTS:
+                raise ScoreError(f"has more than {notated.MOST_PARTS} parts or movements")
         else:
             movements[-1][-1].append(word)
     return movements
@@ -94,7 +85,7 @@ class _Reader:
         self._title = ""
         self._characters: dict[str, float] | None = None
         self._names: dict[int, str] = {}
-        self._parts: dict[int, list[Played]] = {}
+        self._parts: dict[int, list[PartPlayer]] = {}
         self._end = Fraction(0)
         self._key: float | None = None
 
@@ -115,14 +106,15 @@ class _Reader:
                 self._key = key
             order, warnings = unfolded(parser.end())
             self._notices.update(warnings)
-            played.append(PartPlayer(self._end, self._notices).play(order))
+            played.append(PartPlayer(self._end, self._notices))
+            played[-1].play(order)
         if len({each.end for each in played}) > 1:
             self._notices["parts differ in length"] += 1
         for number, each in enumerate(played):
             self._parts.setdefault(number, []).append(each)
         self._end = max(each.end for each in played)
-        if self._end > MOST_BEATS:
-            raise ScoreError(f"lasts more than {MOST_BEATS} quarter notes")
+        if self._end > notated.MOST_BEATS:
+            raise ScoreError(f"lasts more than {notated.MOST_BEATS} quarter notes")
 
     def _head(self, header: Header, scale: Scale, part: int) -> None:
         if header.name in ("title", "标题", "曲名"):
@@ -143,11 +135,10 @@ class _Reader:
         parts = []
         for number, movements in sorted(self._parts.items()):
             notes = tuple(note for each in movements for note in each.notes)
-            spans: list[Span] = [span for each in movements for span in each.spans]
-            signs: list[Sign] = [sign for each in movements for sign in each.signs]
-            name = self._names.get(number, "")
+            signs = tuple(sign for each in movements for sign in each.signs)
+            spans = (span for each in movements for span in each.spans)
             ordered = tuple(sorted(spans, key=lambda span: span.begin))
-            parts.append(Part(name, notes, ordered, tuple(signs)))
+            parts.append(Part(self._names.get(number, ""), notes, ordered, signs))
         if not any(part.notes for part in parts):
             raise ScoreError("has no notes of jianpu")
         metres = self._metres()

@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from yehu_server.scores.jianpu.characters import ERSIPU, USUAL_MODE, is_living, semitones_of
 from yehu_server.scores.jianpu.note_words import MAJOR, MOST_OCTAVES, Figure
 from yehu_server.scores.jianpu.text import Word, failure, printable
+from yehu_server.scores.written.layout import SEMITONES
 
 MIDDLE_C = 60.0
-LETTERS = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
 LOWEST_DO = -5.0  # semitones from middle C, without the sharp or flat of the key
 USUAL_CHARACTER_KEY = 65.0  # F, in which Chaozhou music is written
 
@@ -18,23 +18,16 @@ _KEY = re.compile(r"([1-7])=(?:([A-Ga-g])([#b]?)|([#b])([A-Ga-g]))")
 
 
 class Scale:
-    """What figures sound like at a place of the text.
+    """What figures sound like at a place of the text, which begins in the key of the part before.
 
-    Attributes
-    ----------
-    mode : Mode
-        Of 二四谱.
-    characters : mapping of str to float
-        Semitones above do of the characters of this notation.
-    first_key : float or None
-        The first key that is written, in semitones above middle C; else that of the part before.
+    Keys are in semitones above middle C.
     """
 
     def __init__(self, characters: Mapping[str, float] | None, key: float | None = None) -> None:
-        self.mode = USUAL_MODE
-        self.characters = characters or ERSIPU
-        self._key = key  # semitones above middle C
-        self.first_key, self._has_own = key, False
+        self.mode = USUAL_MODE  # of 二四谱
+        self.characters = characters or ERSIPU  # semitones above do, in this notation
+        self._key = key
+        self.first_key, self._has_own = key, False  # the first that is written, if one is
         self._octave = 0
 
     def read_key(self, text: str) -> bool:
@@ -43,7 +36,7 @@ class Scale:
         if found is None:
             return False
         letter, sign = found[2] or found[5], found[3] or found[4]
-        do = LETTERS[letter.upper()] - MAJOR[int(found[1]) - 1]
+        do = SEMITONES[letter.upper()] - MAJOR[int(found[1]) - 1]
         self._key = (do - LOWEST_DO) % 12.0 + LOWEST_DO + {"#": 1, "b": -1}.get(sign or "", 0)
         if not self._has_own:
             self._has_own, self.first_key = True, self._key

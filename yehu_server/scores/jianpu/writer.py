@@ -10,40 +10,11 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
-from yehu_server.scores.jianpu.figures import DO_FIFTHS, figure_of, written_key
-from yehu_server.scores.jianpu.mark_words import COMMANDS, FINGERING, Act
-from yehu_server.scores.jianpu.writer_lengths import (
-    FINEST,
-    PICKUPS,
-    SIGN_OF,
-    nested_slurs,
-    signed_lengths,
-    straightened,
-)
-from yehu_server.scores.written.layout import (
-    TUPLETS,
-    PageBar,
-    Piece,
-    page_bars,
-    pieces_of,
-    rounded,
-    signature,
-    split,
-    tuplet_of,
-)
-from yehu_server.scores.written.notated import (
-    DYNAMICS,
-    FORCED,
-    LONGEST_CHANGE,
-    SIGNS,
-    Grace,
-    Mark,
-    Note,
-    Part,
-    Span,
-    Tempo,
-    Written,
-)
+from yehu_server.scores.jianpu import figures
+from yehu_server.scores.jianpu.mark_words import COMMANDS, FINGERING
+from yehu_server.scores.written import layout, notated
+from yehu_server.scores.written.layout import PageBar, Piece
+from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Span, Tempo, Written
 from yehu_server.scores.written.words import WRITTEN_CHANGES, words_of_sign
 
 BARS_A_LINE = 4
@@ -60,7 +31,7 @@ def _words() -> dict[Mark, str]:
     found: dict[Mark, str] = {}
     for words, prefix in ((COMMANDS, "\\"), (FINGERING, "Fr=")):
         for word, action in words.items():
-            if action.act is Act.MARK:
+            if action.kind == "mark":
                 mark = Mark(action.name, action.value)
                 bare = "" if word in ("up", "down", "tilde", "harmonic") else prefix
                 found.setdefault(mark, f"{bare}{word}")
@@ -68,15 +39,15 @@ def _words() -> dict[Mark, str]:
 
 
 MARK_WORDS = _words()
-SIGN_WORDS = {name: f"\\{name}" for name in (*DYNAMICS, *FORCED)}
+SIGN_WORDS = {name: f"\\{name}" for name in (*notated.DYNAMICS, *notated.FORCED)}
 
 
 def jianpu_of(written: Written) -> tuple[str, dict[str, int]]:
     """Return a score as a jianpu text, and what that cannot say: names, with counts."""
     lost: Counter[str] = Counter()
-    written, moved = rounded(written, FINEST)
+    written, moved = layout.rounded(written, figures.FINEST)
     lost["beats finer than 1/16 of a quarter"] += moved
-    bars = page_bars(written)
+    bars = layout.page_bars(written)
     texts = []
     for number, part in enumerate(written.parts):
         lines = [f"title={written.title}"] if written.title and number == 0 else []
@@ -85,7 +56,7 @@ def jianpu_of(written: Written) -> tuple[str, dict[str, int]]:
         tempi = written.tempi if number == 0 else ()
         lines += _PartWriter(written, part, bars, tempi, lost).lines()
         texts.append("\n".join(lines))
-    return "\n\nNextPart\n".join(texts) + "\n", {name: n for name, n in lost.items() if n}
+    return "\n\nNextPart\n".join(texts) + "\n", dict(+lost)
 
 
 class _PartWriter:
@@ -107,16 +78,14 @@ class _PartWriter:
         self._begins = [note.beat for note in part.notes]
         loud = [sign.beat for sign in part.signs if sign.name in SIGN_WORDS]
         self._cuts = sorted(loud + [each.begin for each in part.spans if each.name in HAIRPINS])
-        self._nested = set(nested_slurs(part.spans, set(self._begins)))
+        self._nested = set(figures.nested_slurs(part.spans, set(self._begins)))
         self._spans = [span for span in part.spans if self._can_say(span, written)]
         self._after = self._words_after()[::-1]
 
     def lines(self) -> list[str]:
         """The music, some bars a line."""
-        bars = [
-            " ".join(self._bar(bar, pieces))
-            for bar, pieces in zip(self._bars, pieces_of(self._part, self._bars), strict=True)
-        ]
+        pieces = layout.pieces_of(self._part, self._bars)
+        bars = [" ".join(words) for words in map(self._bar, self._bars, pieces)]
         rows = (bars[at : at + BARS_A_LINE] for at in range(0, len(bars), BARS_A_LINE))
         self._lost["signs after the last note"] += len(self._tempi) + len(self._after)
         return [" ".join(f"{bar} |" for bar in row) for row in rows]
@@ -128,7 +97,7 @@ class _PartWriter:
         if span.name in WRITTEN_CHANGES:
             ends = {tempo.beat for tempo in written.tempi}
             ends |= {each.begin for each in self._part.spans if each.name in WRITTEN_CHANGES}
-            is_usual = span.end - span.begin == LONGEST_CHANGE or span.end >= written.end
+            is_usual = span.end - span.begin == notated.LONGEST_CHANGE or span.end >= written.end
             if span.value is not None or not (is_usual or span.end in ends):
                 self._lost[f"how far a {span.name} goes"] += 1
             return True
@@ -170,7 +139,7 @@ class _PartWriter:
             rest = MARK_WORDS.get(Mark(sign.name, sign.value))
             if word is not None:
                 found.append((sign.beat, 1, word))
-            elif rest and sign.name in SIGNS and not self._sounds_at(sign.beat):
+            elif rest and sign.name in notated.SIGNS and not self._sounds_at(sign.beat):
                 found.append((sign.beat, 1, rest))
             else:
                 self._lost[sign.name] += 1
@@ -193,7 +162,7 @@ class _PartWriter:
         yield from self._metre(bar)
         left = list(pieces)
         while left:
-            if tuplet_of(left[0].end.denominator) == 1:
+            if layout.tuplet_of(left[0].end.denominator) == 1:
                 yield from self._plain(left.pop(0), Fraction(1))
             else:
                 yield from self._tuplet(left)
@@ -201,38 +170,35 @@ class _PartWriter:
     def _key(self, bar: PageBar) -> Iterator[str]:
         changed = False
         while self._keys and self._keys[0].beat <= bar.begin:
-            self._fifths = written_key(self._keys.pop(0).fifths)
+            self._fifths = figures.written_key(self._keys.pop(0).fifths)
             changed = True
         if changed:
-            yield f"1={DO_FIFTHS[self._fifths]}"
+            yield f"1={notated.DO_BY_FIFTHS[self._fifths + 6]}"
 
     def _metre(self, bar: PageBar) -> Iterator[str]:
         """The metre where it changes; that of a bar that is short or long is its own."""
-        figures = signature(bar.quarters)
-        pickup = PICKUPS.get(bar.length)
+        pickup, quarters = "", bar.length
         is_pickup = bar is self._bars[0] and bar.length < bar.quarters
-        if is_pickup and pickup and figures is not None:
-            self._quarters = bar.quarters
-            yield f"{figures[0]}/{figures[1]},{pickup}"
-            return
-        figures = signature(bar.length)
-        if figures is not None and bar.length != self._quarters:
-            self._quarters = bar.length
-            yield f"{figures[0]}/{figures[1]}"
+        if is_pickup and bar.length in figures.PICKUPS and layout.signature(bar.quarters):
+            pickup, quarters = f",{figures.PICKUPS[bar.length]}", bar.quarters
+        metre = layout.signature(quarters)
+        if metre is not None and quarters != self._quarters:
+            self._quarters = quarters
+            yield f"{metre[0]}/{metre[1]}{pickup}"
 
     def _tuplet(self, left: list[Piece]) -> Iterator[str]:
         """Take pieces until one ends on a beat of no tuplet, and write them in brackets."""
         group = []
         while left:
             group.append(left.pop(0))
-            if tuplet_of(group[-1].end.denominator) == 1:
+            if layout.tuplet_of(group[-1].end.denominator) == 1:
                 break
-        counts = {tuplet_of(piece.end.denominator) for piece in group} - {1}
+        counts = {layout.tuplet_of(piece.end.denominator) for piece in group} - {1}
         count = counts.pop() if len(counts) == 1 else None
-        factor = Fraction(TUPLETS[count], count) if count in TUPLETS else None
+        factor = Fraction(layout.TUPLETS[count], count) if count in layout.TUPLETS else None
         if factor is None or any(16 % (each.length / factor).denominator for each in group):
             self._lost["tuplets within tuplets"] += 1
-            group, factor = straightened(group), Fraction(1)
+            group, factor = figures.straightened(group), Fraction(1)
         if factor != 1:
             yield f"{count}["
         for piece in group:
@@ -243,8 +209,8 @@ class _PartWriter:
     def _plain(self, piece: Piece, factor: Fraction) -> Iterator[str]:
         """A note or rest, with what stands at it."""
         yield from self._tempo(piece.begin)
-        for cut in split(
-            piece, [factor * each for each in signed_lengths(piece.length / factor, piece)]
+        for cut in layout.split(
+            piece, [factor * each for each in figures.signed_lengths(piece.length / factor, piece)]
         ):
             yield from self._signed_piece(cut, factor)
 
@@ -254,7 +220,7 @@ class _PartWriter:
         if note is not None and piece.is_first:
             for grace in note.before:
                 yield f"g[{self._small(grace)}]"
-        beam, dots = SIGN_OF.get(length, ("", ""))
+        beam, dots = figures.SIGN_OF.get(length, ("", ""))
         figure = "0" if note is None else self._figure(note.pitch)
         is_tremolo = note is not None and piece.is_first and bool(note.marked("tremolo"))
         yield f"{beam}{figure}{dots}{'///' if is_tremolo else ''}"
@@ -308,7 +274,7 @@ class _PartWriter:
         """The figure of a pitch, with its accidental and octave."""
         if abs(pitch - round(pitch)) > 1e-6:
             self._lost["pitches between semitones"] += 1
-        figure, octaves = figure_of(pitch, self._fifths)
+        figure, octaves = figures.figure_of(pitch, self._fifths)
         return figure + ("'" * octaves if octaves > 0 else "," * -octaves)
 
     def _small(self, grace: Grace) -> str:

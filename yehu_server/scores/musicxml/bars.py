@@ -9,7 +9,8 @@ from xml.etree.ElementTree import Element
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.directions import DirectionReader
-from yehu_server.scores.musicxml.marks import STEPS, NoteMarks, neighbour, number, printable
+from yehu_server.scores.musicxml.marks import NoteMarks, neighbour, number, printable
+from yehu_server.scores.written.layout import SEMITONES
 from yehu_server.scores.written.notated import MOST_BEATS, MOST_NOTES
 from yehu_server.scores.written.raw import FINEST, RawBar, RawDirection, RawNote
 from yehu_server.scores.written.repeats import MOST_TIMES, BarLines
@@ -232,11 +233,11 @@ class BarReader:
     def _pitch(self, element: Element) -> float | None:
         pitch = element.find("pitch")
         letter = (pitch.findtext("step") or "").strip() if pitch is not None else ""
-        if pitch is None or letter not in STEPS:
+        if pitch is None or letter not in SEMITONES:
             self._warnings["notes without a pitch are not played"] += 1
             return None
         octave = number(pitch.findtext("octave"), 4.0)
-        value = 12.0 * (octave + 1.0) + STEPS[letter] + number(pitch.findtext("alter"))
+        value = 12.0 * (octave + 1.0) + SEMITONES[letter] + number(pitch.findtext("alter"))
         value += self._transposed
         if not LOWEST <= value <= HIGHEST:
             self._warnings["notes beyond all instruments are left out"] += 1

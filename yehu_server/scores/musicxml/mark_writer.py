@@ -7,8 +7,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.scores.musicxml.marks import ACCIDENTALS, MARKS, ORNAMENTS, neighbour
-from yehu_server.scores.written.layout import LETTERS as WRITTEN_LETTERS
-from yehu_server.scores.written.layout import spelled
+from yehu_server.scores.written.layout import LETTERS, spelled
 from yehu_server.scores.written.notated import Mark, Note
 
 # Elements by marks: the first of those that are read alike, and the group that it is in.
@@ -76,7 +75,7 @@ class MarkWriter:
         """An ornament, with the accidental that its other note needs."""
         element, way = ORNAMENT_OF[mark.name]
         letter, _, octave = spelled(note.pitch, fifths)
-        name = WRITTEN_LETTERS[letter]
+        name = LETTERS[letter]
         group = SubElement(notations, "ornaments")
         SubElement(group, element)
         if mark.value is None:

@@ -6,12 +6,10 @@ from collections.abc import Callable, Mapping
 from xml.etree.ElementTree import Element
 
 from yehu_server.errors import one_line
+from yehu_server.scores.written.layout import LETTERS, STEPS, key_alter
 from yehu_server.scores.written.notated import Mark
 from yehu_server.scores.written.words import ARTICULATED
 
-STEPS: Mapping[str, int] = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
-LETTERS = "CDEFGAB"
-SHARPS = "FCGDAEB"  # in the order in which keys get them
 ACCIDENTALS: Mapping[str, float] = {
     "sharp": 1.0, "flat": -1.0, "natural": 0.0, "double-sharp": 2.0, "sharp-sharp": 2.0,
     "flat-flat": -2.0, "double-flat": -2.0, "quarter-sharp": 0.5, "quarter-flat": -0.5,
@@ -73,16 +71,9 @@ def neighbour(letter: str, octave: int, steps: int, fifths: int, alter: float | 
 
     `alter` is its accidental (semitones), where one is written over the ornament.
     """
-    at = LETTERS.index(letter) + steps
-    octave += at // 7
-    name = LETTERS[at % 7]
-    if alter is None:
-        alter = 0.0
-        if fifths > 0 and name in SHARPS[:fifths]:
-            alter = 1.0
-        elif fifths < 0 and name in SHARPS[fifths:]:
-            alter = -1.0
-    return 12.0 * (octave + 1) + STEPS[name] + alter
+    octaves, at = divmod(LETTERS.index(letter) + steps, 7)
+    alter = key_alter(at, fifths) if alter is None else alter
+    return 12.0 * (octave + octaves + 1) + STEPS[at] + alter
 
 
 class NoteMarks:

@@ -14,32 +14,9 @@ from fractions import Fraction
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from yehu_server.scores.musicxml.mark_writer import MarkWriter
-from yehu_server.scores.written.layout import (
-    LETTERS,
-    TUPLETS,
-    PageBar,
-    Piece,
-    Placed,
-    page_bars,
-    pieces_of,
-    placed,
-    rounded,
-    signature,
-    spelled,
-    split,
-    tuplet_of,
-)
-from yehu_server.scores.written.notated import (
-    DYNAMICS,
-    FORCED,
-    LONGEST_CHANGE,
-    Grace,
-    Note,
-    Part,
-    Span,
-    Tempo,
-    Written,
-)
+from yehu_server.scores.written import layout, notated
+from yehu_server.scores.written.layout import PageBar, Piece, Placed
+from yehu_server.scores.written.notated import Grace, Note, Part, Span, Tempo, Written
 from yehu_server.scores.written.words import WRITTEN_CHANGES, words_of_sign
 
 HEAD = (
@@ -71,7 +48,7 @@ def musicxml_of(written: Written) -> tuple[bytes, dict[str, int]]:
     divisions = math.lcm(*_denominators(written))
     if divisions > MOST_DIVISIONS:
         divisions = USUAL_DIVISIONS
-        written, moved = rounded(written, [divisions])
+        written, moved = layout.rounded(written, [divisions])
         lost["beats finer than 1/5040 of a quarter"] += moved
     root = Element("score-partwise", version="4.0")
     if written.title:
@@ -79,7 +56,7 @@ def musicxml_of(written: Written) -> tuple[bytes, dict[str, int]]:
     encoding = SubElement(SubElement(root, "identification"), "encoding")
     SubElement(encoding, "software").text = "yehu-server"
     listed = SubElement(root, "part-list")
-    bars = page_bars(written)
+    bars = layout.page_bars(written)
     for number, part in enumerate(written.parts, start=1):
         name = SubElement(listed, "score-part", id=f"P{number}")
         SubElement(name, "part-name").text = part.name
@@ -88,7 +65,7 @@ def musicxml_of(written: Written) -> tuple[bytes, dict[str, int]]:
         tempi = written.tempi if own_tempi else ()
         _PartWriter(written, part, bars, divisions, lost).write(element, tempi)
     indent(root, " ")
-    return HEAD + tostring(root, encoding="utf-8") + b"\n", {k: n for k, n in lost.items() if n}
+    return HEAD + tostring(root, encoding="utf-8") + b"\n", dict(+lost)
 
 
 def _denominators(written: Written) -> Iterable[int]:
@@ -101,7 +78,7 @@ def _denominators(written: Written) -> Iterable[int]:
     for part in written.parts:
         for note in part.notes:
             yield from (note.beat.denominator, note.length.denominator)
-        for each in placed(part):
+        for each in layout.placed(part):
             yield each.beat.denominator
 
 
@@ -138,23 +115,22 @@ class _PartWriter:
         self._marks = MarkWriter(lost)
         self._turns: list[tuple[Fraction, bool, Span]] = []  # a beat, and what ends there or begins
         self._fermatas = {sign.beat for sign in part.signs if sign.name == "fermata"}
-        self._rests = {
-            piece.begin for bar in pieces_of(part, bars) for piece in bar if piece.note is None
-        }
+        self._pieces = layout.pieces_of(part, bars)
+        self._rests = {piece.begin for bar in self._pieces for piece in bar if piece.note is None}
         self._end = bars[-1].end if bars else Fraction(0)
 
     def write(self, element: Element, tempi: Sequence[Tempo]) -> None:
         """Write all bars into an element."""
-        events = deque(each for each in placed(self._part, tempi) if self._is_direction(each))
+        events = deque(filter(self._is_direction, layout.placed(self._part, tempi)))
         self._turns = list(self._ends_of_lines())
-        for number, pieces in enumerate(pieces_of(self._part, self._bars)):
+        for number, pieces in enumerate(self._pieces):
             bar = self._bars[number]
             measure = SubElement(element, "measure", number=bar.number)
             self._attributes(measure, bar, is_first=number == 0)
             is_last = number == len(self._bars) - 1
             for whole in pieces:
-                factor = self._factor(whole)
-                for piece in split(whole, _signed_lengths(whole.length, factor)):
+                factor = whole.factor
+                for piece in layout.split(whole, _signed_lengths(whole.length, factor)):
                     while events and events[0].beat < piece.end:
                         self._direction(measure, events.popleft(), piece.begin)
                     self._piece(measure, piece, factor)
@@ -174,11 +150,6 @@ class _PartWriter:
                     self._lost[span.name] += 1
         return iter(sorted(found, key=lambda each: (-each[0], each[1])))
 
-    def _factor(self, piece: Piece) -> Fraction:
-        """The tuplet that a piece is in, as a factor of its length."""
-        count = tuplet_of(piece.length.denominator)
-        return Fraction(TUPLETS[count], count) if count in TUPLETS else Fraction(1)
-
     def _attributes(self, measure: Element, bar: PageBar, *, is_first: bool) -> None:
         quarters = max(bar.quarters, bar.length)
         if is_first and bar.length < quarters:
@@ -192,7 +163,7 @@ class _PartWriter:
             for old in found.findall("key"):
                 found.remove(old)
             SubElement(SubElement(found, "key"), "fifths").text = str(self._fifths)
-        figures = signature(quarters)
+        figures = layout.signature(quarters)
         if figures is not None and quarters != self._quarters:
             self._quarters = quarters
             time = SubElement(found, "time")
@@ -276,9 +247,9 @@ class _PartWriter:
             self._marks.write(notations, small, self._fifths)
 
     def _pitch(self, element: Element, pitch: float) -> None:
-        letter, alter, octave = spelled(pitch, self._fifths)
+        letter, alter, octave = layout.spelled(pitch, self._fifths)
         found = SubElement(element, "pitch")
-        SubElement(found, "step").text = LETTERS[letter]
+        SubElement(found, "step").text = layout.LETTERS[letter]
         if alter:
             SubElement(found, "alter").text = f"{alter:g}"
         SubElement(found, "octave").text = str(octave)
@@ -302,7 +273,7 @@ class _PartWriter:
             if what.name in WRITTEN_CHANGES and each.is_end:
                 self._check_change(what)
             return what.name in WEDGES or (what.name in WRITTEN_CHANGES and not each.is_end)
-        if what.name in DYNAMICS or what.name in FORCED or what.name == "velocity":
+        if what.name in notated.DYNAMICS or what.name in notated.FORCED or what.name == "velocity":
             return True
         if words_of_sign(what.name, what.value) is not None:
             return True
@@ -314,7 +285,7 @@ class _PartWriter:
         """Words end where the next tempo or change begins, or after LONGEST_CHANGE."""
         ends = {tempo.beat for tempo in self._written.tempi}
         ends |= {span.begin for span in self._part.spans if span.name in WRITTEN_CHANGES}
-        is_usual = change.end - change.begin == LONGEST_CHANGE or change.end >= self._end
+        is_usual = change.end - change.begin == notated.LONGEST_CHANGE or change.end >= self._end
         if change.value is not None or not (is_usual or change.end in ends):
             self._lost[f"how far a {change.name} goes"] += 1
 

@@ -33,8 +33,8 @@ from yehu_server.scores.score import (
 )
 from yehu_server.scores.smf.chunks import Part, read_parts
 from yehu_server.scores.smf.faults import DamageReport
-from yehu_server.scores.smf.sysex_tunings import retuned
 from yehu_server.scores.smf.track import Clock, Placed, Track, checked_division
+from yehu_server.scores.smf.tunings import retuned
 from yehu_server.scores.smf.wrapper import unwrapped
 
 PERCUSSION = 9  # whose notes end by themselves

@@ -12,8 +12,8 @@ from functools import lru_cache
 import mido
 
 from yehu_server.scores.smf.faults import DamageReport
-from yehu_server.scores.smf.sysex_tunings import MOST as MOST_TUNINGS
-from yehu_server.scores.smf.sysex_tunings import is_tuning
+from yehu_server.scores.smf.tunings import MOST as MOST_TUNINGS
+from yehu_server.scores.smf.tunings import is_tuning
 
 DEFAULT_TEMPO = 500_000  # microseconds a quarter note, 120 bpm
 USUAL_TICKS = 480  # a quarter note, where a file has 0

@@ -8,16 +8,8 @@ from fractions import Fraction
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import COMMON_TIME, Metre
-from yehu_server.scores.written.notated import (
-    MOST_BEATS,
-    MOST_NOTES,
-    Bar,
-    KeySign,
-    Part,
-    Tempo,
-    Written,
-    times,
-)
+from yehu_server.scores.written import notated
+from yehu_server.scores.written.notated import Bar, KeySign, Part, Tempo, Written
 from yehu_server.scores.written.raw import FINEST, RawBar
 from yehu_server.scores.written.repeats import BarLines, left_out, order_of
 from yehu_server.scores.written.voices import parts_of
@@ -58,7 +50,7 @@ def assembled(
             if beat not in tempi or ranked[0] > tempi[beat][0]:
                 tempi[beat] = ranked
     longest = max(parts_bars, key=len, default=[])
-    told = [times(text, number) for text, number in warnings.items()]
+    told = [notated.times(text, number) for text, number in warnings.items()]
     if missing := left_out(count, order):
         told.insert(0, _told(missing, longest))
     return Written(
@@ -106,8 +98,8 @@ def _keys(bars: Sequence[RawBar], played: Iterable[tuple[int, Fraction]]) -> Ite
 def _check_amount(parts_bars: list[list[RawBar]], order: list[int]) -> None:
     """Refuse scores that are too large, or that repeats make so."""
     written = sum(len(bar.notes) for bars in parts_bars for bar in bars)
-    if written > MOST_NOTES:
-        raise ScoreError(f"has more than {MOST_NOTES} notes")
+    if written > notated.MOST_NOTES:
+        raise ScoreError(f"has more than {notated.MOST_NOTES} notes")
     played = sum(
         len(bars[number].notes) for bars in parts_bars for number in order if number < len(bars)
     )
@@ -145,8 +137,8 @@ def _timed(
         begin += lengths[number]
         if begin.denominator > FINEST:
             begin = begin.limit_denominator(FINEST)
-        if begin > MOST_BEATS:
-            raise ScoreError(f"is longer than {MOST_BEATS} quarters, with its repeats")
+        if begin > notated.MOST_BEATS:
+            raise ScoreError(f"is longer than {notated.MOST_BEATS} quarters, with its repeats")
     return played, begin
 
 

@@ -1,4 +1,4 @@
-"""Moves the parts of a written score by octaves into the range of the instrument."""
+"""Which part of a written score plays, and by how many octaves it moves to be in range."""
 
 from __future__ import annotations
 
@@ -6,11 +6,19 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from yehu_server.playing.stringing import range_text
+from yehu_server.scores.melodic import melodic_part
 from yehu_server.scores.octaves import Octaves, Sounding, octaves_of
 from yehu_server.scores.written.mark_settings import harmonic_of
 from yehu_server.scores.written.notated import Grace, Note, Part, Written
 
 REST = 0.5  # quarters of silence that part phrases
+
+
+def usual_parts(written: Written) -> list[int]:
+    """The number, from 0, of the part that plays where none is asked for, if any has notes."""
+    parts = [[sounding(note) for note in part.notes] for part in written.parts]
+    tune = melodic_part(written.names, parts)
+    return [] if tune is None else [tune]
 
 
 def moved_part(part: Part, higher: int = 0) -> tuple[Part, Octaves]:

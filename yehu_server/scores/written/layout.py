@@ -15,6 +15,7 @@ from yehu_server.scores.written.notated import Note, Part, Sign, Span, Tempo, Wr
 
 LETTERS = "CDEFGAB"
 STEPS = (0, 2, 4, 5, 7, 9, 11)  # semitones of the letters above C
+SEMITONES = dict(zip(LETTERS, STEPS, strict=True))
 FIFTHS = (0, 2, 4, -1, 1, 3, 5)  # the letters on the line of fifths
 CENTRE = 2  # of a key's seven notes on that line, from its do
 TUPLETS = {3: 2, 5: 4, 7: 4}  # so many notes in the time of so many
@@ -52,6 +53,12 @@ class Piece:
     def end(self) -> Fraction:
         """The beat at which it ends."""
         return self.begin + self.length
+
+    @property
+    def factor(self) -> Fraction:
+        """The tuplet that it is in, as a factor of its length."""
+        count = tuplet_of(self.length.denominator)
+        return Fraction(TUPLETS[count], count) if count in TUPLETS else Fraction(1)
 
 
 def page_bars(written: Written) -> list[PageBar]:

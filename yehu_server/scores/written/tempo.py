@@ -11,15 +11,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from yehu_server.scores.written.notated import (
-    HIGHEST_TEMPO,
-    LOWEST_TEMPO,
-    USUAL_TEMPO,
-    Note,
-    Span,
-    Tempo,
-    Written,
-)
+from yehu_server.scores.written import notated
+from yehu_server.scores.written.notated import Note, Span, Tempo, Written
 
 # By ear.
 HELD, LONGEST_HELD = 1.8, 10.0  # times as long under a fermata, and at most
@@ -54,8 +47,8 @@ class WrittenClock:
         rates = []  # seconds a quarter
         for beat in self._beats:
             at = bisect_right(starts, beat) - 1
-            quarters = tempi[at].quarters_per_minute if at >= 0 else USUAL_TEMPO
-            rates.append(60.0 / min(max(quarters, LOWEST_TEMPO), HIGHEST_TEMPO))
+            quarters = tempi[at].quarters_per_minute if at >= 0 else notated.USUAL_TEMPO
+            rates.append(60.0 / min(max(quarters, notated.LOWEST_TEMPO), notated.HIGHEST_TEMPO))
         self._rates = self._stretched(rates, stretches)
         self._seconds = [0.0]
         for (beat, after), rate in zip(pairwise(self._beats), self._rates, strict=False):
@@ -132,7 +125,7 @@ def _with_changes(written: Written) -> list[Tempo]:
     steps: dict[Fraction, float] = {}
     for span in sorted(spans.values(), key=lambda span: span.begin):
         at = bisect_right(starts, span.begin) - 1
-        before = tempi[at].quarters_per_minute if at >= 0 else USUAL_TEMPO
+        before = tempi[at].quarters_per_minute if at >= 0 else notated.USUAL_TEMPO
         steps |= _steps(span, before)
     # At the end of the change the next tempo holds, where one is written there.
     steps |= {tempo.beat: tempo.quarters_per_minute for tempo in tempi}

@@ -10,9 +10,8 @@ from typing import Any
 
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.scores.written.in_range import moved_part
+from yehu_server.scores.written.in_range import moved_part, usual_parts
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Tempo, Written
-from yehu_server.scores.written.usual_part import usual_parts
 
 ARTICULATED = {float(number): row.name for number, row in enumerate(ARTICULATIONS)}
 MOST_TEMPI = 20  # that the head shows

@@ -6,18 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from yehu_server.scores.written.notated import (
-    DYNAMICS,
-    FORCED,
-    LONGEST_CHANGE,
-    Grace,
-    Mark,
-    Note,
-    OpenSpan,
-    Part,
-    Sign,
-    Span,
-)
+from yehu_server.scores.written import notated
+from yehu_server.scores.written.notated import Grace, Mark, Note, OpenSpan, Part, Sign, Span
 from yehu_server.scores.written.raw import RANKS, RawBar, RawDirection, RawNote
 
 SPANS = {"slur": "slur", "glissando": "glissando", "slide": "portamento"}
@@ -125,7 +115,7 @@ class Directions:
         self.tempi: dict[Fraction, tuple[int, float]] = {}  # with its rank
         self._wedges: dict[str, tuple[str, Fraction]] = {}
         self._hairpin = OpenSpan(self.spans, LONGEST_HAIRPIN)  # in words
-        self._change = OpenSpan(self.spans, LONGEST_CHANGE)
+        self._change = OpenSpan(self.spans, notated.LONGEST_CHANGE)
         self._steady: float | None = None  # the tempo before a change
 
     def add_bar(self, directions: list[RawDirection], begin: Fraction) -> None:
@@ -135,7 +125,7 @@ class Directions:
 
     def _add(self, raw: RawDirection, beat: Fraction) -> None:
         if raw.kind == "sign":
-            if raw.name in DYNAMICS or raw.name in FORCED:
+            if raw.name in notated.DYNAMICS or raw.name in notated.FORCED:
                 self._hairpin.end(beat)
             sign = Sign(beat, raw.name, raw.value)
             if sign not in self.signs[-8:]:  # two staves may say the same

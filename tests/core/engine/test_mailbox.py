@@ -25,7 +25,17 @@ from yehu_server.core.engine import native
 from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET, RING
+from yehu_server.core.engine.mailbox import (
+    APPLIED_AT_ONCE,
+    HEAP,
+    LINE,
+    LIVE_BUDGET,
+    MIDI_INPUTS,
+    PAGES,
+    RING,
+    SMALL_RING,
+    SOUND_INPUT,
+)
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import TABLES_TO
 from yehu_server.core.player.rows import ROW, ROWS
@@ -288,6 +298,18 @@ def test_a_ring_that_is_drained_a_little_has_room_for_as_much():
     room = sum(post_numbered(instrument, number, FAR) for number in range(2 * LIVE_BUDGET))
     assert room == LIVE_BUDGET
     assert instrument.dropped_events == LIVE_BUDGET
+
+
+def test_a_writer_of_times_far_ahead_leaves_the_heap_to_the_others():
+    for writer, far in ((MIDI_INPUTS, 10**15), (PAGES, FAR), (SOUND_INPUT, 10**15)):
+        instrument = offline()
+        posted = 0
+        while posted < 2 * HEAP:
+            posted += native.post_from.call(instrument.address, writer, far, *UNHEARD[0], 0.0, 0.0)
+            if posted % SMALL_RING == 0:
+                run(instrument, 1)
+        assert instrument._rig["mail"]["pending_events"][0] == 0, writer
+        assert instrument.dropped_events == posted, writer
 
 
 def test_reports_nobody_reads_are_dropped_and_counted_and_the_older_kept():

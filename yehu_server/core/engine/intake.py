@@ -19,6 +19,7 @@ from yehu_server.core.engine.mailbox import (
     MAIL,
     MIDI_INPUTS,
     ROOM,
+    SERVER,
     SOUND_INPUT,
     WAITING,
     WRITERS,
@@ -49,7 +50,9 @@ from yehu_server.core.midi.record import MIDI, NONE
 from yehu_server.core.player.wishes import BEGIN, END, WISH
 
 NOTHING = -1  # the kind of an event that was cancelled
-FARTHEST = 1 << 40  # frames of an event from now: some months
+# Frames from now that an event may be: the server plays whole scores ahead, other writers play
+# now, so that what is nonsense of theirs fills the heap for seconds at most.
+FARTHEST, FARTHEST_AHEAD = 1 << 40, 1 << 20
 
 
 @native
@@ -108,6 +111,7 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
     """
     events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
     for writer in range(WRITERS):
+        farthest = FARTHEST if writer == SERVER else FARTHEST_AHEAD
         size = RING_SIZES[writer]
         ring = carray(at(rig, RINGS_AT[writer]), (size,), WISH)
         posted = load_acquire(rig, POSTED_AT + writer * CURSOR_BYTES)
@@ -122,7 +126,7 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
             if writer in (MIDI_INPUTS, SOUND_INPUT):
                 frame = frame_of_arrival(rigs, mail, frame)
             drained += 1
-            if not now - FARTHEST < frame < now + FARTHEST:
+            if not now - FARTHEST < frame < now + farthest:
                 mail.dropped[writer, 0] += 1
                 continue
             mail.late[writer] += 1 if frame < now else 0

@@ -36,17 +36,10 @@ STRANGE = "is not a recognized processor"  # LLVM's word
 def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str = ANY) -> list[Path]:
     """Build one of WHATS into a folder; return the files written.
 
-    Parameters
-    ----------
-    rates : sequence of float
-        Sample rates (Hz) at which an instrument can be made.
-    cpu : str
-        The processor of a library, by LLVM's name.
+    Raises YehuError where something is missing to build with, or the folder cannot be written.
 
-    Raises
-    ------
-    YehuError
-        Where something is missing to build with, or the folder cannot be written.
+    `rates`: sample rates (Hz) at which an instrument can be made.
+    `cpu`: the processor of a library, by LLVM's name.
     """
     link.linker_of(what)  # or there would be none after minutes of compiling
     command = python_command("yehu_server.ahead.build", what, str(folder), cpu)

@@ -108,12 +108,8 @@ def header(
 ) -> str:
     """Write the header of a library of some functions.
 
-    Parameters
-    ----------
-    sources : str
-        The hash of what it is made from.
-    rates : sequence of float
-        The rates (Hz) that it can be prepared at.
+    `sources`: the hash of what it is made from.
+    `rates`: the rates (Hz) that it can be prepared at.
     """
     kinds = (*wishes.KINDS, *events.EVENTS)
     return OUTLINE.format(

@@ -205,10 +205,8 @@ def put(rig: Any, rate: float, channels: int, kept: int) -> int:
 def putting(rates: Sequence[float], images: Sequence[Array]) -> Native:
     """Make the function `put`, which puts one of some images into memory.
 
-    Parameters
-    ----------
-    images : sequence of ndarray [dtype=int64]
-        For each of `rates` (Hz); see `memory_images.image`.
+    `images` (sequence of ndarray [dtype=int64]): for each of `rates` (Hz); see
+    `memory_images.image`.
     """
     known = np.array(rates)
     ends = np.cumsum([len(image) for image in images])

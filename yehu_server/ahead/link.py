@@ -23,10 +23,7 @@ def page_linker() -> str | None:
 def linker_of(what: str) -> str:
     """The path of the linker for ``wasm`` or a ``library``.
 
-    Raises
-    ------
-    YehuError
-        Where there is none.
+    Raises YehuError where there is none.
     """
     linker = page_linker() if what == "wasm" else _first(LIBRARY_LINKERS)
     if linker is not None:
@@ -39,10 +36,7 @@ def linker_of(what: str) -> str:
 def link_page(linker: str, code: Path, exports: Iterable[str], into: Path) -> None:
     """Link an object file into a WebAssembly module with its own memory.
 
-    Raises
-    ------
-    YehuError
-        Where it fails.
+    Raises YehuError where it fails.
     """
     options = [
         "--no-entry",
@@ -57,13 +51,7 @@ def link_page(linker: str, code: Path, exports: Iterable[str], into: Path) -> No
 
 
 def link_library(linker: str, code: Path, into: Path) -> None:
-    """Link an object file into a shared library.
-
-    Raises
-    ------
-    YehuError
-        Where it fails.
-    """
+    """Link an object file into a shared library; raises YehuError where it fails."""
     options = ["-shared", "-s"]
     if sys.platform == "linux":
         options += ["-Wl,--build-id=none", f"-Wl,-soname,{into.name}"]

@@ -31,9 +31,7 @@ def image(rate: float) -> Array:
 
     It has the default mapping, in equal temperament; program changes are ignored.
 
-    Parameters
-    ----------
-    rate : float, Hz
+    `rate` (Hz).
 
     Returns
     -------
@@ -57,10 +55,7 @@ def image(rate: float) -> Array:
 def runs(words: Array, begin: int = 0) -> Iterable[Array]:
     """The runs of words of a record [dtype=int64] that are not zero, each with its heading.
 
-    Parameters
-    ----------
-    begin : int
-        Number of the first of these words in the record.
+    `begin`: number of the first of these words in the record.
     """
     places = np.flatnonzero(words)
     for run in np.split(places, np.flatnonzero(np.diff(places) > SHORTEST_GAP) + 1):

@@ -24,12 +24,8 @@ PAGE_FEATURES = "+simd128,+bulk-memory,+nontrapping-fptoint,+sign-ext,+mutable-g
 class Target:
     """A machine, by LLVM's names.
 
-    Attributes
-    ----------
-    prefix : str
-        What stands before the names of functions, where several versions are linked together.
-    is_inner : bool
-        Whether the functions are for the library alone that they are linked into.
+    `prefix`: what stands before the names of functions, where several versions are linked together.
+    `is_inner`: whether the functions are for the library alone that they are linked into.
     """
 
     triple: str
@@ -149,12 +145,8 @@ define hidden void @{MULTIPLY}(ptr %into, i64 %a, i64 %a_high, i64 %b, i64 %b_hi
 def joined(functions: Sequence[Native], target: Target) -> Any:
     """Join functions, and those that they call by symbol, into a module for a machine.
 
-    They keep their names (`Native.name`, behind the target's prefix); all else is internal.
-
-    Raises
-    ------
-    YehuError
-        Where they need what neither a page nor a C library has.
+    They keep their names (`Native.name`, behind the target's prefix); all else is internal. Raises
+    YehuError where they need what neither a page nor a C library has.
     """
     module, *others = map(_module, with_called(functions))
     for other in others:

@@ -21,12 +21,8 @@ SHIPPED = Path(__file__).parent / "shipped" / PAGE_FILE
 def page_module() -> Path:
     """The WebAssembly module of the present sources.
 
-    It is built where it was not yet, which takes a minute and needs a linker.
-
-    Raises
-    ------
-    YehuError
-        Where it cannot be built.
+    It is built where it was not yet, which takes a minute and needs a linker. Raises YehuError
+    where it cannot be built.
     """
     folder = data_folder() / f"page-{build_hash()}"
     if found := _found(folder):

@@ -26,14 +26,10 @@ if TYPE_CHECKING:
 def add_options(group: Any, table: str, /, **details: Any) -> None:
     """Add options to a parser, or a group of its options, from a table of usage and help.
 
-    Parameters
-    ----------
-    table : str
-        Rows such as ``--mono: one channel``, a flag; ``-o --output OUT: the file``;
-        ``--only NAME ...: may be repeated``; or ``score FILE: the score``, an argument. What
-        follows of a row is indented.
-    details
-        By the names of options, the other words that argparse takes, or the type alone.
+    `table`: rows such as ``--mono: one channel``, a flag; ``-o --output OUT: the file``; ``--only
+    NAME ...: may be repeated``; or ``score FILE: the score``, an argument. What follows of a row is
+    indented.
+    `details`: by the names of options, the other words that argparse takes, or the type alone.
     """
     for row in re.split(r"\n(?=\S)", inspect.cleandoc(table)):
         usage, _, text = " ".join(row.split()).partition(": ")
@@ -71,15 +67,9 @@ def cluster_of(
 ) -> contextlib.AbstractContextManager[Cluster | None]:
     """The cluster that the option of `add_cluster` names, if it does, for the time of a block.
 
-    Parameters
-    ----------
-    setup : callable
-        What each worker calls before its first job.
+    Raises YehuError where it cannot be used.
 
-    Raises
-    ------
-    YehuError
-        Where it cannot be used.
+    `setup`: what each worker calls before its first job.
     """
     if arguments.dask is None:
         return contextlib.nullcontext()
@@ -176,10 +166,7 @@ def add_instrument(parser: argparse.ArgumentParser) -> None:
 def instrument_of(arguments: argparse.Namespace) -> Quantities:
     """The physical quantities that the option of `add_instrument` asks for.
 
-    Raises
-    ------
-    YehuError
-        Where the file is wrong.
+    Raises YehuError where the file is wrong.
     """
     from yehu_server.core.physics.quantities import Quantities, read_quantities
 
@@ -228,15 +215,9 @@ def check_output(
 ) -> Callable[[Path], bool]:
     """Check that the output of `add_output` may be written; return which files it may replace.
 
-    Parameters
-    ----------
-    output : Path, optional
-        Another file that is written beside it.
+    Raises OutputError where it may not be written.
 
-    Raises
-    ------
-    OutputError
-        Where it may not be written.
+    `output`: another file that is written beside it.
     """
     from yehu_server.util.files import check_free, check_target
 
@@ -276,11 +257,5 @@ def add_server(parser: Any) -> None:
 
 
 def server_of(arguments: argparse.Namespace) -> tuple[str, int]:
-    """The address given with --server.
-
-    Raises
-    ------
-    ParameterError
-        Where it is none.
-    """
+    """The address given with --server; raises ParameterError where it is none."""
     return parse_address(arguments.server, *OSC_ADDRESS)

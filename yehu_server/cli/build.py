@@ -71,10 +71,7 @@ def _add_plugin(command: Parser) -> None:
 def build_plugin(arguments: argparse.Namespace) -> int:
     """Build the plug-in; return the exit code.
 
-    Raises
-    ------
-    YehuError
-        Where something is missing to build with, or the folder cannot be written.
+    Raises YehuError where something is missing to build with, or the folder cannot be written.
     """
     from yehu_server.plugin.build import build
 
@@ -104,10 +101,7 @@ def _add_tables(command: Parser) -> None:
 def write_tables(arguments: argparse.Namespace) -> int:
     """Write tables to a file, and the numbers of named controls; return the exit code.
 
-    Raises
-    ------
-    YehuError
-        Where a file or value is wrong, or the file cannot be written.
+    Raises YehuError where a file or value is wrong, or the file cannot be written.
     """
     from yehu_server.playing.tables import Controls
     from yehu_server.util.files import anything, nothing, replacing

@@ -30,14 +30,8 @@ def add_config(group: Any, command: Parser) -> None:
 def parse(argv: Sequence[str], parser: Parser) -> argparse.Namespace:
     """Parse a command line, and the file that it names with --config, whose options it overrides.
 
-    Options that may be repeated add to those of the file.
-
-    Raises
-    ------
-    ParameterError
-        As `read_config`.
-    SystemExit
-        Where the command line is wrong, as argparse does.
+    Options that may be repeated add to those of the file. Raises ParameterError as `read_config`;
+    SystemExit where the command line is wrong, as argparse does.
     """
     arguments = parser.parse_args(argv)
     path = getattr(arguments, "config", None)
@@ -50,10 +44,7 @@ def parse(argv: Sequence[str], parser: Parser) -> argparse.Namespace:
 def read_config(path: Path, command: Parser) -> argparse.Namespace:
     """Read the options of a file, converted and checked as the command's own.
 
-    Raises
-    ------
-    ParameterError
-        Naming file and line.
+    Raises ParameterError, naming file and line.
     """
     namespace = argparse.Namespace()
     document = Document(path, "a TOML file").read(path)

@@ -113,13 +113,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check_folder(folder: Path) -> None:
-    """Refuse a folder with other things in it.
-
-    Raises
-    ------
-    OutputError
-        Where there are some.
-    """
+    """Refuse a folder with other things in it; raises OutputError where there are some."""
     from yehu_server.rendering.build_records import HIDDEN
 
     try:

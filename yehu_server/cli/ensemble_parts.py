@@ -28,12 +28,8 @@ SECTION = "/playing/section"
 class Players:
     """The parts of an ensemble, and what concerns all of them.
 
-    Attributes
-    ----------
-    files : tuple of Path
-        All files that they were read from.
-    percussion_notes : int
-        Of channel 10, played by nobody.
+    `files`: all files that they were read from.
+    `percussion_notes`: of channel 10, played by nobody.
     """
 
     parts: tuple[Part, ...]
@@ -50,15 +46,10 @@ def players_of(
 ) -> Players:
     """Give each part of some scores, which are played one after another, a player.
 
-    Parameters
-    ----------
-    playing, quantities, phrasing
-        Of all players, where an ensemble file does not say otherwise.
+    Raises YehuError where there are too many parts, or what a file names is not there.
 
-    Raises
-    ------
-    YehuError
-        Where there are too many parts, or what a file names is not there.
+    `playing`, `quantities`, `phrasing`: of all players, where an ensemble file does not say
+    otherwise.
     """
     from yehu_server.core.physics.quantities import read_quantities
     from yehu_server.playing.parts import seated

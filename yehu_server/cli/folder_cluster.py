@@ -28,12 +28,8 @@ if TYPE_CHECKING:
 class ClusterTask:
     """A task for a worker, with the score, in case the worker does not see the folders.
 
-    Attributes
-    ----------
-    mark : Path
-        A file in the output, which is found where that is seen.
-    score : bytes, optional
-        None where it cannot be read: then the worker tells why.
+    `mark`: a file in the output, which is found where that is seen.
+    `score`: None where it cannot be read: then the worker tells why.
     """
 
     task: Task

@@ -34,10 +34,7 @@ class ProgressEstimate:
     A job whose length nobody knows yet counts as the mean of the others; so files of one length
     count as files do.
 
-    Parameters
-    ----------
-    known : sequence of float
-        Of each job; 0 where it is not known.
+    `known`: of each job; 0 where it is not known.
     """
 
     def __init__(self, known: Sequence[float]) -> None:
@@ -86,10 +83,7 @@ def render_all(
 ) -> None:
     """Render all tasks; append what becomes of each to the lines of the manifest.
 
-    Parameters
-    ----------
-    total : int
-        Number of scores in the folder, those that are up to date included.
+    `total`: number of scores in the folder, those that are up to date included.
     """
     if cluster is None:
         warn_of_compiling(arguments)

@@ -34,16 +34,10 @@ BLOCK = 1 << 16  # frames of a file that are read again at a time
 class Task:
     """A score to render, for another process.
 
-    Attributes
-    ----------
-    arguments : Namespace
-        Those of the command.
-    picture : Path, optional
-        Where the picture of it goes.
-    key : str
-        Of all that the result depends on, beside files of settings.
-    seconds : float
-        How long it lasts, as far as that is known from an earlier run; else 0.
+    `arguments`: those of the command.
+    `picture`: where the picture of it goes.
+    `key`: of all that the result depends on, beside files of settings.
+    `seconds`: how long it lasts, as far as that is known from an earlier run; else 0.
     """
 
     arguments: argparse.Namespace
@@ -62,12 +56,8 @@ class Task:
 class Done:
     """What became of a task: its line of the manifest, and whether the disk was full.
 
-    Attributes
-    ----------
-    read : tuple of Path
-        The files of settings that the sound was made from.
-    made : tuple of bytes
-        The results, where they have to travel.
+    `read`: the files of settings that the sound was made from.
+    `made`: the results, where they have to travel.
     """
 
     line: Line
@@ -83,10 +73,7 @@ class Done:
     def of_plain(cls, task: Task, told: Any) -> Done:
         """What a worker answered of a task; anybody who reaches the cluster may have made it.
 
-        Raises
-        ------
-        OutputError
-            Where it is something else.
+        Raises OutputError where it is something else.
         """
         from yehu_server.rendering.build_records import checked_line
 

@@ -135,10 +135,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _options(arguments: argparse.Namespace) -> Options:
     """How to render; checks all that can be checked before listening.
 
-    Raises
-    ------
-    YehuError
-        Where something is wrong.
+    Raises YehuError where something is wrong.
     """
     from yehu_server.util.files import check_distinct, check_target
     from yehu_server.util.sound_file import check_format, format_of

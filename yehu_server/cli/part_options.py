@@ -50,10 +50,7 @@ def add_parts(group: Any) -> None:
 def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
     """The options of all parts.
 
-    Raises
-    ------
-    YehuError
-        Where a value or file is wrong, or a part is not there.
+    Raises YehuError where a value or file is wrong, or a part is not there.
     """
     from yehu_server.live.options import PartOptions
     from yehu_server.live.part_addresses import no_part
@@ -78,10 +75,7 @@ def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
 def routes_of(arguments: argparse.Namespace, parts: Sequence[PartOptions]) -> list[Route]:
     """The MIDI inputs that parts are played from, as --part tells.
 
-    Raises
-    ------
-    ParameterError
-        Where one is wrong.
+    Raises ParameterError where one is wrong.
     """
     from yehu_server.live.midi.routes import check_routes, route_of
 

@@ -83,10 +83,7 @@ def add_tuning(group: Any) -> None:
 def tuning_of(arguments: argparse.Namespace) -> Tuning:
     """The tuning that the options of `add_tuning` ask for.
 
-    Raises
-    ------
-    YehuError
-        Where a file is wrong.
+    Raises YehuError where a file is wrong.
     """
     from yehu_server.playing.tuning import EQUAL, read_tuning
 
@@ -98,10 +95,7 @@ def tuning_of(arguments: argparse.Namespace) -> Tuning:
 def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mapping:
     """The mapping given by --mapping and --mpe.
 
-    Raises
-    ------
-    MappingError
-        Where there is no such mapping, or it is wrong.
+    Raises MappingError where there is no such mapping, or it is wrong.
     """
     from yehu_server.playing.mapping import DEFAULT, MPE, load
 
@@ -122,10 +116,7 @@ def add_presets_folder(group: Any) -> None:
 def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
     """What the options of `add_playing` ask for; see `table_options_of`.
 
-    Raises
-    ------
-    YehuError
-        Where a file or value is wrong.
+    Raises YehuError where a file or value is wrong.
     """
     from yehu_server.core.player.fingering import OpenStrings
     from yehu_server.params.table import assignment
@@ -144,14 +135,9 @@ def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) 
 def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
     """What the options of `add_tables` ask for.
 
-    In live playing, mappings and presets of the user's own precede shipped ones of the same
-    name. Else they must be named explicitly, so that the result of a rendering depends on its
-    command alone.
-
-    Raises
-    ------
-    YehuError
-        Where a file or value is wrong.
+    In live playing, mappings and presets of the user's own precede shipped ones of the same name.
+    Else they must be named explicitly, so that the result of a rendering depends on its command
+    alone. Raises YehuError where a file or value is wrong.
     """
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.playing.preset_folders import Presets

@@ -19,10 +19,7 @@ SOUNDS = (".wav", ".wave", ".flac", ".raw")  # which no folder is to be called
 def is_for_folder(arguments: argparse.Namespace) -> bool:
     """Whether a folder is to be rendered.
 
-    Raises
-    ------
-    ParameterError
-        Where a folder is named among others, or a cluster is wanted for less.
+    Raises ParameterError where a folder is named among others, or a cluster is wanted for less.
     """
     folders = [path for path in arguments.midi if path != "-" and os.path.isdir(path)]  # noqa: PTH112 - any name
     if folders and len(arguments.midi) > 1:
@@ -114,10 +111,7 @@ def _check(arguments: argparse.Namespace) -> str:
 def _report(arguments: argparse.Namespace, lines: Sequence[Line], current: Sequence[Line]) -> int:
     """Tell of all files at the end; return the exit code.
 
-    Parameters
-    ----------
-    current : sequence of dict
-        The lines of those that were up to date, or had failed before.
+    `current`: the lines of those that were up to date, or had failed before.
     """
     failed = sorted((line for line in lines if "error" in line), key=lambda line: line["file"])
     for line in failed:

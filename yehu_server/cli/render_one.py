@@ -46,15 +46,9 @@ def rendered(
 ) -> Rendered:
     """Render what the options ask for.
 
-    Parameters
-    ----------
-    follow : callable, optional
-        Called with the seconds done and those of the score, in place of a progress bar.
+    Raises YehuError where it fails; no partial file is left.
 
-    Raises
-    ------
-    YehuError
-        Where it fails; no partial file is left.
+    `follow`: called with the seconds done and those of the score, in place of a progress bar.
     """
     from yehu_server.playing.calibration import calibration_key
     from yehu_server.rendering.to_files import render
@@ -125,13 +119,7 @@ def _outputs(arguments: argparse.Namespace) -> dict[str, Path]:
 
 
 def _format(arguments: argparse.Namespace) -> str:
-    """The format to write.
-
-    Raises
-    ------
-    OutputError
-        Where the output cannot have it.
-    """
+    """The format to write; raises OutputError where the output cannot have it."""
     from yehu_server.rendering.pipe import check_pipe
     from yehu_server.util.sound_file import format_of
 
@@ -212,12 +200,8 @@ def _counts(summary: Summary | PartSummary) -> dict[str, Any]:
 def _scores(arguments: argparse.Namespace, playing: PlayingOptions) -> list[Score]:
     """Read all files.
 
-    Raises
-    ------
-    DamagedError
-        Where --strict refuses one.
-    ScoreError
-        Where one cannot be read, or they last too long together.
+    Raises DamagedError where --strict refuses one; ScoreError where one cannot be read, or they
+    last too long together.
     """
     from yehu_server.playing.tuning import RangePolicy
     from yehu_server.scores.reading import How, read_any

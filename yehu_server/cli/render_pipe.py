@@ -47,10 +47,8 @@ def shown_target(target: Path) -> Path:
 def piped_in(arguments: argparse.Namespace) -> Iterator[None]:
     """Keep what is on standard input in a file, where that is to be read, for the time of a block.
 
-    Raises
-    ------
-    YehuError
-        Where it is too large, or asked for twice; errors in the block name it as it is.
+    Raises YehuError where it is too large, or asked for twice; errors in the block name it as it
+    is.
     """
     from yehu_server.scores.smf.reader import MAX_BYTES
 

@@ -38,10 +38,7 @@ MOST_FILES = 4096  # more than all clients together need
 def allow_files(needed: int) -> None:
     """Raise the limit of open files as far as allowed; the default of macOS is 256.
 
-    Raises
-    ------
-    YehuError
-        Where it is below `needed`.
+    Raises YehuError where it is below `needed`.
     """
     if resource is None:
         return

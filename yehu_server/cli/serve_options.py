@@ -139,13 +139,7 @@ def add_arguments(parser: Parser) -> None:
 
 
 def options_of(arguments: argparse.Namespace) -> Any:
-    """The `ServeOptions` of parsed arguments.
-
-    Raises
-    ------
-    YehuError
-        Where a value or file is wrong.
-    """
+    """The `ServeOptions` of parsed arguments; raises YehuError where a value or file is wrong."""
     from yehu_server.live.audio.output import OutputOptions
     from yehu_server.live.midi.input_process import check_api
     from yehu_server.live.midi.ports import MidiOptions

@@ -94,10 +94,7 @@ def check_sound(arguments: argparse.Namespace) -> None:
 def check_stage(arguments: argparse.Namespace) -> None:
     """Refuse options that exclude each other, and those that `check_sound` does.
 
-    Raises
-    ------
-    ParameterError
-        Where there are some.
+    Raises ParameterError where there are some.
     """
     check_sound(arguments)
     if arguments.by == "track" and arguments.ensemble is None:
@@ -139,10 +136,7 @@ def sound_options_of(
 def room_of(name: str, presets: Presets) -> Values:
     """The values of a preset of rooms.
 
-    Raises
-    ------
-    YehuError
-        Where there is no such preset, or it is none of a room alone.
+    Raises YehuError where there is no such preset, or it is none of a room alone.
     """
     preset = presets.find(name)
     other = [each for each in preset.values if not is_of_room(each)]

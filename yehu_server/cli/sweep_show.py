@@ -33,10 +33,7 @@ def add_show(command: Parser) -> None:
 def show(arguments: argparse.Namespace) -> int:
     """Draw a result; return the exit code.
 
-    Raises
-    ------
-    ParameterError
-        Where the call is wrong.
+    Raises ParameterError where the call is wrong.
     """
     from yehu_server.errors import ParameterError
     from yehu_server.lab.plot.png import check_picture

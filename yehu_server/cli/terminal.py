@@ -84,10 +84,7 @@ def ending_at_once() -> Iterator[None]:
 def warn_of_compiling(arguments: argparse.Namespace, *, plays: bool = True) -> None:
     """Warn where the model will be compiled: at its first use, or always if it is not cached.
 
-    Parameters
-    ----------
-    plays : bool
-        Whether the command plays the instrument, which is what code is made of in advance.
+    `plays`: whether the command plays the instrument, which is what code is made of in advance.
     """
     from yehu_server.compile.cache_folder import WHY_NOT_CACHED, cache_folder
     from yehu_server.core.engine.warming import is_warm

@@ -33,10 +33,7 @@ PROGRAMS_EVERY_S = 1.0  # between looks whether files of presets changed
 class CounterReport:
     """Reports counts that grow: at once, and then at most every ten seconds.
 
-    Parameters
-    ----------
-    on_message : callable
-        Called with each line.
+    `on_message`: called with each line.
     """
 
     def __init__(self, on_message: Callable[[str], None]) -> None:
@@ -49,10 +46,7 @@ class CounterReport:
     def look(self, counts: Mapping[str, int]) -> None:
         """Report counts that have grown since they were last reported.
 
-        Parameters
-        ----------
-        counts : mapping
-            Each by a phrase for what is counted.
+        `counts`: each by a phrase for what is counted.
         """
         now = time.monotonic()
         for what, count in counts.items():
@@ -64,10 +58,7 @@ class CounterReport:
 class UnderRunReport:
     """Reports under-runs of the device and missed deadlines.
 
-    Parameters
-    ----------
-    on_message : callable
-        Called with each line.
+    `on_message`: called with each line.
     """
 
     def __init__(self, on_message: Callable[[str], None]) -> None:
@@ -103,14 +94,9 @@ def _counted(count: int, what: str) -> str:
 class MappingFollower:
     """Watches a mapping's files, and gives the player the new mapping where they are right.
 
-    Parameters
-    ----------
-    reread : callable
-        Reads the files. Raises MappingError.
-    on_change : callable
-        Called when the player has got a new mapping.
-    on_message : callable
-        Called with a line about each change, and about what is wrong with the files.
+    `reread`: reads the files. Raises MappingError.
+    `on_change`: called when the player has got a new mapping.
+    `on_message`: called with a line about each change, and about what is wrong with the files.
     """
 
     def __init__(
@@ -145,17 +131,10 @@ class MappingFollower:
 class Housekeeper:
     """Keeps a server's delay, capture, mappings and programs up to date, from `start` to `stop`.
 
-    Parameters
-    ----------
-    osc_drops : callable
-        Returns the number of OSC packets that the system dropped.
-    on_message : callable
-        Called with a line for the player.
+    `osc_drops`: returns the number of OSC packets that the system dropped.
+    `on_message`: called with a line for the player.
 
-    Attributes
-    ----------
-    capture : LiveCapture, optional
-        What the session is written into; set before `start`.
+    `capture`: what the session is written into; set before `start`.
     """
 
     def __init__(

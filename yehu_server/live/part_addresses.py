@@ -35,13 +35,7 @@ def split_group(address: str) -> tuple[str, str]:
 
 
 def check_part(addressed: str, parts: int) -> None:
-    """Refuse a group that is not there.
-
-    Raises
-    ------
-    ParameterError
-        Where it is not.
-    """
+    """Refuse a group that is not there; raises ParameterError where it is not."""
     if addressed and not 1 <= int(addressed.removeprefix(PART)) <= parts:
         raise ParameterError(no_part(addressed.removeprefix(PART), parts))
 
@@ -53,13 +47,7 @@ def no_part(number: object, parts: int) -> str:
 
 
 def check_own(addressed: str, address: str) -> None:
-    """Refuse a parameter of a part that is one for all.
-
-    Raises
-    ------
-    ParameterError
-        Where it is.
-    """
+    """Refuse a parameter of a part that is one for all; raises ParameterError where it is."""
     param = BY_ADDRESS.get(address.removesuffix(UNIT))
     if addressed and param is not None and param.is_shared:
         raise ParameterError(f"{param.address} is one for all parts: {PREFIX}{param.address}")

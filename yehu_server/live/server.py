@@ -52,21 +52,13 @@ SWITCH_INTERVAL_S = 0.0001
 class Server:
     """Yehus that are played live, one or several on a stage, from `start` to `stop`.
 
-    Parameters
-    ----------
-    on_message : callable
-        Called with a line for the player: about devices that appear or disappear, and troubles.
-    progress : callable, optional
-        Called with the number of notes done and of all, while the instrument is calibrated.
+    Raises YehuError where nothing is compiled; DeviceError where a named device is not there, or
+    the address of OSC or OSCQuery cannot be used; OutputError where `record` or `capture` cannot be
+    written.
 
-    Raises
-    ------
-    YehuError
-        Where nothing is compiled.
-    DeviceError
-        Where a named device is not there, or the address of OSC or OSCQuery cannot be used.
-    OutputError
-        Where `record` or `capture` cannot be written.
+    `on_message`: called with a line for the player: about devices that appear or disappear, and
+    troubles.
+    `progress`: called with the number of notes done and of all, while the instrument is calibrated.
     """
 
     def __init__(
@@ -213,12 +205,8 @@ class Server:
     def start(self) -> None:
         """Start to play.
 
-        Raises
-        ------
-        DeviceError
-            Where a named device cannot be opened.
-        OutputError
-            Where `record` or `capture` cannot be written.
+        Raises DeviceError where a named device cannot be opened; OutputError where `record` or
+        `capture` cannot be written.
         """
         sys.setswitchinterval(SWITCH_INTERVAL_S)
         gc.collect()

@@ -60,29 +60,19 @@ class Bind:
     inverts, as does `invert`. The pitch wheel without a span moves ``/playing/bend`` in
     semitones, by the bend range.
 
-    Attributes
-    ----------
-    source : str
-        Canonical name of the source (``sources``).
-    target : str
-        Address of the parameter.
-    span : tuple of float, optional
-        The target's values at the two ends; by default its whole range.
-    smoothing_ms : float
-        Shortest time in which a move changes a sounding note; see `WishPoster.write`.
-    channels : tuple of int
-        MIDI channels, 1 to 16, that it receives on; all if empty.
-    is_soft : bool
-        Soft take-over: the target moves only once the source has reached the target's value.
-    input_range : tuple of float
-        The values that an OSC address sends at its two ends.
-    is_exclusive : bool
-        Whether it replaces all binds of the base that move the same target; ``alone`` in files.
-    is_global : bool
-        Whether it moves every note, on whichever port and channel the source is moved; see
-        ``scope``.
-    replaces : tuple of Bind
-        Binds of the same file that MIDI learn took away for it; they come back with `unlearn`.
+    `source`: canonical name of the source (``sources``).
+    `target`: address of the parameter.
+    `span`: the target's values at the two ends; by default its whole range.
+    `smoothing_ms`: shortest time in which a move changes a sounding note; see `WishPoster.write`.
+    `channels`: MIDI channels, 1 to 16, that it receives on; all if empty.
+    `is_soft`: soft take-over: the target moves only once the source has reached the target's value.
+    `input_range`: the values that an OSC address sends at its two ends.
+    `is_exclusive`: whether it replaces all binds of the base that move the same target; ``alone``
+    in files.
+    `is_global`: whether it moves every note, on whichever port and channel the source is moved; see
+    ``scope``.
+    `replaces`: binds of the same file that MIDI learn took away for it; they come back with
+    `unlearn`.
     """
 
     source: str

@@ -98,16 +98,11 @@ def calibrate(
 ) -> Calibration:
     """Measure a calibration by bowing the model.
 
-    Parameters
-    ----------
-    rate : float
-        Sample rate (Hz).
-    a4 : float
-        Reference pitch (Hz).
-    bowing : ndarray, optional
-        How notes are bowed; by default as practised for the nearest of the usual rates.
-    progress : callable, optional
-        Called with the number of notes done and of all notes.
+    `rate`: sample rate (Hz).
+    `a4`: reference pitch (Hz).
+    `bowing` (ndarray, optional): how notes are bowed; by default as practised for the nearest of
+    the usual rates.
+    `progress`: called with the number of notes done and of all notes.
     """
     jobs = [(string, pitch) for string, pitches in enumerate(PITCHES) for pitch in pitches]
     bowing = shipped_practice(rate) if bowing is None else bowing

@@ -51,15 +51,10 @@ def calibration_for(
 ) -> Calibration:
     """Find the calibration of an instrument, or measure it, in some seconds.
 
-    Parameters
-    ----------
-    rate : float
-        Sample rate (Hz).
-    a4 : float
-        Reference pitch (Hz) of the music; that of the player's tables is another where the strings
-        are tuned elsewhere than a yehu's (`stringing`).
-    progress : callable, optional
-        Called with the number of notes done and of all notes, where it is measured.
+    `rate`: sample rate (Hz).
+    `a4`: reference pitch (Hz) of the music; that of the player's tables is another where the
+    strings are tuned elsewhere than a yehu's (`stringing`).
+    `progress`: called with the number of notes done and of all notes, where it is measured.
     """
     quantities = quantities or Quantities()
     key = calibration_key(rate, quantities, a4)
@@ -90,10 +85,8 @@ def as_data(calibration: Calibration) -> dict[str, Any]:
 def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibration:
     """Read the JSON values of a calibration of an instrument.
 
-    Raises
-    ------
-    ParameterError
-        Where they are none, are for another pitch, or beyond what can be measured.
+    Raises ParameterError where they are none, are for another pitch, or beyond what can be
+    measured.
     """
     try:
         first, second = map(float, data["tensions"])

@@ -23,12 +23,8 @@ class Delay:
     until the next period: a message that arrives meanwhile can sound only after those blocks.
     The delay is in whole blocks, so that it changes only with the device's period.
 
-    Parameters
-    ----------
-    block : int
-        Frames of one callback.
-    fixed_ms : float, optional
-        Use this delay, whatever the device does.
+    `block`: frames of one callback.
+    `fixed_ms`: use this delay, whatever the device does.
     """
 
     def __init__(self, instrument: Instrument, block: int, fixed_ms: float | None = None) -> None:

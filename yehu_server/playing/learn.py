@@ -103,10 +103,7 @@ class Learner:
 def own_file(mapping: Mapping) -> Path:
     """The file that keeps learned binds: the mapping's own, or for a shipped one the user's copy.
 
-    Raises
-    ------
-    MappingError
-        Where the mapping comes from no file.
+    Raises MappingError where the mapping comes from no file.
     """
     if not mapping.files:
         raise MappingError(f"the mapping {mapping.name} comes from no file")
@@ -120,9 +117,9 @@ def learn(
 ) -> tuple[Mapping, Path]:
     """Bind a source to a target, over its whole range, and save the bind.
 
-    It replaces all other binds of the target and of the source, and moves the target for all
-    notes, on whichever device they are played. Those of the user's file are kept with it, for
-    `unlearn`.
+    It replaces all other binds of the target and of the source, and moves the target for all notes,
+    on whichever device they are played. Those of the user's file are kept with it, for `unlearn`.
+    Raises MappingError where the file is wrong or cannot be written; nothing is changed then.
 
     Returns
     -------
@@ -130,11 +127,6 @@ def learn(
         With the bind.
     path : Path
         The file that it was saved to.
-
-    Raises
-    ------
-    MappingError
-        Where the file is wrong or cannot be written; nothing is changed then.
     """
     param = settable_param(target, "learn one")
     bind = Bind(
@@ -157,7 +149,8 @@ def learn(
 def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
     """Remove the learned bind of a target from the user's file, and give back what it replaced.
 
-    Where none is learned, those that the user has written are removed.
+    Where none is learned, those that the user has written are removed. Raises MappingError as
+    `learn`.
 
     Returns
     -------
@@ -165,11 +158,6 @@ def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
         Without them.
     count : int
         Number of binds removed.
-
-    Raises
-    ------
-    MappingError
-        As `learn`.
     """
     address = find(target).address
     path = own_file(mapping)

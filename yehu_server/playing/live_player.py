@@ -31,11 +31,8 @@ class Arrivals:
 
     Small corrections of the clock must not swap messages that arrive close together.
 
-    Parameters
-    ----------
-    frame_at : callable
-        Returns the frame for a ``time.monotonic_ns()``, such as `LivePlayer.frame_of`.
-    rate : float, Hz
+    `frame_at`: returns the frame for a ``time.monotonic_ns()``, such as `LivePlayer.frame_of`.
+    `rate` (Hz).
     """
 
     def __init__(self, frame_at: Callable[[int], int], rate: float) -> None:
@@ -58,21 +55,13 @@ class LivePlayer:
     Every call takes the frame at which it is to sound: that of the message's arrival, by
     `frame_of`, or that of its time tag. The player acts in the order of frames.
 
-    Parameters
-    ----------
-    delay_ms : float
-        From arrival to sound. Constant, and long enough that the frame has not been played
-        yet, so that messages keep their rhythm.
-    part : int
-        Which of the parts on the stage it plays, counted from 0. What all parts share is the
-        first one's.
-    wishes : WishPoster, optional
-        What its wishes go through; by default those of its options, to the instrument.
+    `delay_ms`: from arrival to sound. Constant, and long enough that the frame has not been played
+    yet, so that messages keep their rhythm.
+    `part`: which of the parts on the stage it plays, counted from 0. What all parts share is the
+    first one's.
+    `wishes`: what its wishes go through; by default those of its options, to the instrument.
 
-    Attributes
-    ----------
-    on_learning_changed : callable
-        Called where `listens` changes, from any thread.
+    `on_learning_changed`: called where `listens` changes, from any thread.
     """
 
     def __init__(
@@ -126,10 +115,7 @@ class LivePlayer:
     def value(self, address: str) -> float:
         """The value of a parameter, or the one it is moving to.
 
-        Raises
-        ------
-        ParameterError
-            Where there is no such parameter.
+        Raises ParameterError where there is no such parameter.
         """
         with self._lock:
             return self._wishes.value(address)
@@ -142,10 +128,7 @@ class LivePlayer:
     def write(self, address: str, value: float, *, frame: int) -> float:
         """Set a parameter; return the value accepted.
 
-        Raises
-        ------
-        ParameterError
-            As `WishPoster.write`.
+        Raises ParameterError as `WishPoster.write`.
         """
         with self._lock:
             return self._midi.write(address, value, frame=self._at(frame))
@@ -257,10 +240,7 @@ class LivePlayer:
     def note_on(self, note: float, velocity: float, *, frame: int) -> None:
         """Begin a note (fractional MIDI note; velocity 0 to 127).
 
-        Raises
-        ------
-        ParameterError
-            Where one is out of MIDI's range.
+        Raises ParameterError where one is out of MIDI's range.
         """
         key = _key(_within("note", note))
         with self._lock:
@@ -272,13 +252,7 @@ class LivePlayer:
             self._midi.note_off(_key(note), self._at(frame))
 
     def slide(self, pitch: float, *, frame: int) -> float:
-        """See `WishPoster.slide`.
-
-        Raises
-        ------
-        ParameterError
-            Where the pitch is out of MIDI's range.
-        """
+        """See `WishPoster.slide`; raises ParameterError where the pitch is out of MIDI's range."""
         with self._lock:
             return self._wishes.slide(_within("pitch", pitch), frame=self._at(frame))
 

@@ -40,18 +40,11 @@ def user_folder() -> Path:
 class Mapping:
     """A named set of binds; several may share a source or a target (the last move counts).
 
-    Attributes
-    ----------
-    start : tuple of (address, value)
-        Values that parameters start with.
-    mpe : bool
-        Whether every port starts as an MPE zone.
-    key_switches : int, optional
-        The lowest of the keys that choose an articulation (MIDI note).
-    about : str
-        What it is for, in a line.
-    files : tuple of Path
-        The file it was read from, then those of its bases.
+    `start` (tuple of (address, value)): values that parameters start with.
+    `mpe`: whether every port starts as an MPE zone.
+    `key_switches`: the lowest of the keys that choose an articulation (MIDI note).
+    `about`: what it is for, in a line.
+    `files`: the file it was read from, then those of its bases.
     """
 
     name: str
@@ -106,17 +99,10 @@ def is_own(mapping: Mapping) -> bool:
 def load(name_or_path: str, *, user_first: bool = False) -> Mapping:
     """Read a mapping by its name, or from a file.
 
-    Parameters
-    ----------
-    name_or_path : str
-        A name, ``mine/NAME`` for one of the user's own, or a path.
-    user_first : bool
-        Whether a plain name means the user's own mapping before a shipped one.
+    Raises MappingError, naming file and line.
 
-    Raises
-    ------
-    MappingError
-        Naming file and line.
+    `name_or_path`: a name, ``mine/NAME`` for one of the user's own, or a path.
+    `user_first`: whether a plain name means the user's own mapping before a shipped one.
     """
     path = find_file(name_or_path, user_first=user_first)
     return with_bases(path, read_mapping_file(path))
@@ -125,10 +111,7 @@ def load(name_or_path: str, *, user_first: bool = False) -> Mapping:
 def find_file(name_or_path: str, *, user_first: bool = False) -> Path:
     """Find the file of a mapping by its name; anything but a name is taken as a path.
 
-    Raises
-    ------
-    MappingError
-        Where there is no mapping of this name.
+    Raises MappingError where there is no mapping of this name.
     """
     if not _is_name(name_or_path):
         return Path(name_or_path)
@@ -141,10 +124,7 @@ def find_file(name_or_path: str, *, user_first: bool = False) -> Path:
 def with_bases(path: Path, contents: MappingFile) -> Mapping:
     """Merge the contents of a file with those of its base, and of the base's base.
 
-    Raises
-    ------
-    MappingError
-        Where a base is missing, wrong, or based on this file.
+    Raises MappingError where a base is missing, wrong, or based on this file.
     """
     layers, files = [contents], [path]
     while (base := layers[-1].base) is not None:

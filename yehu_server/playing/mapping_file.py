@@ -43,34 +43,19 @@ def document_of(path: Path, text: str = "") -> Document:
 
 
 def text_of(path: Path) -> str:
-    """The text of a file.
-
-    Raises
-    ------
-    MappingError
-        Where it cannot be read or is not UTF-8.
-    """
+    """The text of a file; raises MappingError where it cannot be read or is not UTF-8."""
     return document_of(path).read(path, MOST_BYTES).text
 
 
 def read_mapping_file(path: Path, text: str | None = None) -> MappingFile:
-    """Read a TOML file, or the text of one.
-
-    Raises
-    ------
-    MappingError
-        Naming file and line.
-    """
+    """Read a TOML file, or the text of one; raises MappingError, naming file and line."""
     return mapping_file_from(document_of(path, text_of(path) if text is None else text).toml())
 
 
 def mapping_file_of_json(path: Path, text: str) -> MappingFile:
     """Read what ``yehu-server mappings show --json`` prints.
 
-    Raises
-    ------
-    MappingError
-        Where it is wrong.
+    Raises MappingError where it is wrong.
     """
     table = document_of(path, text).json()
     data = _without_null(table.data)
@@ -103,13 +88,7 @@ def _without_null(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def mapping_file_from(table: Fields) -> MappingFile:
-    """Check and convert the entries of a file.
-
-    Raises
-    ------
-    MappingError
-        Naming file and line.
-    """
+    """Check and convert the entries of a file; raises MappingError, naming file and line."""
     mapping_file = MappingFile(
         name=table.read("name", line, Path(table.document.name).stem),
         about=table.read("about", line, ""),

@@ -18,12 +18,8 @@ class MappingWatch:
     A change counts once the files were the same at two polls in a row, so that none is read
     half written.
 
-    Parameters
-    ----------
-    mapping : Mapping
-        The mapping in use.
-    read : callable
-        Reads it again; raises MappingError where it is wrong.
+    `mapping`: the mapping in use.
+    `read`: reads it again; raises MappingError where it is wrong.
     """
 
     def __init__(self, mapping: Mapping, read: Callable[[], Mapping]) -> None:
@@ -36,11 +32,7 @@ class MappingWatch:
         """Poll the files; return the mapping if it has changed.
 
         A wrong mapping is read again at each poll, as the cause may lie in a file not known yet.
-
-        Raises
-        ------
-        MappingError
-            Where it is wrong; once for each reason.
+        Raises MappingError where it is wrong; once for each reason.
         """
         before, self._seen = self._seen, _marks(self._mapping.files)
         if self._seen != before or (self._seen == self._known and self._refused is None):

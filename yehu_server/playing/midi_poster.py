@@ -36,15 +36,10 @@ PATIENCE_S = 1.0  # to wait until the audio side uses other tables
 class MidiPoster:
     """Sends MIDI channel messages to a part: notes directly, controllers through a mapping.
 
-    Parameters
-    ----------
-    channels : set of int, optional
-        Channels to receive, counted from 0; by default all. Notes of the percussion channel are
-        played only if it is chosen, or a member of an MPE zone.
-    start : iterable of (address, value)
-        Start values of parameters, over those of the mapping.
-    programs : mapping, optional
-        The presets of MIDI programs, from 1. Without it program changes are ignored.
+    `channels`: channels to receive, counted from 0; by default all. Notes of the percussion channel
+    are played only if it is chosen, or a member of an MPE zone.
+    `start` (iterable of (address, value)): start values of parameters, over those of the mapping.
+    `programs`: the presets of MIDI programs, from 1. Without it program changes are ignored.
     """
 
     def __init__(
@@ -130,12 +125,8 @@ class MidiPoster:
         """Take another mapping while notes sound.
 
         Moves stay where their source is still bound. A parameter whose start value differs takes
-        the new one, unless it was moved since.
-
-        Raises
-        ------
-        YehuError
-            Where others were taken just before, and are not in use yet.
+        the new one, unless it was moved since. Raises YehuError where others were taken just
+        before, and are not in use yet.
         """
         self.mapping = mapping
         self._change_tables(frame)

@@ -33,16 +33,10 @@ AS_IT_SINGS = {**STILL_HANDS, "/playing/attack": 20.0, "/playing/velocity": NEUT
 class PlayingOptions:
     """How to play; see ``yehu-server render --help``.
 
-    Attributes
-    ----------
-    settings : tuple of (address, value)
-        Held parameters.
-    start : tuple of (address, value)
-        The values of the preset.
-    preset : Path, optional
-        The file of the preset.
-    higher : int
-        Semitones by which the instrument is tuned higher than a yehu; the tuning counts them.
+    `settings` (tuple of (address, value)): held parameters.
+    `start` (tuple of (address, value)): the values of the preset.
+    `preset`: the file of the preset.
+    `higher`: semitones by which the instrument is tuned higher than a yehu; the tuning counts them.
     """
 
     mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
@@ -84,12 +78,8 @@ class PlayingOptions:
     ) -> InstrumentSpec:
         """An instrument at a rate (Hz), calibrated, with a player with these options.
 
-        Parameters
-        ----------
-        quantities : Quantities
-            The instrument as it is before it is tuned.
-        start_values, body, person
-            See `InstrumentSpec`.
+        `quantities`: the instrument as it is before it is tuned.
+        `start_values`, `body`, `person`: see `InstrumentSpec`.
         """
         return InstrumentSpec(
             rate,

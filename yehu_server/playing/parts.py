@@ -44,10 +44,7 @@ class Part:
 def number_of_instruments(per_part: Sequence[PlayingOptions]) -> int:
     """How many instruments some parts take together.
 
-    Raises
-    ------
-    ParameterError
-        Where they are more than a stage has.
+    Raises ParameterError where they are more than a stage has.
     """
     count = sum(map(section_size, per_part))
     if count > MOST_PARTS:
@@ -75,12 +72,8 @@ def assemble(
 ) -> tuple[Ensemble, list[Sequence[Instrument]]]:
     """Make the instruments of all parts, on a stage; return them by part, too.
 
-    Parameters
-    ----------
-    per_part : sequence of PlayingOptions
-        Those of `seated`, one for each part.
-    memory : buffer
-        See `Ensemble`.
+    `per_part`: those of `seated`, one for each part.
+    `memory`: see `Ensemble`.
     """
     specs: list[InstrumentSpec] = []
     ends = []

@@ -52,10 +52,7 @@ def autocorrelation(samples: Array, longest: int) -> Array:
 def pitch_hz(samples: Array, rate: float, lo: float = LOWEST_HZ, hi: float = HIGHEST_HZ) -> float:
     """Return the fundamental frequency (Hz) of a steady sound; NaN where it has none.
 
-    Parameters
-    ----------
-    samples : ndarray [shape=(frames,)]
-        At least two periods of `lo`; more are more reliable.
+    `samples` (ndarray [shape=(frames,)]): at least two periods of `lo`; more are more reliable.
     """
     x = np.asarray(samples, np.float64)
     x = x - x.mean()

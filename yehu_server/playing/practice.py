@@ -127,19 +127,12 @@ class Search:
 class Practice:
     """Practises on an instrument at a rate (Hz).
 
-    Parameters
-    ----------
-    values : mapping
-        Values of parameters, by address: those of the bow's place, speed and pressure alone are
-        practised.
-    tuning : callable
-        Maps a key to its pitch, both fractional MIDI notes, or None. Each note is practised at the
-        pitch nearest to it; by default at its own.
+    `values`: values of parameters, by address: those of the bow's place, speed and pressure alone
+    are practised.
+    `tuning`: maps a key to its pitch, both fractional MIDI notes, or None. Each note is practised
+    at the pitch nearest to it; by default at its own.
 
-    Attributes
-    ----------
-    notes_changed : int
-        Number of notes at places of the bow that are now bowed otherwise.
+    `notes_changed`: number of notes at places of the bow that are now bowed otherwise.
     """
 
     def __init__(
@@ -176,14 +169,9 @@ class Practice:
     ) -> Array:
         """Practise all notes; return a table as `default_recipes` does.
 
-        Parameters
-        ----------
-        progress : callable, optional
-            Called with the number of notes done and of all notes.
-        table : ndarray, optional
-            How notes are bowed to begin with; by default all alike.
-        places : iterable of int
-            Indices of PLACES to practise.
+        `progress`: called with the number of notes done and of all notes.
+        `table` (ndarray, optional): how notes are bowed to begin with; by default all alike.
+        `places`: indices of PLACES to practise.
         """
         table = default_recipes() if table is None else table.copy()
         asked = [place for place in places if place in self._places]

@@ -66,10 +66,7 @@ def as_data(table: Array, rate: float) -> dict[str, Any]:
 def table_of(data: Any) -> Array:
     """The table of bowing of JSON values that `as_data` made.
 
-    Raises
-    ------
-    ParameterError
-        Where they are none, or a value is out of range.
+    Raises ParameterError where they are none, or a value is out of range.
     """
     table = default_recipes()
     try:
@@ -97,12 +94,7 @@ def _recipe(note: str, values: Any) -> Array:
 def read_practice(path: Path) -> Array:
     """Read the table of a practice file.
 
-    Raises
-    ------
-    ScoreError
-        Where it cannot be read.
-    ParameterError
-        Where it is no practice.
+    Raises ScoreError where it cannot be read; ParameterError where it is no practice.
     """
     try:
         return table_of(parse_json(read_text(path, MOST_BYTES)))
@@ -115,12 +107,6 @@ def read_practice(path: Path) -> Array:
 
 
 def write_practice(path: Path, table: Array, rate: float) -> None:
-    """Write a practice file.
-
-    Raises
-    ------
-    OutputError
-        Where it cannot be written.
-    """
+    """Write a practice file; raises OutputError where it cannot be written."""
     with replacing(path) as partial:
         partial.write_text(as_text(as_data(table, rate)), encoding="utf-8")

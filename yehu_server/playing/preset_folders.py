@@ -28,13 +28,7 @@ Stamp = tuple[int, int]
 
 
 def read_preset(path: Path, name: str | None = None) -> Preset:
-    """Read a preset from a file.
-
-    Raises
-    ------
-    PresetError
-        Naming the file, or `name`.
-    """
+    """Read a preset from a file; raises PresetError, naming the file, or `name`."""
     return preset_from(document_of(name or path).read(path, MOST_BYTES), name or path.stem)
 
 
@@ -60,14 +54,10 @@ class Presets:
 
     Files are read again when they have changed.
 
-    Parameters
-    ----------
-    own : Path, optional
-        The user's folder, created by the first `save`; by default in the user's configuration
-        folder for this program.
-    user_first : bool
-        Whether the user's own presets take precedence over shipped ones of the same name or
-        program, as in live playing. Else shipped ones do, and own ones have no program.
+    `own`: the user's folder, created by the first `save`; by default in the user's configuration
+    folder for this program.
+    `user_first`: whether the user's own presets take precedence over shipped ones of the same name
+    or program, as in live playing. Else shipped ones do, and own ones have no program.
     """
 
     def __init__(self, own: Path | None = None, *, user_first: bool = True) -> None:
@@ -86,13 +76,7 @@ class Presets:
         return self._own_file(name).is_file()
 
     def file(self, name: str) -> Path:
-        """The file of a preset.
-
-        Raises
-        ------
-        PresetError
-            Where there is no such preset.
-        """
+        """The file of a preset; raises PresetError where there is no such preset."""
         lookups = [self._own_file, self._shipped_file]
         if name.startswith(MINE):
             del lookups[1]
@@ -107,12 +91,8 @@ class Presets:
     def load(self, name: str) -> Preset:
         """Read a preset by its name, or several by names with a plus between them.
 
-        Of several, each sets what it names, the later ones last: ``sul-tasto+hall``.
-
-        Raises
-        ------
-        PresetError
-            Where there is no such preset, it is wrong, or they are too many.
+        Of several, each sets what it names, the later ones last: ``sul-tasto+hall``. Raises
+        PresetError where there is no such preset, it is wrong, or they are too many.
         """
         names = name.split(AND)
         if len(names) > MOST_TOGETHER:
@@ -121,13 +101,7 @@ class Presets:
         return found[0] if len(found) == 1 else together(found)
 
     def find(self, name_or_path: str) -> Preset:
-        """Read a preset by its name or path.
-
-        Raises
-        ------
-        PresetError
-            As `load`.
-        """
+        """Read a preset by its name or path; raises PresetError as `load`."""
         if is_name(name_or_path):
             return self.load(name_or_path)
         return read_preset(Path(name_or_path))
@@ -135,10 +109,7 @@ class Presets:
     def find_file(self, name_or_path: str) -> Path:
         """The file that `find` reads; of several the first.
 
-        Raises
-        ------
-        PresetError
-            As `file`.
+        Raises PresetError as `file`.
         """
         if is_name(name_or_path):
             return self.file(name_or_path.split(AND, maxsplit=1)[0])
@@ -169,14 +140,9 @@ class Presets:
     def save(self, name: str, values: Mapping[str, float]) -> None:
         """Save the values that make up a sound as one of the user's own presets.
 
-        The rest of an older file of this name (comments, `about`, `program`, other entries)
-        stays, and the whole file where writing fails.
-
-        Raises
-        ------
-        PresetError
-            Where the name is a shipped preset's, an older file cannot be read, there are
-            MOST_OWN already, or writing fails.
+        The rest of an older file of this name (comments, `about`, `program`, other entries) stays,
+        and the whole file where writing fails. Raises PresetError where the name is a shipped
+        preset's, an older file cannot be read, there are MOST_OWN already, or writing fails.
         """
         path = self._own_file(name)
         text = EMPTY
@@ -205,10 +171,7 @@ class Presets:
     def delete(self, name: str) -> None:
         """Delete one of the user's own presets.
 
-        Raises
-        ------
-        PresetError
-            Where there is no such preset, or it cannot be deleted.
+        Raises PresetError where there is no such preset, or it cannot be deleted.
         """
         path = self._own_file(name)
         if not path.is_file():

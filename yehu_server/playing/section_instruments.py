@@ -48,10 +48,7 @@ def part_specs(
 ) -> list[InstrumentSpec]:
     """The instruments of a part: one, or those of a section; see `section_specs`.
 
-    Parameters
-    ----------
-    number : int
-        How many others are on the stage already.
+    `number`: how many others are on the stage already.
     """
     people = section_size(playing)
     if people > 1:
@@ -69,13 +66,9 @@ def section_specs(
 ) -> list[InstrumentSpec]:
     """The instruments of a section; the first has that of ``PlayingOptions.spec``.
 
-    Parameters
-    ----------
-    rate : float, Hz
-    quantities : Quantities
-        The first player's instrument as it is before it is tuned.
-    people : int
-        Number of players.
+    `rate` (Hz).
+    `quantities`: the first player's instrument as it is before it is tuned.
+    `people`: number of players.
     """
     base = quantities or Quantities()
 

@@ -65,13 +65,7 @@ def controller(source: str) -> str:
 
 
 def canonical(text: str) -> str:
-    """The canonical name of a source.
-
-    Raises
-    ------
-    ParameterError
-        Where there is no such source.
-    """
+    """The canonical name of a source; raises ParameterError where there is no such source."""
     if text in WORDS:
         return text
     if is_address(text):

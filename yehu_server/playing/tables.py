@@ -53,16 +53,11 @@ def make_tables(
 ) -> Array:
     """Make the tables of a part.
 
-    Parameters
-    ----------
-    mapping : Mapping
-        With no more binds and points than there is room for, as ``playing.mapping`` reads it.
-    start : iterable of (address, value)
-        Start values of parameters, over those of the mapping.
-    received : iterable of int, optional
-        Channels to receive, counted from 0; by default all but percussion.
-    programs : mapping, optional
-        The presets of MIDI programs, from 1. Without it program changes are ignored.
+    `mapping`: with no more binds and points than there is room for, as ``playing.mapping`` reads
+    it.
+    `start` (iterable of (address, value)): start values of parameters, over those of the mapping.
+    `received`: channels to receive, counted from 0; by default all but percussion.
+    `programs`: the presets of MIDI programs, from 1. Without it program changes are ignored.
 
     Returns
     -------

@@ -62,15 +62,10 @@ _NO_TEXT = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f]")  # 1a (hex) ends a DOS t
 class Tuning:
     """The pitch of every key.
 
-    Attributes
-    ----------
-    keys : tuple of float, optional
-        Pitches of keys 0 to 127 (fractional MIDI notes; None for an unmapped key), relative to
-        A4; None where each key sounds its own number.
-    fixed : bool
-        Whether pitches are relative to an A4 of 440 Hz, whatever the instrument's A4 is.
-    files : tuple of Path
-        The files that it was read from.
+    `keys`: pitches of keys 0 to 127 (fractional MIDI notes; None for an unmapped key), relative to
+    A4; None where each key sounds its own number.
+    `fixed`: whether pitches are relative to an A4 of 440 Hz, whatever the instrument's A4 is.
+    `files`: the files that it was read from.
     """
 
     name: str
@@ -113,12 +108,8 @@ def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
     """Read a Scala scale and, if given, a Scala keyboard map; a bare name means a shipped file.
 
     Without a map the scale's 1/1 is key 60 at its pitch in equal temperament, and each key plays
-    the next note of the scale. With a map the pitches are fixed in Hz.
-
-    Raises
-    ------
-    ParameterError
-        Naming the file, and the line where that is known.
+    the next note of the scale. With a map the pitches are fixed in Hz. Raises ParameterError,
+    naming the file, and the line where that is known.
     """
     scale = _found(scale, ".scl")
     keyboard = None if keyboard is None else _found(keyboard, ".kbm")

@@ -51,14 +51,10 @@ class Pending:
 class WishPoster:
     """Asks the player of an instrument, or those of a section, for notes and parameters.
 
-    Parameters
-    ----------
-    instruments : Instrument, or sequence of Instrument
-        Who plays the part; those of a section lie one after another on the stage.
-    policy : RangePolicy
-        What happens to notes out of range.
-    tuning : Tuning
-    a4 : float, Hz
+    `instruments` (Instrument, or sequence of Instrument): who plays the part; those of a section
+    lie one after another on the stage.
+    `policy`: what happens to notes out of range.
+    `a4` (Hz).
     """
 
     def __init__(
@@ -118,10 +114,7 @@ class WishPoster:
     def value(self, address: str) -> float:
         """The value of a parameter; one of bow and fingers may be moving to it.
 
-        Raises
-        ------
-        ParameterError
-            Where there is no such parameter.
+        Raises ParameterError where there is no such parameter.
         """
         param = find(address)
         pending = self._waiting(param)
@@ -157,17 +150,10 @@ class WishPoster:
     ) -> float:
         """Set any parameter of the table; return the value it then has.
 
-        The moves of bow and fingers that follow take at least `glide_ms`.
+        The moves of bow and fingers that follow take at least `glide_ms`. Raises ParameterError
+        where the address is unknown or the value is not finite.
 
-        Parameters
-        ----------
-        kind : int
-            Of the event: a plain write, or one that counts as a move of a controller.
-
-        Raises
-        ------
-        ParameterError
-            Where the address is unknown or the value is not finite.
+        `kind`: of the event: a plain write, or one that counts as a move of a controller.
         """
         param = find(address)
         accepted = param.accept(value)
@@ -271,12 +257,8 @@ class WishPoster:
 
         Keys struck at one frame make one stroke. Returns whether the instrument has the note.
 
-        Parameters
-        ----------
-        values : mapping
-            Values of parameters, by address, for this note.
-        tuned : float
-            Its pitch (fractional MIDI note) within range; by default as the tuning has it.
+        `values`: values of parameters, by address, for this note.
+        `tuned`: its pitch (fractional MIDI note) within range; by default as the tuning has it.
         """
         has_note = tuned is not None or self.has(key)
         for address, value in (values or {}).items() if has_note else ():

@@ -39,16 +39,10 @@ LINKING = ("-shared", "-s")
 class Format:
     """A format of plug-ins.
 
-    Attributes
-    ----------
-    files : tuple of str
-        The source files of its entry points.
-    headers : Path
-        The folder of its headers; `sign` lies in it, and `package` of Debian's brings it.
-    put : callable
-        Puts linked libraries, by system, into a folder; returns what it wrote.
-    face : tuple of str
-        The source files of its window.
+    `files`: the source files of its entry points.
+    `headers`: the folder of its headers; `sign` lies in it, and `package` of Debian's brings it.
+    `put`: puts linked libraries, by system, into a folder; returns what it wrote.
+    `face`: the source files of its window.
     """
 
     name: str
@@ -72,20 +66,14 @@ FORMATS = (
 def build(folder: Path, target: str) -> list[Path]:
     """Build all formats for a `--target` into a folder; for several, into a folder for each.
 
-    Parameters
-    ----------
-    target : str
-        One of `targets.NAMES`, or `targets.ALL`.
+    Raises YehuError where something is missing to build with, or the folder cannot be written.
+
+    `target`: one of `targets.NAMES`, or `targets.ALL`.
 
     Returns
     -------
     list of Path
         The files and bundles.
-
-    Raises
-    ------
-    YehuError
-        Where something is missing to build with, or the folder cannot be written.
     """
     names = [name for name in NAMES if target in (name, ALL)]
     if any(system.window == X11 for system in systems_of(target)) and not (SYSTEM / XCB).is_file():
@@ -135,10 +123,7 @@ def _put(folder: Path, name: str, work: Path) -> list[Path]:
 def compiler_of(system: System) -> list[str]:
     """The command that compiles and links C++ for a system.
 
-    Raises
-    ------
-    YehuError
-        Where there is none.
+    Raises YehuError where there is none.
     """
     if system.is_here and (found := shutil.which("g++")):
         return [found]
@@ -154,10 +139,7 @@ def compiler_of(system: System) -> list[str]:
 def compile_file(source: Path, into: Path, system: System, headers: Path) -> None:
     """Compile a source file into an object file, with the headers in a folder.
 
-    Raises
-    ------
-    YehuError
-        Where it fails.
+    Raises YehuError where it fails.
     """
     run(
         [
@@ -177,10 +159,7 @@ def compile_file(source: Path, into: Path, system: System, headers: Path) -> Non
 def link(made: Format, system: System, work: Path) -> Path:
     """Compile and link the library of a format for a system; return its file in a folder.
 
-    Raises
-    ------
-    YehuError
-        Where it fails.
+    Raises YehuError where it fails.
     """
     place = work / f"{system.triple}-{made.name}"
     place.mkdir(exist_ok=True)
@@ -204,13 +183,7 @@ def link(made: Format, system: System, work: Path) -> Path:
 
 
 def run(command: Sequence[str]) -> None:
-    """Run a compiler.
-
-    Raises
-    ------
-    YehuError
-        With what it said, where it fails.
-    """
+    """Run a compiler; raises YehuError, with what it said, where it fails."""
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - ours
     if done.returncode != 0:
         said = done.stderr.strip() or str(done.returncode)

@@ -32,12 +32,10 @@ MAPPINGS = (
 class Carried:
     """Values by address, and runs of words of tables (``ahead.memory_images``), by name.
 
-    Attributes
-    ----------
-    presets, starts : dict
-        Values of parameters by address: of each preset, and those that each mapping starts with.
-    mappings, tunings : dict
-        Runs of words of ``midi.tables``; those of a tuning are for the fields OF_TUNING.
+    `presets`, `starts`: values of parameters by address: of each preset, and those that each
+    mapping starts with.
+    `mappings`, `tunings`: runs of words of ``midi.tables``; those of a tuning are for the fields
+    OF_TUNING.
     """
 
     presets: dict[str, dict[str, float]]
@@ -52,13 +50,7 @@ class Carried:
 
 
 def carried() -> Carried:
-    """Read all that is shipped.
-
-    Raises
-    ------
-    YehuError
-        Where a file is wrong.
-    """
+    """Read all that is shipped; raises YehuError where a file is wrong."""
     files = sorted(path.stem for path in shipped_folder("mappings").glob("*.toml"))
     loaded = {name: load(name) for name in (*MAPPINGS, *files)}
     presets = [preset for _, preset in sorted(Presets(user_first=False).programs().items())]

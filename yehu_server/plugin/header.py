@@ -86,11 +86,7 @@ enum {{ EXPRESSIONS = {expression_count} }};
 def header(shown: Sequence[HostParameter], data: Carried) -> str:
     """Write the header.
 
-    Parameters
-    ----------
-    shown : sequence of HostParameter
-        All parameters, in the order that hosts see.
-    data : Carried
+    `shown`: all parameters, in the order that hosts see.
     """
     place = {parameter.address: index for index, parameter in enumerate(shown)}
     return OUTLINE.format(

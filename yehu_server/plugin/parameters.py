@@ -27,14 +27,9 @@ CHANCES = ("goes on", "begins with the transport")
 class HostParameter:
     """One parameter as a host sees it.
 
-    Attributes
-    ----------
-    row : int
-        In the parameter table; -1 for a choice of the plug-in's own.
-    steps : int
-        How many steps there are from the lowest to the highest value; 0: it is continuous.
-    choices : tuple of str
-        What each step is called; empty: by its number.
+    `row`: in the parameter table; -1 for a choice of the plug-in's own.
+    `steps`: how many steps there are from the lowest to the highest value; 0: it is continuous.
+    `choices`: what each step is called; empty: by its number.
     """
 
     address: str
@@ -74,10 +69,7 @@ def parameters(
 ) -> list[HostParameter]:
     """List all parameters: the choices first, then those of the table, what one plays by before.
 
-    Parameters
-    ----------
-    presets, mappings, tunings : tuple of str
-        Names; the first of each is the one to begin with.
+    `presets`, `mappings`, `tunings`: names; the first of each is the one to begin with.
     """
     choices = [
         _choice(PRESET, "Preset", presets, "Sets the parameters that the preset names."),

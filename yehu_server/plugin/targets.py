@@ -19,18 +19,11 @@ X11 = "window_x11.cpp"
 class System:
     """A system and kind of processor.
 
-    Attributes
-    ----------
-    name : str
-        As `--target` has it; macOS is both of its processors.
-    triple, zig : str
-        By LLVM's name, and by zig's.
-    cpu : str
-        The least processor that it runs on, by LLVM's name.
-    ending : str
-        Of a shared library.
-    vst3 : str
-        The folder of VST3's bundle that has the library, and the library's ending there.
+    `name`: as `--target` has it; macOS is both of its processors.
+    `triple`, `zig`: by LLVM's name, and by zig's.
+    `cpu`: the least processor that it runs on, by LLVM's name.
+    `ending`: of a shared library.
+    `vst3`: the folder of VST3's bundle that has the library, and the library's ending there.
     """
 
     name: str

@@ -40,10 +40,7 @@ SURFACES = (
 def chosen(names: Sequence[str]) -> list[Surface]:
     """Return surfaces by the names of their files; all where none is named.
 
-    Raises
-    ------
-    OutputError
-        Where a name is not known.
+    Raises OutputError where a name is not known.
     """
     known = {surface.name: surface for surface in SURFACES}
     for name in names:
@@ -67,10 +64,7 @@ def made(surface: Surface, server: Address, part: int) -> bytes:
 def write(surface: Surface, folder: Path, server: Address = OSC_ADDRESS, part: int = ALL) -> Path:
     """Write a surface's file, replacing an older one; return its path.
 
-    Raises
-    ------
-    OutputError
-        Where it cannot be written.
+    Raises OutputError where it cannot be written.
     """
     target = file_of(surface, folder, part)
     data = made(surface, server, part)

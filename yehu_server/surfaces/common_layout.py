@@ -60,12 +60,8 @@ class Axis:
 class Pad:
     """A pad with an axis across and one upwards.
 
-    Attributes
-    ----------
-    calls : tuple
-        The calls that it makes, each with the numbers of the axes that are its arguments.
-    lifted : str
-        The call that is made with zeros when the hand leaves the pad.
+    `calls`: the calls that it makes, each with the numbers of the axes that are its arguments.
+    `lifted`: the call that is made with zeros when the hand leaves the pad.
     """
 
     name: str

@@ -85,10 +85,7 @@ def make(server: Address) -> bytes:
 def content(data: bytes) -> bytes:
     """Return the text of a .tosc file, which is the same with every version of zlib.
 
-    Raises
-    ------
-    zlib.error
-        Where it is damaged.
+    Raises zlib.error where it is damaged.
     """
     stream = zlib.decompressobj()
     text = stream.decompress(data)

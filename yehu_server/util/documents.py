@@ -33,16 +33,10 @@ P = ParamSpec("P")
 class Document:
     """A text of a user, and the errors found in it.
 
-    Attributes
-    ----------
-    name : Path or str
-        What errors begin with.
-    what : str
-        What it should be, such as "a mapping file".
-    error : type
-        Of errors in entries; all of them are raised as one, up to `most_errors`.
-    unreadable : type, optional
-        Of errors in what is no such document at all, if that is another.
+    `name`: what errors begin with.
+    `what`: what it should be, such as "a mapping file".
+    `error`: of errors in entries; all of them are raised as one, up to `most_errors`.
+    `unreadable`: of errors in what is no such document at all, if that is another.
     """
 
     name: Path | str = ""
@@ -122,16 +116,10 @@ class Fields:
     What is wrong is an error of the document. So a reader goes on with its default, unless the
     document raises its errors at once.
 
-    Parameters
-    ----------
-    data : mapping
-        Its entries.
-    document : Document, optional
-        By default one without a name, that raises ParameterError.
-    place : str
-        Where in the document it is, for errors.
-    key : tuple
-        The same, for its line.
+    `data`: its entries.
+    `document`: by default one without a name, that raises ParameterError.
+    `place`: where in the document it is, for errors.
+    `key`: the same, for its line.
     """
 
     def __init__(

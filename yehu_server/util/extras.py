@@ -10,15 +10,9 @@ from yehu_server.errors import ParameterError
 def need(module: str, what: str, extra: str) -> None:
     """Check that a library is there.
 
-    Parameters
-    ----------
-    what : str
-        What needs it, for the message.
+    Raises ParameterError where it is missing: the extra that brings it.
 
-    Raises
-    ------
-    ParameterError
-        Where it is missing: the extra that brings it.
+    `what`: what needs it, for the message.
     """
     try:
         importlib.import_module(module)

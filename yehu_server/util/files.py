@@ -34,10 +34,8 @@ def open_at_once(path: str, flags: int) -> int:
 def open_regular(path: Path, most_bytes: int | None = None) -> BinaryIO:
     """Open a regular file to read, whose size may be bounded; at once, whatever it is.
 
-    Raises
-    ------
-    OSError
-        Also where it is a device or a pipe, which may never begin or end, or is too large.
+    Raises OSError also where it is a device or a pipe, which may never begin or end, or is too
+    large.
     """
     file = open(path, "rb", opener=open_at_once)  # noqa: SIM115 - the caller closes it
     status = os.fstat(file.fileno())
@@ -57,10 +55,7 @@ def _too_large(most_bytes: int) -> OSError:
 def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     """Read a regular file.
 
-    Raises
-    ------
-    OSError
-        Also where it is larger than `most_bytes`, or no regular file.
+    Raises OSError also where it is larger than `most_bytes`, or no regular file.
     """
     pieces, left = [], most_bytes + 1
     with open_regular(path, most_bytes) as file:
@@ -76,12 +71,8 @@ def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
 def read_lines(path: Path, most_bytes: int) -> Iterator[str]:
     """Read a text file line by line, each with its line end.
 
-    Raises
-    ------
-    OSError
-        As `read_bytes`, or where a line is too long.
-    UnicodeDecodeError
-        Where it is not UTF-8.
+    Raises OSError as `read_bytes`, or where a line is too long; UnicodeDecodeError where it is not
+    UTF-8.
     """
     with open_regular(path, most_bytes) as file:
         while line := file.readline(MAX_LINE_BYTES + 1):
@@ -93,12 +84,7 @@ def read_lines(path: Path, most_bytes: int) -> Iterator[str]:
 def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
     """Read a text file.
 
-    Raises
-    ------
-    OSError
-        As `read_bytes`.
-    UnicodeDecodeError
-        Where it is not UTF-8.
+    Raises OSError as `read_bytes`; UnicodeDecodeError where it is not UTF-8.
     """
     return read_bytes(path, most_bytes).decode("utf-8")
 
@@ -112,13 +98,7 @@ def why(error: BaseException) -> str:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder, and those it is in.
-
-    Raises
-    ------
-    OutputError
-        Where it cannot be made.
-    """
+    """Make a folder, and those it is in; raises OutputError where it cannot be made."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -128,10 +108,7 @@ def make_folder(folder: Path) -> None:
 def inside(folder: Path, name: str, ending: str = "") -> Path:
     """The path in a folder for a name that came over the network.
 
-    Raises
-    ------
-    OutputError
-        Where it is no plain name, or a symbolic link that leads out of the folder.
+    Raises OutputError where it is no plain name, or a symbolic link that leads out of the folder.
     """
     if not PLAIN_NAME.fullmatch(name):
         shown = name if len(name) <= MOST_SHOWN else f"{name[:MOST_SHOWN]}..."
@@ -150,10 +127,8 @@ def _is_within(path: Path, folder: Path) -> bool:
 def check_target(target: Path) -> None:
     """Check that a target can be written.
 
-    Raises
-    ------
-    OutputError
-        Where the folder is missing or not writable, or the target is not a regular file.
+    Raises OutputError where the folder is missing or not writable, or the target is not a regular
+    file.
     """
     folder = target.parent
     try:
@@ -174,17 +149,10 @@ def check_target(target: Path) -> None:
 def check_distinct(outputs: Mapping[str, Path], inputs: Iterable[Path] = ()) -> None:
     """Check that outputs are different files from each other and from the inputs.
 
-    Parameters
-    ----------
-    outputs : dict
-        The files to be written, by the options that name them.
-    inputs : iterable of Path
-        The files to be read.
+    Raises OutputError where two are the same file, also by links.
 
-    Raises
-    ------
-    OutputError
-        Where two are the same file, also by links.
+    `outputs`: the files to be written, by the options that name them.
+    `inputs`: the files to be read.
     """
     read = list(inputs)
     for (name, target), (other, another) in itertools.combinations(outputs.items(), 2):
@@ -216,10 +184,7 @@ def nothing(_target: Path) -> bool:
 def check_free(target: Path, may_replace: Callable[[Path], bool] = nothing) -> None:
     """Check that a target does not exist, or may be replaced.
 
-    Raises
-    ------
-    OutputError
-        Where it exists and may not be replaced.
+    Raises OutputError where it exists and may not be replaced.
     """
     if os.path.lexists(target) and not may_replace(target):
         raise OutputError(f"{target}: exists; --overwrite replaces it")
@@ -228,19 +193,12 @@ def check_free(target: Path, may_replace: Callable[[Path], bool] = nothing) -> N
 def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.FileIO:
     """Open a new file that is written bit by bit.
 
-    Parameters
-    ----------
-    overwrite : bool
-        Whether the new file replaces an older one, at once. Other hard links to that keep its
-        contents.
-    room_bytes : int
-        Free space that the disk must have.
+    Raises OutputError as `check_target`, where there is an older file, or on a full disk; an older
+    file is not changed then.
 
-    Raises
-    ------
-    OutputError
-        As `check_target`, where there is an older file, or on a full disk; an older file is not
-        changed then.
+    `overwrite`: whether the new file replaces an older one, at once. Other hard links to that keep
+    its contents.
+    `room_bytes`: free space that the disk must have.
     """
     check_target(target)
     path = _beside(target.resolve()) if overwrite else target
@@ -273,10 +231,7 @@ def discard(file: io.FileIO, path: Path) -> None:
 def write_all(file: io.FileIO, data: bytes) -> None:
     """Write all data to an unbuffered file.
 
-    Raises
-    ------
-    OSError
-        Where some of it may have been written.
+    Raises OSError where some of it may have been written.
     """
     rest = memoryview(data)
     while rest:
@@ -288,18 +243,11 @@ def replacing(target: Path, may_replace: Callable[[Path], bool] = anything) -> I
     """Yield a path beside `target` to write to; move it there when the block succeeds.
 
     An error or interrupt within the block removes the partial file and leaves an older `target`
-    unchanged.
+    unchanged. Raises OutputError as `check_target` and `check_free`, or where writing fails, as on
+    a full disk.
 
-    Parameters
-    ----------
-    may_replace : callable
-        Called with an older target, at the beginning and at the end; returns whether it may be
-        replaced.
-
-    Raises
-    ------
-    OutputError
-        As `check_target` and `check_free`, or where writing fails, as on a full disk.
+    `may_replace`: called with an older target, at the beginning and at the end; returns whether it
+    may be replaced.
     """
     check_target(target)
     check_free(target, may_replace)
@@ -339,10 +287,7 @@ def _beside(target: Path) -> Path:
 def write_text(target: Path, text: str) -> None:
     """Write a text file atomically: after a power cut it is complete, the new or the old one.
 
-    Raises
-    ------
-    OutputError
-        As `replacing`.
+    Raises OutputError as `replacing`.
     """
     with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
         file.write(text)

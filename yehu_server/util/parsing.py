@@ -33,13 +33,7 @@ _PIECE = re.compile(
 
 
 def parse_toml(text: str) -> dict[str, Any]:
-    """Parse a TOML text.
-
-    Raises
-    ------
-    ValueError
-        With the line where that is known.
-    """
+    """Parse a TOML text; raises ValueError with the line where that is known."""
     if _LONG_KEY.search(text):
         raise ValueError(f"a key has more than {MOST_KEY_PARTS} parts")
     try:
@@ -49,13 +43,7 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 
 def parse_json(text: str) -> Any:
-    """Parse a JSON text.
-
-    Raises
-    ------
-    ValueError
-        Where it is not JSON, or refused.
-    """
+    """Parse a JSON text; raises ValueError where it is not JSON, or refused."""
     try:
         return _checked(json.loads(text))
     except RecursionError:

@@ -49,20 +49,12 @@ def python_command(module: str, *arguments: str) -> list[str]:
 class Child:
     """A helper process, seen from its parent.
 
-    Parameters
-    ----------
-    module : str
-        The module to run, as ``python -m``.
-    on_event : callable
-        Called with each event, in a thread of its own; at the end with ``{"event": "gone"}``,
-        however the process ended.
-    share : sequence of int
-        File descriptors that the process inherits, under the same numbers.
+    Raises OSError, MemoryError or RuntimeError where the system cannot start it.
 
-    Raises
-    ------
-    OSError, MemoryError, RuntimeError
-        Where the system cannot start it.
+    `module`: the module to run, as ``python -m``.
+    `on_event`: called with each event, in a thread of its own; at the end with ``{"event":
+    "gone"}``, however the process ended.
+    `share`: file descriptors that the process inherits, under the same numbers.
     """
 
     def __init__(
@@ -199,23 +191,14 @@ LIVES_S = 5.0  # a process that ends sooner is started again only after a while
 class Supervisor:
     """A helper process and its successors.
 
-    Parameters
-    ----------
-    module : str
-        The module to run, as ``python -m``.
-    what : str
-        What the process does, for the thread's name and for messages of errors.
-    on_event : callable
-        Called with each event but the last, in a thread of its own.
-    attend : callable
-        Called with each new process and an event that is set when it is gone, until which it
-        should not return.
-    on_exit : callable
-        Called when the process has ended: True where it did so by itself, not by `stop`.
-    on_error : callable
-        Called with a line where a process cannot be started; from another thread.
-    share : sequence of int
-        File descriptors that the process inherits, under the same numbers.
+    `module`: the module to run, as ``python -m``.
+    `what`: what the process does, for the thread's name and for messages of errors.
+    `on_event`: called with each event but the last, in a thread of its own.
+    `attend`: called with each new process and an event that is set when it is gone, until which it
+    should not return.
+    `on_exit`: called when the process has ended: True where it did so by itself, not by `stop`.
+    `on_error`: called with a line where a process cannot be started; from another thread.
+    `share`: file descriptors that the process inherits, under the same numbers.
     """
 
     def __init__(

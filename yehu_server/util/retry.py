@@ -74,12 +74,8 @@ def run_forever(
 ) -> None:
     """Call `turn` periodically until an event is set; after an error, try again later.
 
-    Parameters
-    ----------
-    what : str
-        Name of the work, for error messages.
-    on_error : callable
-        Called with an error message, once for equal reasons in a row.
+    `what`: name of the work, for error messages.
+    `on_error`: called with an error message, once for equal reasons in a row.
     """
     backoff = Backoff()
     wait_s = every_s

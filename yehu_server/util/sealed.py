@@ -30,10 +30,7 @@ def _digest(path: Path, payload: bytes) -> bytes:
 def read_sealed(path: Path) -> bytes | None:
     """Read the payload of a sealed file; None where there is no file.
 
-    Raises
-    ------
-    SealError
-        Where it is damaged or cannot be read.
+    Raises SealError where it is damaged or cannot be read.
     """
     try:
         data = read_bytes(path, MOST_BYTES)
@@ -50,12 +47,8 @@ def read_sealed(path: Path) -> bytes | None:
 def write_sealed(path: Path, payload: bytes) -> None:
     """Write or replace a sealed file atomically.
 
-    A power cut may leave it incomplete, which its checksum shows.
-
-    Raises
-    ------
-    OSError
-        Where it cannot be written.
+    A power cut may leave it incomplete, which its checksum shows. Raises OSError where it cannot be
+    written.
     """
     partial = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     try:

@@ -31,18 +31,12 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 class SoundWriter:
     """Writes a sound file whose header is valid after each write.
 
-    Parameters
-    ----------
-    file : io.FileIO
-        A new one, unbuffered; it stays open.
-    target : Path
-        Its name in errors.
-    format_name : "wav" or "flac"
-    subtype : "16", "24" or "float"
-    software : str
-        Named in the file as its maker.
-    channels : int
-        1 to `MOST_CHANNELS` of the format.
+    `file`: a new one, unbuffered; it stays open.
+    `target`: its name in errors.
+    `format_name` ("wav" or "flac").
+    `subtype` ("16", "24" or "float").
+    `software`: named in the file as its maker.
+    `channels`: 1 to `MOST_CHANNELS` of the format.
 
     Raises
     ------
@@ -116,10 +110,7 @@ class SoundWriter:
 def format_of(target: Path) -> str:
     """The format of a file by its ending; WAV without one.
 
-    Raises
-    ------
-    OutputError
-        Where the ending is another.
+    Raises OutputError where the ending is another.
     """
     ending = target.suffix.lower().lstrip(".")
     if ending in ("", "wave"):
@@ -132,10 +123,7 @@ def format_of(target: Path) -> str:
 def check_format(format_name: str, subtype: str, channels: int = 1) -> None:
     """Refuse samples of a subtype, or a number of channels, that a format cannot hold.
 
-    Raises
-    ------
-    OutputError
-        Where it cannot.
+    Raises OutputError where it cannot.
     """
     if not soundfile.check_format(format_name.upper(), SUBTYPES[subtype]):
         raise OutputError(f"a {format_name} file cannot hold {subtype} samples; use 16 or 24")
@@ -156,19 +144,12 @@ def sound_file(
 ) -> Iterator[SoundWriter]:
     """Open a sound file that appears at `target` only once it is complete.
 
-    Parameters
-    ----------
-    format_name : "wav" or "flac"
-    subtype : "16", "24" or "float"
-    may_replace : callable
-        Called with the target where a file is there; returns whether to replace it.
-    channels : int
-        1 to `MOST_CHANNELS` of the format.
+    Raises OutputError where it cannot be written, or not replaced.
 
-    Raises
-    ------
-    OutputError
-        Where it cannot be written, or not replaced.
+    `format_name` ("wav" or "flac").
+    `subtype` ("16", "24" or "float").
+    `may_replace`: called with the target where a file is there; returns whether to replace it.
+    `channels`: 1 to `MOST_CHANNELS` of the format.
     """
     with replacing(target, may_replace) as partial, io.FileIO(partial, "w") as file:
         form = (rate, format_name, subtype, RENDERED)

@@ -8,12 +8,8 @@ import math
 class TokenBucket:
     """A token bucket, full at first. Times are those of ``time.monotonic()``.
 
-    Parameters
-    ----------
-    per_s : float
-        Tokens added a second.
-    at_once : float
-        Tokens that the bucket holds.
+    `per_s`: tokens added a second.
+    `at_once`: tokens that the bucket holds.
     """
 
     def __init__(self, per_s: float, at_once: float) -> None:

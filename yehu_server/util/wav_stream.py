@@ -30,15 +30,10 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 class WavStream:
     """Writes a WAV file.
 
-    Parameters
-    ----------
-    file : io.FileIO
-        A new one, unbuffered.
-    subtype : "16", "24" or "float"
-    software : str
-        Named in the file as its maker; nothing by default.
-    channels : int
-        1 to `MOST_CHANNELS`.
+    `file`: a new one, unbuffered.
+    `subtype` ("16", "24" or "float").
+    `software`: named in the file as its maker; nothing by default.
+    `channels`: 1 to `MOST_CHANNELS`.
 
     Raises
     ------
@@ -62,10 +57,7 @@ class WavStream:
     def write(self, samples: Samples) -> None:
         """Append samples [shape=(frames,) of one channel, or (frames, channels); full scale 1].
 
-        Raises
-        ------
-        ValueError
-            Where they have another number of channels; nothing is written then.
+        Raises ValueError where they have another number of channels; nothing is written then.
         """
         check_shape(samples, self._channels)
         try:
@@ -119,10 +111,7 @@ class WavStream:
 def check_shape(samples: Samples, channels: int) -> None:
     """Check that samples are [shape=(frames, channels)] or, of one channel, (frames,).
 
-    Raises
-    ------
-    ValueError
-        Where they are neither.
+    Raises ValueError where they are neither.
     """
     if samples.shape[1:] != (channels,) and (samples.ndim, channels) != (1, 1):
         raise ValueError(f"samples of shape {samples.shape} for {channels} channels")

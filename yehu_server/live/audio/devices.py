@@ -53,10 +53,7 @@ def quiet() -> Iterator[None]:
 def load_portaudio(kind: str = OUTPUT) -> Any:
     """Import sounddevice, which starts PortAudio.
 
-    Raises
-    ------
-    DeviceError
-        Where there is no PortAudio.
+    Raises DeviceError where there is no PortAudio.
     """
     name = ctypes.util.find_library("portaudio")
     if name is not None:
@@ -104,15 +101,9 @@ ADVICE = "connect one and start its sound server, or listen in the page: serve -
 def choose(devices: Sequence[AudioDevice], wanted: str | None, kind: str = OUTPUT) -> AudioDevice:
     """Choose a device by its full name, its name, or words in these.
 
-    Parameters
-    ----------
-    wanted : str, optional
-        Such as ``"hifi"`` or ``"system, JACK"``; by default the default one.
+    Raises DeviceError where none or several match.
 
-    Raises
-    ------
-    DeviceError
-        Where none or several match.
+    `wanted`: such as ``"hifi"`` or ``"system, JACK"``; by default the default one.
     """
     if wanted is None:
         fitting = [device for device in devices if device.is_default]

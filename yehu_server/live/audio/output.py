@@ -122,10 +122,8 @@ class Output:
     Call `find`, make the ensemble with that rate in ``memory``, then call `begin`, and at last
     `end`.
 
-    Parameters
-    ----------
-    changed : callable
-        Called with a line when the device plays, disappears, or is back; from another thread.
+    `changed`: called with a line when the device plays, disappears, or is back; from another
+    thread.
     """
 
     def __init__(self, options: OutputOptions, changed: Callable[[str], None]) -> None:
@@ -152,10 +150,7 @@ class Output:
     def find(self) -> float:
         """Wait for the device to be found; return the sample rate to play at (Hz).
 
-        Raises
-        ------
-        DeviceError
-            Where a named device is not there.
+        Raises DeviceError where a named device is not there.
         """
         rate = self._options.rate or NULL_RATE
         if self._options.device == NULL:
@@ -175,10 +170,7 @@ class Output:
     def begin(self, ensemble: Ensemble) -> None:
         """Start to play an ensemble that lies in ``memory``.
 
-        Raises
-        ------
-        DeviceError
-            Where a named device cannot be opened.
+        Raises DeviceError where a named device cannot be opened.
         """
         self._ensemble = ensemble
         self._start_clock()

@@ -25,22 +25,13 @@ ROOM_S = 1.0  # a recording begins only if so much fits on the disk
 class Recorder:
     """A recording in a thread of its own, to a file that is valid at every moment.
 
-    Parameters
-    ----------
-    start : int
-        The first frame to record.
-    on_message : callable
-        Called with a line when the recording ends by itself, such as on a full disk, or when
-        frames are missing.
-    overwrite : bool
-        Whether to replace an older file.
-    waits : bool
-        Whether the recording begins with the first sound, a moment before it.
+    Raises OutputError where the file cannot be written, or is there.
 
-    Raises
-    ------
-    OutputError
-        Where the file cannot be written, or is there.
+    `start`: the first frame to record.
+    `on_message`: called with a line when the recording ends by itself, such as on a full disk, or
+    when frames are missing.
+    `overwrite`: whether to replace an older file.
+    `waits`: whether the recording begins with the first sound, a moment before it.
     """
 
     def __init__(

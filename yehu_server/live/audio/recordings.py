@@ -21,12 +21,8 @@ BEGINS_A_SECOND, BEGINS_AT_ONCE, MOST_TAKES = 1.0, 10.0, 1000
 class Recordings:
     """A recording of everything, and beside it one at a time that clients request.
 
-    Parameters
-    ----------
-    folder : Path
-        Where requested recordings are written; it is made when needed.
-    on_message : callable
-        Called with a line when a recording begins or ends.
+    `folder`: where requested recordings are written; it is made when needed.
+    `on_message`: called with a line when a recording begins or ends.
     """
 
     def __init__(self, tape: Ensemble, folder: Path, on_message: Callable[[str], None]) -> None:
@@ -42,10 +38,7 @@ class Recordings:
     ) -> None:
         """Record from the first frame until `close`, or where it `waits` from the first sound.
 
-        Raises
-        ------
-        OutputError
-            Where the file cannot be written.
+        Raises OutputError where the file cannot be written.
         """
         self._everything = Recorder(
             self._tape, target, 0, self._on_message, overwrite=overwrite, waits=waits
@@ -54,11 +47,8 @@ class Recordings:
     def start(self, name: str) -> str:
         """Record to a file of a plain name in the folder; return its name.
 
-        Raises
-        ------
-        OutputError
-            Where a requested recording runs, the name is not plain or already taken, too many were
-            begun of late or are there, or the file cannot be written.
+        Raises OutputError where a requested recording runs, the name is not plain or already taken,
+        too many were begun of late or are there, or the file cannot be written.
         """
         target = inside(self._folder, name, "" if Path(name).suffix in ENDINGS else ".wav")
         if self._requested is not None and self._requested.is_running:
@@ -80,10 +70,7 @@ class Recordings:
     def stop(self) -> str:
         """End what `start` began; return the file's name.
 
-        Raises
-        ------
-        OutputError
-            Where there is none, or it has ended by itself.
+        Raises OutputError where there is none, or it has ended by itself.
         """
         recorder, self._requested = self._requested, None
         if recorder is None:

@@ -29,10 +29,7 @@ class FollowOptions:
 class VoiceInput:
     """Keeps the process that holds an audio input, and plays the first part by it.
 
-    Parameters
-    ----------
-    on_message : callable
-        Called with a line when the input is found or lost; from another thread.
+    `on_message`: called with a line when the input is found or lost; from another thread.
     """
 
     def __init__(

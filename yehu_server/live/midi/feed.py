@@ -23,12 +23,8 @@ STATUS, CHANNEL, SYSTEM = 0x80, 0x0F, 0xF0
 class SharedRing:
     """The ring of a part in shared memory, of which this process is the only writer.
 
-    Parameters
-    ----------
-    memory : writable buffer
-    place : mapping
-        Where in the memory its `entries` and its cursors `posted`, `drained` and `dropped` lie
-        (bytes), and its `size` (entries; a power of two).
+    `place`: where in the memory its `entries` and its cursors `posted`, `drained` and `dropped` lie
+    (bytes), and its `size` (entries; a power of two).
     """
 
     def __init__(self, memory: Any, place: Mapping[str, int]) -> None:
@@ -64,14 +60,10 @@ class MidiFeed:
     An input that comes back gets the number that it had: MIDI's channels are told apart by it.
     Its methods may be called from any thread.
 
-    Parameters
-    ----------
-    rings : sequence of SharedRing
-        Of each part.
-    message, disconnect : int
-        Kinds of the events (``midi.events``): a message, and that a port is gone.
-    numbers : mapping
-        Numbers of inputs, by name, that were known before.
+    `rings`: of each part.
+    `message`, `disconnect`: kinds of the events (``midi.events``): a message, and that a port is
+    gone.
+    `numbers`: numbers of inputs, by name, that were known before.
     """
 
     def __init__(

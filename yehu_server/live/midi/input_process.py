@@ -35,10 +35,7 @@ APIS = {"alsa": "LINUX_ALSA", "jack": "UNIX_JACK", "core": "MACOSX_CORE", "windo
 class Input:
     """An open MIDI input.
 
-    Attributes
-    ----------
-    is_forwarded : bool
-        Whether the parent is told of each message, too.
+    `is_forwarded`: whether the parent is told of each message, too.
     """
 
     def __init__(
@@ -205,10 +202,7 @@ class Inputs:
 def check_api(api: str | None) -> None:
     """Refuse a MIDI system that RtMidi does not have here: it would take another one silently.
 
-    Raises
-    ------
-    ParameterError
-        Where it has no such system.
+    Raises ParameterError where it has no such system.
     """
     import rtmidi
 

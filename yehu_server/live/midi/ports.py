@@ -36,15 +36,10 @@ class MidiPorts:
     Its messages reach the audio callback by shared memory; the server hears of them only where
     something is to be learned.
 
-    Parameters
-    ----------
-    memory : int
-        File descriptor of the memory that has the instruments.
-    rigs : sequence of int
-        The first instrument of each part.
-    on_message : callable
-        Called with a line when a port or the MIDI system appears or disappears; from another
-        thread.
+    `memory`: file descriptor of the memory that has the instruments.
+    `rigs`: the first instrument of each part.
+    `on_message`: called with a line when a port or the MIDI system appears or disappears; from
+    another thread.
     """
 
     def __init__(

@@ -99,10 +99,7 @@ class Route:
 def route_of(part: int, text: str) -> Route:
     """Read ``PORT[:CHANNEL]``, words of an input's name and a MIDI channel from 1.
 
-    Raises
-    ------
-    ParameterError
-        Where the channel is none, or there is nothing.
+    Raises ParameterError where the channel is none, or there is nothing.
     """
     found = _CHANNEL.fullmatch(text)
     words, channel = (found[1], int(found[2][:4]) - 1) if found else (text, None)
@@ -117,10 +114,7 @@ def route_of(part: int, text: str) -> Route:
 def check_routes(routes: Sequence[Route], parts: int) -> None:
     """Refuse routes to parts that are not there, and inputs that are named twice.
 
-    Raises
-    ------
-    ParameterError
-        Where there are some.
+    Raises ParameterError where there are some.
     """
     for number, route in enumerate(routes):
         if not 0 <= route.part < parts:

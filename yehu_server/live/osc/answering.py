@@ -113,12 +113,8 @@ class UdpPeer:
 class TcpPeer:
     """A TCP connection.
 
-    Parameters
-    ----------
-    watch : callable
-        Called with the peer when its `events` may have changed.
-    drain_and_close : callable
-        Called with the peer when its connection is broken.
+    `watch`: called with the peer when its `events` may have changed.
+    `drain_and_close`: called with the peer when its connection is broken.
     """
 
     def __init__(

@@ -29,16 +29,10 @@ class Argument:
 class Call:
     """A call.
 
-    Attributes
-    ----------
-    address : str
-        After the prefix.
-    doc : str
-        What it does, for OSCQuery and the surfaces.
-    act : callable
-        Carries it out for a group of addresses; raises YehuError where it refuses.
-    is_for_all : bool
-        Whether no part has one of its own.
+    `address`: after the prefix.
+    `doc`: what it does, for OSCQuery and the surfaces.
+    `act`: carries it out for a group of addresses; raises YehuError where it refuses.
+    `is_for_all`: whether no part has one of its own.
     """
 
     address: str

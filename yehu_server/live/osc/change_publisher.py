@@ -98,10 +98,7 @@ MOST_SENT = 512  # messages of one round
 class ChangePublisher:
     """What subscribers were sent last, and the rounds that send them more.
 
-    Parameters
-    ----------
-    values, status, prefix
-        See ``clients.Clients``.
+    `values`, `status`, `prefix`: see ``clients.Clients``.
     """
 
     def __init__(self, values: Values, status: Status, prefix: str) -> None:

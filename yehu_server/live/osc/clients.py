@@ -37,14 +37,9 @@ class Clients:
     Addresses come in groups: those of a part have its group before them, which is
     left out of what `values` and `status` return.
 
-    Parameters
-    ----------
-    values : callable
-        Returns the values of all parameters of a group, by address.
-    prefix : str
-        Put before addresses.
-    status : callable, optional
-        Returns the status values of a group, by name; STATUS_PREFIX makes addresses of names.
+    `values`: returns the values of all parameters of a group, by address.
+    `prefix`: put before addresses.
+    `status`: returns the status values of a group, by name; STATUS_PREFIX makes addresses of names.
     """
 
     def __init__(self, values: Values, prefix: str, status: Status = lambda _group: {}) -> None:

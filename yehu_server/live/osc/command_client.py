@@ -21,10 +21,7 @@ DATAGRAM_BYTES = 1 << 16
 class OscClient:
     """Sends OSC to one server by UDP and receives its answers; a context manager.
 
-    Raises
-    ------
-    DeviceError
-        Where the address cannot be used.
+    Raises DeviceError where the address cannot be used.
     """
 
     def __init__(self, server: Address) -> None:
@@ -50,10 +47,7 @@ class OscClient:
     def answers(self, within_s: float = ANSWERS_WITHIN_S) -> Iterator[Message]:
         """Messages as they come, addresses without the prefix, until none comes for `within_s`.
 
-        Raises
-        ------
-        RefusedError
-            Where the server answers with an error.
+        Raises RefusedError where the server answers with an error.
         """
         until = time.monotonic() + within_s
         while (left := until - time.monotonic()) > 0.0:
@@ -76,12 +70,8 @@ class OscClient:
     def answer(self, address: str, within_s: float = ANSWERS_WITHIN_S) -> Message:
         """The next message at an address (without the prefix).
 
-        Raises
-        ------
-        DeviceError
-            Where none comes within `within_s`.
-        RefusedError
-            Where the server answers with an error.
+        Raises DeviceError where none comes within `within_s`; RefusedError where the server answers
+        with an error.
         """
         for message in self.answers(within_s):
             if message.address == address:

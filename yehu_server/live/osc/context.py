@@ -31,25 +31,16 @@ class CallContext:
     Addresses come in groups: `FIRST` has those of the first part and of what all share, and each
     part has one.
 
-    Attributes
-    ----------
-    players : sequence of LivePlayer
-        Those of all parts.
-    states : callable
-        Returns the status values of a group, by name; any thread may call.
-    start_recording, stop_recording : callable
-        Record to a file of a plain name, or end that; return the file's name. Raise YehuError.
-    log : callable
-        Prints or logs a line for whoever runs the server.
-    run_in_background : callable
-        Calls a function that may take long, such as one that writes a file, in another thread;
-        those that are given one after another in this order.
-    call_soon : callable
-        Calls a function in the thread that handles packets; any thread may call.
-    tree_changed : callable
-        Announces that the tree of addresses has changed at a path or below.
-    drop_scheduled : callable
-        Drops the messages of a group that wait for their time; of `FIRST`, all.
+    `players`: those of all parts.
+    `states`: returns the status values of a group, by name; any thread may call.
+    `start_recording`, `stop_recording`: record to a file of a plain name, or end that; return the
+    file's name. Raise YehuError.
+    `log`: prints or logs a line for whoever runs the server.
+    `run_in_background`: calls a function that may take long, such as one that writes a file, in
+    another thread; those that are given one after another in this order.
+    `call_soon`: calls a function in the thread that handles packets; any thread may call.
+    `tree_changed`: announces that the tree of addresses has changed at a path or below.
+    `drop_scheduled`: drops the messages of a group that wait for their time; of `FIRST`, all.
     """
 
     players: Sequence[LivePlayer]

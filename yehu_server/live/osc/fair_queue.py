@@ -60,13 +60,9 @@ class RoundRobin:
 class FairQueue(Generic[T]):
     """The packets of all peers that wait to be handled.
 
-    Parameters
-    ----------
-    handle : callable
-        Called with a packet, its peer, and the number it was added with; returns an iterator
-        whose steps handle it.
-    most_bytes : int
-        Limit on the size of all waiting packets.
+    `handle`: called with a packet, its peer, and the number it was added with; returns an iterator
+    whose steps handle it.
+    `most_bytes`: limit on the size of all waiting packets.
     """
 
     def __init__(

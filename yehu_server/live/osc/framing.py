@@ -34,10 +34,7 @@ class Framing:
     def packets(self, data: bytes) -> Iterator[bytes]:
         """The packets that `data` completes; take all of them before the next call.
 
-        Raises
-        ------
-        FramingError
-            Where the stream is not OSC; its connection should be closed.
+        Raises FramingError where the stream is not OSC; its connection should be closed.
         """
         self._received += data
         if self._is_slip is None and self._received:

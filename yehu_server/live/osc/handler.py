@@ -35,10 +35,7 @@ DUE_AT_ONCE = 1024  # scheduled messages taken up at a time
 class OscHandler:
     """Carries out the messages of packets; called by the thread of ``receiving.OscPorts`` only.
 
-    Attributes
-    ----------
-    addresses : tuple of str
-        Those of all parameters and calls.
+    `addresses`: those of all parameters and calls.
     """
 
     def __init__(self, context: CallContext) -> None:

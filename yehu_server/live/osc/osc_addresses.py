@@ -57,10 +57,7 @@ def near(address: str, parts: int) -> str:
 def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[str]:
     """The addresses that a pattern matches.
 
-    Raises
-    ------
-    RefusedError
-        Where the pattern is wrong or matches none.
+    Raises RefusedError where the pattern is wrong or matches none.
     """
     if len(pattern) > LONGEST_PATTERN:
         raise RefusedError("the pattern is too long")

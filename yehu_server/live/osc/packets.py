@@ -36,26 +36,16 @@ class Message:
 
 
 def unpack(packet: bytes) -> list[Message]:
-    """The messages of a packet, in order.
-
-    Raises
-    ------
-    PacketError
-        Where any part of it is damaged.
-    """
+    """The messages of a packet, in order; raises PacketError where any part of it is damaged."""
     return [message for message in steps(packet) if message is not None]
 
 
 def steps(packet: bytes) -> Iterator[Message | None]:
     """The messages of a packet, one at a time, in short steps: those without a message give None.
 
-    A bundle is checked to its end before its first message is given, and then read again:
-    unpacked it would take fifty times the memory.
-
-    Raises
-    ------
-    PacketError
-        Where any part of it is damaged; before the first message.
+    A bundle is checked to its end before its first message is given, and then read again: unpacked
+    it would take fifty times the memory. Raises PacketError where any part of it is damaged; before
+    the first message.
     """
     data = memoryview(packet)
     try:

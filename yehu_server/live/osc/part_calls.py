@@ -176,13 +176,7 @@ def within_an_hour(seconds: float) -> float:
 
 
 def port_of(number: float) -> int:
-    """The port of an argument.
-
-    Raises
-    ------
-    RefusedError
-        Where it is none.
-    """
+    """The port of an argument; raises RefusedError where it is none."""
     if not 0 < number <= 65535 or number != int(number):
         raise RefusedError(f"{number:g} is not a port")
     return int(number)

@@ -29,10 +29,7 @@ def is_pattern(address: str) -> bool:
 def matches(pattern: str, address: str) -> bool:
     """Whether a pattern matches the whole of an address.
 
-    Raises
-    ------
-    PatternError
-        Where a bracket is not closed.
+    Raises PatternError where a bracket is not closed.
     """
     places = {0}
     for piece in _pieces(pattern):

@@ -55,10 +55,7 @@ LONGEST_WAIT_S = 0.5
 class OscPorts:
     """A UDP and a TCP port, and the thread that serves them.
 
-    Raises
-    ------
-    DeviceError
-        Where the address is in use or not this machine's.
+    Raises DeviceError where the address is in use or not this machine's.
     """
 
     def __init__(self, host: str, port: int, allowed: Allowed, handler: OscHandler) -> None:

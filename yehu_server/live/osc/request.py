@@ -23,10 +23,7 @@ class Request:
     def check_peer(self) -> None:
         """Refuse more answers to a peer that has reached its limit.
 
-        Raises
-        ------
-        RefusedError
-            Where it has.
+        Raises RefusedError where it has.
         """
         if not self.peer.takes_more:
             raise RefusedError("too many answers to you are waiting")
@@ -34,10 +31,8 @@ class Request:
     def numbers(self, least: int, most: int | None = None) -> list[float]:
         """The arguments as finite numbers.
 
-        Raises
-        ------
-        RefusedError
-            Where their count is not within `least` to `most` (by default `least`), or one is none.
+        Raises RefusedError where their count is not within `least` to `most` (by default `least`),
+        or one is none.
         """
         most = least if most is None else most
         if least == 0 and list(self.arguments) == [None]:  # so OSCQuery clients send none
@@ -50,13 +45,7 @@ class Request:
         return [_number(argument) for argument in self.arguments]
 
     def word(self) -> str:
-        """The only argument, a string.
-
-        Raises
-        ------
-        RefusedError
-            Where there is anything else.
-        """
+        """The only argument, a string; raises RefusedError where there is anything else."""
         if len(self.arguments) != 1 or not isinstance(self.arguments[0], str):
             raise RefusedError("expected one string")
         return self.arguments[0]
@@ -64,10 +53,7 @@ class Request:
     def word_and_flag(self) -> tuple[str, bool]:
         """A string, and whether an optional number after it is not 0.
 
-        Raises
-        ------
-        RefusedError
-            Where there is anything else.
+        Raises RefusedError where there is anything else.
         """
         (flag,) = replace(self, arguments=self.arguments[1:] or [0]).numbers(1)
         return replace(self, arguments=self.arguments[:1]).word(), flag != 0.0

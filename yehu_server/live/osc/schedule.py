@@ -60,12 +60,8 @@ class TagClock:
 class Schedule(Generic[T]):
     """Things that wait for their time.
 
-    Parameters
-    ----------
-    ahead_s : float
-        How long before its time a thing is due.
-    most_bytes : int
-        Limit on the size of all of them; see `MemoryQuota` for what one peer gets.
+    `ahead_s`: how long before its time a thing is due.
+    `most_bytes`: limit on the size of all of them; see `MemoryQuota` for what one peer gets.
     """
 
     def __init__(self, ahead_s: float = AHEAD_S, most_bytes: int = MOST_BYTES) -> None:

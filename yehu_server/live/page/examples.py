@@ -24,10 +24,7 @@ PROCESSOR = {"machine": "wasm32", "processor": "any"}
 def write_capture_headers(folder: Path) -> list[Path]:
     """Write a file for each rate, as `48000.json`; return them.
 
-    Raises
-    ------
-    OutputError
-        Where one cannot be written.
+    Raises OutputError where one cannot be written.
     """
     folder.mkdir(parents=True, exist_ok=True)
     written = []

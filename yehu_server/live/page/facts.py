@@ -212,12 +212,6 @@ def module(values: Mapping[str, Any]) -> str:
 
 
 def write(folder: Path) -> None:
-    """Write ``facts.js`` and ``examples.js``.
-
-    Raises
-    ------
-    OutputError
-        Where one cannot be written.
-    """
+    """Write ``facts.js`` and ``examples.js``; raises OutputError where one cannot be written."""
     write_text(folder / "facts.js", module(facts()))
     write_text(folder / "examples.js", module(examples()))

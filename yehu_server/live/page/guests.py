@@ -33,10 +33,7 @@ class Guests:
 class Admission:
     """Gives each who connects a role.
 
-    Parameters
-    ----------
-    guests : Guests, optional
-        Without them, all own the server.
+    `guests`: without them, all own the server.
     """
 
     def __init__(self, guests: Guests | None) -> None:

@@ -36,23 +36,14 @@ class PageOptions:
 class Pages:
     """A port for pages, and the process that serves them.
 
-    Parameters
-    ----------
-    players : sequence of LivePlayer
-        The player of each part.
-    memory : int
-        File descriptor of the memory that has the instruments.
-    status : callable
-        What pages are sent of the server, of JSON's types; any thread may call.
-    on_message : callable
-        Called with a line when the process had to be started again; from another thread.
-    rigs : sequence of int
-        The instrument that shows each part: by default the first shows the first part, and so on.
+    Raises DeviceError where the address is in use or not this machine's.
 
-    Raises
-    ------
-    DeviceError
-        Where the address is in use or not this machine's.
+    `players`: the player of each part.
+    `memory`: file descriptor of the memory that has the instruments.
+    `status`: what pages are sent of the server, of JSON's types; any thread may call.
+    `on_message`: called with a line when the process had to be started again; from another thread.
+    `rigs`: the instrument that shows each part: by default the first shows the first part, and so
+    on.
     """
 
     def __init__(

@@ -37,10 +37,7 @@ Array = Any
 class PagePlayers:
     """What pages play, by their numbers; called from one thread.
 
-    Parameters
-    ----------
-    rigs : sequence of int
-        The first instrument of each part.
+    `rigs`: the first instrument of each part.
     """
 
     def __init__(self, view: SharedView, rigs: Sequence[int]) -> None:
@@ -53,14 +50,10 @@ class PagePlayers:
     def post(self, page: int, part: int, wishes: Array, arrived_ns: int) -> None:
         """Post wishes of a page, for the frames that they name or for now.
 
-        Parameters
-        ----------
-        part : int
-            Counted from 0; what all parts share goes to the first.
-        wishes : ndarray [shape=(n, 5)]
-            Frame, kind, index, value and other of each, as ``sockets.read_wishes`` has them.
-        arrived_ns : int
-            When they came (``time.monotonic_ns()``).
+        `part`: counted from 0; what all parts share goes to the first.
+        `wishes` (ndarray [shape=(n, 5)]): frame, kind, index, value and other of each, as
+        ``sockets.read_wishes`` has them.
+        `arrived_ns`: when they came (``time.monotonic_ns()``).
         """
         now = self._arrivals.frame_of(arrived_ns)
         most = now + round(AHEAD_S * self._view.rate)

@@ -30,10 +30,7 @@ SHARED_ROWS = [ROW[param.address] for param in TABLE if param.is_shared]
 class SharedView:
     """Instruments on a stage in shared memory, while another process plays them.
 
-    Parameters
-    ----------
-    descriptor : int
-        File descriptor of the memory.
+    `descriptor`: file descriptor of the memory.
     """
 
     def __init__(self, descriptor: int) -> None:
@@ -74,10 +71,7 @@ class SharedView:
         First come those that they have, then those that were set, from which controllers move them.
         Its level is that of the mix, and what all share is as the first instrument has it.
 
-        Parameters
-        ----------
-        own : mapping
-            Values of rows in place of those that it has.
+        `own`: values of rows in place of those that it has.
         """
         midi = self._rigs["midi"][rig]
         is_moved = (midi["is_target"] != 0) & (midi["is_held"] == 0)

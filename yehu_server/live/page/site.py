@@ -141,14 +141,8 @@ def write_page(folder: Path) -> list[Path]:
     """Write the whole page into a folder; return its files, relative to the folder.
 
     Where its module cannot be built, it is the page that was shipped, as it was then: parameters
-    and looks may lie elsewhere in a module of other sources.
-
-    Raises
-    ------
-    OutputError
-        Where one cannot be written.
-    YehuError
-        Where there is no WebAssembly module, and nothing to build it with.
+    and looks may lie elsewhere in a module of other sources. Raises OutputError where one cannot be
+    written; YehuError where there is no WebAssembly module, and nothing to build it with.
     """
     try:
         module = page_module()
@@ -230,10 +224,7 @@ class _Handler(SimpleHTTPRequestHandler):
 def server_of(folder: Path, port: int) -> ThreadingHTTPServer:
     """A server of a folder's files on a port (0: a free one) of this machine, not yet running.
 
-    Raises
-    ------
-    OutputError
-        Where the port is taken.
+    Raises OutputError where the port is taken.
     """
     try:
         return ThreadingHTTPServer((HOST, port), partial(_Handler, directory=str(folder)))

@@ -86,12 +86,8 @@ class Page:
 class PageSockets:
     """All WebSockets of pages.
 
-    Parameters
-    ----------
-    rigs : sequence of int
-        The instrument that shows each part.
-    status : callable
-        The state of the server, beside what is in the record, of JSON's types.
+    `rigs`: the instrument that shows each part.
+    `status`: the state of the server, beside what is in the record, of JSON's types.
     """
 
     def __init__(
@@ -202,10 +198,7 @@ class PageSockets:
     def set_own_values(self, own: Sequence[Sequence[Sequence[float]]]) -> None:
         """Take the values that parts have where their instruments have others.
 
-        Parameters
-        ----------
-        own : sequence
-            Of each part, rows and their values.
+        `own`: of each part, rows and their values.
         """
         self._own = {
             part: {int(row): value for row, value in values} for part, values in enumerate(own)

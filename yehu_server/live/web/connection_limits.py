@@ -52,10 +52,7 @@ class Connections:
     def talking(self, request: web.Request) -> Iterator[None]:
         """Count a connection as a WebSocket for the time of a block.
 
-        Raises
-        ------
-        HTTPServiceUnavailable
-            Where there are too many, in all or of its host.
+        Raises HTTPServiceUnavailable where there are too many, in all or of its host.
         """
         host = plain(request.remote or "::")
         others = list(self._talking.values())

@@ -23,10 +23,7 @@ SAID_FOR_S = 60.0
 class LoopThread:
     """Runs a coroutine function in a thread, from `start` to `stop`; after an error, again.
 
-    Parameters
-    ----------
-    failed : callable
-        Called with an error that ended the coroutine, once for equal ones in a row.
+    `failed`: called with an error that ended the coroutine, once for equal ones in a row.
     """
 
     def __init__(

@@ -20,12 +20,8 @@ FAMILIES = {Kind.GAUGE: GaugeMetricFamily, Kind.COUNTER: CounterMetricFamily}
 class Metrics(Collector):
     """The status values that are numbers, read whenever metrics are requested.
 
-    Parameters
-    ----------
-    snapshot : callable
-        Returns the values of a group of addresses.
-    parts : int
-        Number of parts; where there are several, each has metrics with the label ``part``.
+    `snapshot`: returns the values of a group of addresses.
+    `parts`: number of parts; where there are several, each has metrics with the label ``part``.
     """
 
     def __init__(self, snapshot: Callable[[str], Snapshot], parts: int = 1) -> None:

@@ -46,10 +46,7 @@ def refusal(hosts: Sequence[str], origins: Sequence[str], names: frozenset[str])
 def check(request: web.Request, allowed: Allowed, names: frozenset[str]) -> None:
     """Refuse a request that is not allowed by its sender, its headers or its method.
 
-    Raises
-    ------
-    web.HTTPException
-        Where it is refused.
+    Raises web.HTTPException where it is refused.
     """
     if request.remote is None or request.remote not in allowed:
         raise web.HTTPForbidden(text="this address is not allowed\n")

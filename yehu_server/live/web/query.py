@@ -90,14 +90,9 @@ def node_at(
 
     Nothing else is built, and only groups of addresses that are needed are read.
 
-    Parameters
-    ----------
-    snapshot : callable
-        Returns the values of a group of addresses: of `FIRST`, or of a part.
-    parts : int
-        Number of parts; where there are several, each has addresses of its own, too.
-    more_calls : iterable of Call
-        Calls added to `CALLS`, or in place of some; their addresses include the prefix.
+    `snapshot`: returns the values of a group of addresses: of `FIRST`, or of a part.
+    `parts`: number of parts; where there are several, each has addresses of its own, too.
+    `more_calls`: calls added to `CALLS`, or in place of some; their addresses include the prefix.
     """
     below = path.strip("/")
     snapshot = cache(snapshot)

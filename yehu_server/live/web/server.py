@@ -75,10 +75,7 @@ class Sources:
 class WebServer:
     """A TCP port for HTTP and WebSockets, and the thread that serves it.
 
-    Raises
-    ------
-    DeviceError
-        Where the address is in use or not this machine's.
+    Raises DeviceError where the address is in use or not this machine's.
     """
 
     def __init__(
@@ -216,10 +213,7 @@ class WebServer:
 def listen(what: str, host: str, port: int) -> socket.socket:
     """Listen at an address, by IPv4 and IPv6 where that is one; `what` is named in errors.
 
-    Raises
-    ------
-    DeviceError
-        Where the address is in use or not this machine's.
+    Raises DeviceError where the address is in use or not this machine's.
     """
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]

@@ -19,7 +19,7 @@ from commands import COMMAND, is_one_line
 from forks import start
 from midi_files import midi_file, notes
 
-from yehu_server.cli import _parser, folder_records, folder_tasks, render_one
+from yehu_server.cli import _parser, folder_tasks, render_folder, render_one
 from yehu_server.errors import OutputError
 from yehu_server.rendering.workers import Event
 from yehu_server.util.sound_file import is_rendered
@@ -152,7 +152,7 @@ def test_only_what_changed_is_rendered_again(folder, command):
 
 def test_another_option_or_version_renders_all_again(monkeypatch):
     def key(*words: object) -> str:
-        return folder_records.base_key(_parser().parse_args(["render", "in", "-o", "out", *words]))
+        return render_folder.base_key(_parser().parse_args(["render", "in", "-o", "out", *words]))
 
     same = [key(), key("--quiet"), key("--json"), key("--jobs", "1"), key("--overwrite")]
     assert len(set(same)) == 1

@@ -9,9 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from yehu_server.ahead.build import build
+from yehu_server.ahead.build import build, page_linker
 from yehu_server.ahead.build_hash import section_of, with_section
-from yehu_server.ahead.link import page_linker
 from yehu_server.ahead.memory_images import image
 from yehu_server.cli import main
 from yehu_server.core.engine.mailbox import SERVER

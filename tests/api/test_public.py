@@ -88,10 +88,10 @@ def test_its_error_is_that_of_all_modules():
 
 
 def test_the_reference_pitch_has_the_range_of_the_command():
-    from yehu_server.api import playing_options
+    from yehu_server.api import checks
 
     of_command = converters.LOWEST_A4, converters.HIGHEST_A4
-    assert of_command == (playing_options.LOWEST_A4, playing_options.HIGHEST_A4)
+    assert of_command == (checks.LOWEST_A4, checks.HIGHEST_A4)
 
 
 # ---------------------------------------------------------------- examples

@@ -16,7 +16,7 @@ from pages import PAGES, ROOT, Page
 
 import yehu_server as yehu
 from yehu_server import body, plot
-from yehu_server.ahead.link import page_linker
+from yehu_server.ahead.build import page_linker
 from yehu_server.live.page.site import server_of, url_of
 
 HERE = Path(__file__).parent

@@ -1,4 +1,4 @@
-"""Build the instrument for pages and for C programs, in a process of its own.
+"""Compile and link the instrument for pages and for C programs, in a process of its own.
 
 numba compiles for one processor in a process, so another one's code is made in another process:
 `python -m yehu_server.ahead.build`.
@@ -7,14 +7,15 @@ numba compiles for one processor in a process, so another one's code is made in 
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from yehu_server.ahead import interface, link
+from yehu_server.ahead import interface
 from yehu_server.ahead.build_hash import build_hash, with_section
 from yehu_server.ahead.header import header
 from yehu_server.ahead.interpreter import INTERPRETER
@@ -24,6 +25,64 @@ from yehu_server.errors import OutputError, ParameterError, YehuError
 from yehu_server.util import __version__
 from yehu_server.util.files import replacing
 from yehu_server.util.processes import python_command
+
+PAGE_LINKERS = ("wasm-ld", *(f"wasm-ld-{version}" for version in range(22, 13, -1)))
+LIBRARY_LINKERS = ("cc", "gcc", "clang")
+STACK_BYTES = 1 << 18
+
+
+def page_linker() -> str | None:
+    """The path of LLVM's linker for WebAssembly, where there is one."""
+    return _first(PAGE_LINKERS)
+
+
+def linker_of(what: str) -> str:
+    """The path of the linker for ``wasm`` or a ``library``.
+
+    Raises YehuError where there is none.
+    """
+    linker = page_linker() if what == "wasm" else _first(LIBRARY_LINKERS)
+    if linker is not None:
+        return linker
+    if what == "wasm":
+        raise YehuError("there is no wasm-ld here; Debian's package lld has it")
+    raise YehuError("there is no C compiler here, whose linker makes the library")
+
+
+def link_page(linker: str, code: Path, exports: Iterable[str], into: Path) -> None:
+    """Link an object file into a WebAssembly module with its own memory.
+
+    Raises YehuError where it fails.
+    """
+    options = [
+        "--no-entry",
+        "--allow-undefined",  # what it needs of the page; `module.joined` has checked it
+        "--strip-all",
+        "--export=__heap_base",
+        "-z",
+        f"stack-size={STACK_BYTES}",
+        *(f"--export={name}" for name in exports),
+    ]
+    _run([linker, *options, str(code), "-o", str(into)])
+
+
+def link_library(linker: str, code: Path, into: Path) -> None:
+    """Link an object file into a shared library; raises YehuError where it fails."""
+    options = ["-shared", "-s"]
+    if sys.platform == "linux":
+        options += ["-Wl,--build-id=none", f"-Wl,-soname,{into.name}"]
+    _run([linker, *options, str(code), "-lm", "-o", str(into)])
+
+
+def _first(names: Iterable[str]) -> str | None:
+    return next((path for path in map(shutil.which, names) if path is not None), None)
+
+
+def _run(command: list[str]) -> None:
+    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - ours
+    if done.returncode != 0:
+        raise YehuError(f"{Path(command[0]).name}: {done.stderr.strip() or done.returncode}")
+
 
 PAGE_FILE, HEADER_FILE = "yehu.wasm", "yehu.h"
 LIBRARY_FILE = "libyehu.dylib" if sys.platform == "darwin" else "libyehu.so"
@@ -41,7 +100,7 @@ def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str =
     `rates`: sample rates (Hz) at which an instrument can be made.
     `cpu`: the processor of a library, by LLVM's name.
     """
-    link.linker_of(what)  # or there would be none after minutes of compiling
+    linker_of(what)  # or there would be none after minutes of compiling
     command = python_command("yehu_server.ahead.build", what, str(folder), cpu)
     command += [f"{rate!r}" for rate in rates]
     environment = {**os.environ, "NUMBA_CPU_NAME": cpu, "NUMBA_CPU_FEATURES": ""}
@@ -55,7 +114,7 @@ def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str =
 
 def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> list[Path]:
     """Build in this process, which compiles for the processor wanted; see `build`."""
-    linker = link.linker_of(what)
+    linker = linker_of(what)
     functions = interface.functions(rates, [image(rate) for rate in rates], build_hash())
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -64,12 +123,12 @@ def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> lis
             if what == "wasm":
                 functions += INTERPRETER
                 code.write_bytes(compiled(functions, PAGE))
-                link.link_page(linker, code, [function.name for function in functions], linked)
+                link_page(linker, code, [function.name for function in functions], linked)
                 module = with_section(linked.read_bytes(), f"{__version__} {build_hash()}")
                 return [_written(folder / PAGE_FILE, module)]
             code.write_bytes(compiled(functions, here(cpu)))
             linked = linked.with_name(LIBRARY_FILE)
-            link.link_library(linker, code, linked)
+            link_library(linker, code, linked)
             text = header(functions, version=__version__, sources=build_hash(), rates=rates)
             return [
                 _written(folder / LIBRARY_FILE, linked.read_bytes()),

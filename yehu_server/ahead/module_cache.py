@@ -5,9 +5,8 @@ from __future__ import annotations
 import logging
 from pathlib import Path
 
-from yehu_server.ahead.build import PAGE_FILE, build
+from yehu_server.ahead.build import PAGE_FILE, build, page_linker
 from yehu_server.ahead.build_hash import build_hash, section_of
-from yehu_server.ahead.link import page_linker
 from yehu_server.compile.cache_folder import data_folder
 from yehu_server.errors import YehuError
 from yehu_server.util.processes import machine_lock

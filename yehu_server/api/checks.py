@@ -1,4 +1,4 @@
-"""Arguments as users give them, checked; and what playing needs, compiled."""
+"""Arguments as users give them, checked; what playing needs, compiled; how to play by them."""
 
 from __future__ import annotations
 
@@ -6,16 +6,23 @@ import logging
 import math
 import os
 from collections.abc import Mapping
+from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from yehu_server.compile.cache_folder import cache_folder
 from yehu_server.compile.jit import IS_PLAIN
+from yehu_server.core.physics.grid import HIGHEST_RATE, LOWEST_RATE
 from yehu_server.core.physics.quantities import Quantities, override, read_quantities
 from yehu_server.errors import ParameterError
 from yehu_server.lab.body.body_file import Fit
 from yehu_server.params.table import find
+from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.practice_files import read_practice
+from yehu_server.playing.preset_folders import Presets
+from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 
 log = logging.getLogger("yehu_server")
 
@@ -23,10 +30,7 @@ log = logging.getLogger("yehu_server")
 def get_ready(*, plays: bool) -> None:
     """Warn, by `logging`, where the model will be compiled; compile what playing needs.
 
-    Parameters
-    ----------
-    plays : bool
-        Whether the instrument is played; the model alone is compiled at its first use.
+    `plays`: whether the instrument is played; the model alone is compiled at its first use.
     """
     if not IS_PLAIN and not any(cache_folder().glob("*.code")):
         log.warning("compiling the model for this machine, once; it takes up to a minute")
@@ -43,10 +47,7 @@ InstrumentLike = Quantities | Mapping[str, Any] | PathLike | Fit
 def number(value: Any, name: str, lo: float = -math.inf, hi: float = math.inf) -> float:
     """Return a number, also one of NumPy, as a float.
 
-    Raises
-    ------
-    ParameterError
-        Where it is none, not finite, or out of range.
+    Raises ParameterError where it is none, not finite, or out of range.
     """
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ParameterError(f"{name}: expected a number, got {value!r}")
@@ -69,10 +70,7 @@ def whole(value: Any, name: str, lo: float, hi: float) -> int:
 def setting(address: Any, value: Any) -> tuple[str, float]:
     """Return an address of the parameter table, and a value within its range.
 
-    Raises
-    ------
-    ParameterError
-        Where there is no such parameter, or the value is out of its range.
+    Raises ParameterError where there is no such parameter, or the value is out of its range.
     """
     if not isinstance(address, str):
         raise ParameterError(f"{address!r}: expected an address, such as '/playing/vibrato'")
@@ -95,16 +93,10 @@ def settings_of(settings: Mapping[str, float] | None) -> tuple[tuple[str, float]
 def quantities_of(instrument: InstrumentLike | None) -> Quantities:
     """Return the physical quantities of an instrument.
 
-    Parameters
-    ----------
-    instrument : Quantities, mapping, path, Body or None
-        A mapping of quantities to change, an instrument file (docs/physics.md), or a body of
-        ``yehu.body``; None: the measured instrument.
+    Raises ParameterError where it is something else, or a quantity is unknown or out of range.
 
-    Raises
-    ------
-    ParameterError
-        Where it is something else, or a quantity is unknown or out of range.
+    `instrument` (Quantities, mapping, path, Body or None): a mapping of quantities to change, an
+    instrument file (docs/physics.md), or a body of ``yehu.body``; None: the measured instrument.
     """
     if instrument is None:
         return Quantities()
@@ -118,13 +110,7 @@ def quantities_of(instrument: InstrumentLike | None) -> Quantities:
 
 
 def path_of(value: Any, name: str) -> Path:
-    """Return a path.
-
-    Raises
-    ------
-    ParameterError
-        Where it is none.
-    """
+    """Return a path; raises ParameterError where it is none."""
     if not isinstance(value, str | os.PathLike):
         raise ParameterError(f"{name}: expected a path, got {type(value).__name__}")
     return Path(value)
@@ -133,11 +119,66 @@ def path_of(value: Any, name: str) -> Path:
 def name_of(value: Any, what: str) -> str:
     """Return the name, or the path as text, of something shipped or of the user's own.
 
-    Raises
-    ------
-    ParameterError
-        Where it is neither.
+    Raises ParameterError where it is neither.
     """
     if not isinstance(value, str | os.PathLike):
         raise ParameterError(f"{what}: expected a name or a path, not {value!r}")
     return os.fspath(value)
+
+
+OutOfRange = Literal["transpose", "clamp", "skip"]
+LOWEST_A4, HIGHEST_A4 = 390.0, 480.0  # Hz; as of --a4
+
+
+@dataclass(frozen=True)
+class PlayingSetup:
+    """What instrument is played, and how."""
+
+    sample_rate: int
+    quantities: Quantities
+    playing: PlayingOptions
+
+
+def playing_setup_of(
+    sample_rate: float,
+    instrument: InstrumentLike | None,
+    *,
+    preset: PathLike | None = None,
+    settings: Mapping[str, float] | None = None,
+    a4: float = 440.0,
+    tuning: PathLike | None = None,
+    practice: PathLike | None = None,
+    seed: int = 0,
+    mapping: PathLike = DEFAULT,
+    out_of_range: OutOfRange = "transpose",
+) -> PlayingSetup:
+    """Check options, and read the files that they name; see `render`.
+
+    Raises YehuError where one is wrong.
+    """
+    rate = whole(sample_rate, "sample_rate", LOWEST_RATE, HIGHEST_RATE)
+    presets = Presets(user_first=False)
+    file = None
+    start: tuple[tuple[str, float], ...] = ()
+    if preset is not None:
+        name = name_of(preset, "preset")
+        file, start = presets.find_file(name), tuple(presets.find(name).values.items())
+    policies = [policy.value for policy in RangePolicy]
+    if out_of_range not in policies:
+        raise ParameterError(f"out_of_range: {out_of_range!r} is not one of {', '.join(policies)}")
+    most = find("/engine/seed").hi
+    playing = PlayingOptions(
+        mapping=load(name_of(mapping, "mapping"), user_first=False),
+        presets=presets,
+        preset=file,
+        start=start,
+        settings=settings_of(settings),
+        a4=number(a4, "a4", LOWEST_A4, HIGHEST_A4),
+        tuning=EQUAL if tuning is None else read_tuning(path_of(tuning, "tuning")),
+        policy=RangePolicy(out_of_range),
+        seed=whole(seed, "seed", 0, most),
+        bowing=None if practice is None else read_practice(path_of(practice, "practice")),
+        practice=None if practice is None else path_of(practice, "practice"),
+    )
+    quantities = quantities_of(instrument)
+    return PlayingSetup(rate, quantities, playing.for_instrument(quantities))

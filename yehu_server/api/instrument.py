@@ -9,10 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from yehu_server.api.checks import InstrumentLike, PathLike, get_ready, number, setting, whole
+from yehu_server.api.checks import (
+    InstrumentLike,
+    PathLike,
+    get_ready,
+    number,
+    playing_setup_of,
+    setting,
+    whole,
+)
+from yehu_server.api.notes import pitch_of, playable
 from yehu_server.api.observing import Run, curves_of
-from yehu_server.api.pitches import pitch_of, playable
-from yehu_server.api.playing_options import playing_setup_of
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument as Engine
 from yehu_server.core.engine.spec import InstrumentSpec

@@ -42,10 +42,7 @@ class Curve:
 def curves_of(controls: Mapping[str, ArrayLike] | None) -> list[Curve]:
     """Return what moves during a run.
 
-    Raises
-    ------
-    ParameterError
-        Where a parameter is unknown, or its values are none or out of range.
+    Raises ParameterError where a parameter is unknown, or its values are none or out of range.
     """
     if controls is not None and not isinstance(controls, Mapping):
         raise ParameterError("controls: expected addresses and values, such as {'/bow/speed': 0.2}")
@@ -66,12 +63,8 @@ def curves_of(controls: Mapping[str, ArrayLike] | None) -> list[Curve]:
 class Run:
     """A run of an instrument from now on.
 
-    Parameters
-    ----------
-    stage : Ensemble or Instrument
-        What computes samples: `instrument`, or the stage that it plays on.
-    curves : sequence of Curve
-        Parameters that move meanwhile.
+    `stage`: what computes samples: `instrument`, or the stage that it plays on.
+    `curves`: parameters that move meanwhile.
     """
 
     def __init__(
@@ -101,10 +94,7 @@ class Run:
     def signals(self, frames: int, channels: int, strings_every: int) -> Simulation:
         """Compute samples and keep all signals; see `api.instrument.Instrument.record`.
 
-        Raises
-        ------
-        ParameterError
-            Where the arrays would take more than MAX_BYTES.
+        Raises ParameterError where the arrays would take more than MAX_BYTES.
         """
         model, state = self._rig["model"], self._rig["state"]
         every = strings_every or CHUNK

@@ -124,13 +124,7 @@ def is_notebook() -> bool:
 
 
 def _play_aloud(samples: Sound, rate: float) -> None:
-    """Play through the default device, to the end.
-
-    Raises
-    ------
-    DeviceError
-        Where there is none.
-    """
+    """Play through the default device, to the end; raises DeviceError where there is none."""
     sounddevice = load_portaudio()
     try:
         sounddevice.play(np.asarray(samples, np.float32), rate, blocking=True)
@@ -143,12 +137,7 @@ def _play_aloud(samples: Sound, rate: float) -> None:
 def write_sound(sound: Sound, sample_rate: int, target: Path, subtype: Subtype) -> None:
     """Write a sound file, WAV or FLAC by its ending.
 
-    Raises
-    ------
-    OutputError
-        Where it cannot be written.
-    ParameterError
-        Where there is no such subtype.
+    Raises OutputError where it cannot be written; ParameterError where there is no such subtype.
     """
     if subtype not in SUBTYPES:
         raise ParameterError(f"subtype: {subtype!r} is not one of {', '.join(SUBTYPES)}")

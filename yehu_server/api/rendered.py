@@ -10,10 +10,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from yehu_server.api.checks import InstrumentLike, PathLike, get_ready, number, path_of, whole
+from yehu_server.api.checks import (
+    InstrumentLike,
+    OutOfRange,
+    PathLike,
+    get_ready,
+    number,
+    path_of,
+    playing_setup_of,
+    whole,
+)
 from yehu_server.api.notes import Note, score_of
 from yehu_server.api.playback import AudioWidget, Subtype, write_sound
-from yehu_server.api.playing_options import OutOfRange, playing_setup_of
 from yehu_server.errors import ParameterError
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT

@@ -85,10 +85,7 @@ def gesture_of(gesture: Mapping[str, Any] | PathLike | Gesture) -> Gesture:
 def plain_gesture(gesture: Mapping[str, Any]) -> dict[str, Any]:
     """Return the data of a gesture as a file has it: lists in place of arrays.
 
-    Raises
-    ------
-    ParameterError
-        Where an array is no curve, or has another length than the gesture.
+    Raises ParameterError where an array is no curve, or has another length than the gesture.
     """
     data = {name: _plain(value) for name, value in gesture.items() if name != "controls"}
     controls = gesture.get("controls", {})

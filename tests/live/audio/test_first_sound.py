@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 import soundfile
 
-from yehu_server.live.audio.recorder import BEFORE_S, Recorder
-from yehu_server.live.audio.recordings import Recordings
+from yehu_server.live.audio.recordings import BEFORE_S, Recorder, Recordings
 
 RATE = 48_000
 

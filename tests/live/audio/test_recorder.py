@@ -10,8 +10,8 @@ import soundfile
 from sound_files import KEPT_FRAMES, NoiseTape
 
 from yehu_server.errors import OutputError
-from yehu_server.live.audio import recorder
-from yehu_server.live.audio.recorder import Recorder
+from yehu_server.live.audio import recordings
+from yehu_server.live.audio.recordings import Recorder
 from yehu_server.util import wav_stream
 
 RATE = 48000
@@ -47,7 +47,7 @@ def test_a_recording_may_begin_later(tape, tmp_path):
 def test_what_was_missed_is_said_and_is_silence_so_that_the_rest_keeps_its_place(
     tape, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(recorder, "EVERY_S", 10.0)  # held up until it is stopped
+    monkeypatch.setattr(recordings, "EVERY_S", 10.0)  # held up until it is stopped
     said: list[str] = []
     recording = Recorder(tape, tmp_path / "r.wav", 0, said.append)
     played = tape.play(KEPT_FRAMES + 60_000)
@@ -64,7 +64,7 @@ def test_what_was_missed_is_said_and_is_silence_so_that_the_rest_keeps_its_place
 
 def test_a_file_as_long_as_can_be_ends_the_recording_and_is_kept(tape, tmp_path, monkeypatch):
     monkeypatch.setattr(wav_stream, "WAV_LIMIT", 8 * 2000)
-    monkeypatch.setattr(recorder, "EVERY_S", 0.001)
+    monkeypatch.setattr(recordings, "EVERY_S", 0.001)
     said: list[str] = []
     recording = Recorder(tape, tmp_path / "r.wav", 0, said.append)
     until(recording, lambda: [tape.play(100), not recording.is_running][1])
@@ -83,7 +83,7 @@ def until(recording: Recorder, condition) -> None:
 
 @pytest.mark.parametrize("name", ["r.wav", "r.flac"])
 def test_a_recording_can_be_opened_at_any_moment_as_after_a_kill(tape, tmp_path, monkeypatch, name):
-    monkeypatch.setattr(recorder, "EVERY_S", 0.001)
+    monkeypatch.setattr(recordings, "EVERY_S", 0.001)
     target = tmp_path / name
     recording = Recorder(tape, target, 0, pytest.fail)
     played = np.zeros((0, 2), np.float32)
@@ -104,7 +104,7 @@ def test_a_recording_can_be_opened_at_any_moment_as_after_a_kill(tape, tmp_path,
 def test_a_full_disk_ends_the_recording_and_keeps_it_as_far_as_it_got(
     tape, tmp_path, monkeypatch, limited, name
 ):
-    monkeypatch.setattr(recorder, "EVERY_S", 0.001)
+    monkeypatch.setattr(recordings, "EVERY_S", 0.001)
     said: list[str] = []
     recording = Recorder(tape, tmp_path / name, 0, said.append)
     played = tape.play(10_000)

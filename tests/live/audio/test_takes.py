@@ -11,7 +11,7 @@ import pytest
 import soundfile
 
 from yehu_server.errors import OutputError
-from yehu_server.live.audio import recorder, recordings
+from yehu_server.live.audio import recordings
 from yehu_server.scores.capture import read_capture
 
 
@@ -90,7 +90,7 @@ def test_a_recording_is_not_begun_on_a_full_disk(live, disk):
 def test_a_recording_that_filled_the_disk_is_not_answered_as_if_all_were_well(
     live, disk, monkeypatch, until
 ):
-    monkeypatch.setattr(recorder, "ROOM_S", 0.01)
+    monkeypatch.setattr(recordings, "ROOM_S", 0.01)
     client = live.client()
     disk(20_000)
     client.tell("/record/start", "take")
@@ -108,7 +108,7 @@ def test_a_recording_that_filled_the_disk_is_not_answered_as_if_all_were_well(
 def test_a_full_disk_keeps_take_and_capture_as_far_as_they_got(
     make_live, disk, tmp_path, monkeypatch, until
 ):
-    monkeypatch.setattr(recorder, "ROOM_S", 0.01)
+    monkeypatch.setattr(recordings, "ROOM_S", 0.01)
     take, capture = tmp_path / "take.wav", tmp_path / "take.jsonl"
     live = make_live(record=take, capture=capture)
     disk(100_000)

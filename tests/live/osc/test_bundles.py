@@ -9,7 +9,7 @@ from collections import Counter
 import pytest
 from wire import errors
 
-from yehu_server.live.osc.memory_quota import OVERHEAD_BYTES, MemoryQuota
+from yehu_server.live.osc.fair_queue import OVERHEAD_BYTES, MemoryQuota
 
 
 def test_bundles_keep_their_distances_to_the_sample_and_their_time(still, wire):

@@ -11,8 +11,14 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from yehu_server.live.osc.datagrams import AT_ONCE, BatchReader, SingleReader, datagrams
-from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, widen
+from yehu_server.live.osc.open_sockets import (
+    AT_ONCE,
+    DATAGRAM_BYTES,
+    BatchReader,
+    SingleReader,
+    datagrams,
+    widen,
+)
 
 HERE = {socket.AF_INET: "127.0.0.1", socket.AF_INET6: "::1"}
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="recvmmsg is Linux's")

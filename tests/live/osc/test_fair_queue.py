@@ -11,8 +11,16 @@ from hypothesis import strategies as st
 from wire import FakePeer
 
 from yehu_server.live.osc import fair_queue
-from yehu_server.live.osc.fair_queue import LONG_BYTES, MOST_BYTES, SLICE_NS, TURN_NS, FairQueue
-from yehu_server.live.osc.memory_quota import LITTLE_BYTES, OVERHEAD_BYTES, MemoryQuota
+from yehu_server.live.osc.fair_queue import (
+    LITTLE_BYTES,
+    LONG_BYTES,
+    MOST_BYTES,
+    OVERHEAD_BYTES,
+    SLICE_NS,
+    TURN_NS,
+    FairQueue,
+    MemoryQuota,
+)
 from yehu_server.util.token_bucket import TokenBucket
 
 SHORT_NS, LONG_NS = SLICE_NS // 100, SLICE_NS + SLICE_NS // 2

@@ -10,8 +10,13 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from yehu_server.live.osc.osc_addresses import LONGEST_PATTERN
-from yehu_server.live.osc.patterns import PatternError, _pieces, is_pattern, matches
+from yehu_server.live.osc.osc_addresses import (
+    LONGEST_PATTERN,
+    PatternError,
+    _pieces,
+    is_pattern,
+    matches,
+)
 from yehu_server.params.table import TABLE
 
 LETTERS = "ab-/"

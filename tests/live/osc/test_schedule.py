@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from wire import FakePeer
 
 from yehu_server.live.osc import schedule
-from yehu_server.live.osc.memory_quota import LITTLE_BYTES, OVERHEAD_BYTES
+from yehu_server.live.osc.fair_queue import LITTLE_BYTES, OVERHEAD_BYTES
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
 
 RATE = 48000

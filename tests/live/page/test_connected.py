@@ -29,7 +29,7 @@ from yehu_server.live.page.pages import PageOptions
 from yehu_server.live.page.players import CHANNELS, LOWEST
 from yehu_server.live.page.sockets import LOOK, NOW, WISHES, WRONG
 from yehu_server.live.server import Server
-from yehu_server.live.web.connection_limits import MOST_OF_A_HOST, MOST_SOCKETS_OF_A_HOST
+from yehu_server.live.web.access import MOST_OF_A_HOST, MOST_SOCKETS_OF_A_HOST
 from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import TABLE
 

@@ -10,7 +10,7 @@ import urllib.request
 
 import pytest
 
-from yehu_server.live.web.connection_limits import Connections
+from yehu_server.live.web.access import Connections
 from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.server import WebOptions
 from yehu_server.util.retry import Backoff

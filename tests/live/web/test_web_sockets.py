@@ -13,7 +13,7 @@ from web_client import BINARY, CLOSE, TEXT, Refused, WebSocket, ask
 from wire import Message, Wire
 
 from yehu_server.live.osc.answering import MOST_UNSENT_BYTES, WebTraffic
-from yehu_server.live.web.connection_limits import (
+from yehu_server.live.web.access import (
     MOST_CONNECTIONS,
     MOST_OF_A_HOST,
     MOST_SOCKETS_OF_A_HOST,

@@ -1,17 +1,149 @@
-"""The recordings of a server: the one of the command, and those that clients request."""
+"""Recordings of live sound, in stereo: the one of the command, and those that clients request."""
 
 from __future__ import annotations
 
 import os
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
-from yehu_server.live.audio.recorder import Recorder
-from yehu_server.util.files import inside, why
+from yehu_server.util.files import create, discard, inside, why
+from yehu_server.util.sound_file import DEFAULT_SUBTYPES, SoundWriter, format_of
 from yehu_server.util.token_bucket import TokenBucket
+from yehu_server.util.wav_stream import BYTES
+
+EVERY_S = 0.05
+CHANNELS = 2  # left and right
+HEARD = 1e-5  # -100 dB of full scale
+BEFORE_S = 0.02  # of silence before the first sound
+ROOM_S = 1.0  # a recording begins only if so much fits on the disk
+
+
+class Recorder:
+    """A recording in a thread of its own, to a file that is valid at every moment.
+
+    Raises OutputError where the file cannot be written, or is there.
+
+    `start`: the first frame to record.
+    `on_message`: called with a line when the recording ends by itself, such as on a full disk, or
+    when frames are missing.
+    `overwrite`: whether to replace an older file.
+    `waits`: whether the recording begins with the first sound, a moment before it.
+    """
+
+    def __init__(
+        self,
+        tape: Ensemble,
+        target: Path,
+        start: int,
+        on_message: Callable[[str], None],
+        *,
+        overwrite: bool = False,
+        waits: bool = False,
+    ) -> None:
+        format_name, rate = format_of(target), round(tape.rate)
+        subtype = DEFAULT_SUBTYPES[format_name]
+        room_bytes = round(ROOM_S * rate) * CHANNELS * BYTES[subtype]
+        self.target = target
+        self.missed_frames = 0
+        self.failure = ""  # why it ended by itself
+        self._tape = tape
+        self._position = start
+        self._waits = waits
+        self._before = np.zeros((0, CHANNELS), np.float32)  # silence that may come before a sound
+        self._on_message = on_message
+        self._file = create(target, overwrite=overwrite, room_bytes=room_bytes)
+        form = (rate, format_name, subtype)
+        self._writer = SoundWriter(self._file, target, *form, channels=CHANNELS)
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+        self._thread.start()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it still records."""
+        return self._thread.is_alive()
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether no frame is missing so far."""
+        return not self.failure and self.missed_frames == 0
+
+    @property
+    def seconds(self) -> float:
+        """Length of the recording (s)."""
+        return self._writer.written_frames / self._tape.rate
+
+    def stop(self) -> None:
+        """End the recording at the last frame played."""
+        self._ending.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        try:
+            ending = False
+            while not ending:
+                ending = self._ending.wait(EVERY_S)
+                begin, samples = self._tape.taped(self._position)
+                if self._waits:
+                    self._position = begin + len(samples)
+                    self._writer.write(self._from_first_sound(samples))
+                    continue
+                if begin > self._position:  # the thread was late by more than the tape
+                    self._miss(begin)
+                self._writer.write(samples)
+                self._position = begin + len(samples)
+        except OutputError as error:
+            self.failure = str(error)
+        self._close()
+        if self.failure:
+            kept = f"; {self.seconds:.1f} s are kept" if self.seconds else ""
+            self._on_message(f"recording ended: {self.failure}{kept}")
+
+    def _from_first_sound(self, samples: Any) -> Any:
+        """The samples from a moment before the first sound on; none before."""
+        samples = np.concatenate((self._before, samples))
+        sounds = np.flatnonzero(np.abs(samples).max(axis=1, initial=0.0) > HEARD)
+        moment = round(BEFORE_S * self._tape.rate)
+        self._waits = len(sounds) == 0
+        if self._waits:
+            self._before = samples[-moment:]
+            return samples[:0]
+        return samples[max(sounds[0] - moment, 0) :]
+
+    def _miss(self, begin: int) -> None:
+        """Write silence for missing frames, so that later ones keep their time."""
+        rate = self._tape.rate
+        lost, at = begin - self._position, self._writer.frames
+        self.missed_frames += lost
+        self._on_message(
+            f"{self.target}: {lost / rate:.1f} s are missing from {at / rate:.1f} s on, as "
+            "silence: the disk was too slow"
+        )
+        while self._position < begin:
+            frames = min(begin - self._position, round(rate))
+            self._writer.write(np.zeros((frames, CHANNELS), np.float32))
+            self._position += frames
+
+    def _close(self) -> None:
+        try:
+            self._writer.close()
+        except OutputError as error:
+            self.failure = self.failure or str(error)
+        if self._writer.written_frames == 0:
+            if self._waits and not self.failure:
+                self._on_message(f"{self.target}: nothing was played, so nothing is recorded")
+            else:
+                self.failure = self.failure or f"{self.target}: there is nothing to write"
+            discard(self._file, self.target)
+        self._file.close()
+
 
 ENDINGS = (".wav", ".flac")
 # What clients may begin together, and what the folder may have in it.

@@ -1,13 +1,81 @@
-"""What an OSC call is: an address, words, arguments, and the method that carries it out."""
+"""What an OSC call is, and a request for one: a received message with its arguments, checked."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
-from yehu_server.live.osc.request import Request
+from yehu_server.errors import RefusedError
+from yehu_server.live.osc.answering import Peer
 from yehu_server.params.table import find
+
+
+@dataclass(frozen=True)
+class Request:
+    """A message to carry out: its arguments, its sender, and the frame at which it is heard."""
+
+    arguments: Sequence[Any]
+    payload: bytes
+    peer: Peer
+    frame: int
+
+    def check_peer(self) -> None:
+        """Refuse more answers to a peer that has reached its limit.
+
+        Raises RefusedError where it has.
+        """
+        if not self.peer.takes_more:
+            raise RefusedError("too many answers to you are waiting")
+
+    def numbers(self, least: int, most: int | None = None) -> list[float]:
+        """The arguments as finite numbers.
+
+        Raises RefusedError where their count is not within `least` to `most` (by default `least`),
+        or one is none.
+        """
+        most = least if most is None else most
+        if least == 0 and list(self.arguments) == [None]:  # so OSCQuery clients send none
+            return []
+        count = len(self.arguments)
+        if not least <= count <= most:
+            wanted = f"{least}" if least == most else f"{least} to {most}"
+            plural = "" if wanted == "1" else "s"
+            raise RefusedError(f"expected {wanted} argument{plural}, got {count}")
+        return [_number(argument) for argument in self.arguments]
+
+    def word(self) -> str:
+        """The only argument, a string; raises RefusedError where there is anything else."""
+        if len(self.arguments) != 1 or not isinstance(self.arguments[0], str):
+            raise RefusedError("expected one string")
+        return self.arguments[0]
+
+    def word_and_flag(self) -> tuple[str, bool]:
+        """A string, and whether an optional number after it is not 0.
+
+        Raises RefusedError where there is anything else.
+        """
+        (flag,) = replace(self, arguments=self.arguments[1:] or [0]).numbers(1)
+        return replace(self, arguments=self.arguments[:1]).word(), flag != 0.0
+
+
+def _number(argument: Any) -> float:
+    """A number from a float, an int, T or F; raises RefusedError."""
+    if not isinstance(argument, int | float):
+        raise RefusedError(f"expected a number, got {_kind(argument)}")
+    try:
+        number = float(argument)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise RefusedError(f"{number} is not finite")
+    return number
+
+
+def _kind(argument: Any) -> str:
+    kinds = {str: "a string", bytes: "a blob", type(None): "nil", list: "an array"}
+    return kinds.get(type(argument), f"a {type(argument).__name__}")
 
 
 @dataclass(frozen=True)

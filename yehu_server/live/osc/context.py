@@ -9,9 +9,9 @@ from functools import partial
 
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.live.osc.answering import Peer
+from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import pack
-from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.status import Counts
 from yehu_server.live.part_addresses import FIRST, PART_PARAMS, group, part_of
 from yehu_server.params.table import PREFIX

@@ -12,14 +12,13 @@ from functools import partial
 
 from yehu_server.errors import YehuError
 from yehu_server.live.osc.answering import Peer
+from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.call_table import acts, own_calls
 from yehu_server.live.osc.context import Act, CallContext
 from yehu_server.live.osc.fair_queue import FairQueue
-from yehu_server.live.osc.osc_addresses import fitting, near
+from yehu_server.live.osc.osc_addresses import fitting, is_pattern, near
 from yehu_server.live.osc.packets import Message, PacketError, answer, steps, unpack
 from yehu_server.live.osc.part_calls import PartCalls, within_an_hour
-from yehu_server.live.osc.patterns import is_pattern
-from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
 from yehu_server.live.part_addresses import PART, part_of, split_group
 from yehu_server.params.table import PREFIX

@@ -1,4 +1,9 @@
-"""Open the sockets for OSC, set what the kernel does for them, and tell who uses an address."""
+"""Open the sockets for OSC and read datagrams with the kernel's time stamps; who uses an address.
+
+A call that lets go of the GIL may get it back only after a busy thread's turn. So on Linux a burst
+is read by one call that keeps it (``recvmmsg``, which does not wait); elsewhere each datagram takes
+a call.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +12,18 @@ import ctypes
 import errno
 import http.client
 import json
+import logging
 import socket
 import struct
 import sys
+import time
 from collections.abc import Callable
+from typing import Any
+
+import numpy as np
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.network import format_address
+from yehu_server.live.network import Address, format_address
 from yehu_server.live.osc.packets import PacketError, pack, unpack
 from yehu_server.params.table import PREFIX
 from yehu_server.util.files import why
@@ -118,3 +128,121 @@ def serves_at(host: str, port: int) -> bool:
             told = json.loads(connection.getresponse().read(ANSWER_BYTES))
         return isinstance(told, dict) and str(told.get("NAME", "")).startswith(NAME)
     return False
+
+
+log = logging.getLogger(__name__)
+
+AT_ONCE = 128
+Datagram = tuple[bytes, Address, int]  # the time of arrival in monotonic ns
+SLOT_BYTES = DATAGRAM_BYTES + 1  # one more shows that a datagram is too long
+NAME_BYTES, CONTROL_BYTES = 28, 128
+ALIGNED = 8  # bytes, of a control message
+STAMP, COUNT, CONTROL = struct.Struct("qq"), struct.Struct("I"), struct.Struct("Nii")
+VECTOR = [("base", "u8"), ("length", "u8")]  # Linux's ``struct iovec`` of 64 bits
+HEADER = np.dtype(  # and ``struct mmsghdr``
+    [
+        ("name", "u8"),
+        ("name_length", "u4"),
+        ("vectors", "u8"),
+        ("vector_count", "u8"),
+        ("control", "u8"),
+        ("control_length", "u8"),
+        ("flags", "u8"),  # with padding
+        ("length", "u4"),
+    ],
+    align=True,
+)
+
+
+class SingleReader:
+    """Reads each datagram of a socket by a call."""
+
+    def __init__(self, udp: socket.socket) -> None:
+        self.dropped = 0  # by the kernel since the start, its buffer being full, where it tells
+        self._udp = udp
+
+    def read(self) -> tuple[list[Datagram], bool]:
+        """The next datagrams, `AT_ONCE` at most, and whether there may be more."""
+        found: list[Datagram] = []
+        for _ in range(AT_ONCE):
+            try:
+                packet, address = self._udp.recvfrom(SLOT_BYTES)
+            except BlockingIOError:
+                return found, False
+            except OSError as error:  # an earlier answer was refused at its port
+                log.debug("OSC: %s", error)
+                continue
+            found.append((packet, address, time.monotonic_ns()))
+        return found, True
+
+
+class BatchReader(SingleReader):
+    """Reads all waiting datagrams by one call, which keeps the GIL."""
+
+    def __init__(self, udp: socket.socket, recvmmsg: Callable[..., int]) -> None:
+        super().__init__(udp)
+        self._recvmmsg = recvmmsg
+        self._data = np.zeros((AT_ONCE, SLOT_BYTES), np.uint8)
+        self._names = np.zeros((AT_ONCE, NAME_BYTES), np.uint8)
+        self._controls = np.zeros((AT_ONCE, CONTROL_BYTES), np.uint8)
+        self._vectors, self._headers = np.zeros(AT_ONCE, VECTOR), np.zeros(AT_ONCE, HEADER)
+        self._vectors["base"], self._vectors["length"] = _places(self._data), SLOT_BYTES
+        self._headers["name"], self._headers["control"] = map(
+            _places, (self._names, self._controls)
+        )
+        self._headers["vectors"], self._headers["vector_count"] = _places(self._vectors), 1
+        self._place = ctypes.c_void_p(self._headers.ctypes.data)
+
+    def read(self) -> tuple[list[Datagram], bool]:
+        """See `SingleReader`."""
+        headers = self._headers
+        headers["name_length"], headers["control_length"] = NAME_BYTES, CONTROL_BYTES
+        count = self._recvmmsg(self._udp.fileno(), self._place, AT_ONCE, socket.MSG_DONTWAIT, None)
+        if count <= 0:  # nothing there, or an earlier answer was refused at its port
+            return [], False
+        now_ns = time.monotonic_ns()
+        offset_ns = time.time_ns() - now_ns
+        found = []
+        lengths = (headers[name][:count].tolist() for name in ("length", "control_length"))
+        for i, (length, control_length) in enumerate(zip(*lengths, strict=True)):
+            stamp_ns = self._stamp(self._controls[i, :control_length].tobytes())
+            arrived_ns = min(stamp_ns - offset_ns, now_ns) if stamp_ns else now_ns
+            address = _address(self._names[i].tobytes())
+            found.append((self._data[i, :length].tobytes(), address, arrived_ns))
+        return found, count == AT_ONCE
+
+    def _stamp(self, controls: bytes) -> int:
+        """The time stamp in control messages, or 0; takes the count of drops from them too."""
+        at, stamp_ns = 0, 0
+        while at + CONTROL.size <= len(controls):
+            length, _, kind = CONTROL.unpack_from(controls, at)
+            if kind == SO_TIMESTAMPNS:
+                seconds, ns = STAMP.unpack_from(controls, at + CONTROL.size)
+                stamp_ns = seconds * 10**9 + ns
+            elif kind == SO_RXQ_OVFL:
+                (self.dropped,) = COUNT.unpack_from(controls, at + CONTROL.size)
+            at += max(CONTROL.size, -(-length // ALIGNED) * ALIGNED)
+        return stamp_ns
+
+
+def datagrams(udp: socket.socket) -> SingleReader:
+    """The best reader of a socket that there is."""
+    if sys.platform == "linux" and struct.calcsize("P") == struct.calcsize("q"):
+        library = ctypes.PyDLL(None)
+        if hasattr(library, "recvmmsg"):
+            return BatchReader(udp, library.recvmmsg)
+    return SingleReader(udp)
+
+
+def _places(rows: Any) -> Any:
+    """The addresses in memory of an array's rows."""
+    return rows.ctypes.data + rows.strides[0] * np.arange(len(rows))
+
+
+def _address(name: bytes) -> Any:
+    """A ``struct sockaddr`` as Python's sockets tell it."""
+    (family,), (port,) = struct.unpack_from("H", name), struct.unpack_from(">H", name, 2)
+    if family == socket.AF_INET:
+        return socket.inet_ntop(family, name[4:8]), port
+    flow, scope = struct.unpack_from(">I", name, 4)[0], struct.unpack_from("I", name, 24)[0]
+    return socket.inet_ntop(socket.AF_INET6, name[8:24]), port, flow, scope

@@ -6,9 +6,8 @@ from collections.abc import Iterable, Sequence
 
 from yehu_server.errors import RefusedError
 from yehu_server.live.osc.answering import Peer
-from yehu_server.live.osc.call import Argument, like, osc_call
+from yehu_server.live.osc.call import Argument, Request, like, osc_call
 from yehu_server.live.osc.context import GroupCalls
-from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import PART_PARAMS
 from yehu_server.params.articulations import ARTICULATIONS, number_of

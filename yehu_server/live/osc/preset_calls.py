@@ -7,9 +7,8 @@ from dataclasses import replace
 from functools import partial
 
 from yehu_server.errors import PresetError, shortened
-from yehu_server.live.osc.call import NAME, Argument, osc_call
+from yehu_server.live.osc.call import NAME, Argument, Request, osc_call
 from yehu_server.live.osc.context import GroupCalls
-from yehu_server.live.osc.request import Request
 from yehu_server.live.part_addresses import OF_PARTS, PLAIN
 from yehu_server.params.preset_file import Preset, morph
 from yehu_server.params.table import PREFIX

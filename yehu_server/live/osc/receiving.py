@@ -30,11 +30,10 @@ from yehu_server.live.osc.answering import (
     UdpPeer,
     answer_bucket,
 )
-from yehu_server.live.osc.datagrams import datagrams
 from yehu_server.live.osc.fair_queue import FairQueue
 from yehu_server.live.osc.framing import FramingError
 from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, open_both, widen
+from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, datagrams, open_both, widen
 
 log = logging.getLogger(__name__)
 

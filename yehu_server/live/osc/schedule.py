@@ -15,7 +15,7 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from yehu_server.live.osc.answering import Peer
-from yehu_server.live.osc.memory_quota import OVERHEAD_BYTES, MemoryQuota
+from yehu_server.live.osc.fair_queue import OVERHEAD_BYTES, MemoryQuota
 from yehu_server.playing.live_player import LivePlayer
 
 AHEAD_S = 0.01  # scheduled messages are posted so long before they are due

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from functools import cache
 
-from yehu_server.live.osc.call import ADDRESS, NAME, osc_call
+from yehu_server.live.osc.call import ADDRESS, NAME, Request, osc_call
 from yehu_server.live.osc.change_publisher import own_address, topic_of
 from yehu_server.live.osc.context import GroupCalls
-from yehu_server.live.osc.osc_addresses import fitting, parameter_of, readable
+from yehu_server.live.osc.osc_addresses import fitting, is_pattern, parameter_of, readable
 from yehu_server.live.osc.packets import answer
 from yehu_server.live.osc.part_calls import port_of
-from yehu_server.live.osc.patterns import is_pattern
-from yehu_server.live.osc.request import Request
 from yehu_server.live.part_addresses import FIRST, check_own, check_part, group, split_group
 from yehu_server.params.table import PREFIX, UNIT, read
 

@@ -23,7 +23,7 @@ from aiohttp import WSMsgType, web
 from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitted
 from yehu_server.live.page.shared_view import SharedView
-from yehu_server.live.web.connection_limits import MOST_WEB_SOCKETS
+from yehu_server.live.web.access import MOST_WEB_SOCKETS
 from yehu_server.params.table import TABLE
 from yehu_server.util.token_bucket import TokenBucket
 

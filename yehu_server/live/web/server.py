@@ -26,10 +26,9 @@ from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.open_sockets import NAME, by_whom, serves_at
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web import query
-from yehu_server.live.web.connection_limits import Connections
+from yehu_server.live.web.access import Connections, check, own_names
 from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.metrics import Metrics
-from yehu_server.live.web.origin_check import check, own_names
 from yehu_server.live.web.web_sockets import WebSockets
 from yehu_server.params.table import PREFIX
 from yehu_server.util.files import why

@@ -6,7 +6,7 @@ import socket
 
 import pytest
 
-from yehu_server.live.web.origin_check import own_names, refusal
+from yehu_server.live.web.access import own_names, refusal
 
 NAMES = frozenset({"localhost", "stage", "stage.local"})
 

@@ -189,38 +189,34 @@ LIVES_S = 5.0  # a process that ends sooner is started again only after a while
 
 
 class Supervisor:
-    """A helper process and its successors.
+    """A helper process and its successors; a subclass says what it is told and tells.
 
     `module`: the module to run, as ``python -m``.
     `what`: what the process does, for the thread's name and for messages of errors.
-    `on_event`: called with each event but the last, in a thread of its own.
-    `attend`: called with each new process and an event that is set when it is gone, until which it
-    should not return.
-    `on_exit`: called when the process has ended: True where it did so by itself, not by `stop`.
-    `on_error`: called with a line where a process cannot be started; from another thread.
+    `on_message`: called with a line where a process cannot be started; from another thread.
     `share`: file descriptors that the process inherits, under the same numbers.
     """
 
     def __init__(
-        self,
-        module: str,
-        what: str,
-        *,
-        on_event: Callable[[Message], None],
-        attend: Callable[[Child, threading.Event], None],
-        on_exit: Callable[[bool], None],
-        on_error: Callable[[str], None],
-        share: Sequence[int] = (),
+        self, module: str, what: str, on_message: Callable[[str], None], share: Sequence[int]
     ) -> None:
         self._module = module
-        self._on_event = on_event
-        self._attend = attend
-        self._on_exit = on_exit
         self._share = share
+        self._on_message = on_message
         self._ending, self._gone = threading.Event(), threading.Event()
         self._backoff = Backoff()
-        turns = (self._serve, self._ending, 0.0, what, on_error)
+        turns = (self._serve, self._ending, 0.0, what, on_message)
         self._thread = threading.Thread(target=run_forever, args=turns, name=what, daemon=True)
+
+    def attend(self, child: Child, gone: threading.Event) -> None:
+        """Speak with a new process; return once the event is set, when it is gone."""
+        raise NotImplementedError
+
+    def on_event(self, event: Message) -> None:
+        """Hear of an event, but for the last one; in a thread of its own."""
+
+    def on_exit(self, *, by_itself: bool) -> None:
+        """Act on the end of a process, which it came to by itself or by `stop`."""
 
     def start(self) -> None:
         """Start the process."""
@@ -241,10 +237,10 @@ class Supervisor:
         begun = time.monotonic()
         child = Child(self._module, partial(self._on_child_event, gone), self._share)
         try:
-            self._attend(child, gone)
+            self.attend(child, gone)
         finally:
             child.stop()
-            self._on_exit(not self._ending.is_set())
+            self.on_exit(by_itself=not self._ending.is_set())
         if time.monotonic() - begun > LIVES_S:
             self._backoff.worked()
         self._ending.wait(self._backoff.failed())
@@ -253,7 +249,7 @@ class Supervisor:
         if event["event"] == "gone":
             gone.set()
         else:
-            self._on_event(event)
+            self.on_event(event)
 
 
 @contextlib.contextmanager

@@ -125,7 +125,7 @@ def opened(parts: int, *texts: str) -> tuple[list[Player], MidiPorts, list[str]]
     players, said = [Player() for _ in range(parts)], []
     ports = MidiPorts(players, MidiOptions(routes=routes(*texts)), 0, range(parts), said.append)
     for number, name in enumerate(("first", "second", "third")):
-        ports._on_event({"event": "appeared", "port": name, "number": number})
+        ports.on_event({"event": "appeared", "port": name, "number": number})
     return players, ports, said
 
 
@@ -136,8 +136,8 @@ def test_what_an_input_plays_is_told_as_it_comes():
         "MIDI: second is connected to part 2",
         "MIDI: third is connected to part 2",
     ]
-    ports._on_event({"event": "vanished", "port": "first"})
-    ports._on_event({"event": "appeared", "port": "first", "number": 0})
+    ports.on_event({"event": "vanished", "port": "first"})
+    ports.on_event({"event": "appeared", "port": "first", "number": 0})
     assert said[-1] == "MIDI: first is connected to part 1"
     _, _, said = opened(3, "1=first:1", "3=first:2", "2=second")
     assert said == [
@@ -151,8 +151,8 @@ def test_what_an_input_plays_is_told_as_it_comes():
 def test_players_that_listen_hear_what_their_input_sends_and_damage_is_nothing():
     players, ports, _ = opened(2)
     for name in ("third", "second", "first"):
-        ports._on_event({"event": "midi", "port": name, "bytes": NOTE})
-        ports._on_event({"event": "midi", "port": name, "bytes": [0x90, 200, 1]})
+        ports.on_event({"event": "midi", "port": name, "bytes": NOTE})
+        ports.on_event({"event": "midi", "port": name, "bytes": [0x90, 200, 1]})
     assert [player.heard for player in players] == [
         [("note_on", 0)],
         [("note_on", 2), ("note_on", 1)],

@@ -610,7 +610,7 @@ def test_a_missing_name_is_said_once_however_often_the_midi_system_begins_anew()
     said = []
     ports = MidiPorts([SimpleNamespace()], MidiOptions(), 0, [0], said.append)
     for _ in range(2):
-        ports._on_event({"event": "missing", "pattern": "breath", "present": ["keys", "synth"]})
+        ports.on_event({"event": "missing", "pattern": "breath", "present": ["keys", "synth"]})
     assert said == ["MIDI: no input matches 'breath' yet (there are: keys, synth)"]
 
 

@@ -26,7 +26,7 @@ class FollowOptions:
     transpose: float | None = None  # semitones; None: by octaves, as the first note wants
 
 
-class VoiceInput:
+class VoiceInput(Supervisor):
     """Keeps the process that holds an audio input, and plays the first part by it.
 
     `on_message`: called with a line when the input is found or lost; from another thread.
@@ -40,38 +40,28 @@ class VoiceInput:
         memory: SharedMemory,
         on_message: Callable[[str], None],
     ) -> None:
+        module = "yehu_server.live.audio.stream"
+        super().__init__(module, "voice", on_message, [memory.descriptor])
         self._player, self._options = player, options
         self._output, self._memory = output, memory
-        self._on_message = on_message
         self._child: Child | None = None
         self._name = ""
         self._problem = ""
-        self._supervisor = Supervisor(
-            "yehu_server.live.audio.stream",
-            "voice",
-            on_event=self._on_event,
-            attend=self._attend,
-            on_exit=self._ended,
-            on_error=on_message,
-            share=[memory.descriptor],
-        )
 
     def start(self) -> None:
         """Start to follow."""
         for address, value in AS_IT_SINGS.items():
             self._player.write(address, value, frame=self._player.frame_of())
-        self._supervisor.start()
+        super().start()
 
-    def stop(self) -> None:
-        """Stop following."""
-        self._supervisor.stop()
-
-    def _attend(self, child: Child, gone: threading.Event) -> None:
+    def attend(self, child: Child, gone: threading.Event) -> None:
+        """See `Supervisor`."""
         self._child = child
         child.send("look", kind=INPUT, device=self._options.device)
         gone.wait()
 
-    def _on_event(self, event: Message) -> None:
+    def on_event(self, event: Message) -> None:
+        """See `Supervisor`."""
         kind, child, options = event["event"], self._child, self._options
         if child is None:
             return
@@ -97,7 +87,7 @@ class VoiceInput:
             self._problem = event["reason"]
             self._on_message(f"no voice to follow: {self._problem}")
 
-    def _ended(self, by_itself: bool) -> None:
+    def on_exit(self, *, by_itself: bool) -> None:
         """End the note that the input has begun."""
         player, name = self._player, self._name
         self._child, self._name = None, ""

@@ -30,7 +30,7 @@ class MidiOptions:
     routes: Sequence[Route] = ()  # see routes.Router
 
 
-class MidiPorts:
+class MidiPorts(Supervisor):
     """Keeps the process that holds the MIDI inputs, and plays all parts from them.
 
     Its messages reach the audio callback by shared memory; the server hears of them only where
@@ -50,22 +50,14 @@ class MidiPorts:
         rigs: Sequence[int],
         on_message: Callable[[str], None],
     ) -> None:
+        module = "yehu_server.live.midi.input_process"  # it ends as JACK's server does
+        super().__init__(module, "MIDI inputs", on_message, [memory])
         self._players = players
         self._router = Router(options.routes, len(players))
         self._memory, self._rigs = memory, rigs
         self._options = options
-        self._on_message = on_message
         self._numbers: dict[str, int] = {}  # a port that comes back gets its old one
         self._connected: dict[str, None] = {}
-        self._supervisor = Supervisor(  # it ends as JACK's server does
-            "yehu_server.live.midi.input_process",
-            "MIDI inputs",
-            on_event=self._on_event,
-            attend=self._attend,
-            on_exit=self._ended,
-            on_error=on_message,
-            share=[memory],
-        )
         self._child: Child | None = None
         self._missing: set[str] = set()  # patterns reported as matching nothing
         self.problem = ""
@@ -77,15 +69,8 @@ class MidiPorts:
         """Names of the open ports."""
         return list(self._connected)
 
-    def start(self) -> None:
-        """Start to receive."""
-        self._supervisor.start()
-
-    def stop(self) -> None:
-        """Stop receiving."""
-        self._supervisor.stop()
-
-    def _attend(self, child: Child, gone: threading.Event) -> None:
+    def attend(self, child: Child, gone: threading.Event) -> None:
+        """See `Supervisor`."""
         options, routed = self._options, self._router.patterns
         child.send(
             "open",
@@ -110,7 +95,7 @@ class MidiPorts:
         if self._child is not None:
             self._child.send("hear", hear=any(player.listens for player in self._players))
 
-    def _ended(self, by_itself: bool) -> None:
+    def on_exit(self, *, by_itself: bool) -> None:
         """End the notes of all ports, whose process is gone."""
         if not (by_itself and self._connected):
             return
@@ -121,7 +106,8 @@ class MidiPorts:
         self._on_message(f"MIDI: {', '.join(self._connected)} gone; notes are ended")
         self._connected.clear()
 
-    def _on_event(self, event: Message) -> None:
+    def on_event(self, event: Message) -> None:
+        """See `Supervisor`."""
         kind = event["event"]
         if kind == "midi":
             self._learn_from(event["port"], event["bytes"])

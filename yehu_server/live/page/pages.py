@@ -33,7 +33,7 @@ class PageOptions:
     guests: Guests | None = None  # on other machines; None: they may do all, without a PIN
 
 
-class Pages:
+class Pages(Supervisor):
     """A port for pages, and the process that serves them.
 
     Raises DeviceError where the address is in use or not this machine's.
@@ -60,7 +60,6 @@ class Pages:
         self._options = options
         self._memory = memory
         self._status = status
-        self._on_message = on_message
         host, port = options.address
         try:
             self._listening = listen(NAME, host, port)
@@ -69,26 +68,15 @@ class Pages:
                 raise
             self._listening = listen(NAME, host, 0)
         self.host, self.port = self._listening.getsockname()[:2]
-        self._supervisor = Supervisor(
-            "yehu_server.live.page.process",
-            "pages",
-            on_event=lambda _event: None,  # it sends none
-            attend=self._attend,
-            on_exit=self._ended,
-            on_error=on_message,
-            share=[memory, self._listening.fileno()],
-        )
-
-    def start(self) -> None:
-        """Start to serve."""
-        self._supervisor.start()
+        share = [memory, self._listening.fileno()]
+        super().__init__("yehu_server.live.page.process", "pages", on_message, share)
 
     def stop(self) -> None:
         """Stop serving, and end the notes of pages."""
-        self._supervisor.stop()
+        super().stop()
         self._listening.close()
 
-    def _attend(self, child: Child, gone: threading.Event) -> None:
+    def attend(self, child: Child, gone: threading.Event) -> None:
         """Send the process what to serve, and the status whenever it is another."""
         allowed = list(self._options.networks)
         listening = self._listening.fileno()
@@ -116,7 +104,7 @@ class Pages:
             for player in self._players
         ]
 
-    def _ended(self, by_itself: bool) -> None:
+    def on_exit(self, *, by_itself: bool) -> None:
         """End what the pages held, whose process is gone."""
         for player in self._players:
             player.end_channel_notes(FIRST, MOST_PAGES * CHANNELS, frame=player.frame_of())

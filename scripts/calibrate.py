@@ -11,10 +11,11 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from dataclasses import asdict
 
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.playing.calibration import calibrate, calibration_key
-from yehu_server.playing.calibration_store import SHIPPED, as_data
+from yehu_server.playing.calibration_store import SHIPPED
 
 RATES = (44100.0, 48000.0, 96000.0)
 
@@ -29,7 +30,7 @@ def main() -> None:
     shipped = {}
     for rate in RATES:
         start = time.perf_counter()
-        data = kept[rate] if keep else {"rate": rate, **as_data(calibrate(rate, quantities))}
+        data = kept[rate] if keep else {"rate": rate, **asdict(calibrate(rate, quantities))}
         shipped[calibration_key(rate, quantities, 440.0)] = data
         print(f"{rate:g} Hz: {time.perf_counter() - start:.1f} s", flush=True)
     SHIPPED.write_text(json.dumps(shipped, indent=1) + "\n", encoding="utf-8")

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import shutil
 
-from yehu_server.ahead.module_cache import SHIPPED
+from yehu_server.ahead.build import SHIPPED
 from yehu_server.live.page.site import write_page
 
 

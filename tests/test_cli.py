@@ -84,6 +84,8 @@ def test_help_names_the_commands(command, words):
             --set --seed --json --quiet --range 44100 wav flac 24 float transpose clamp skip""",
         ),
         ("simulate", "-o --energy --strings"),
+        ("follow", "yehu-server[follow]"),  # no markup of rich
+        ("dataset", "yehu-server[cluster]"),
     ],
 )
 def test_each_command_has_help_with_examples(command, name, expected):

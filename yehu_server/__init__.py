@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from yehu_server.api.notes import Note
     from yehu_server.api.playback import AudioWidget, play
     from yehu_server.api.rendered import Rendering, render
-    from yehu_server.api.simulated import Simulation, simulate
-    from yehu_server.api.swept import Sweep, sweep
+    from yehu_server.api.simulated import Simulation, Sweep, simulate, sweep
     from yehu_server.errors import YehuError
 
 __all__ = [
@@ -57,7 +56,7 @@ _MODULES = {
     "Player": "api.playback",  # what AudioWidget was called before
     "Rendering": "api.rendered",
     "Simulation": "api.simulated",
-    "Sweep": "api.swept",
+    "Sweep": "api.simulated",
     "YehuError": "errors",
     "body": "body",
     "follow": "api.followed",
@@ -65,7 +64,7 @@ _MODULES = {
     "plot": "plot",
     "render": "api.rendered",
     "simulate": "api.simulated",
-    "sweep": "api.swept",
+    "sweep": "api.simulated",
 }
 
 

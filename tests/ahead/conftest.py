@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from ahead.phrases import PHRASES, played
 
-from yehu_server.ahead.build import build, page_linker
+from yehu_server.ahead.build import build, page_linker, page_module
 from yehu_server.ahead.interpreter import look_length
-from yehu_server.ahead.module_cache import page_module
 
 HERE = Path(__file__).parent
 

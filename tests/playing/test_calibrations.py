@@ -3,7 +3,7 @@
 import errno
 import json
 import os
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 from yehu_server.playing import calibration_store
 from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
-from yehu_server.playing.calibration_store import as_data, calibration_for, read_calibration
+from yehu_server.playing.calibration_store import calibration_for, read_calibration
 from yehu_server.util import sealed
 from yehu_server.util.sealed import write_sealed
 
@@ -81,7 +81,7 @@ def test_a_damaged_calibration_is_measured_anew_and_told_in_one_line(kept, caplo
 
 def test_a_sealed_calibration_that_is_absurd_is_measured_anew(kept, caplog):
     kept.ask()
-    write_sealed(kept.file, json.dumps(as_data(replace(MEASURED, tensions=(50.0, 200.0)))).encode())
+    write_sealed(kept.file, json.dumps(asdict(replace(MEASURED, tensions=(50.0, 200.0)))).encode())
     assert kept.ask() == MEASURED
     assert kept.measured == 2
     assert "tension of 200 N" in caplog.text
@@ -103,10 +103,10 @@ def test_without_a_place_to_keep_it_it_is_measured_all_the_same(kept, monkeypatc
 
 
 def spoiled(**changes):
-    return {**json.loads(json.dumps(as_data(MEASURED))), **changes}
+    return {**json.loads(json.dumps(asdict(MEASURED))), **changes}
 
 
-SHORT = as_data(MEASURED)["levels"][:1]
+SHORT = asdict(MEASURED)["levels"][:1]
 WRONG = np.array(MEASURED.sharpening)
 
 

@@ -8,9 +8,9 @@ import mido
 import pytest
 
 from yehu_server.errors import MappingError
+from yehu_server.live.housekeeper import MappingWatch
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping, load
-from yehu_server.playing.mapping_watch import MappingWatch
 from yehu_server.playing.midi_poster import MidiPoster
 
 VOLUME, EXPRESSION = "/playing/volume", "/playing/expression"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 from pitch import cents, hertz, pitch_of
@@ -9,7 +11,7 @@ from pitch import cents, hertz, pitch_of
 import yehu_server as yehu
 from yehu_server import YehuError
 from yehu_server.core.physics.quantities import Quantities, override, read_quantities
-from yehu_server.playing.calibration_store import as_data, calibration_for, read_calibration
+from yehu_server.playing.calibration_store import calibration_for, read_calibration
 from yehu_server.playing.stringing import higher_of, players_a4, range_text
 from yehu_server.playing.tuning import EQUAL
 from yehu_server.scores.octaves import Sounding, octaves_of
@@ -76,7 +78,7 @@ def test_its_calibration_is_kept_and_read_again():
     found = calibration_for(44100.0, quantities)
     assert found.a4 == players_a4(quantities, 440.0) == pytest.approx(440.0 * 2.0 ** (-3 / 12))
     assert found.tensions == pytest.approx([string.T for string in quantities.strings], rel=0.03)
-    assert read_calibration(as_data(found), quantities, 440.0) == found
+    assert read_calibration(asdict(found), quantities, 440.0) == found
 
 
 def test_a_tuning_is_moved_as_a_whole():

@@ -6,6 +6,7 @@ numba compiles for one processor in a process, so another one's code is made in 
 
 from __future__ import annotations
 
+import logging
 import os
 import shutil
 import subprocess
@@ -16,16 +17,25 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.ahead import interface
-from yehu_server.ahead.build_hash import build_hash, with_section
+from yehu_server.ahead.build_hash import build_hash, section_of, with_section
 from yehu_server.ahead.header import header
 from yehu_server.ahead.interpreter import INTERPRETER
 from yehu_server.ahead.memory_images import image
 from yehu_server.ahead.module import PAGE, Target, here, joined
+from yehu_server.compile.cache_folder import data_folder
 from yehu_server.errors import OutputError, ParameterError, YehuError
 from yehu_server.util import __version__
-from yehu_server.util.files import replacing
-from yehu_server.util.processes import python_command
+from yehu_server.util.files import write_bytes
+from yehu_server.util.processes import machine_lock, python_command
 
+log = logging.getLogger(__name__)
+
+PAGE_FILE, HEADER_FILE = "yehu.wasm", "yehu.h"
+LIBRARY_FILE = "libyehu.dylib" if sys.platform == "darwin" else "libyehu.so"
+WHATS = ("wasm", "library")
+RATES = (44100.0, 48000.0)  # Hz
+ANY = "generic"  # processor
+STRANGE = "is not a recognized processor"  # LLVM's word
 PAGE_LINKERS = ("wasm-ld", *(f"wasm-ld-{version}" for version in range(22, 13, -1)))
 LIBRARY_LINKERS = ("cc", "gcc", "clang")
 STACK_BYTES = 1 << 18
@@ -63,7 +73,7 @@ def link_page(linker: str, code: Path, exports: Iterable[str], into: Path) -> No
         f"stack-size={STACK_BYTES}",
         *(f"--export={name}" for name in exports),
     ]
-    _run([linker, *options, str(code), "-o", str(into)])
+    run_compiler([linker, *options, str(code), "-o", str(into)])
 
 
 def link_library(linker: str, code: Path, into: Path) -> None:
@@ -71,25 +81,18 @@ def link_library(linker: str, code: Path, into: Path) -> None:
     options = ["-shared", "-s"]
     if sys.platform == "linux":
         options += ["-Wl,--build-id=none", f"-Wl,-soname,{into.name}"]
-    _run([linker, *options, str(code), "-lm", "-o", str(into)])
+    run_compiler([linker, *options, str(code), "-lm", "-o", str(into)])
 
 
 def _first(names: Iterable[str]) -> str | None:
     return next((path for path in map(shutil.which, names) if path is not None), None)
 
 
-def _run(command: list[str]) -> None:
+def run_compiler(command: Sequence[str]) -> None:
+    """Run a compiler or linker; raises YehuError, with what it said, where it fails."""
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - ours
     if done.returncode != 0:
         raise YehuError(f"{Path(command[0]).name}: {done.stderr.strip() or done.returncode}")
-
-
-PAGE_FILE, HEADER_FILE = "yehu.wasm", "yehu.h"
-LIBRARY_FILE = "libyehu.dylib" if sys.platform == "darwin" else "libyehu.so"
-WHATS = ("wasm", "library")
-RATES = (44100.0, 48000.0)  # Hz
-ANY = "generic"  # processor
-STRANGE = "is not a recognized processor"  # LLVM's word
 
 
 def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str = ANY) -> list[Path]:
@@ -101,15 +104,24 @@ def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str =
     `cpu`: the processor of a library, by LLVM's name.
     """
     linker_of(what)  # or there would be none after minutes of compiling
-    command = python_command("yehu_server.ahead.build", what, str(folder), cpu)
-    command += [f"{rate!r}" for rate in rates]
+    words = (what, str(folder), cpu, *map(repr, rates))
+    done = compile_for(cpu, "yehu_server.ahead.build", *words)
+    return [Path(line) for line in done.splitlines()]
+
+
+def compile_for(cpu: str, module: str, *words: str) -> str:
+    """Run a module in a process that compiles for a processor (LLVM's name); return what it prints.
+
+    Raises YehuError with the last line of what it said, where it fails.
+    """
     environment = {**os.environ, "NUMBA_CPU_NAME": cpu, "NUMBA_CPU_FEATURES": ""}
+    command = python_command(module, *words)
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603 - our own
     if STRANGE in done.stderr:
         raise ParameterError(f"{cpu!r} is no processor that LLVM knows")
     if done.returncode != 0:
         raise YehuError(done.stderr.strip().rpartition("\n")[2] or f"exit code {done.returncode}")
-    return [Path(line) for line in done.stdout.splitlines()]
+    return done.stdout
 
 
 def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> list[Path]:
@@ -125,14 +137,14 @@ def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> lis
                 code.write_bytes(compiled(functions, PAGE))
                 link_page(linker, code, [function.name for function in functions], linked)
                 module = with_section(linked.read_bytes(), f"{__version__} {build_hash()}")
-                return [_written(folder / PAGE_FILE, module)]
+                return [write_bytes(folder / PAGE_FILE, module)]
             code.write_bytes(compiled(functions, here(cpu)))
             linked = linked.with_name(LIBRARY_FILE)
             link_library(linker, code, linked)
             text = header(functions, version=__version__, sources=build_hash(), rates=rates)
             return [
-                _written(folder / LIBRARY_FILE, linked.read_bytes()),
-                _written(folder / HEADER_FILE, text.encode()),
+                write_bytes(folder / LIBRARY_FILE, linked.read_bytes()),
+                write_bytes(folder / HEADER_FILE, text.encode()),
             ]
     except OSError as error:
         raise OutputError(f"{folder}: {error.strerror}") from error
@@ -144,10 +156,44 @@ def compiled(functions: Sequence[Any], target: Target) -> bytes:
     return code
 
 
-def _written(path: Path, content: bytes) -> Path:
-    with replacing(path) as partial:
-        partial.write_bytes(content)
-    return path
+# Of the last release, with the whole page of then around it.
+SHIPPED = Path(__file__).parent / "shipped" / PAGE_FILE
+
+
+def page_module() -> Path:
+    """The WebAssembly module of the present sources.
+
+    It is built where it was not yet, which takes a minute and needs a linker. Raises YehuError
+    where it cannot be built.
+    """
+    folder = data_folder() / f"page-{build_hash()}"
+    if found := _found(folder):
+        return found
+    if page_linker() is None:
+        raise YehuError("nothing is built for pages, and there is no wasm-ld; Debian's lld has it")
+    with machine_lock("-page"):  # who waits finds it then
+        if found := _found(folder):
+            return found
+        log.warning("compiling the instrument for pages; it takes a minute, once")
+        return build("wasm", folder)[0]
+
+
+def _found(folder: Path) -> Path | None:
+    """The module of the present sources, as shipped or in a folder."""
+    for path in (SHIPPED, folder / PAGE_FILE):
+        if path.is_file() and _made(path)[-1:] == [build_hash()]:
+            return path
+    return None
+
+
+def shipped_version() -> str:
+    """The version of the page that was shipped; empty where there is none."""
+    return next(iter(_made(SHIPPED)), "") if SHIPPED.is_file() else ""
+
+
+def _made(module: Path) -> list[str]:
+    """The version and the sources that a module was made of."""
+    return section_of(module.read_bytes()).split()
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import importlib
 import logging
 import os
 import signal
@@ -11,34 +12,18 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich_argparse import RawDescriptionRichHelpFormatter
-
-from yehu_server.cli import (
-    body,
-    build,
-    dataset,
-    devices,
-    follow,
-    learn,
-    mappings,
-    page,
-    practise,
-    presets,
-    render,
-    replay,
-    score,
-    serve,
-    simulate,
-    surfaces,
-    sweep,
-)
-from yehu_server.cli.arguments import Parser
+from yehu_server.cli.arguments import HelpFormatter, Parser
 from yehu_server.cli.config import parse
 from yehu_server.cli.render_pipe import BROKEN_PIPE
 from yehu_server.cli.terminal import INTERRUPTED, interrupt, warn
 from yehu_server.errors import YehuError
 from yehu_server.util import __version__
 from yehu_server.util.files import why
+
+COMMANDS = (  # each a module of this package, in the order of the help
+    "serve", "body", "build", "dataset", "devices", "follow", "learn", "mappings", "page",
+    "practise", "presets", "render", "replay", "score", "simulate", "surfaces", "sweep",
+)  # fmt: skip
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -90,7 +75,7 @@ def _parser() -> Parser:
     parser = Parser(
         prog="yehu-server",
         description="A virtual yehu, the Chinese two-stringed fiddle: its physics, simulated.",
-        formatter_class=RawDescriptionRichHelpFormatter,
+        formatter_class=HelpFormatter,
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"yehu-server {__version__}")
@@ -98,24 +83,6 @@ def _parser() -> Parser:
     commands = parser.add_subparsers(
         title="commands", metavar="COMMAND", required=True, prog=parser.prog
     )
-    for command in (
-        serve,
-        body,
-        build,
-        dataset,
-        devices,
-        follow,
-        learn,
-        mappings,
-        page,
-        practise,
-        presets,
-        render,
-        replay,
-        score,
-        simulate,
-        surfaces,
-        sweep,
-    ):
-        command.add_to(commands)
+    for name in COMMANDS:
+        importlib.import_module(f"yehu_server.cli.{name}").add_to(commands)
     return parser

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
-from yehu_server.cli.converters import positive, target
+from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import one_line
 from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
@@ -21,6 +21,12 @@ from yehu_server.util.files import shipped_folder
 if TYPE_CHECKING:
     from yehu_server.core.physics.quantities import Quantities
     from yehu_server.rendering.cluster import Cluster
+
+
+class HelpFormatter(RawDescriptionRichHelpFormatter):
+    """Shows texts as they are: brackets, as in yehu-server[follow], are no markup."""
+
+    text_markup = help_markup = False
 
 
 def add_options(group: Any, table: str, /, **details: Any) -> None:
@@ -93,7 +99,7 @@ class Parser(argparse.ArgumentParser):
         parser = Parser(
             prog=f"{self.prog} {word}",
             description=f"{text.capitalize()}.",
-            formatter_class=RawDescriptionRichHelpFormatter,
+            formatter_class=HelpFormatter,
             allow_abbrev=False,
         )
         parser.set_defaults(run=run)
@@ -136,9 +142,7 @@ def add_command(
     """
     if "epilog" in words:
         words["epilog"] = words["epilog"].replace("docs/", f"{shipped_folder('docs')}/")
-    parser = commands.add_parser(
-        name, formatter_class=RawDescriptionRichHelpFormatter, allow_abbrev=False, **words
-    )
+    parser = commands.add_parser(name, formatter_class=HelpFormatter, allow_abbrev=False, **words)
     if run is not None:
         parser.set_defaults(run=run)
     return parser
@@ -233,20 +237,6 @@ def replaceable(arguments: argparse.Namespace) -> Callable[[Path], bool]:
     from yehu_server.util.sound_file import is_rendered
 
     return anything if arguments.overwrite else is_rendered
-
-
-def add_gesture(parser: Any) -> None:
-    """Add a gesture file, and options of what is kept of its run."""
-    add_options(
-        parser,
-        """
-        gesture GESTURE.json: a gesture file: motion of bow and finger
-        --energy: also keep the energy ledger
-        --strings EVERY: keep the shapes of the strings every EVERY samples (default: never)
-        """,
-        gesture=Path,
-        strings={"type": positive, "default": 0},
-    )
 
 
 def add_server(parser: Any) -> None:

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
 from yehu_server.cli.converters import number_within, positive, target, whole
 from yehu_server.cli.terminal import print_result, warn
+from yehu_server.util.files import check_distinct
 
 if TYPE_CHECKING:
-    from yehu_server.lab.body import Fit, Measurement
+    from yehu_server.lab.body import Fit
 
 EXAMPLES = """\
 examples:
@@ -45,7 +46,15 @@ def add_to(commands: Any) -> None:
         "body FILE: an instrument file or a body file (default: the body that is shipped)",
         body={"nargs": "?", "type": Path},
     )
-    _add_picture(show)
+    add_options(
+        show,
+        """
+        -o --output PNG: draw it, to this picture
+        --overwrite: replace another file
+        --json: print one JSON object
+        """,
+        output=target,
+    )
     taps = add_action(actions, "taps", _taps, "write taps of the shipped body, to try this with")
     add_options(
         taps,
@@ -93,26 +102,13 @@ def _add_fit(actions: Any) -> None:
     )
 
 
-def _add_picture(parser: Any) -> None:
-    add_options(
-        parser,
-        """
-        -o --output PNG: draw it, to this picture
-        --overwrite: replace another file
-        --json: print one JSON object
-        """,
-        output=target,
-    )
-
-
 def _fit(arguments: argparse.Namespace) -> int:
     # Before NumPy is loaded: threads would only wait for each other, since matrices are small.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    from yehu_server.lab.body import fit
+    from yehu_server.lab.body import fit, read
     from yehu_server.lab.body.body_file import body_file_of, check_targets
     from yehu_server.lab.plot.body import write_picture
     from yehu_server.lab.plot.png import check_picture
-    from yehu_server.util.files import check_distinct
 
     measurements = [*arguments.measurements, *arguments.radiation]
     outputs = {"-o": arguments.output}
@@ -123,7 +119,15 @@ def _fit(arguments: argparse.Namespace) -> int:
         outputs["--plot"] = arguments.plot
     check_distinct(outputs, measurements)
     check_targets(arguments.output, overwrite=arguments.overwrite)
-    found = fit(_read(arguments), band_hz=arguments.band, modes=arguments.modes)
+    measured = read(
+        arguments.measurements,
+        radiation=arguments.radiation,
+        channels=arguments.channels,
+        radiation_channels=arguments.radiation_channels,
+        kind=arguments.kind,
+        sensor_mass=None if arguments.sensor_mass is None else 1e-3 * arguments.sensor_mass,
+    )
+    found = fit(measured, band_hz=arguments.band, modes=arguments.modes)
     written = found.save(arguments.output, overwrite=arguments.overwrite)
     if arguments.plot is not None:
         write_picture(found, arguments.plot, overwrite=arguments.overwrite)
@@ -133,25 +137,11 @@ def _fit(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _read(arguments: argparse.Namespace) -> Measurement:
-    from yehu_server.lab.body import read
-
-    return read(
-        arguments.measurements,
-        radiation=arguments.radiation,
-        channels=arguments.channels,
-        radiation_channels=arguments.radiation_channels,
-        kind=arguments.kind,
-        sensor_mass=None if arguments.sensor_mass is None else 1e-3 * arguments.sensor_mass,
-    )
-
-
 def _show(arguments: argparse.Namespace) -> int:
     from yehu_server.core.physics.quantities import BODY_FILE
     from yehu_server.lab.body.body_file import read_fit
     from yehu_server.lab.plot.body import write_picture
     from yehu_server.lab.plot.png import check_picture
-    from yehu_server.util.files import check_distinct
 
     path = arguments.body or BODY_FILE
     if arguments.output is not None:

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import Parser, add_command, add_folder, add_options
+from yehu_server.cli.arguments import add_command, add_folder, add_options
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.playing_options import add_tables, table_options_of
 from yehu_server.cli.terminal import print_result
@@ -51,19 +51,25 @@ def add_to(commands: Any) -> None:
         rate={"nargs": "+", "type": positive},
         cpu={"default": "generic"},
     )
-    _add_tables(parser)
-    _add_plugin(parser)
-
-
-def _add_plugin(command: Parser) -> None:
-    """Add `build plugin` to the parser of `build`."""
-    parser = command.add_word("plugin", build_plugin, "make a plug-in for music programs")
-    add_folder(parser)
+    tables = parser.add_word(
+        "tables",
+        write_tables,
+        "write a mapping, tuning and presets as numbers, for yehu_use_tables",
+    )
+    add_tables(tables)
     add_options(
-        parser,
+        tables,
         """
-        --target: the system it is for (default: this machine's); all: a folder for each
+        -o --output OUT: the file to write
+        --overwrite: replace OUT if it exists
         """,
+        output={"required": True, "type": target},
+    )
+    plugin = parser.add_word("plugin", build_plugin, "make a plug-in for music programs")
+    add_folder(plugin)
+    add_options(
+        plugin,
+        "--target: the system it is for (default: this machine's); all: a folder for each",
         target={"choices": (*NAMES, ALL)},
     )
 
@@ -80,37 +86,18 @@ def build_plugin(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _add_tables(command: Parser) -> None:
-    """Add `build tables` to the parser of `build`."""
-    parser = command.add_word(
-        "tables",
-        write_tables,
-        "write a mapping, tuning and presets as numbers, for yehu_use_tables",
-    )
-    add_tables(parser)
-    add_options(
-        parser,
-        """
-        -o --output OUT: the file to write
-        --overwrite: replace OUT if it exists
-        """,
-        output={"required": True, "type": target},
-    )
-
-
 def write_tables(arguments: argparse.Namespace) -> int:
     """Write tables to a file, and the numbers of named controls; return the exit code.
 
     Raises YehuError where a file or value is wrong, or the file cannot be written.
     """
     from yehu_server.playing.tables import Controls
-    from yehu_server.util.files import anything, nothing, replacing
+    from yehu_server.util.files import write_bytes
 
     playing, controls = table_options_of(arguments), Controls()
     tables = playing.tables(controls)
-    with replacing(arguments.output, anything if arguments.overwrite else nothing) as partial:
-        partial.write_bytes(tables.tobytes())
-    print_result(str(arguments.output))
+    overwrite = arguments.overwrite
+    print_result(str(write_bytes(arguments.output, tables.tobytes(), overwrite=overwrite)))
     for address in playing.mapping.addresses:
         print_result(f"control {controls.number(address)}: {address}")
     return 0

@@ -53,6 +53,7 @@ def players_of(
     """
     from yehu_server.core.physics.quantities import read_quantities
     from yehu_server.playing.parts import seated
+    from yehu_server.scores.reading import percussion_notes
 
     room: Values = ()
     ensemble = None
@@ -60,7 +61,9 @@ def players_of(
     parts: list[Part] = []
     spare = 0
     if arguments.ensemble == BY_MIDI:
-        entries, spare = _entries(arguments, scores), _percussion(arguments, scores)
+        entries = _entries(arguments, scores)
+        is_counted = arguments.channel is None and arguments.by == "channel"
+        spare = percussion_notes(scores) if is_counted else 0
     else:
         from yehu_server.scores.ensemble_file import read_ensemble
 
@@ -115,13 +118,6 @@ def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[Par
     return found or [PartEntry("", name="nobody", channel=0)]
 
 
-def _percussion(arguments: argparse.Namespace, scores: Sequence[Score]) -> int:
-    from yehu_server.scores.reading import percussion_notes
-
-    has_own_count = arguments.channel is not None or arguments.by == "track"
-    return 0 if has_own_count else percussion_notes(scores)
-
-
 def _check_played(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
     """Refuse parts that have nothing to play."""
     from yehu_server.scores.reading import has_notes, part_of
@@ -164,10 +160,8 @@ def _options_of(entry: PartEntry, playing: PlayingOptions, room: Values) -> Play
         if entry.mapping is not None:
             playing = replace(playing, mapping=load(entry.mapping))
         if entry.preset is not None:
-            file, preset = (
-                playing.presets.find_file(entry.preset),
-                playing.presets.find(entry.preset),
-            )
+            presets = playing.presets
+            file, preset = presets.find_file(entry.preset), presets.find(entry.preset)
             kept = (pair for pair in playing.start if is_of_room(pair[0]))  # of --room
             playing = replace(playing, preset=file, start=(*preset.values.items(), *kept))
     own = dict(entry.settings)
@@ -199,15 +193,12 @@ def _part(
         channels = frozenset(arguments.channel)
     return Part(
         score,
-        name=entry.name or _name(entry),
+        name=entry.name
+        or (f"track {entry.track}" if entry.channel is None else f"channel {entry.channel + 1}"),
         channels=channels,
         phrasing=0.0 if is_fingered(score) else phrasing,
         quantities=quantities,
     )
-
-
-def _name(entry: PartEntry) -> str:
-    return f"channel {entry.channel + 1}" if entry.channel is not None else f"track {entry.track}"
 
 
 def _gain_db(

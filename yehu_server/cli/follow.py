@@ -26,9 +26,10 @@ from yehu_server.cli.sound_options import (
     playing_in_room,
     sound_options_of,
 )
-from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn
+from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn, warn_of_lost
 from yehu_server.errors import OutputError
 from yehu_server.scores.score import MAX_DURATION_H
+from yehu_server.util.files import check_distinct, check_target, write_bytes
 
 if TYPE_CHECKING:
     from yehu_server.following.heard import Heard
@@ -137,7 +138,6 @@ def _options(arguments: argparse.Namespace) -> Options:
 
     Raises YehuError where something is wrong.
     """
-    from yehu_server.util.files import check_distinct, check_target
     from yehu_server.util.sound_file import check_format, format_of
 
     ending = arguments.output.suffix.lower()
@@ -165,19 +165,14 @@ def _options(arguments: argparse.Namespace) -> Options:
 
 def _write(arguments: argparse.Namespace, options: Options, heard: Heard, found: Performed) -> None:
     """Write the file that is asked for."""
-    from yehu_server.util.files import anything, nothing, replacing
-
     ending = arguments.output.suffix.lower()
     if ending in MIDI:
         from yehu_server.following.performance import QUARTER_S
         from yehu_server.scores.midi_export import midi_of_performance
 
         data, lost = midi_of_performance(found.score, QUARTER_S)
-        with replacing(arguments.output, anything if arguments.overwrite else nothing) as partial:
-            partial.write_bytes(data)
-        if lost:
-            told = ", ".join(f"{address} ({count})" for address, count in sorted(lost.items()))
-            warn(f"{arguments.output}: MIDI has no controllers for {told}")
+        write_bytes(arguments.output, data, overwrite=arguments.overwrite)
+        warn_of_lost(arguments.output, lost)
         return
     from yehu_server.playing.calibration_store import calibration_for
 

@@ -176,7 +176,7 @@ def _convert(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.mapping import find_file, with_bases
     from yehu_server.playing.mapping_file import mapping_file_of_json, read_mapping_file, text_of
     from yehu_server.playing.mapping_writer import as_toml, canonical
-    from yehu_server.util.files import anything, nothing, replacing
+    from yehu_server.util.files import write_bytes
 
     path = find_file(arguments.mapping, user_first=True)
     text = text_of(path)
@@ -191,9 +191,7 @@ def _convert(arguments: argparse.Namespace) -> int:
     elif arguments.output is None:
         print(converted, end="")
     else:
-        may_replace = anything if arguments.overwrite else nothing
-        with replacing(arguments.output, may_replace) as partial:
-            partial.write_text(converted, encoding="utf-8", newline="\n")
+        write_bytes(arguments.output, converted.encode(), overwrite=arguments.overwrite)
     return 0
 
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
 from yehu_server.cli.converters import number_within, positive, target
-from yehu_server.cli.terminal import print_result, warn
+from yehu_server.cli.terminal import print_result, warn, warn_of_lost
 from yehu_server.errors import OutputError, ScoreError
+from yehu_server.util.files import check_distinct, write_bytes
 
 if TYPE_CHECKING:
     from yehu_server.scores.written.notated import Written
@@ -101,7 +102,6 @@ def _plot(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.scores.chosen_parts import numbers_of
     from yehu_server.scores.score import naming
     from yehu_server.scores.written.in_range import usual_parts
-    from yehu_server.util.files import check_distinct
 
     output = arguments.plot
     check_picture(output, "--plot", overwrite=arguments.overwrite)
@@ -121,7 +121,6 @@ def _write(arguments: argparse.Namespace) -> int:
     from yehu_server.scores.score import naming
     from yehu_server.scores.transcription import read_to_write
     from yehu_server.scores.written.notated import times
-    from yehu_server.util.files import check_distinct
 
     output, ending = arguments.output, arguments.output.suffix.lower()
     if ending not in (*MUSICXML, *JIANPU):
@@ -139,7 +138,7 @@ def _write(arguments: argparse.Namespace) -> int:
     else:
         text, lost = jianpu_of(written)
         data = text.encode()
-    _replace(output, data, overwrite=arguments.overwrite)
+    write_bytes(output, data, overwrite=arguments.overwrite)
     for warning in (*written.warnings, *written.not_understood):
         warn(f"{arguments.score}: {warning}")
     if lost := {**left, **lost}:
@@ -148,25 +147,15 @@ def _write(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _replace(output: Path, data: bytes, *, overwrite: bool) -> None:
-    from yehu_server.util.files import anything, nothing, replacing
-
-    with replacing(output, anything if overwrite else nothing) as partial:
-        partial.write_bytes(data)
-
-
 def _export(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.scores.midi_export import midi_file
     from yehu_server.scores.score import naming
     from yehu_server.scores.written.performed import performed
-    from yehu_server.util.files import check_distinct
 
     output = arguments.export_midi
     check_distinct({"--export-midi": output}, [arguments.score])
     with naming(arguments.score):
         score = performed(written)
     data, lost = midi_file(written, score)
-    _replace(output, data, overwrite=arguments.overwrite)
-    if lost:
-        told = ", ".join(f"{address} ({count})" for address, count in sorted(lost.items()))
-        warn(f"{output}: MIDI has no controllers for {told}")
+    write_bytes(output, data, overwrite=arguments.overwrite)
+    warn_of_lost(output, lost)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import time
+from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, add_gesture, add_options, add_reporting
-from yehu_server.cli.converters import target
+from yehu_server.cli.arguments import add_command, add_options, add_reporting
+from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
 
 EXAMPLES = """\
@@ -29,10 +30,16 @@ def add_to(commands: Any) -> None:
         description="Run the physical model with a gesture file and keep every signal.",
         epilog=EXAMPLES,
     )
-    add_gesture(parser)
     add_options(
         parser,
-        "-o --output OUT.npz: the arrays to write",
+        """
+        gesture GESTURE.json: a gesture file: motion of bow and finger
+        --energy: also keep the energy ledger
+        --strings EVERY: keep the shapes of the strings every EVERY samples (default: never)
+        -o --output OUT.npz: the arrays to write
+        """,
+        gesture=Path,
+        strings={"type": positive, "default": 0},
         output={"required": True, "type": target},
     )
     add_reporting(parser)

@@ -11,7 +11,8 @@ import signal
 import socket
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any, NoReturn
 
 from yehu_server.errors import one_line
@@ -37,6 +38,13 @@ def print_report(arguments: argparse.Namespace, fields: dict[str, Any], text: st
 def warn(text: str) -> None:
     """Print a warning or an error on one line."""
     print(f"yehu-server: {one_line(text)}", file=sys.stderr)
+
+
+def warn_of_lost(output: Path, lost: Mapping[str, int]) -> None:
+    """Warn of settings of parameters, by address, that a MIDI file is without."""
+    if lost:
+        what = ", ".join(f"{address} ({count})" for address, count in sorted(lost.items()))
+        warn(f"{output}: MIDI has no controllers for {what}")
 
 
 def interrupt(*_: object) -> NoReturn:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import logging
 import math
+from dataclasses import asdict
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -66,20 +67,10 @@ def calibration_for(
         strung, own_a4 = as_for_a_yehu(quantities), players_a4(quantities, a4)
         found = calibrate(rate, strung, a4=own_a4, progress=progress)
         try:
-            write_sealed(path, json.dumps(as_data(found)).encode())
+            write_sealed(path, json.dumps(asdict(found)).encode())
         except OSError as error:
             log.warning("%s: %s; the calibration is not kept for the next start", path, why(error))
     return found
-
-
-def as_data(calibration: Calibration) -> dict[str, Any]:
-    """A calibration as JSON values; `read_calibration` reads them."""
-    return {
-        "a4": calibration.a4,
-        "tensions": list(calibration.tensions),
-        "sharpening": calibration.sharpening,
-        "levels": calibration.levels,
-    }
 
 
 def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibration:

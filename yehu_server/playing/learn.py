@@ -16,8 +16,7 @@ from yehu_server.params.table import find
 from yehu_server.playing import sources
 from yehu_server.playing.bind import Bind, override_key
 from yehu_server.playing.mapping import Mapping, mapping_folder, user_folder, with_bases
-from yehu_server.playing.mapping_file import MappingFile, read_mapping_file, text_of
-from yehu_server.playing.mapping_values import settable_param
+from yehu_server.playing.mapping_file import MappingFile, read_mapping_file, settable_param, text_of
 from yehu_server.playing.mapping_writer import as_toml, edited
 from yehu_server.playing.sources import COARSE, FINE_ABOVE, OF_ONE_NOTE, RESERVED, STEPS, is_address
 from yehu_server.util.files import write_text
@@ -205,17 +204,15 @@ def _replacing(bind: Bind, dropped: Iterable[Bind]) -> Bind:
 
 def _is_learned(bind: Bind) -> bool:
     """Whether it is as `learn` makes it: its control can be moved again, nothing else is lost."""
-    plain = Bind(
-        bind.source,
-        bind.target,
+    return bind == replace(
+        bind,
         curve=find(bind.target).curve,
-        is_soft=bind.is_soft,
-        input_range=bind.input_range,
+        span=None,
+        invert=False,
+        smoothing_ms=0.0,
+        channels=(),
         is_exclusive=True,
-        is_global=bind.is_global,
-        replaces=bind.replaces,
     )
-    return bind == plain
 
 
 def _own_contents(mapping: Mapping, path: Path) -> tuple[MappingFile, str]:

@@ -9,7 +9,7 @@ The format of the files is described in mappings/README.md.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -79,16 +79,12 @@ class Mapping:
 
 def shipped_mappings() -> list[str]:
     """Names of the mappings that come with the package."""
-    return _names(mapping_folder())
+    return sorted(file.stem for file in mapping_folder().glob("*.toml"))
 
 
 def user_mappings() -> list[str]:
     """Names of the mappings in the user's folder."""
-    return _names(user_folder())
-
-
-def _names(folder: Path) -> list[str]:
-    return sorted(file.stem for file in folder.glob("*.toml"))
+    return sorted(file.stem for file in user_folder().glob("*.toml"))
 
 
 def is_own(mapping: Mapping) -> bool:
@@ -167,14 +163,12 @@ def _merged(below: Mapping, layer: MappingFile) -> Mapping:
         for bind in below.binds
         if override_key(bind) not in overridden and bind.target not in exclusive
     ]
-    return Mapping(
-        below.name,
-        (*remaining, *layer.binds),
-        tuple((dict(below.start) | dict(layer.start)).items()),
-        below.mpe if layer.mpe is None else layer.mpe,
-        below.key_switches if layer.key_switches is None else layer.key_switches,
-        below.about,
-        below.files,
+    return replace(
+        below,
+        binds=(*remaining, *layer.binds),
+        start=tuple((dict(below.start) | dict(layer.start)).items()),
+        mpe=below.mpe if layer.mpe is None else layer.mpe,
+        key_switches=below.key_switches if layer.key_switches is None else layer.key_switches,
     )
 
 

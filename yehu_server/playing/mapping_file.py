@@ -5,6 +5,8 @@ The format is described in mappings/README.md.
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,14 +14,15 @@ from typing import Any
 
 from yehu_server.core.midi.tables import MOST_BINDS
 from yehu_server.core.player.fingering import LOWEST_NOTE
-from yehu_server.errors import MappingError
+from yehu_server.errors import MappingError, ParameterError
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.spec import Curve, Param
-from yehu_server.playing import mapping_values as entries
+from yehu_server.params.table import find
 from yehu_server.playing import sources
 from yehu_server.playing.bind import Bind, Breakpoints
+from yehu_server.playing.sources import CHANNELS
 from yehu_server.util.documents import MOST_ERRORS, Document, Fields
-from yehu_server.util.values import flag, line, number, whole
+from yehu_server.util.values import brief, choice, flag, line, number, whole
 
 MOST_BYTES = 1 << 17  # one that is watched is parsed beside the playing
 
@@ -84,6 +87,77 @@ def _without_null(table: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in table.items() if value is not None}
 
 
+LONGEST_SMOOTHING_MS = 5000.0
+MOST_POINTS = 1024
+
+
+def settable_param(address: str, instead: str) -> Param:
+    """Find a parameter that the player does not move; `instead` begins the advice in the error."""
+    param = find(address)
+    if param.owned:
+        raise ParameterError(f"{address} is moved by the player; {instead} under /playing")
+    return param
+
+
+def read_settings(table: Fields) -> tuple[tuple[str, float], ...]:
+    """Read a table of addresses and the values that they start with."""
+    return tuple(table.each(_start).items())
+
+
+def _start(address: str, value: Any) -> float:
+    return settable_param(address, "set one").within(value)
+
+
+def read_span(value: Any, param: Param | None) -> tuple[float, float]:
+    """Read two values within the range of a parameter, if that is known."""
+    lo, hi = (param.lo, param.hi) if param else (-math.inf, math.inf)
+    return read_pair(value, "[from, to]", lo, hi)
+
+
+def read_input_range(value: Any) -> tuple[float, float]:
+    """Read two different numbers."""
+    lo, hi = read_pair(value, "[from, to]")
+    if not 0.0 < abs(hi - lo) < math.inf:
+        raise ParameterError(f"expected two different numbers, got {brief(value)}")
+    return lo, hi
+
+
+def read_pair(
+    value: Any, form: str, lo: float = -math.inf, hi: float = math.inf
+) -> tuple[float, float]:
+    """Read a list of two numbers within bounds."""
+    if not isinstance(value, list) or len(value) != 2:
+        raise ParameterError(f"expected {form}, got {brief(value)}")
+    return number(value[0], lo, hi), number(value[1], lo, hi)
+
+
+def read_curve(value: Any) -> Curve | Breakpoints:
+    """Read a curve by its name or by its points."""
+    if isinstance(value, list):
+        return _breakpoints(value)
+    return Curve(choice(value, [known.value for known in Curve]))
+
+
+def _breakpoints(value: list[Any]) -> Breakpoints:
+    points = tuple(read_pair(point, "points [from, to]", 0.0, 1.0) for point in value)
+    positions = [position for position, _ in points]
+    if len(positions) < 2 or (positions[0], positions[-1]) != (0.0, 1.0):
+        raise ParameterError("the points have to begin at 0 and end at 1")
+    if any(later <= position for position, later in itertools.pairwise(positions)):
+        raise ParameterError("each point has to lie beyond the one before it")
+    if len(points) > MOST_POINTS:
+        raise ParameterError(f"{len(points)} points are more than {MOST_POINTS}")
+    return Breakpoints(points)
+
+
+def read_channels(value: Any) -> tuple[int, ...]:
+    """Read one MIDI channel or several."""
+    numbers = value if isinstance(value, list) else [value]
+    if not numbers:
+        raise ParameterError("expected a channel or several, got []")
+    return tuple(sorted({whole(each, 1, CHANNELS) for each in numbers}))
+
+
 # ---------------------------------------------------------------- entries
 
 
@@ -95,7 +169,7 @@ def mapping_file_from(table: Fields) -> MappingFile:
         base=table.read("base", line, None),
         mpe=table.read("mpe", flag, None),
         key_switches=table.read("key_switches", _switches, None),
-        start=entries.settings(table.table("start")),
+        start=read_settings(table.table("start")),
         binds=tuple(filter(None, map(_bind, table.tables("bind", 0, MOST_BINDS)))),
     )
     table.only()
@@ -111,20 +185,20 @@ def _switches(value: Any) -> int:
 def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
     source = table.read("source", lambda value: sources.canonical(line(value)), None)
     param: Param | None = table.read(
-        "target", lambda value: entries.settable_param(line(value), "map to one"), None
+        "target", lambda value: settable_param(line(value), "map to one"), None
     )
-    curve: Curve | Breakpoints | None = table.read("curve", entries.curve, None)
-    span = table.read("span", entries.span, None, param)
+    curve: Curve | Breakpoints | None = table.read("curve", read_curve, None)
+    span = table.read("span", read_span, None, param)
     bind = Bind(
         source or "",
         param.address if param else "",
         span=span if param else None,
         curve=curve or (param.curve if param else Curve.LIN),
         invert=table.read("invert", flag, False),
-        smoothing_ms=table.read("smoothing", number, 0.0, 0.0, entries.LONGEST_SMOOTHING_MS, "ms"),
-        channels=table.read("channel", entries.channels, ()),
+        smoothing_ms=table.read("smoothing", number, 0.0, 0.0, LONGEST_SMOOTHING_MS, "ms"),
+        channels=table.read("channel", read_channels, ()),
         is_soft=table.read("soft", flag, False),
-        input_range=table.read("input", entries.input_range, (0.0, 1.0)),
+        input_range=table.read("input", read_input_range, (0.0, 1.0)),
         is_exclusive=table.read("alone", flag, False),
         is_global=table.read("global", flag, False),
         replaces=_replaced(table) if may_replace else (),

@@ -40,24 +40,21 @@ def entries_of(bind: Bind) -> dict[str, Any]:
 def as_toml(contents: MappingFile) -> str:
     """The text of a file with these contents, in canonical form."""
     document = tomlkit.document()
-    document["name"] = contents.name
     has_mpe = contents.mpe or (contents.base is not None and contents.mpe is not None)
-    for name, value in (("about", contents.about or None), ("base", contents.base)):
-        if value is not None:
-            document[name] = value
-    if has_mpe:
-        document["mpe"] = contents.mpe
-    if contents.key_switches is not None:
-        document["key_switches"] = contents.key_switches
+    entries = {
+        "name": contents.name,
+        "about": contents.about or None,
+        "base": contents.base,
+        "mpe": contents.mpe if has_mpe else None,
+        "key_switches": contents.key_switches,
+    }
+    document.update({name: value for name, value in entries.items() if value is not None})
     if contents.start:
         document.add(tomlkit.nl())
         document["start"] = {address: _number(value) for address, value in contents.start}
     if contents.binds:
         binds = tomlkit.aot()
-        for bind in contents.binds:
-            table = tomlkit.table()
-            table.update(entries_of(bind))
-            binds.append(table)
+        binds.extend(map(_table, contents.binds))
         if not contents.start:
             document.add(tomlkit.nl())
         document["bind"] = binds
@@ -104,10 +101,7 @@ def edited(contents: MappingFile, text: str, dropped: Sequence[Bind], added: Seq
         for index in reversed(range(len(contents.binds))):
             if contents.binds[index] in dropped:
                 del binds[index]
-        for bind in added:
-            table = tomlkit.table()
-            table.update(entries_of(bind))
-            binds.append(table)
+        binds.extend(map(_table, added))
         if not binds:
             del document["bind"]
         changed = tomlkit.dumps(document)
@@ -116,6 +110,12 @@ def edited(contents: MappingFile, text: str, dropped: Sequence[Bind], added: Seq
     except (TOMLKitError, MappingError, ValueError, TypeError, RecursionError):
         pass
     return as_toml(wanted)
+
+
+def _table(bind: Bind) -> Any:
+    table = tomlkit.table()
+    table.update(entries_of(bind))
+    return table
 
 
 def _set_name(document: tomlkit.TOMLDocument, name: str) -> None:

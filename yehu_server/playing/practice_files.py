@@ -14,7 +14,7 @@ import numpy as np
 from yehu_server.core.player.bowing import FIRST, LAST, PLACES, RECIPE, default_recipes
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import STRING_NAMES
-from yehu_server.util.files import read_text, replacing
+from yehu_server.util.files import read_text, write_bytes
 from yehu_server.util.parsing import parse_json
 
 Array = Any
@@ -108,5 +108,4 @@ def read_practice(path: Path) -> Array:
 
 def write_practice(path: Path, table: Array, rate: float) -> None:
     """Write a practice file; raises OutputError where it cannot be written."""
-    with replacing(path) as partial:
-        partial.write_text(as_text(as_data(table, rate)), encoding="utf-8")
+    write_bytes(path, as_text(as_data(table, rate)).encode())

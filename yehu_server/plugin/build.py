@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from yehu_server.ahead.build import run_compiler
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.plugin.bundles import put_clap, put_lv2, put_vst3
 from yehu_server.plugin.carried import carried
@@ -141,7 +141,7 @@ def compile_file(source: Path, into: Path, system: System, headers: Path) -> Non
 
     Raises YehuError where it fails.
     """
-    run(
+    run_compiler(
         [
             *compiler_of(system),
             *FLAGS,
@@ -178,13 +178,7 @@ def link(made: Format, system: System, work: Path) -> Path:
     if system.is_here:
         options += ["-static-libstdc++", "-static-libgcc", "-Wl,--as-needed"]
     libraries = ("-lm", *system.libraries)
-    run([*compiler_of(system), *options, *map(str, objects), *libraries, "-o", str(library)])
+    run_compiler(
+        [*compiler_of(system), *options, *map(str, objects), *libraries, "-o", str(library)]
+    )
     return library
-
-
-def run(command: Sequence[str]) -> None:
-    """Run a compiler; raises YehuError, with what it said, where it fails."""
-    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - ours
-    if done.returncode != 0:
-        said = done.stderr.strip() or str(done.returncode)
-        raise YehuError(f"{Path(command[0]).name}: {said}")

@@ -6,21 +6,18 @@ target into a folder, and the header of its functions.
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from yehu_server.ahead import interface
-from yehu_server.ahead.build import RATES, compiled
+from yehu_server.ahead.build import RATES, compile_for, compiled
 from yehu_server.ahead.build_hash import build_hash
 from yehu_server.ahead.header import header
 from yehu_server.ahead.memory_images import image
 from yehu_server.errors import YehuError
 from yehu_server.plugin.targets import ANY, WIDE, System, systems_of
 from yehu_server.util import __version__
-from yehu_server.util.processes import python_command
 
 ENGINE_HEADER = "yehu.h"
 
@@ -38,12 +35,7 @@ def make_objects(folder: Path, name: str) -> None:
     for cpu in (ANY, WIDE):
         if cpu == WIDE and not any(system.has_wide for system in systems_of(name)):
             continue
-        command = python_command("yehu_server.plugin.objects", str(folder), cpu, name)
-        environment = {**os.environ, "NUMBA_CPU_NAME": cpu, "NUMBA_CPU_FEATURES": ""}
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603 - our own
-        if done.returncode != 0:
-            said = done.stderr.strip().rpartition("\n")[2]
-            raise YehuError(said or f"exit code {done.returncode}")
+        compile_for(cpu, "yehu_server.plugin.objects", str(folder), cpu, name)
 
 
 def make_here(folder: Path, cpu: str, systems: Sequence[System]) -> None:

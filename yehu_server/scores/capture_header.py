@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import asdict, dataclass, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
-from yehu_server.playing.calibration_store import as_data, read_calibration
+from yehu_server.playing.calibration_store import read_calibration
 from yehu_server.scores.capture_format import FORMAT, MOST_FRAMES, VERSION, build
 from yehu_server.scores.gesture import sample_rate
 from yehu_server.util.documents import Fields
@@ -80,7 +80,7 @@ def _as_data(start: InstrumentSpec, before: Sequence[InstrumentSpec]) -> dict[st
     return {
         "seed": start.seed,
         "open_strings": start.open_strings.value,
-        "calibration": next(tuned_alike, None if calibration is None else as_data(calibration)),
+        "calibration": next(tuned_alike, None if calibration is None else asdict(calibration)),
         "bowing": next(bowed_alike, None) or start.bowing.tolist(),
         "body": start.body,
         "quantities": _changes(start.quantities, Quantities()),

@@ -12,7 +12,7 @@ from yehu_server.live.network import OSC_ADDRESS, Address
 from yehu_server.surfaces import max as max_patch
 from yehu_server.surfaces import open_stage_control, parameter_reference, puredata, touchosc
 from yehu_server.surfaces.common_layout import ALL, for_part
-from yehu_server.util.files import replacing
+from yehu_server.util.files import write_bytes
 
 
 @dataclass(frozen=True)
@@ -66,11 +66,7 @@ def write(surface: Surface, folder: Path, server: Address = OSC_ADDRESS, part: i
 
     Raises OutputError where it cannot be written.
     """
-    target = file_of(surface, folder, part)
-    data = made(surface, server, part)
-    with replacing(target) as partial:
-        partial.write_bytes(data)
-    return target
+    return write_bytes(file_of(surface, folder, part), made(surface, server, part))
 
 
 def is_fresh(

@@ -284,6 +284,13 @@ def _beside(target: Path) -> Path:
     return target.parent / f".yehu-server-{secrets.token_hex(8)}.part"
 
 
+def write_bytes(target: Path, data: bytes, *, overwrite: bool = True) -> Path:
+    """Write a file as `replacing` does; return its path."""
+    with replacing(target, anything if overwrite else nothing) as partial:
+        partial.write_bytes(data)
+    return target
+
+
 def write_text(target: Path, text: str) -> None:
     """Write a text file atomically: after a power cut it is complete, the new or the old one.
 

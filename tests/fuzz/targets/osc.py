@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from fuzz.target import target
 
-from yehu_server.live.osc.framing import Framing, FramingError
+from yehu_server.live.osc.answering import Framing, FramingError
 from yehu_server.live.osc.packets import Message, PacketError, answer, pack, unpack
 
 MOST_WRAPPED_BYTES = 60_000  # fit a packet of either framing

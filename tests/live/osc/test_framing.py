@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pythonosc import slip
 
-from yehu_server.live.osc.framing import MOST_BYTES, Framing, FramingError
+from yehu_server.live.osc.answering import MOST_BYTES, Framing, FramingError
 
 ESC, END = b"\xdb", b"\xc0"
 

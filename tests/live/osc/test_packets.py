@@ -14,7 +14,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from yehu_server.live.osc.framing import MOST_BYTES
+from yehu_server.live.osc.answering import MOST_BYTES
 from yehu_server.live.osc.packets import (
     DEEPEST,
     MOST_ARGUMENTS,

@@ -12,8 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from yehu_server.ahead.build import page_linker
-from yehu_server.ahead.module_cache import page_module
+from yehu_server.ahead.build import page_linker, page_module
 from yehu_server.live.page import facts
 from yehu_server.live.page.site import MODULE
 

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.ahead.build import page_linker
-from yehu_server.ahead.module_cache import page_module
+from yehu_server.ahead.build import page_linker, page_module
 from yehu_server.live.page import facts
 from yehu_server.live.page.site import MODULE, page_files, page_folder
 

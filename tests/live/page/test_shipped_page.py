@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from yehu_server.ahead import module_cache
+from yehu_server.ahead import build
 from yehu_server.ahead.build_hash import build_hash, with_section
 from yehu_server.errors import YehuError
 from yehu_server.live.page import module_process, site
@@ -32,10 +32,10 @@ def shipped(tmp_path, monkeypatch) -> Path:
     for name, content in OLDER.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(content)
-    for module in (module_cache, site):
+    for module in (build, site):
         monkeypatch.setattr(module, "SHIPPED", folder / "yehu.wasm")
-    monkeypatch.setattr(module_cache, "data_folder", lambda: tmp_path)
-    monkeypatch.setattr(module_cache, "page_linker", lambda: None)
+    monkeypatch.setattr(build, "data_folder", lambda: tmp_path)
+    monkeypatch.setattr(build, "page_linker", lambda: None)
     return folder
 
 

@@ -15,7 +15,7 @@ from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing import learn
 from yehu_server.playing.learn import LearnedSource
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.mapping_values import settable_param
+from yehu_server.playing.mapping_file import settable_param
 
 PATIENCE_S = 60.0  # to wait for something to be moved
 NOT_MOVED = -1.0

@@ -24,6 +24,7 @@ from yehu_server.live.network import Address, Allowed, is_here
 from yehu_server.live.osc.answering import (
     TO_A_HOST,
     TO_ALL_HOSTS,
+    FramingError,
     Peer,
     TcpPeer,
     Traffic,
@@ -31,7 +32,6 @@ from yehu_server.live.osc.answering import (
     answer_bucket,
 )
 from yehu_server.live.osc.fair_queue import FairQueue
-from yehu_server.live.osc.framing import FramingError
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, datagrams, open_both, widen
 

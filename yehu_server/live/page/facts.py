@@ -39,24 +39,10 @@ from yehu_server.playing.tuning import EQUAL, KEYS, STANDARD_A4, RangePolicy, Tu
 from yehu_server.util.files import shipped_folder, write_text
 
 
-def kinds() -> dict[str, int]:
-    """The number of each kind of wish, by its name."""
-    return {name.upper(): number for number, name in enumerate(KINDS)}
-
-
-def events() -> dict[str, int]:
-    """The number of each other kind of event, by its name."""
-    return {name.upper(): number for number, name in enumerate(EVENTS, len(KINDS))}
-
-
-def parameters() -> list[dict[str, Any]]:
-    """The rows of the parameter table, in its order."""
-    return [parameter(param) for param in TABLE]
-
-
 def parameter(param: Param) -> dict[str, Any]:
     """One row: its fields, and its numbers in the player (`row`) and in the engine (`slot`)."""
-    own = {camel(field.name): _plain(getattr(param, field.name)) for field in fields(param)}
+    own = {field.name: getattr(param, field.name) for field in fields(param)}
+    own = {camel(name): v.value if isinstance(v, Enum) else v for name, v in own.items()}
     group, *words = param.address.split("/")[1:]
     return own | {
         "group": group,
@@ -72,21 +58,12 @@ def camel(name: str) -> str:
     return first + "".join(word.capitalize() for word in rest)
 
 
-def _plain(value: Any) -> Any:
-    return value.value if isinstance(value, Enum) else value
-
-
 # What a table has of each bind, but for what the page finds itself, as it learns binds over a
 # mapping, and for what is of named controls: nothing moves those of a page.
 FOUND = {"first", "target", "same", "input_lo", "input_hi"}
 OF_BIND = [
     name for name in TABLES.names or () if TABLES[name].shape == (MOST_BINDS,) and name not in FOUND
 ]
-
-
-def mappings() -> dict[str, Any]:
-    """The shipped mappings by name, each merged with its bases."""
-    return {name: mapping(load(name)) for name in shipped_mappings()}
 
 
 def mapping(one: ControllerMapping) -> dict[str, Any]:
@@ -107,31 +84,16 @@ def mapping(one: ControllerMapping) -> dict[str, Any]:
 
 def bind(one: Bind, table: Any, number: int) -> dict[str, Any]:
     """A bind: whom it overrides, and its row of the table, without what is 0."""
-    row = {name: plain(table[name][number]) for name in OF_BIND if table[name][number]}
+    found = {name: float(table[name][number]) for name in OF_BIND if table[name][number]}
+    row = {name: int(v) if v.is_integer() else v for name, v in found.items()}
     channels = {"channels": list(one.channels)} if one.channels else {}
     return {"source": one.source, "target": one.target, **channels, "row": row}
 
 
-def plain(number: float) -> float | int:
-    """A number as JSON has it, whole ones without a fraction."""
-    return int(number) if number == int(number) else float(number)
-
-
-def presets() -> dict[str, Any]:
-    """The shipped presets by name, in the order of their names; and what a preset keeps."""
-    files = sorted(shipped_folder("presets").glob("*.toml"))
-    found = map(read_preset, files)
-    return {"shipped": {each.name: preset(each) for each in found}, "saved": list(SAVED)}
-
-
 def preset(one: Preset) -> dict[str, Any]:
-    """A preset."""
-    return {
-        "name": one.name,
-        "about": one.about,
-        "program": one.program,
-        "values": dict(one.values),
-    }
+    """What the page has of a preset."""
+    names = ("name", "about", "program")
+    return {**{name: getattr(one, name) for name in names}, "values": dict(one.values)}
 
 
 def tunings() -> dict[str, Any]:
@@ -158,10 +120,11 @@ HEAD = "// Written by `python -m yehu_server.live.page`; changes are lost.\n"
 
 def facts() -> dict[str, Any]:
     """All facts, of JSON's types; the same for the same sources."""
+    shipped = map(read_preset, sorted(shipped_folder("presets").glob("*.toml")))
     return {
-        "kinds": kinds(),
-        "events": events(),
-        "parameters": parameters(),
+        "kinds": {name.upper(): number for number, name in enumerate(KINDS)},
+        "events": {name.upper(): number for number, name in enumerate(EVENTS, len(KINDS))},
+        "parameters": [parameter(param) for param in TABLE],
         "notes": {
             "NAMES": list(NOTE_NAMES),
             "OPEN": list(map(float, OPEN_NOTES)),
@@ -189,11 +152,11 @@ def facts() -> dict[str, Any]:
         "curves": {curve.value: code for curve, code in CURVES.items()},
         "learner": {"DISTANCE": learn.DISTANCE, "AT_REST": dict(learn.AT_REST)},
         "interpreter": interpreter_layout(),
-        "mappings": mappings(),
+        "mappings": {name: mapping(load(name)) for name in shipped_mappings()},
         "defaultMapping": DEFAULT,
         "articulations": [[row.name, row.chinese] for row in ARTICULATIONS],
         "asItSings": AS_IT_SINGS,
-        "presets": presets(),
+        "presets": {"shipped": {one.name: preset(one) for one in shipped}, "saved": list(SAVED)},
         "tunings": tunings(),
         "look": look_layout(),
         "lookLength": look_length(),

@@ -9,7 +9,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from yehu_server.ahead.module_cache import page_module
+from yehu_server.ahead.build import page_module
 from yehu_server.errors import YehuError
 from yehu_server.live.page.examples import write_capture_headers
 from yehu_server.util.processes import Parent

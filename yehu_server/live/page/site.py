@@ -6,7 +6,6 @@ import gzip
 import hashlib
 import json
 import logging
-import shutil
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -16,11 +15,11 @@ from typing import Any
 
 from aiohttp import web
 
-from yehu_server.ahead.module_cache import SHIPPED, page_module, shipped_version
+from yehu_server.ahead.build import SHIPPED, page_module, shipped_version
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.live.page.examples import examples, write_capture_headers
 from yehu_server.live.page.facts import facts, module, write
-from yehu_server.util.files import replacing, shipped_folder, why
+from yehu_server.util.files import shipped_folder, why, write_bytes
 
 INDEX = "index.html"
 # This meta element tells the page that a yehu server serves it; the static page does not have it.
@@ -153,7 +152,7 @@ def write_page(folder: Path) -> list[Path]:
         return _copy_all(_files_of(SHIPPED.parent), SHIPPED.parent, folder)
     written = _copy_all(page_files(), page_folder(), folder)
     try:
-        _copy(module, folder / MODULE)
+        write_bytes(folder / MODULE, module.read_bytes())
         write(folder)
         beginnings = write_capture_headers(folder / CAPTURES)
         index = (folder / INDEX).read_text("utf-8").replace(*KEPT, 1)
@@ -189,16 +188,11 @@ def _copy_all(files: Iterable[Path], source: Path, folder: Path) -> list[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         for file in files:
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
-            _copy(source / file, folder / file)
+            write_bytes(folder / file, (source / file).read_bytes())
             copied.append(file)
     except OSError as error:
         raise OutputError(f"{folder}: {why(error)}") from error
     return copied
-
-
-def _copy(source: Path, target: Path) -> None:
-    with replacing(target) as partial:
-        shutil.copyfile(source, partial)
 
 
 HOST = "127.0.0.1"

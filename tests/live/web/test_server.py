@@ -15,8 +15,8 @@ from yehu_server.errors import DeviceError
 from yehu_server.live.network import Allowed
 from yehu_server.live.osc.call_table import CALLS
 from yehu_server.live.osc.status import STATUS, Kind
-from yehu_server.live.web.access import MOST_OF_A_HOST
-from yehu_server.live.web.server import IDLE_S, PARAMETERS, WebOptions
+from yehu_server.live.web.access import IDLE_S, MOST_OF_A_HOST
+from yehu_server.live.web.server import PARAMETERS, WebOptions
 from yehu_server.params.table import TABLE
 from yehu_server.util.files import shipped_folder
 

@@ -7,7 +7,6 @@ sound for twenty pages delay a note.
 from __future__ import annotations
 
 import asyncio
-import logging
 import os
 import socket
 import threading
@@ -23,13 +22,11 @@ from yehu_server.live.page.guests import Admission, Guests
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.page.site import HEADERS, Site
 from yehu_server.live.page.sockets import PageSockets
-from yehu_server.live.web.access import Connections, check, own_names
+from yehu_server.live.web.access import Connections, check, own_names, serve_http
 from yehu_server.util.processes import Child, Message, Parent
 
 NICE = 5  # after the processes that play
 SOCKET, SOUND = "/socket", "/sound"
-ENDING_S = 0.2
-IDLE_S = 15.0  # before an idle connection is closed
 PREPARING, READY, NONE = "preparing", "ready", "none"
 
 
@@ -81,17 +78,7 @@ class Pages:
         self._loop.run_until_complete(self._serve())
 
     async def _serve(self) -> None:
-        app = web.Application()
-        app.router.add_route("*", "/{path:.*}", self._answer)
-        quiet = logging.getLogger(__name__)
-        quiet.disabled = True  # malformed requests are not logged
-        runner = web.AppRunner(
-            app, access_log=None, logger=quiet, keepalive_timeout=IDLE_S, shutdown_timeout=ENDING_S
-        )
-        await runner.setup()
-        assert runner.server is not None  # noqa: S101 - setup makes it
-        self._connections.bound(runner.server)
-        await web.SockSite(runner, self._listening).start()
+        await serve_http(self._answer, self._listening, self._connections)
         sockets = self._sockets
         await asyncio.gather(sockets.send_looks(), sockets.send_sound(), sockets.send_status())
 

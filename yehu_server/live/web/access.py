@@ -11,18 +11,50 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import ipaddress
+import logging
 import socket
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Awaitable, Callable, Iterator, Sequence
 from urllib.parse import urlsplit
 
 from aiohttp import web
 
 from yehu_server.live.network import Allowed, is_here, plain
 
+IDLE_S = 15.0  # before an idle connection is closed
+ENDING_S = 0.2  # to finish answers at the end
 LONGEST_NAME = 300
 PORTS = {"http": 80, "https": 443}  # by scheme, where an origin names none
 NOWHERE = ("", 0)
+
+
+async def serve_http(
+    answer: Callable[[web.Request], Awaitable[web.StreamResponse]],
+    listening: socket.socket,
+    connections: Connections,
+) -> web.AppRunner:
+    """Serve all paths at a listening socket by a function; return what `cleanup` ends it by."""
+    app = web.Application()
+    app.router.add_route("*", "/{path:.*}", answer)
+    quiet = logging.getLogger(f"{__name__}.http")  # malformed requests are not logged
+    quiet.disabled = True
+    runner = web.AppRunner(
+        app,
+        access_log=None,
+        logger=quiet,
+        keepalive_timeout=IDLE_S,
+        lingering_time=0.0,
+        shutdown_timeout=ENDING_S,
+    )
+    await runner.setup()
+    assert runner.server is not None  # noqa: S101 - setup makes it
+    connections.bound(runner.server)
+    try:
+        await web.SockSite(runner, listening).start()
+    except BaseException:
+        await runner.cleanup()
+        raise
+    return runner
 
 
 def own_names() -> frozenset[str]:

@@ -26,7 +26,7 @@ from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.open_sockets import NAME, by_whom, serves_at
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web import query
-from yehu_server.live.web.access import Connections, check, own_names
+from yehu_server.live.web.access import Connections, check, own_names, serve_http
 from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.metrics import Metrics
 from yehu_server.live.web.web_sockets import WebSockets
@@ -36,8 +36,6 @@ from yehu_server.util.files import why
 log = logging.getLogger(__name__)
 
 BODY_BYTES = 1 << 16
-IDLE_S = 15.0  # before an idle connection is closed
-ENDING_S = 0.2  # to finish answers at the end
 HEADERS = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-store"}
 PARAMETERS = "parameters.html"
 PANEL = """
@@ -108,25 +106,10 @@ class WebServer:
         self._thread.call(self._sockets.tell, "PATH_CHANGED", path)
 
     async def _serve(self) -> None:
-        app = web.Application(logger=log)
-        app.router.add_route("*", "/{path:.*}", self._answer)
-        quiet = logging.getLogger(f"{__name__}.http")  # malformed requests are not logged
-        quiet.disabled = True
-        runner = web.AppRunner(
-            app,
-            access_log=None,
-            logger=quiet,
-            keepalive_timeout=IDLE_S,
-            lingering_time=0.0,
-            shutdown_timeout=ENDING_S,
-        )
-        await runner.setup()
-        server = runner.server
-        assert server is not None  # noqa: S101 - setup makes it
+        # A copy, since it is closed at the end, and serving may have to start again.
+        listening = self._listening.dup()
+        runner = await serve_http(self._answer, listening, self._connections)
         try:
-            self._connections.bound(server)
-            # A copy, since it is closed at the end, and serving may have to start again.
-            await web.SockSite(runner, self._listening.dup()).start()
             await asyncio.Event().wait()
         finally:
             await self._sockets.close()

@@ -96,7 +96,8 @@ def plain_gesture(gesture: Mapping[str, Any]) -> dict[str, Any]:
     if not isinstance(controls, Mapping):
         raise ParameterError("controls: expected names and values")
     rate = data.get("sample_rate", RATE)
-    sampled = {name: value for name, value in controls.items() if _is_sampled(value)}
+    arrays = {name: value for name, value in controls.items() if isinstance(value, np.ndarray)}
+    sampled = {name: value for name, value in arrays.items() if value.ndim == 1 and len(value)}
     if sampled:
         data["duration"] = _duration(sampled, data.get("duration"), rate)
     data["controls"] = {
@@ -118,10 +119,6 @@ def _duration(sampled: Mapping[str, NDArray[Any]], told: Any, rate: Any) -> floa
         if len(values) != expected:
             raise ParameterError(f"{name}: {len(values)} samples, but {which}")
     return float(told) if told is not None else expected / rate
-
-
-def _is_sampled(value: Any) -> bool:
-    return isinstance(value, np.ndarray) and value.ndim == 1 and len(value) > 0
 
 
 def _curve(values: Any, rate: float) -> list[list[float]]:

@@ -73,15 +73,11 @@ def absolute(arguments: argparse.Namespace) -> argparse.Namespace:
     for name in ("output", "plot", "presets"):
         values[name] = None if values[name] is None else values[name].absolute()
     for name in ("mapping", "preset"):
-        text = vars(arguments)[name]
-        if text is not None and _is_path(text.removeprefix("mine/")):
+        text = vars(arguments)[name] or ""
+        path = Path(text.removeprefix("mine/"))
+        if str(path) != path.name or path.suffix:  # no name
             values[name] = str(Path(text).absolute())
     return argparse.Namespace(**values)
-
-
-def _is_path(name: str) -> bool:
-    """Whether what names a mapping or a preset is a path, and not a name."""
-    return Path(name).name != name or bool(Path(name).suffix)
 
 
 def render_on_cluster(tasks: Sequence[Task], cluster: Cluster) -> Generator[Event]:

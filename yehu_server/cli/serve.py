@@ -8,7 +8,6 @@ import logging
 import signal
 import sys
 import threading
-import time
 import webbrowser
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
@@ -159,7 +158,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         log.debug("the receive buffer for OSC has %d kB", buffer_kb)
         log.info("Ctrl-C ends")
         with _status_line(server):
-            _wait(ending.requested, arguments.duration)
+            ending.requested.wait(arguments.duration)
     finally:
         server.stop()
     return 0 if server.is_whole else 2
@@ -184,14 +183,6 @@ def _tell_of_page(
         show(phones, sys.stderr)  # where the lines of the log are
     if arguments.open:
         webbrowser.open(lines[0].rpartition(" ")[2])
-
-
-def _wait(ended: threading.Event, duration_s: float | None) -> None:
-    deadline = None if duration_s is None else time.monotonic() + duration_s
-    while deadline is None or time.monotonic() < deadline:
-        left = 0.5 if deadline is None else min(0.5, max(0.0, deadline - time.monotonic()))
-        if ended.wait(left):
-            return
 
 
 @contextlib.contextmanager

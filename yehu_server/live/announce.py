@@ -14,6 +14,7 @@ from yehu_server.live.osc.open_sockets import NAME
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.server import WebServer
+from yehu_server.util.files import why
 from yehu_server.util.retry import Backoff
 
 OSC, OSCQUERY = "_osc._udp.local.", "_oscjson._tcp.local."
@@ -63,7 +64,12 @@ class Announcer:
         self._services = services
         self._on_message = on_message
         patience = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)
-        self._thread = LoopThread(self._announce, "zeroconf", self._not_announced, patience)
+        self._thread = LoopThread(
+            self._announce,
+            "zeroconf",
+            lambda error: on_message(f"not announced: {why(error)}"),
+            patience,
+        )
 
     def start(self) -> None:
         """Start to announce."""
@@ -107,6 +113,3 @@ class Announcer:
             with contextlib.suppress(zeroconf.Error):
                 await started
             await found.async_close()
-
-    def _not_announced(self, error: BaseException) -> None:
-        self._on_message(f"not announced: {str(error) or type(error).__name__}")

@@ -76,11 +76,7 @@ def _binds_of_json(binds: list[Any]) -> list[Any]:
 
 
 def _of_json(entry: dict[str, Any]) -> dict[str, Any]:
-    ends = [entry.pop(name, None) for name in ("from", "to")]
-    # Older versions printed no span beside them; both are null for the bend range.
-    if "span" not in entry and ends != [None, None]:
-        entry["span"] = ends
-    return _without_null(entry)
+    return {name: v for name, v in _without_null(entry).items() if name not in ("from", "to")}
 
 
 def _without_null(table: Mapping[str, Any]) -> dict[str, Any]:
@@ -97,11 +93,6 @@ def settable_param(address: str, instead: str) -> Param:
     if param.owned:
         raise ParameterError(f"{address} is moved by the player; {instead} under /playing")
     return param
-
-
-def read_settings(table: Fields) -> tuple[tuple[str, float], ...]:
-    """Read a table of addresses and the values that they start with."""
-    return tuple(table.each(_start).items())
 
 
 def _start(address: str, value: Any) -> float:
@@ -168,18 +159,13 @@ def mapping_file_from(table: Fields) -> MappingFile:
         about=table.read("about", line, ""),
         base=table.read("base", line, None),
         mpe=table.read("mpe", flag, None),
-        key_switches=table.read("key_switches", _switches, None),
-        start=read_settings(table.table("start")),
+        key_switches=table.read("key_switches", whole, None, 0, LOWEST_NOTE - len(ARTICULATIONS)),
+        start=tuple(table.table("start").each(_start).items()),
         binds=tuple(filter(None, map(_bind, table.tables("bind", 0, MOST_BINDS)))),
     )
     table.only()
     table.document.finish()
     return mapping_file
-
-
-def _switches(value: Any) -> int:
-    """The lowest key switch: all of them lie below the notes that are played as they are."""
-    return whole(value, 0, LOWEST_NOTE - len(ARTICULATIONS))
 
 
 def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
@@ -201,7 +187,11 @@ def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
         input_range=table.read("input", read_input_range, (0.0, 1.0)),
         is_exclusive=table.read("alone", flag, False),
         is_global=table.read("global", flag, False),
-        replaces=_replaced(table) if may_replace else (),
+        replaces=tuple(
+            filter(None, (_bind(each, may_replace=False) for each in table.tables("replaces")))
+        )
+        if may_replace
+        else (),
     )
     table.only()
     if not {"source", "target"} <= table.data.keys():
@@ -211,11 +201,6 @@ def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
     for name, reason in _conflicts(bind, table.data):
         table.wrong(name, reason)
     return bind
-
-
-def _replaced(table: Fields) -> tuple[Bind, ...]:
-    found = (_bind(each, may_replace=False) for each in table.tables("replaces"))
-    return tuple(bind for bind in found if bind)
 
 
 def _conflicts(bind: Bind, entry: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -16,7 +16,7 @@ from yehu_server.compile.jit import uncompiled
 from yehu_server.core.midi import tables
 from yehu_server.core.midi.notes import fitted, pitch_of_key
 from yehu_server.errors import ParameterError
-from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, shipped_folder
+from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, shipped_folder, why
 
 
 class RangePolicy(Enum):
@@ -113,7 +113,10 @@ def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
     """
     scale = _found(scale, ".scl")
     keyboard = None if keyboard is None else _found(keyboard, ".kbm")
-    name, notes = _read_scale(scale)
+    lines = _Lines(scale)
+    name = lines.title() or scale.stem
+    count = lines.whole("the number of notes", 0, MOST_NOTES)
+    notes = tuple(_note(lines, f"note {n} of {count}") for n in range(1, count + 1))
     layout = _Keyboard() if keyboard is None else _read_keyboard(keyboard)
     reference = layout.interval(layout.reference, notes)
     if reference is None:
@@ -197,8 +200,7 @@ class _Lines:
         except UnicodeDecodeError as error:
             text = error.object.decode("latin-1")
         except (OSError, ValueError) as error:  # a name may have a NUL
-            reason = error.strerror if isinstance(error, OSError) else None
-            raise ParameterError(f"{path}: {reason or error}") from error
+            raise ParameterError(f"{path}: {why(error)}") from error
         if _NO_TEXT.search(text):
             raise ParameterError(f"{path}: not a text file")
         self._lines = _LINE_END.split(text.removeprefix("\ufeff").partition("\x1a")[0])
@@ -243,14 +245,6 @@ class _Lines:
         if not lo <= int(line) <= hi:
             raise self.error(f"{what}: {int(line)} is not within {lo} to {hi}")
         return int(line)
-
-
-def _read_scale(path: Path) -> tuple[str, tuple[float, ...]]:
-    """Read a scale's name and its notes (semitones above 1/1)."""
-    lines = _Lines(path)
-    name = lines.title() or path.stem
-    count = lines.whole("the number of notes", 0, MOST_NOTES)
-    return name, tuple(_note(lines, f"note {n} of {count}") for n in range(1, count + 1))
 
 
 def _note(lines: _Lines, what: str) -> float:

@@ -115,13 +115,10 @@ def inside(folder: Path, name: str, ending: str = "") -> Path:
         raise OutputError(f"{shown!r} is not a plain name of letters, digits, . _ - and spaces")
     path = folder / f"{name}{ending}"
     # A dangling link too: writing through it would create the file it names.
-    if os.path.islink(path) and not _is_within(path, folder):  # noqa: PTH114 - Path's raises
+    is_inside = Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
+    if os.path.islink(path) and not is_inside:  # noqa: PTH114 - Path's raises
         raise OutputError(f"{path.name} is a link that leads out of {folder}")
     return path
-
-
-def _is_within(path: Path, folder: Path) -> bool:
-    return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
 
 
 def check_target(target: Path) -> None:

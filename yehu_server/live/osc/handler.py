@@ -53,7 +53,9 @@ class OscHandler:
         # Messages of another server that was made to send us its values.
         self._answers: dict[str, Act] = {f"{PREFIX}/error": lambda _call: None}
         for addressed in self._groups:
-            self._answers[f"{PREFIX}{addressed}/subscribed"] = self._mute
+            self._answers[f"{PREFIX}{addressed}/subscribed"] = lambda call: self.clients.mute(
+                call.peer, within_an_hour(call.numbers(1)[0])
+            )
         self._mappings: list[Mapping] = []
         self._own: dict[str, Act] = {}
 
@@ -190,6 +192,3 @@ class OscHandler:
 
         self._schedule.drop(is_of_part)
         self._due.drop(is_of_part)
-
-    def _mute(self, call: Request) -> None:
-        self.clients.mute(call.peer, within_an_hour(call.numbers(1)[0]))

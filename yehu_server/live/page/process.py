@@ -44,15 +44,12 @@ class Pages:
         self._sounds = PREPARING  # whether pages can sound themselves
         self._status: dict[str, Any] = {}
         view = SharedView(order["memory"])
-        self._sockets = PageSockets(view, order["rigs"], self._status_fields)
+        self._sockets = PageSockets(
+            view, order["rigs"], lambda: self._status | {"sounds": self._sounds}
+        )
         self._loop = asyncio.new_event_loop()
-        self._finder = Child("yehu_server.live.page.module_process", self._hear_of_module)
-
-    def _hear_of_module(self, event: Message) -> None:
-        self._loop.call_soon_threadsafe(self._found, event)
-
-    def _status_fields(self) -> dict[str, Any]:
-        return self._status | {"sounds": self._sounds}
+        found = partial(self._loop.call_soon_threadsafe, self._found)
+        self._finder = Child("yehu_server.live.page.module_process", found)
 
     def _found(self, event: Message) -> None:
         """Hear of the module for pages."""

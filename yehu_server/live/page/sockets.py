@@ -118,7 +118,9 @@ class PageSockets:
         if part is None:
             await socket.close(code=NO_PART, message=f"there are {len(self._rigs)} parts".encode())
             return socket
-        page = Page(self._free_number(), part, role, request.transport)
+        taken = {page.number for page in self._pages.values()}
+        number = next(number for number in range(MOST_PAGES + 1) if number not in taken)
+        page = Page(number, part, role, request.transport)
         self._pages[socket] = page
         try:
             self._send_status(page)
@@ -160,10 +162,6 @@ class PageSockets:
         words = [str(part) for part in range(1, len(self._rigs) + 1)]
         word = request.query.get("part", "1")
         return words.index(word) if word in words else None
-
-    def _free_number(self) -> int:
-        taken = {page.number for page in self._pages.values()}
-        return next(number for number in range(MOST_PAGES + 1) if number not in taken)
 
     def _obey(self, page: Page, text: str) -> bool:
         """Do what a page asks for; return whether that can be asked."""

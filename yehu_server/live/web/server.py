@@ -146,8 +146,10 @@ class WebServer:
             return self._parameters()
         page_port = self._sources.page_port()
         if request.path in {"/panel", "/panel/"} and page_port is not None:
-            raise web.HTTPTemporaryRedirect(f"http://{_with_port(request.host, page_port)}/")
-        if request.path == "/" and not request.query_string and _reads_html(request):
+            host = urlsplit(f"//{request.host}").hostname or ""  # which was checked
+            raise web.HTTPTemporaryRedirect(f"http://{format_address(host, page_port)}/")
+        reads_html = "text/html" in request.headers.get("Accept", "")
+        if request.path == "/" and not request.query_string and reads_html:
             link = "" if page_port is None else PANEL
             return _html(PAGE.format(panel=link, parameters=PARAMETERS, prefix=PREFIX))
         return self._query(request)
@@ -205,15 +207,6 @@ def listen(what: str, host: str, port: int) -> socket.socket:
         where = format_address(host, port)
         whom = by_whom(error, host, port, serves_at)
         raise DeviceError(f"{what}: cannot listen at {where}: {why(error)}{whom}") from error
-
-
-def _with_port(host: str, port: int) -> str:
-    """The host of a request's header Host, which was checked, with another port."""
-    return format_address(urlsplit(f"//{host}").hostname or "", port)
-
-
-def _reads_html(request: web.Request) -> bool:
-    return "text/html" in request.headers.get("Accept", "")
 
 
 def _html(text: str) -> web.Response:

@@ -11,7 +11,7 @@ import contextlib
 import secrets
 import tempfile
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,30 +24,16 @@ if TYPE_CHECKING:
     from yehu_server.rendering.workers import Event, ProgressCallback
 
 
-@dataclass(frozen=True)
-class ClusterTask:
-    """A task for a worker, with the score, in case the worker does not see the folders.
-
-    `mark`: a file in the output, which is found where that is seen.
-    `score`: None where it cannot be read: then the worker tells why.
-    """
-
-    task: Task
-    mark: Path
-    score: bytes | None
-
-
-def perform_on_worker(far: ClusterTask, tell: ProgressCallback) -> dict[str, Any]:
+def perform_on_worker(task: Task, tell: ProgressCallback) -> dict[str, Any]:
     """Render a score on a worker, in its place or to a result that travels: a `Done` as plain."""
-    task = far.task
-    if far.score is None or (far.mark.is_file() and task.entry.source.is_file()):
+    if task.score is None or (task.mark.is_file() and task.entry.source.is_file()):
         return perform(task, tell).as_plain()
     with tempfile.TemporaryDirectory(prefix="yehu-server-") as name:
         folder = Path(name)
         source = folder / "in" / task.entry.source.name
         output = folder / "out"
         source.parent.mkdir()
-        source.write_bytes(far.score)
+        source.write_bytes(task.score)
         asked = argparse.Namespace(**vars(task.arguments))
         target = output / task.entry.target.relative_to(asked.output)
         asked.output = output
@@ -74,8 +60,8 @@ def absolute(arguments: argparse.Namespace) -> argparse.Namespace:
         values[name] = None if values[name] is None else values[name].absolute()
     for name in ("mapping", "preset"):
         text = vars(arguments)[name] or ""
-        path = Path(text.removeprefix("mine/"))
-        if str(path) != path.name or path.suffix:  # no name
+        name_or_path = text.removeprefix("mine/")
+        if Path(name_or_path).name != name_or_path or Path(name_or_path).suffix:  # a path
             values[name] = str(Path(text).absolute())
     return argparse.Namespace(**values)
 
@@ -131,7 +117,7 @@ def hashes_of(paths: Sequence[str]) -> dict[str, str]:
     return {path: hash_of(Path(path)) for path in paths}
 
 
-def _sent(task: Task, arguments: argparse.Namespace, mark: Path) -> ClusterTask:
+def _sent(task: Task, arguments: argparse.Namespace, mark: Path) -> Task:
     try:
         score = task.entry.source.read_bytes()
     except OSError:
@@ -139,8 +125,8 @@ def _sent(task: Task, arguments: argparse.Namespace, mark: Path) -> ClusterTask:
     entry = task.entry
     entry = replace(entry, source=entry.source.absolute(), target=entry.target.absolute())
     picture = None if task.picture is None else task.picture.absolute()
-    own = replace(task, arguments=arguments, entry=entry, picture=picture)
-    return ClusterTask(own, mark, score)
+    place = {"entry": entry, "picture": picture, "mark": mark}
+    return replace(task, arguments=arguments, score=score, **place)
 
 
 def _received(task: Task, told: Any) -> Done:

@@ -38,6 +38,9 @@ class Task:
     `picture`: where the picture of it goes.
     `key`: of all that the result depends on, beside files of settings.
     `seconds`: how long it lasts, as far as that is known from an earlier run; else 0.
+    `mark`: for a worker of a cluster: a file in the output, which is found where that is seen.
+    `score`: for such a worker that does not see the folders; None where it cannot be read, and the
+    worker tells why.
     """
 
     arguments: argparse.Namespace
@@ -45,6 +48,8 @@ class Task:
     picture: Path | None
     key: str
     seconds: float = 0.0
+    mark: Path = Path()
+    score: bytes | None = None
 
     @property
     def results(self) -> tuple[Path, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -162,19 +163,13 @@ def _stems(arguments: argparse.Namespace, options: Options, players: Players) ->
 
 def _calibrated(arguments: argparse.Namespace, parts: Sequence[Part], rate: float) -> list[Part]:
     """Give all parts the calibration of their instruments, each measured once."""
-    from yehu_server.playing.calibration import calibration_key
     from yehu_server.playing.calibration_store import calibration_for
 
-    known: dict[str, Any] = {}
-    calibrated = []
     with progress_bar(arguments, "calibrating", "notes") as progress:
-        for part in parts:
-            a4 = part.playing.a4
-            key = calibration_key(rate, part.quantities, a4)
-            if key not in known:
-                known[key] = calibration_for(rate, part.quantities, a4=a4, progress=progress)
-            calibrated.append(replace(part, calibration=known[key]))
-    return calibrated
+        found = cache(partial(calibration_for, rate, progress=progress))
+        return [
+            replace(part, calibration=found(part.quantities, a4=part.playing.a4)) for part in parts
+        ]
 
 
 def _fields(summary: Summary, playing: PlayingOptions, stems: Sequence[Path]) -> dict[str, Any]:
@@ -215,13 +210,10 @@ def _scores(arguments: argparse.Namespace, playing: PlayingOptions) -> list[Scor
         is_mpe=playing.mapping.mpe,
         higher=playing.higher,
     )
+    read = partial(read_any, song=arguments.song, strict=arguments.strict, max_duration_h=longest)
     scores = []
     for path in arguments.midi:
-        scores.append(
-            read_any(
-                path, how, song=arguments.song, strict=arguments.strict, max_duration_h=longest
-            )
-        )
+        scores.append(read(path, how))
         check_duration(sum(each.duration_s for each in scores), longest, "all scores last")
     return scores
 

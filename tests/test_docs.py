@@ -22,7 +22,7 @@ from pages import PACKAGE, PAGES, ROOT, Page, page
 import yehu_server
 from yehu_server.cli import _parser, main
 from yehu_server.live.network import HTTP_ADDRESS, OSC_ADDRESS
-from yehu_server.live.osc.call_table import CALLS, PREFIX
+from yehu_server.live.osc.all_calls import CALLS, PREFIX
 from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.params.table import TABLE, UNIT
 

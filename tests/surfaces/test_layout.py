@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from yehu_server.live.osc.call_table import CALLS
+from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.params.table import TABLE, find
 from yehu_server.surfaces import common_layout
 

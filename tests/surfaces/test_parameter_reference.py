@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from yehu_server.live.osc.call_table import CALLS
+from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.params.table import TABLE
 from yehu_server.surfaces import parameter_reference
 

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from yehu_server.cli import main
-from yehu_server.live.osc.call_table import CALLS
+from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.params.table import TABLE
 from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.catalogue import SURFACES, made

@@ -24,8 +24,8 @@ from yehu_server.live.audio.voice_input import VoiceInput
 from yehu_server.live.housekeeper import Housekeeper, MappingFollower
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
+from yehu_server.live.osc.all_calls import more_calls
 from yehu_server.live.osc.answering import WebTraffic
-from yehu_server.live.osc.call_table import more_calls
 from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.receiving import OscPorts

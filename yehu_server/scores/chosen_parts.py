@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from yehu_server.errors import ScoreError, did_you_mean
-from yehu_server.scores.melodic import melodic_part, take_turns
 from yehu_server.scores.octaves import Sounding, octaves_of
 from yehu_server.scores.phrasing import REST_S
 from yehu_server.scores.score import Score, ScorePart, notes_of
 from yehu_server.scores.smf.tunings import transposed_keys
+from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
 from yehu_server.scores.written.notated import Written
 

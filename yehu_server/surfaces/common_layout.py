@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
-from yehu_server.live.osc.call_table import CALLS
+from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.part_addresses import group as group_of_part
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE, UNIT, find

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from html import escape
 
 from yehu_server.live.network import Address
+from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.call import Argument
-from yehu_server.live.osc.call_table import CALLS
 from yehu_server.params.spec import Param
 from yehu_server.params.table import UNIT
 from yehu_server.surfaces import common_layout

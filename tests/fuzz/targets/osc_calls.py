@@ -17,7 +17,7 @@ from wire import SINCE_1900_S, FakePeer, StillTime
 
 from yehu_server.live.osc import clients, schedule
 from yehu_server.live.osc import handler as osc
-from yehu_server.live.osc.call_table import CALLS
+from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.packets import pack, unpack

@@ -11,7 +11,7 @@ from sound import rms
 from wire import errors, f32, values
 
 from yehu_server.live.osc import handler
-from yehu_server.live.osc.call_table import CALLS
+from yehu_server.live.osc.all_calls import CALLS
 
 HEARD_S = 0.01  # within which what arrives is played: the player's delay and a block
 

@@ -10,8 +10,8 @@ import sys
 import pytest
 from web_client import walk
 
+from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.call import Argument, Call
-from yehu_server.live.osc.call_table import CALLS
 from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
 from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, UNIT_NAMES, Snapshot, find, node_at
 from yehu_server.params.table import TABLE

@@ -13,7 +13,7 @@ from web_client import ask, walk
 
 from yehu_server.errors import DeviceError
 from yehu_server.live.network import Allowed
-from yehu_server.live.osc.call_table import CALLS
+from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.status import STATUS, Kind
 from yehu_server.live.web.access import IDLE_S, MOST_OF_A_HOST
 from yehu_server.live.web.server import PARAMETERS, WebOptions

@@ -1,4 +1,4 @@
-"""Carry out OSC messages, by the table of calls (``call_table``), at once or when they are due.
+"""Carry out OSC messages, by the table of calls (``all_calls``), at once or when they are due.
 
 The protocol is described in docs/osc.md.
 """
@@ -11,9 +11,9 @@ from collections.abc import Iterator
 from functools import partial
 
 from yehu_server.errors import YehuError
+from yehu_server.live.osc.all_calls import acts, own_calls
 from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.call import Request
-from yehu_server.live.osc.call_table import acts, own_calls
 from yehu_server.live.osc.context import Act, CallContext
 from yehu_server.live.osc.fair_queue import FairQueue
 from yehu_server.live.osc.osc_addresses import fitting, is_pattern, near

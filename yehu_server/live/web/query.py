@@ -13,8 +13,8 @@ from itertools import chain
 from typing import Any
 
 from yehu_server.errors import ParameterError
+from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.call import Argument, Call
-from yehu_server.live.osc.call_table import CALLS
 from yehu_server.live.osc.status import (
     PART_STATUS,
     STATUS,

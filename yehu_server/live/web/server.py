@@ -65,7 +65,7 @@ class Sources:
     snapshot: Callable[[str], query.Snapshot]  # of a group of addresses
     folder: Path  # that has the page of parameters
     parts: int = 1
-    more_calls: Callable[[], Iterable[Call]] = tuple  # beside call_table.CALLS
+    more_calls: Callable[[], Iterable[Call]] = tuple  # beside all_calls.CALLS
     page_port: Callable[[], int | None] = lambda: None  # where the page is served, if it is
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from yehu_server.scores.melodic import melodic_part, take_turns
 from yehu_server.scores.octaves import Sounding
+from yehu_server.scores.tune_part import melodic_part, take_turns
 
 
 def line(*pitches: float, length: float = 1.0, begin: float = 0.0) -> list[Sounding]:

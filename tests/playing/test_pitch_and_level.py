@@ -14,7 +14,6 @@ from yehu_server.playing.pitch_and_level import (
     a_weighted_db,
     a_weighting,
     pitch_hz,
-    track,
 )
 
 RATES = (22050.0, 44100.0, 48000.0, 96000.0)
@@ -77,16 +76,6 @@ def test_what_has_no_pitch_gets_none(estimate):
     assert math.isnan(estimate(np.random.default_rng(3).normal(size=13230), 44100.0))
     assert math.isnan(estimate(np.zeros(13230), 44100.0))
     assert math.isnan(estimate(np.ones(3), 44100.0))
-
-
-def test_a_track_follows_a_glide():
-    rate = 44100.0
-    time = np.arange(44100) / rate
-    semitones = 2.0 * time
-    phase = 2.0 * np.pi * np.cumsum(440.0 * 2.0 ** (semitones / 12.0)) / rate
-    times, pitches = track(np.sin(phase) + 0.5 * np.sin(2.0 * phase), rate)
-    expected = 440.0 * 2.0 ** (2.0 * times / 12.0)
-    assert max(abs(cents(p, e)) for p, e in zip(pitches, expected, strict=True)) < 2.0
 
 
 def test_where_no_later_period_is_like_the_first_the_first_one_stays():

@@ -59,11 +59,6 @@ class Mapping:
         """The binds of one source."""
         return self._by_source.get(source, ())
 
-    @property
-    def sources(self) -> tuple[str, ...]:
-        """All sources that are bound."""
-        return tuple(self._by_source)
-
     @cached_property
     def addresses(self) -> tuple[str, ...]:
         """The sources that are OSC addresses."""

@@ -94,19 +94,6 @@ def _refine(like: Array, period: float) -> float:
     return period
 
 
-def track(
-    samples: Array, rate: float, *, window_s: float = 0.05, step_s: float = 0.01
-) -> tuple[Array, Array]:
-    """Pitch over time.
-
-    Returns: the windows' middles (s) and pitches (Hz; NaN for none), ndarrays [shape=(windows,)].
-    """
-    window, step = round(window_s * rate), round(step_s * rate)
-    starts = np.arange(0, max(len(samples) - window, 0) + 1, step)
-    pitches = [pitch_hz(samples[start : start + window], rate) for start in starts]
-    return (starts + 0.5 * window) / rate, np.array(pitches)
-
-
 SILENCE_DB = -200.0
 
 

@@ -226,10 +226,6 @@ class WishPoster:
         record = self.record
         return None if record["sounding"] == NONE else self._key(record, record["sounding"])
 
-    def holds(self, key: Key) -> bool:
-        """Whether a key is held."""
-        return key in self.held()
-
     def held(self, channel: int | None = None) -> list[Key]:
         """The held keys, of one channel or all, in the order pressed."""
         record = self.record

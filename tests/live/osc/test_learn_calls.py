@@ -188,7 +188,7 @@ def test_every_binding_is_told_with_where_it_is(still):
     heard = still.ask("/bindings")
     rows = {row[0]: row for row in told(heard, "/binding")}
     assert told(heard, "/bindings") == [[len(still.player.mapping.binds)]]
-    assert set(rows) == set(still.player.mapping.sources)
+    assert set(rows) == {bind.source for bind in still.player.mapping.binds}
     approx = pytest.approx
     assert rows["cc 16"] == [
         "cc 16", "/yehu/playing/speed", approx(0.12), approx(0.26), "exp", "", 1.0, approx(0.26)

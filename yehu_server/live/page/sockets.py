@@ -236,13 +236,6 @@ class PageSockets:
             for page in self._pages.values():
                 self._send_status(page)
 
-    async def close(self) -> None:
-        """Close all."""
-        sockets = [*self._pages, *self._listeners]
-        await asyncio.gather(
-            *(socket.close(code=1001) for socket in sockets), return_exceptions=True
-        )
-
     def _send_status(self, page: Page) -> None:
         load, dropouts = self._view.load()
         status = {

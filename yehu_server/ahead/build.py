@@ -47,10 +47,7 @@ def page_linker() -> str | None:
 
 
 def linker_of(what: str) -> str:
-    """The path of the linker for ``wasm`` or a ``library``.
-
-    Raises YehuError where there is none.
-    """
+    """The path of the linker for ``wasm`` or a ``library``; raises YehuError if there is none."""
     linker = page_linker() if what == "wasm" else _first(LIBRARY_LINKERS)
     if linker is not None:
         return linker
@@ -60,10 +57,7 @@ def linker_of(what: str) -> str:
 
 
 def link_page(linker: str, code: Path, exports: Iterable[str], into: Path) -> None:
-    """Link an object file into a WebAssembly module with its own memory.
-
-    Raises YehuError where it fails.
-    """
+    """Link an object file into a WebAssembly module with its own memory; raises YehuError."""
     options = [
         "--no-entry",
         "--allow-undefined",  # what it needs of the page; `module.joined` has checked it

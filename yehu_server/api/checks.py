@@ -45,10 +45,7 @@ InstrumentLike = Quantities | Mapping[str, Any] | PathLike | Fit
 
 
 def number(value: Any, name: str, lo: float = -math.inf, hi: float = math.inf) -> float:
-    """Return a number, also one of NumPy, as a float.
-
-    Raises ParameterError where it is none, not finite, or out of range.
-    """
+    """Return a finite number within a range, also one of NumPy; raises ParameterError."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ParameterError(f"{name}: expected a number, got {value!r}")
     found = float(value)
@@ -68,10 +65,7 @@ def whole(value: Any, name: str, lo: float, hi: float) -> int:
 
 
 def setting(address: Any, value: Any) -> tuple[str, float]:
-    """Return an address of the parameter table, and a value within its range.
-
-    Raises ParameterError where there is no such parameter, or the value is out of its range.
-    """
+    """Return an address of the table, and a value within its range; raises ParameterError."""
     if not isinstance(address, str):
         raise ParameterError(f"{address!r}: expected an address, such as '/playing/vibrato'")
     param = find(address)
@@ -117,10 +111,7 @@ def path_of(value: Any, name: str) -> Path:
 
 
 def name_of(value: Any, what: str) -> str:
-    """Return the name, or the path as text, of something shipped or of the user's own.
-
-    Raises ParameterError where it is neither.
-    """
+    """Return a name or a path as text; raises ParameterError where it is neither."""
     if not isinstance(value, str | os.PathLike):
         raise ParameterError(f"{what}: expected a name or a path, not {value!r}")
     return os.fspath(value)
@@ -152,10 +143,7 @@ def playing_setup_of(
     mapping: PathLike = DEFAULT,
     out_of_range: OutOfRange = "transpose",
 ) -> PlayingSetup:
-    """Check options, and read the files that they name; see `render`.
-
-    Raises YehuError where one is wrong.
-    """
+    """Check options, and read the files that they name; see `render`. Raises YehuError."""
     rate = whole(sample_rate, "sample_rate", LOWEST_RATE, HIGHEST_RATE)
     presets = Presets(user_first=False)
     file = None

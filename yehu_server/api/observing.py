@@ -40,10 +40,7 @@ class Curve:
 
 
 def curves_of(controls: Mapping[str, ArrayLike] | None) -> list[Curve]:
-    """Return what moves during a run.
-
-    Raises ParameterError where a parameter is unknown, or its values are none or out of range.
-    """
+    """Return what moves during a run; raises ParameterError for a wrong address or value."""
     if controls is not None and not isinstance(controls, Mapping):
         raise ParameterError("controls: expected addresses and values, such as {'/bow/speed': 0.2}")
     curves = []

@@ -135,10 +135,7 @@ def _play_aloud(samples: Sound, rate: float) -> None:
 
 
 def write_sound(sound: Sound, sample_rate: int, target: Path, subtype: Subtype) -> None:
-    """Write a sound file, WAV or FLAC by its ending.
-
-    Raises OutputError where it cannot be written; ParameterError where there is no such subtype.
-    """
+    """Write a sound file, WAV or FLAC; raises OutputError, ParameterError for the subtype."""
     if subtype not in SUBTYPES:
         raise ParameterError(f"subtype: {subtype!r} is not one of {', '.join(SUBTYPES)}")
     form, channels = format_of(target), 1 if sound.ndim == 1 else sound.shape[1]

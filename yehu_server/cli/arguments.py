@@ -168,10 +168,7 @@ def add_instrument(parser: argparse.ArgumentParser) -> None:
 
 
 def instrument_of(arguments: argparse.Namespace) -> Quantities:
-    """The physical quantities that the option of `add_instrument` asks for.
-
-    Raises YehuError where the file is wrong.
-    """
+    """The quantities that the option of `add_instrument` asks for; raises YehuError."""
     from yehu_server.core.physics.quantities import Quantities, read_quantities
 
     return read_quantities(arguments.instrument) if arguments.instrument else Quantities()

@@ -75,10 +75,7 @@ def add_to(commands: Any) -> None:
 
 
 def build_plugin(arguments: argparse.Namespace) -> int:
-    """Build the plug-in; return the exit code.
-
-    Raises YehuError where something is missing to build with, or the folder cannot be written.
-    """
+    """Build the plug-in; return the exit code. Raises YehuError, as where a compiler is missing."""
     from yehu_server.plugin.build import build
 
     for path in build(arguments.output, arguments.target or usual()):
@@ -87,10 +84,7 @@ def build_plugin(arguments: argparse.Namespace) -> int:
 
 
 def write_tables(arguments: argparse.Namespace) -> int:
-    """Write tables to a file, and the numbers of named controls; return the exit code.
-
-    Raises YehuError where a file or value is wrong, or the file cannot be written.
-    """
+    """Write tables to a file, and the numbers of named controls; return the exit code."""
     from yehu_server.playing.tables import Controls
     from yehu_server.util.files import write_bytes
 

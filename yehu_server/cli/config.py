@@ -42,10 +42,7 @@ def parse(argv: Sequence[str], parser: Parser) -> argparse.Namespace:
 
 
 def read_config(path: Path, command: Parser) -> argparse.Namespace:
-    """Read the options of a file, converted and checked as the command's own.
-
-    Raises ParameterError, naming file and line.
-    """
+    """Read a file's options, checked as the command's own; ParameterError names the line."""
     namespace = argparse.Namespace()
     document = Document(path, "a TOML file").read(path)
     document.toml().each(lambda name, value: _set(command, namespace, name, value))

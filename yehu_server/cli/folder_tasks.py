@@ -76,10 +76,7 @@ class Done:
 
     @classmethod
     def of_plain(cls, task: Task, told: Any) -> Done:
-        """What a worker answered of a task; anybody who reaches the cluster may have made it.
-
-        Raises OutputError where it is something else.
-        """
+        """What a worker answered, or anybody on the cluster; raises OutputError if no result."""
         from yehu_server.rendering.build_records import checked_line
 
         try:

@@ -134,10 +134,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _options(arguments: argparse.Namespace) -> Options:
-    """How to render; checks all that can be checked before listening.
-
-    Raises YehuError where something is wrong.
-    """
+    """How to render; raises YehuError where something is wrong, before listening."""
     from yehu_server.util.sound_file import check_format, format_of
 
     ending = arguments.output.suffix.lower()

@@ -48,10 +48,7 @@ def add_parts(group: Any) -> None:
 
 
 def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
-    """The options of all parts.
-
-    Raises YehuError where a value or file is wrong, or a part is not there.
-    """
+    """The options of all parts; raises YehuError where one is wrong, or a part is not there."""
     from yehu_server.live.options import PartOptions
     from yehu_server.live.part_addresses import no_part
     from yehu_server.playing.parts import number_of_instruments
@@ -73,10 +70,7 @@ def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
 
 
 def routes_of(arguments: argparse.Namespace, parts: Sequence[PartOptions]) -> list[Route]:
-    """The MIDI inputs that parts are played from, as --part tells.
-
-    Raises ParameterError where one is wrong.
-    """
+    """The MIDI inputs that parts are played from, by --part; raises ParameterError."""
     from yehu_server.live.midi.routes import check_routes, route_of
 
     routes = []

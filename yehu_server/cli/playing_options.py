@@ -81,10 +81,7 @@ def add_tuning(group: Any) -> None:
 
 
 def tuning_of(arguments: argparse.Namespace) -> Tuning:
-    """The tuning that the options of `add_tuning` ask for.
-
-    Raises YehuError where a file is wrong.
-    """
+    """The tuning that the options of `add_tuning` ask for; raises YehuError for a wrong file."""
     from yehu_server.playing.tuning import EQUAL, read_tuning
 
     if arguments.keyboard_map is not None and arguments.tuning is None:
@@ -93,10 +90,7 @@ def tuning_of(arguments: argparse.Namespace) -> Tuning:
 
 
 def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mapping:
-    """The mapping given by --mapping and --mpe.
-
-    Raises MappingError where there is no such mapping, or it is wrong.
-    """
+    """The mapping given by --mapping and --mpe; raises MappingError if wrong or not there."""
     from yehu_server.playing.mapping import DEFAULT, MPE, load
 
     name = arguments.mapping or (MPE if arguments.mpe else DEFAULT)
@@ -114,10 +108,7 @@ def add_presets_folder(group: Any) -> None:
 
 
 def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
-    """What the options of `add_playing` ask for; see `table_options_of`.
-
-    Raises YehuError where a file or value is wrong.
-    """
+    """What the options of `add_playing` ask for, as `table_options_of`; raises YehuError."""
     from yehu_server.core.player.fingering import OpenStrings
     from yehu_server.params.table import assignment
     from yehu_server.playing.practice_files import read_practice

@@ -35,10 +35,7 @@ MOST_FILES = 4096  # more than all clients together need
 
 
 def allow_files(needed: int) -> None:
-    """Raise the limit of open files as far as allowed; the default of macOS is 256.
-
-    Raises YehuError where it is below `needed`.
-    """
+    """Raise the limit of open files as far as allowed; raises YehuError where it is too low."""
     if resource is None:
         return
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)

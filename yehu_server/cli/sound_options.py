@@ -92,10 +92,7 @@ def check_sound(arguments: argparse.Namespace) -> None:
 
 
 def check_stage(arguments: argparse.Namespace) -> None:
-    """Refuse options that exclude each other, and those that `check_sound` does.
-
-    Raises ParameterError where there are some.
-    """
+    """Refuse (ParameterError) options that exclude each other, or as `check_sound` does."""
     check_sound(arguments)
     if arguments.by == "track" and arguments.ensemble is None:
         raise ParameterError("--by track is for --ensemble")
@@ -134,10 +131,7 @@ def sound_options_of(
 
 
 def room_of(name: str, presets: Presets) -> Values:
-    """The values of a preset of rooms.
-
-    Raises YehuError where there is no such preset, or it is none of a room alone.
-    """
+    """The values of a preset of rooms; raises YehuError where it is none."""
     preset = presets.find(name)
     other = [each for each in preset.values if not is_of_room(each)]
     if other or not preset.values:

@@ -142,10 +142,7 @@ def add_show(command: Parser) -> None:
 
 
 def show(arguments: argparse.Namespace) -> int:
-    """Draw a result; return the exit code.
-
-    Raises ParameterError where the call is wrong.
-    """
+    """Draw a result; return the exit code. Raises ParameterError where the call is wrong."""
     from yehu_server.errors import ParameterError
     from yehu_server.lab.plot.png import check_picture
     from yehu_server.lab.plot.study import write_picture

@@ -100,10 +100,7 @@ class Learner:
 
 
 def own_file(mapping: Mapping) -> Path:
-    """The file that keeps learned binds: the mapping's own, or for a shipped one the user's copy.
-
-    Raises MappingError where the mapping comes from no file.
-    """
+    """The file of learned binds: the mapping's own, or the user's copy; raises MappingError."""
     if not mapping.files:
         raise MappingError(f"the mapping {mapping.name} comes from no file")
     own = mapping.files[0]

@@ -113,10 +113,7 @@ class LivePlayer:
     # -- parameters --------------------------------------------------------------------------
 
     def value(self, address: str) -> float:
-        """The value of a parameter, or the one it is moving to.
-
-        Raises ParameterError where there is no such parameter.
-        """
+        """The value that a parameter has or moves to; raises ParameterError where there is none."""
         with self._lock:
             return self._wishes.value(address)
 
@@ -126,10 +123,7 @@ class LivePlayer:
             return {param.address: self.value(param.address) for param in TABLE}
 
     def write(self, address: str, value: float, *, frame: int) -> float:
-        """Set a parameter; return the value accepted.
-
-        Raises ParameterError as `WishPoster.write`.
-        """
+        """Set a parameter; return the value accepted. ParameterError: as `WishPoster.write`."""
         with self._lock:
             return self._midi.write(address, value, frame=self._at(frame))
 
@@ -238,10 +232,7 @@ class LivePlayer:
             self._midi.end_port_notes(port, frame=self._at(frame))
 
     def note_on(self, note: float, velocity: float, *, frame: int) -> None:
-        """Begin a note (fractional MIDI note; velocity 0 to 127).
-
-        Raises ParameterError where one is out of MIDI's range.
-        """
+        """Begin a note (fractional; velocity 0 to 127); raises ParameterError beyond that."""
         key = _key(_within("note", note))
         with self._lock:
             self._midi.note_on(key, _within("velocity", velocity) / 127.0, self._at(frame))

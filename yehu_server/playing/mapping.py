@@ -100,10 +100,7 @@ def load(name_or_path: str, *, user_first: bool = False) -> Mapping:
 
 
 def find_file(name_or_path: str, *, user_first: bool = False) -> Path:
-    """Find the file of a mapping by its name; anything but a name is taken as a path.
-
-    Raises MappingError where there is no mapping of this name.
-    """
+    """Find the file of a mapping, by name or path; raises MappingError for no such name."""
     if not _is_name(name_or_path):
         return Path(name_or_path)
     found = _named(name_or_path, user_first=user_first)

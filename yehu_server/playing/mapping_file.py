@@ -56,10 +56,7 @@ def read_mapping_file(path: Path, text: str | None = None) -> MappingFile:
 
 
 def mapping_file_of_json(path: Path, text: str) -> MappingFile:
-    """Read what ``yehu-server mappings show --json`` prints.
-
-    Raises MappingError where it is wrong.
-    """
+    """Read what ``yehu-server mappings show --json`` prints; raises MappingError if wrong."""
     table = document_of(path, text).json()
     data = _without_null(table.data)
     binds = data.get("bind", [])

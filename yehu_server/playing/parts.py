@@ -42,10 +42,7 @@ class Part:
 
 
 def number_of_instruments(per_part: Sequence[PlayingOptions]) -> int:
-    """How many instruments some parts take together.
-
-    Raises ParameterError where they are more than a stage has.
-    """
+    """How many instruments some parts take; raises ParameterError where a stage has fewer."""
     count = sum(map(section_size, per_part))
     if count > MOST_PARTS:
         raise ParameterError(f"{count} players, of all parts and sections: at most {MOST_PARTS}")

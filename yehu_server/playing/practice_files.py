@@ -64,10 +64,7 @@ def as_data(table: Array, rate: float) -> dict[str, Any]:
 
 
 def table_of(data: Any) -> Array:
-    """The table of bowing of JSON values that `as_data` made.
-
-    Raises ParameterError where they are none, or a value is out of range.
-    """
+    """The table of bowing of JSON values that `as_data` made; raises ParameterError."""
     table = default_recipes()
     try:
         if data["format"] != FORMAT or data["version"] != VERSION:
@@ -92,10 +89,7 @@ def _recipe(note: str, values: Any) -> Array:
 
 
 def read_practice(path: Path) -> Array:
-    """Read the table of a practice file.
-
-    Raises ScoreError where it cannot be read; ParameterError where it is no practice.
-    """
+    """Read a practice file; raises ScoreError if not readable, ParameterError if it is none."""
     try:
         return table_of(parse_json(read_text(path, MOST_BYTES)))
     except OSError as error:

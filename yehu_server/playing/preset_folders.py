@@ -107,10 +107,7 @@ class Presets:
         return read_preset(Path(name_or_path))
 
     def find_file(self, name_or_path: str) -> Path:
-        """The file that `find` reads; of several the first.
-
-        Raises PresetError as `file`.
-        """
+        """The file that `find` reads, of several the first; raises PresetError as `file`."""
         if is_name(name_or_path):
             return self.file(name_or_path.split(AND, maxsplit=1)[0])
         return Path(name_or_path)
@@ -169,10 +166,7 @@ class Presets:
             raise PresetError(f"{self.own}: {error.strerror}") from error
 
     def delete(self, name: str) -> None:
-        """Delete one of the user's own presets.
-
-        Raises PresetError where there is no such preset, or it cannot be deleted.
-        """
+        """Delete one of the user's own presets; raises PresetError if not there, or it fails."""
         path = self._own_file(name)
         if not path.is_file():
             shipped = self._shipped_file(name).exists()

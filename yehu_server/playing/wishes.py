@@ -112,10 +112,7 @@ class WishPoster:
         return next((pitch for pitch in pitches if not math.isnan(pitch)), None)
 
     def value(self, address: str) -> float:
-        """The value of a parameter; one of bow and fingers may be moving to it.
-
-        Raises ParameterError where there is no such parameter.
-        """
+        """The value that a parameter has or moves to; raises ParameterError where there is none."""
         param = find(address)
         pending = self._waiting(param)
         if pending is not None:

@@ -121,10 +121,7 @@ def _put(folder: Path, name: str, work: Path) -> list[Path]:
 
 
 def compiler_of(system: System) -> list[str]:
-    """The command that compiles and links C++ for a system.
-
-    Raises YehuError where there is none.
-    """
+    """The command that compiles and links C++ for a system; raises YehuError if there is none."""
     if system.is_here and (found := shutil.which("g++")):
         return [found]
     if find_spec("ziglang") is not None:
@@ -137,10 +134,7 @@ def compiler_of(system: System) -> list[str]:
 
 
 def compile_file(source: Path, into: Path, system: System, headers: Path) -> None:
-    """Compile a source file into an object file, with the headers in a folder.
-
-    Raises YehuError where it fails.
-    """
+    """Compile a source file to an object file, with the headers in a folder; raises YehuError."""
     run_compiler(
         [
             *compiler_of(system),
@@ -157,10 +151,7 @@ def compile_file(source: Path, into: Path, system: System, headers: Path) -> Non
 
 
 def link(made: Format, system: System, work: Path) -> Path:
-    """Compile and link the library of a format for a system; return its file in a folder.
-
-    Raises YehuError where it fails.
-    """
+    """Compile and link a format's library for a system; return its file. Raises YehuError."""
     place = work / f"{system.triple}-{made.name}"
     place.mkdir(exist_ok=True)
     objects = []

@@ -28,10 +28,7 @@ def object_file(folder: Path, system: System, *, wide: bool) -> Path:
 
 
 def make_objects(folder: Path, name: str) -> None:
-    """Make the objects of all systems of a `--target`, and their header, in a folder.
-
-    Raises YehuError where it fails.
-    """
+    """Make the objects of all systems of a `--target`, and their header; raises YehuError."""
     for cpu in (ANY, WIDE):
         if cpu == WIDE and not any(system.has_wide for system in systems_of(name)):
             continue

@@ -38,10 +38,7 @@ SURFACES = (
 
 
 def chosen(names: Sequence[str]) -> list[Surface]:
-    """Return surfaces by the names of their files; all where none is named.
-
-    Raises OutputError where a name is not known.
-    """
+    """Return surfaces by their files' names, all without any; raises OutputError for others."""
     known = {surface.name: surface for surface in SURFACES}
     for name in names:
         if name not in known:
@@ -62,10 +59,7 @@ def made(surface: Surface, server: Address, part: int) -> bytes:
 
 
 def write(surface: Surface, folder: Path, server: Address = OSC_ADDRESS, part: int = ALL) -> Path:
-    """Write a surface's file, replacing an older one; return its path.
-
-    Raises OutputError where it cannot be written.
-    """
+    """Write a surface's file, replacing an older one; return its path. Raises OutputError."""
     return write_bytes(file_of(surface, folder, part), made(surface, server, part))
 
 

@@ -83,10 +83,7 @@ def make(server: Address) -> bytes:
 
 
 def content(data: bytes) -> bytes:
-    """Return the text of a .tosc file, which is the same with every version of zlib.
-
-    Raises zlib.error where it is damaged.
-    """
+    """Return the text of a .tosc file, whatever zlib packed it; raises zlib.error if damaged."""
     stream = zlib.decompressobj()
     text = stream.decompress(data)
     if not stream.eof or stream.unused_data:

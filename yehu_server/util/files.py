@@ -53,10 +53,7 @@ def _too_large(most_bytes: int) -> OSError:
 
 
 def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
-    """Read a regular file.
-
-    Raises OSError also where it is larger than `most_bytes`, or no regular file.
-    """
+    """Read a regular file; raises OSError also for another, or one above `most_bytes`."""
     pieces, left = [], most_bytes + 1
     with open_regular(path, most_bytes) as file:
         # In pieces: a read sets aside all the memory that it may need.
@@ -82,10 +79,7 @@ def read_lines(path: Path, most_bytes: int) -> Iterator[str]:
 
 
 def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
-    """Read a text file.
-
-    Raises OSError as `read_bytes`; UnicodeDecodeError where it is not UTF-8.
-    """
+    """Read a text file; raises OSError as `read_bytes`, UnicodeDecodeError if it is not UTF-8."""
     return read_bytes(path, most_bytes).decode("utf-8")
 
 
@@ -179,10 +173,7 @@ def nothing(_target: Path) -> bool:
 
 
 def check_free(target: Path, may_replace: Callable[[Path], bool] = nothing) -> None:
-    """Check that a target does not exist, or may be replaced.
-
-    Raises OutputError where it exists and may not be replaced.
-    """
+    """Check that a target is not there, or may be replaced; raises OutputError where it may not."""
     if os.path.lexists(target) and not may_replace(target):
         raise OutputError(f"{target}: exists; --overwrite replaces it")
 
@@ -226,10 +217,7 @@ def discard(file: io.FileIO, path: Path) -> None:
 
 
 def write_all(file: io.FileIO, data: bytes) -> None:
-    """Write all data to an unbuffered file.
-
-    Raises OSError where some of it may have been written.
-    """
+    """Write all data to an unbuffered file; where OSError is raised, some of it may be written."""
     rest = memoryview(data)
     while rest:
         rest = rest[file.write(rest) :]
@@ -289,10 +277,7 @@ def write_bytes(target: Path, data: bytes, *, overwrite: bool = True) -> Path:
 
 
 def write_text(target: Path, text: str) -> None:
-    """Write a text file atomically: after a power cut it is complete, the new or the old one.
-
-    Raises OutputError as `replacing`.
-    """
+    """Write a text file atomically, also where power is cut; raises OutputError as `replacing`."""
     with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
         file.write(text)
         file.flush()

@@ -28,10 +28,7 @@ def _digest(path: Path, payload: bytes) -> bytes:
 
 
 def read_sealed(path: Path) -> bytes | None:
-    """Read the payload of a sealed file; None where there is no file.
-
-    Raises SealError where it is damaged or cannot be read.
-    """
+    """Read a sealed file's payload; None where there is no file. SealError: it is damaged."""
     try:
         data = read_bytes(path, MOST_BYTES)
     except FileNotFoundError:

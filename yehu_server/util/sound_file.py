@@ -108,10 +108,7 @@ class SoundWriter:
 
 
 def format_of(target: Path) -> str:
-    """The format of a file by its ending; WAV without one.
-
-    Raises OutputError where the ending is another.
-    """
+    """The format of a file by its ending, WAV without one; raises OutputError for another."""
     ending = target.suffix.lower().lstrip(".")
     if ending in ("", "wave"):
         return "wav"
@@ -121,10 +118,7 @@ def format_of(target: Path) -> str:
 
 
 def check_format(format_name: str, subtype: str, channels: int = 1) -> None:
-    """Refuse samples of a subtype, or a number of channels, that a format cannot hold.
-
-    Raises OutputError where it cannot.
-    """
+    """Refuse (OutputError) a subtype of samples, or number of channels, that a format has not."""
     if not soundfile.check_format(format_name.upper(), SUBTYPES[subtype]):
         raise OutputError(f"a {format_name} file cannot hold {subtype} samples; use 16 or 24")
     most = MOST_CHANNELS[format_name]

@@ -109,10 +109,7 @@ class WavStream:
 
 
 def check_shape(samples: Samples, channels: int) -> None:
-    """Check that samples are [shape=(frames, channels)] or, of one channel, (frames,).
-
-    Raises ValueError where they are neither.
-    """
+    """Check that samples are [shape=(frames, channels)], or (frames,) of one; raises ValueError."""
     if samples.shape[1:] != (channels,) and (samples.ndim, channels) != (1, 1):
         raise ValueError(f"samples of shape {samples.shape} for {channels} channels")
 

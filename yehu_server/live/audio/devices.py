@@ -51,10 +51,7 @@ def quiet() -> Iterator[None]:
 
 
 def load_portaudio(kind: str = OUTPUT) -> Any:
-    """Import sounddevice, which starts PortAudio.
-
-    Raises DeviceError where there is no PortAudio.
-    """
+    """Import sounddevice, which starts PortAudio; raises DeviceError where there is none."""
     name = ctypes.util.find_library("portaudio")
     if name is not None:
         with contextlib.suppress(OSError, AttributeError):  # without JACK

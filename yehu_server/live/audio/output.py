@@ -148,10 +148,7 @@ class Output:
             self._look()
 
     def find(self) -> float:
-        """Wait for the device to be found; return the sample rate to play at (Hz).
-
-        Raises DeviceError where a named device is not there.
-        """
+        """Wait for the device; return the rate (Hz). Raises DeviceError: a named one is missing."""
         rate = self._options.rate or NULL_RATE
         if self._options.device == NULL:
             self.state.problem = "asked for silence"
@@ -168,10 +165,7 @@ class Output:
         return rate
 
     def begin(self, ensemble: Ensemble) -> None:
-        """Start to play an ensemble that lies in ``memory``.
-
-        Raises DeviceError where a named device cannot be opened.
-        """
+        """Start to play an ensemble in ``memory``; raises DeviceError if a named device fails."""
         self._ensemble = ensemble
         self._start_clock()
         if self._found is not None:

@@ -200,10 +200,7 @@ class Recordings:
         return target.name
 
     def stop(self) -> str:
-        """End what `start` began; return the file's name.
-
-        Raises OutputError where there is none, or it has ended by itself.
-        """
+        """End what `start` began; return the file's name. OutputError: it runs no more."""
         recorder, self._requested = self._requested, None
         if recorder is None:
             more = "; --record ends with the server" if self._everything is not None else ""

@@ -200,10 +200,7 @@ class Inputs:
 
 
 def check_api(api: str | None) -> None:
-    """Refuse a MIDI system that RtMidi does not have here: it would take another one silently.
-
-    Raises ParameterError where it has no such system.
-    """
+    """Refuse (ParameterError) a MIDI system that is not here: RtMidi would take another one."""
     import rtmidi
 
     compiled = rtmidi.get_compiled_api()

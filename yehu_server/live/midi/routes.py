@@ -112,10 +112,7 @@ def route_of(part: int, text: str) -> Route:
 
 
 def check_routes(routes: Sequence[Route], parts: int) -> None:
-    """Refuse routes to parts that are not there, and inputs that are named twice.
-
-    Raises ParameterError where there are some.
-    """
+    """Refuse (ParameterError) routes to parts that are not there, and inputs named twice."""
     for number, route in enumerate(routes):
         if not 0 <= route.part < parts:
             raise ParameterError(no_part(route.part + 1, parts))

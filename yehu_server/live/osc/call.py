@@ -22,10 +22,7 @@ class Request:
     frame: int
 
     def check_peer(self) -> None:
-        """Refuse more answers to a peer that has reached its limit.
-
-        Raises RefusedError where it has.
-        """
+        """Refuse (RefusedError) more answers to a peer that has reached its limit."""
         if not self.peer.takes_more:
             raise RefusedError("too many answers to you are waiting")
 

@@ -19,10 +19,7 @@ DATAGRAM_BYTES = 1 << 16
 
 
 class OscClient:
-    """Sends OSC to one server by UDP and receives its answers; a context manager.
-
-    Raises DeviceError where the address cannot be used.
-    """
+    """An OSC client of one server, by UDP, as a context; raises DeviceError: a wrong address."""
 
     def __init__(self, server: Address) -> None:
         self._name = format_address(*server)

@@ -49,10 +49,7 @@ LOCAL = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - nothing is bound
 
 
 def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
-    """Open a UDP socket and a listening TCP socket at one address.
-
-    Raises DeviceError where the address is in use or not this machine's.
-    """
+    """Open UDP and TCP sockets at an address; raises DeviceError where it is in use or not ours."""
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0][0]
         for _ in range(TRIES_FOR_A_PORT if port == 0 else 0):

@@ -33,10 +33,7 @@ def is_pattern(address: str) -> bool:
 
 
 def matches(pattern: str, address: str) -> bool:
-    """Whether a pattern matches the whole of an address.
-
-    Raises PatternError where a bracket is not closed.
-    """
+    """Whether a pattern matches a whole address; raises PatternError for an unclosed bracket."""
     places = {0}
     for piece in _pieces(pattern):
         places = piece(places, address)
@@ -133,10 +130,7 @@ def near(address: str, parts: int) -> str:
 
 
 def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[str]:
-    """The addresses that a pattern matches.
-
-    Raises RefusedError where the pattern is wrong or matches none.
-    """
+    """The addresses that a pattern matches; raises RefusedError if it is wrong or matches none."""
     if len(pattern) > LONGEST_PATTERN:
         raise RefusedError("the pattern is too long")
     literal = re.split(r"[*?\[{]", pattern, maxsplit=1)[0]  # by which most are told apart

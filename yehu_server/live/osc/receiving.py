@@ -52,10 +52,7 @@ LONGEST_WAIT_S = 0.5
 
 
 class OscPorts:
-    """A UDP and a TCP port, and the thread that serves them.
-
-    Raises DeviceError where the address is in use or not this machine's.
-    """
+    """A UDP and a TCP port, and their thread; raises DeviceError where they cannot be opened."""
 
     def __init__(self, host: str, port: int, allowed: Allowed, handler: OscHandler) -> None:
         self.traffic = Traffic()

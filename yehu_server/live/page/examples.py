@@ -22,10 +22,7 @@ PROCESSOR = {"machine": "wasm32", "processor": "any"}
 
 
 def write_capture_headers(folder: Path) -> list[Path]:
-    """Write a file for each rate, as `48000.json`; return them.
-
-    Raises OutputError where one cannot be written.
-    """
+    """Write a file for each rate, as `48000.json`; return them. Raises OutputError."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for rate in RATES:

@@ -80,10 +80,7 @@ def refusal(hosts: Sequence[str], origins: Sequence[str], names: frozenset[str])
 
 
 def check(request: web.Request, allowed: Allowed, names: frozenset[str]) -> None:
-    """Refuse a request that is not allowed by its sender, its headers or its method.
-
-    Raises web.HTTPException where it is refused.
-    """
+    """Refuse (HTTPException) a request that its sender, its headers or its method do not allow."""
     if request.remote is None or request.remote not in allowed:
         raise web.HTTPForbidden(text="this address is not allowed\n")
     headers = request.headers

@@ -70,10 +70,7 @@ class Sources:
 
 
 class WebServer:
-    """A TCP port for HTTP and WebSockets, and the thread that serves it.
-
-    Raises DeviceError where the address is in use or not this machine's.
-    """
+    """A TCP port for HTTP and WebSockets, and its thread; raises DeviceError as `listen`."""
 
     def __init__(
         self, options: WebOptions, osc: OscPorts, clients: Clients, sources: Sources

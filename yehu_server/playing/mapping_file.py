@@ -92,6 +92,11 @@ def settable_param(address: str, instead: str) -> Param:
     return param
 
 
+def read_settings(table: Fields) -> tuple[tuple[str, float], ...]:
+    """Read a table of addresses and the values that they start with."""
+    return tuple(table.each(_start).items())
+
+
 def _start(address: str, value: Any) -> float:
     return settable_param(address, "set one").within(value)
 
@@ -157,7 +162,7 @@ def mapping_file_from(table: Fields) -> MappingFile:
         base=table.read("base", line, None),
         mpe=table.read("mpe", flag, None),
         key_switches=table.read("key_switches", whole, None, 0, LOWEST_NOTE - len(ARTICULATIONS)),
-        start=tuple(table.table("start").each(_start).items()),
+        start=read_settings(table.table("start")),
         binds=tuple(filter(None, map(_bind, table.tables("bind", 0, MOST_BINDS)))),
     )
     table.only()

@@ -12,7 +12,7 @@ from typing import Any
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.errors import EnsembleError
 from yehu_server.params.table import find
-from yehu_server.playing import mapping_values as entries
+from yehu_server.playing.mapping_file import read_settings
 from yehu_server.playing.sources import CHANNELS
 from yehu_server.util.documents import MOST_ERRORS, Document, Fields
 from yehu_server.util.values import line, whole
@@ -102,7 +102,7 @@ def _part(table: Fields, folder: Path) -> PartEntry:
         pan=table.read("pan", find("/room/pan").within, None),
         distance=table.read("distance", find("/room/distance").within, None),
         gain_db=table.read("gain", find("/output/gain").within, 0.0),
-        settings=entries.settings(table.table("set")),
+        settings=read_settings(table.table("set")),
     )
     table.only()
     return part

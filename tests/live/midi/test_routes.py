@@ -161,7 +161,7 @@ def test_players_that_listen_hear_what_their_input_sends_and_damage_is_nothing()
 
 def test_notes_of_inputs_whose_process_died_are_ended():
     players, ports, said = opened(2)
-    ports._ended(by_itself=True)
+    ports.on_exit(by_itself=True)
     assert [player.let_go for player in players] == [[0], [1, 2]]
     assert said[-1] == "MIDI: first, second, third gone; notes are ended"
     assert ports.connected == []

@@ -125,8 +125,7 @@ def _sent(task: Task, arguments: argparse.Namespace, mark: Path) -> Task:
     entry = task.entry
     entry = replace(entry, source=entry.source.absolute(), target=entry.target.absolute())
     picture = None if task.picture is None else task.picture.absolute()
-    place = {"entry": entry, "picture": picture, "mark": mark}
-    return replace(task, arguments=arguments, score=score, **place)
+    return Task(arguments, entry, picture, task.key, task.seconds, mark, score)
 
 
 def _received(task: Task, told: Any) -> Done:

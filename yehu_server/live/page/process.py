@@ -48,7 +48,10 @@ class Pages:
             view, order["rigs"], lambda: self._status | {"sounds": self._sounds}
         )
         self._loop = asyncio.new_event_loop()
-        found = partial(self._loop.call_soon_threadsafe, self._found)
+
+        def found(event: Message) -> None:
+            self._loop.call_soon_threadsafe(self._found, event)
+
         self._finder = Child("yehu_server.live.page.module_process", found)
 
     def _found(self, event: Message) -> None:

@@ -133,6 +133,16 @@ def test_what_cannot_be_learned_or_shown_is_told(server, at, capsys, words, reas
     assert not server.player.listens
 
 
+def test_the_end_of_input_ends_the_questions(monkeypatch, capsys):
+    def end(_question: str) -> str:
+        raise EOFError  # Ctrl-D
+
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("builtins.input", end)
+    assert main(["learn"]) == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_the_bindings_of_a_server_are_shown_with_where_they_are(server, at, capsys):
     server.player.note_on(70.0, 127.0, frame=server.player.frame_of())
     assert main(["mappings", "show", "--live", "--json", *at]) == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -98,15 +99,16 @@ def _tell(words: list[str], what: str) -> None:
 
 
 def _ask(client: OscClient, arguments: argparse.Namespace) -> None:
-    """Ask for parameters until an empty line."""
+    """Ask for parameters until an empty line, or the end of input (Ctrl-D)."""
     if not sys.stdin.isatty():
         raise ParameterError("name the parameters to learn, such as /playing/vibrato")
     _complete()
-    while address := input("parameter (Tab completes, an empty line ends): ").strip():
-        try:
-            _one(client, address, arguments)
-        except YehuError as error:
-            warn(str(error))
+    with contextlib.suppress(EOFError):
+        while address := input("parameter (Tab completes, an empty line ends): ").strip():
+            try:
+                _one(client, address, arguments)
+            except YehuError as error:
+                warn(str(error))
 
 
 def _complete() -> None:

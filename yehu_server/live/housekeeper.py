@@ -87,9 +87,8 @@ def _mark(file: Path) -> tuple[int, int, int] | None:
 LINES_PER_S, LINES_AT_ONCE = 0.1, 1.0  # of each count
 UNDER_RUNS_EVERY_S = 60.0
 HINT = "a larger --blocksize, or --latency high, leaves more time"
-LOOK_EVERY_S = 0.5  # at a mapping's files
+LOOK_EVERY_S = 0.5  # at files of mappings and presets
 TURN_EVERY_S = 0.05
-PROGRAMS_EVERY_S = 1.0  # between looks whether files of presets changed
 
 
 class CounterReport:
@@ -172,13 +171,9 @@ class MappingFollower:
         self._watch = MappingWatch(player.mapping, reread)
         self._on_change = on_change
         self._on_message = on_message
-        self._next_look = 0.0  # monotonic s
 
     def look(self) -> None:
-        """Look at the files, at most every LOOK_EVERY_S."""
-        if time.monotonic() < self._next_look:
-            return
-        self._next_look = time.monotonic() + LOOK_EVERY_S
+        """Look at the files."""
         try:
             mapping = self._watch.look()
         except MappingError as error:
@@ -217,7 +212,7 @@ class Housekeeper:
         self._counters = CounterReport(on_message)
         self._under_runs = UnderRunReport(on_message)
         self._ending = threading.Event()
-        self._next_programs = 0.0  # monotonic s
+        self._next_look = 0.0  # monotonic s
         turns = (self._turn, self._ending, TURN_EVERY_S, "beside playing", on_message)
         self._thread = threading.Thread(
             target=run_forever, args=turns, name="housekeeper", daemon=True
@@ -266,9 +261,9 @@ class Housekeeper:
             }
         )
         self._under_runs.look(self._gaps()[0])
-        for follower in self._followers:
-            follower.look()
-        if time.monotonic() > self._next_programs:
-            self._next_programs = time.monotonic() + PROGRAMS_EVERY_S
+        if time.monotonic() > self._next_look:
+            self._next_look = time.monotonic() + LOOK_EVERY_S
+            for follower in self._followers:
+                follower.look()
             for player in self._players:
                 player.know_programs()

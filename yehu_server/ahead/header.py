@@ -23,12 +23,7 @@ CODES = {
     "CURVE": ("LINEAR", "EXPONENTIAL", "S", "POINTS"),
     "RANGE": ("TRANSPOSE", "CLAMP", "SKIP"),
 }
-KINDS_OF_C = {
-    "void": "void ",
-    "voidptr": "void *",
-    "int64": "int64_t ",
-    "float64": "double ",
-}
+KINDS_OF_C = {"void": "void ", "voidptr": "void *", "int64": "int64_t ", "float64": "double "}
 OUTLINE = """\
 /* The yehu, a Chinese fiddle, as a library: a physical model and its player, without Python.
  *

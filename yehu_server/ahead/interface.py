@@ -306,10 +306,7 @@ FOLLOWING = [
 def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> list[Native]:
     """List all functions of the interface, for the images and the hash of sources given."""
     put, told = putting(rates, images), telling(sources)
-    beginning = [
-        Native(prepare, calls=[put]),
-        Native(reset, calls=[put, find_values]),
-    ]
+    beginning = [Native(prepare, calls=[put]), Native(reset, calls=[put, find_values])]
     posting = [engine.post, midi, control, use_tables]
     reading = [frame, value, pitch, look, lost]
     return [told, size, *beginning, *posting, process, *reading, *FOLLOWING]

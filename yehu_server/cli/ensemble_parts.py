@@ -168,9 +168,8 @@ def _options_of(entry: PartEntry, playing: PlayingOptions, room: Values) -> Play
     settings = (pair for pair in playing.settings if pair[0] not in own)
     place = {"/room/pan": entry.pan, "/room/distance": entry.distance, SECTION: entry.section}
     start = ((address, float(value)) for address, value in place.items() if value is not None)
-    return replace(
-        playing, start=(*playing.start, *room, *start), settings=(*settings, *own.items())
-    )
+    starts = (*playing.start, *room, *start)
+    return replace(playing, start=starts, settings=(*settings, *own.items()))
 
 
 def _part(

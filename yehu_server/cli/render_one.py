@@ -93,9 +93,8 @@ def rendered(
         watch = PlotData(float(options.rate), longest_s, len(parts), playing.a4)
         options = replace(options, block=PLOTTED_BLOCK)
     with progress_bar(arguments, "rendering") as progress:
-        summary = render(
-            parts, arguments.output, options, follow or progress, may_replace, stems, watch
-        )
+        listen = follow or progress
+        summary = render(parts, arguments.output, options, listen, may_replace, stems, watch)
     if watch is not None:
         from yehu_server.lab.plot.rendered import write_picture
 

@@ -213,10 +213,8 @@ def _page_of(arguments: argparse.Namespace) -> Any:
         if arguments.lan or arguments.open:
             raise ParameterError("--no-panel: there is no page to open")
         return None
-    given = (
-        HTTP_ADDRESS if arguments.http == "none" else parse_address(arguments.http, *HTTP_ADDRESS)
-    )
-    host, beside = given
+    http = "" if arguments.http == "none" else arguments.http
+    host, beside = parse_address(http, *HTTP_ADDRESS)
     number = wished if wished is not None else (beside + 1) % (1 << 16) if beside else 0
     networks = list(arguments.http_allow)
     guests = None

@@ -214,9 +214,7 @@ class Housekeeper:
         self._ending = threading.Event()
         self._next_look = 0.0  # monotonic s
         turns = (self._turn, self._ending, TURN_EVERY_S, "beside playing", on_message)
-        self._thread = threading.Thread(
-            target=run_forever, args=turns, name="housekeeper", daemon=True
-        )
+        self._thread = threading.Thread(None, run_forever, "housekeeper", turns, daemon=True)
 
     def start(self) -> None:
         """Start the thread."""

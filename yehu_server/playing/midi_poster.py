@@ -191,9 +191,8 @@ class MidiPoster:
 
     def sound(self) -> dict[str, float]:
         """All parameters that the player does not move, without the velocity of one note."""
-        values = {
-            param.address: self._wishes.value(param.address) for param in TABLE if not param.owned
-        }
+        free = [param.address for param in TABLE if not param.owned]
+        values = {address: self._wishes.value(address) for address in free}
         record = self._wishes.record
         for bind in self.mapping.of(VELOCITY):
             row = ROW[find(bind.target).address]

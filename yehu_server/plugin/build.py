@@ -168,8 +168,6 @@ def link(made: Format, system: System, work: Path) -> Path:
         options += ["-Wl,--no-undefined", "-Wl,--build-id=none", "-Wl,-Bsymbolic"]
     if system.is_here:
         options += ["-static-libstdc++", "-static-libgcc", "-Wl,--as-needed"]
-    libraries = ("-lm", *system.libraries)
-    run_compiler(
-        [*compiler_of(system), *options, *map(str, objects), *libraries, "-o", str(library)]
-    )
+    parts = [*options, *map(str, objects), "-lm", *system.libraries]
+    run_compiler([*compiler_of(system), *parts, "-o", str(library)])
     return library

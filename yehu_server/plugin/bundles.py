@@ -86,9 +86,7 @@ def _put_mac(path: Path, libraries: Mapping[System, Path]) -> None:
 
 def _joined(libraries: Mapping[System, Path]) -> bytes:
     """The library of the only system, or one file of those for several processors."""
-    codes = {
-        system.triple.partition("-")[0]: file.read_bytes() for system, file in libraries.items()
-    }
+    codes = {one.triple.partition("-")[0]: file.read_bytes() for one, file in libraries.items()}
     if len(codes) == 1:
         return next(iter(codes.values()))
     heading, body = struct.pack(">II", FAT, len(codes)), b""

@@ -147,9 +147,8 @@ def _port(index: int, each: HostParameter) -> str:
     ]
     if each.choices:
         lines.append("lv2:portProperty lv2:integer , lv2:enumeration")
-        points = (
-            f"[ rdfs:label {_text(name)} ; rdf:value {i} ]" for i, name in enumerate(each.choices)
-        )
+        labels = map(_text, each.choices)
+        points = (f"[ rdfs:label {name} ; rdf:value {i} ]" for i, name in enumerate(labels))
         lines.append(f"lv2:scalePoint {' , '.join(points)}")
     elif (each.steps, each.lo) == (1, 0.0):
         lines.append("lv2:portProperty lv2:toggled")

@@ -93,9 +93,8 @@ def make(server: Address) -> bytes:
     panel = Panel(TOP + rows * CELL[1] + MARGIN)
     host, port = server
     heard_at = common_layout.port_from(PORT)
-    asking = ", ".join(
-        f"{to} {common_layout.SUBSCRIBED_S} {heard_at}" for to in common_layout.subscriptions()
-    )
+    told_for = f"{common_layout.SUBSCRIBED_S} {heard_at}"
+    asking = ", ".join(f"{to} {told_for}" for to in common_layout.subscriptions())
     panel.draw(
         NETWORK.format(
             host=host,

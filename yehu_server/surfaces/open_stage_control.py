@@ -24,9 +24,8 @@ Widget = dict[str, Any]
 def make(server: Address) -> bytes:
     """Write the session as JSON."""
     speaks = {"target": [f"{server[0]}:{server[1]}"]}
-    send = "; ".join(
-        f"send('{to}', {common_layout.SUBSCRIBED_S})" for to in common_layout.subscriptions()
-    )
+    for_s = common_layout.SUBSCRIBED_S
+    send = "; ".join(f"send('{to}', {for_s})" for to in common_layout.subscriptions())
     again = f"setInterval(() => {{ {send} }}, {1000 * common_layout.SUBSCRIBE_EVERY_S})"
     tabs: dict[str, tuple[list[Widget], Widget]] = {"hands": (_hands(), {})}
     for group in common_layout.groups():

@@ -156,9 +156,8 @@ def _hands() -> Control:
 
 
 def _pad(pad: Pad) -> Iterator[Control]:
-    touched, left = (
-        Trigger("touch", way) for way in (TriggerCondition.RISE, TriggerCondition.FALL)
-    )
+    ways = (TriggerCondition.RISE, TriggerCondition.FALL)
+    touched, left = (Trigger("touch", way) for way in ways)
     messages = []
     for call, numbers in pad.calls:
         arguments = [_scaled("xy"[number], pad.axes[number]) for number in numbers]

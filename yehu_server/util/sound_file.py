@@ -21,9 +21,7 @@ FORMATS = ("wav", "flac")
 MOST_CHANNELS = {"wav": wav_stream.MOST_CHANNELS, "flac": flac_stream.MOST_CHANNELS}
 SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}
 DEFAULT_SUBTYPES = {"wav": "float", "flac": "24"}  # of recordings and replays
-RENDERED = (
-    "yehu-server render"  # software named in a rendered file, which may therefore be replaced
-)
+RENDERED = "yehu-server render"  # software named in a rendered file, which may be replaced
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
 
@@ -59,9 +57,8 @@ class SoundWriter:
         is_wav = format_name == "wav"
         self._target = target
         self._channels = channels
-        self._limit = (
-            wav_stream.WAV_LIMIT // (channels * wav_stream.BYTES[subtype]) if is_wav else None
-        )
+        most = wav_stream.WAV_LIMIT // (channels * wav_stream.BYTES[subtype])
+        self._limit = most if is_wav else None
         self.frames = 0
         self.peak = 0.0
         self._power = 0.0

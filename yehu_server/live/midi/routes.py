@@ -59,9 +59,8 @@ def is_wanted(name: str, patterns: Sequence[str]) -> bool:
     """Whether to open a port: by words of its name; without patterns, any but a through port."""
     if not patterns:
         return not _THROUGH.search(name)
-    return any(
-        all(word in name.lower() for word in pattern.lower().split()) for pattern in patterns
-    )
+    wanted = [pattern.lower().split() for pattern in patterns]
+    return any(all(word in name.lower() for word in words) for words in wanted)
 
 
 CHANNELS = 16

@@ -248,9 +248,8 @@ class TcpPeer:
     @property
     def events(self) -> int:
         """The events that a selector should wait for."""
-        return (selectors.EVENT_READ if self.reads else 0) | (
-            selectors.EVENT_WRITE if self._unsent else 0
-        )
+        reading = selectors.EVENT_READ if self.reads else 0
+        return reading | (selectors.EVENT_WRITE if self._unsent else 0)
 
     def send(self, packet: bytes) -> None:
         """See `Peer`; packets are dropped while the peer does not read."""

@@ -65,9 +65,8 @@ class CallContext:
     def values(self, addressed: str) -> dict[str, float]:
         """The values of the parameters of a group, by address; any thread may call."""
         values = self.players[part_of(addressed)].values()
-        return (
-            {param.address: values[param.address] for param in PART_PARAMS} if addressed else values
-        )
+        own = [param.address for param in PART_PARAMS] if addressed else values
+        return {address: values[address] for address in own}
 
     def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         """Tell a peer why what it sent to an address was refused."""

@@ -95,9 +95,8 @@ def readable(groups: Iterable[str]) -> Iterator[str]:
     """The addresses of all values, of parameters and then of the status, of some groups."""
     for addressed in groups:
         for form in ("", UNIT):
-            yield from (
-                addressed + param.address + form for param in (PART_PARAMS if addressed else TABLE)
-            )
+            params = PART_PARAMS if addressed else TABLE
+            yield from (addressed + param.address + form for param in params)
     for addressed in groups:
         names = PART_NAMES if addressed else NAMES
         yield from (addressed + STATUS_PREFIX + name for name in names)

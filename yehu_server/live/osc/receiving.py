@@ -183,9 +183,8 @@ class OscPorts:
     def _warn(self, what: str) -> None:
         """Log what a peer did wrong, as a warning once a second at most."""
         now = time.monotonic()
-        log.log(
-            logging.WARNING if now > self._warned + WARN_AGAIN_S else logging.DEBUG, "OSC: %s", what
-        )
+        level = logging.WARNING if now > self._warned + WARN_AGAIN_S else logging.DEBUG
+        log.log(level, "OSC: %s", what)
         self._warned = now
 
     def _end(self, peer: Peer) -> Iterator[None]:
@@ -267,9 +266,8 @@ class OscPorts:
             among = of_host
         elif len(among) < MOST_CONNECTIONS:
             return True
-        silent = min(
-            filter(self._is_silent, among), key=lambda one: one.last_packet_s, default=None
-        )
+        those = filter(self._is_silent, among)
+        silent = min(those, key=lambda one: one.last_packet_s, default=None)
         if silent is not None:
             self._warn(f"{silent.name}: closed for another connection, as it was silent for long")
             silent.cut_off()
@@ -278,9 +276,8 @@ class OscPorts:
     def _is_silent(self, peer: TcpPeer) -> bool:
         """Whether a connection has sent nothing for too long."""
         longest_s = QUIET_S if peer.has_sent_packet else SPEAKS_WITHIN_S
-        is_quiet = (
-            time.monotonic() - peer.last_packet_s > longest_s and not peer.has_pending_packets
-        )
+        quiet_s = time.monotonic() - peer.last_packet_s
+        is_quiet = quiet_s > longest_s and not peer.has_pending_packets
         return is_quiet and not self._handler.clients.is_subscribed(peer)
 
     def _read_stream(self, peer: TcpPeer) -> None:

@@ -198,9 +198,7 @@ class PageSockets:
 
         `own`: of each part, rows and their values.
         """
-        self._own = {
-            part: {int(row): value for row, value in values} for part, values in enumerate(own)
-        }
+        self._own = {part: {int(row): value for row, value in of} for part, of in enumerate(own)}
 
     async def send_looks(self) -> None:
         """Send looks, for ever."""

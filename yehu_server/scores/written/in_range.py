@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from yehu_server.playing.stringing import range_text
-from yehu_server.scores.tune_part import melodic_part
 from yehu_server.scores.octaves import Octaves, Sounding, octaves_of
+from yehu_server.scores.tune_part import melodic_part
 from yehu_server.scores.written.mark_settings import harmonic_of
 from yehu_server.scores.written.notated import Grace, Note, Part, Written
 

@@ -22,17 +22,15 @@ PAGE_FEATURES = "+simd128,+bulk-memory,+nontrapping-fptoint,+sign-ext,+mutable-g
 
 @dataclass(frozen=True)
 class Target:
-    """A machine, by LLVM's names.
-
-    `prefix`: what stands before the names of functions, where several versions are linked together.
-    `is_inner`: whether the functions are for the library alone that they are linked into.
-    """
+    """A machine, by LLVM's names."""
 
     triple: str
     cpu: str = ""
     features: str = ""
     reloc: str = "pic"
+    # What stands before the names of functions, where several versions are linked together.
     prefix: str = ""
+    # Whether the functions are for the library alone that they are linked into.
     is_inner: bool = False
 
     @property

@@ -26,15 +26,11 @@ SECTION = "/playing/section"
 
 @dataclass(frozen=True)
 class Players:
-    """The parts of an ensemble, and what concerns all of them.
-
-    `files`: all files that they were read from.
-    `percussion_notes`: of channel 10, played by nobody.
-    """
+    """The parts of an ensemble, and what concerns all of them."""
 
     parts: tuple[Part, ...]
-    files: tuple[Path, ...] = ()
-    percussion_notes: int = 0
+    files: tuple[Path, ...] = ()  # all files that they were read from
+    percussion_notes: int = 0  # of channel 10, played by nobody
 
 
 def players_of(

@@ -32,23 +32,17 @@ BLOCK = 1 << 16  # frames of a file that are read again at a time
 
 @dataclass(frozen=True)
 class Task:
-    """A score to render, for another process.
+    """A score to render, for another process."""
 
-    `arguments`: those of the command.
-    `picture`: where the picture of it goes.
-    `key`: of all that the result depends on, beside files of settings.
-    `seconds`: how long it lasts, as far as that is known from an earlier run; else 0.
-    `mark`: for a worker of a cluster: a file in the output, which is found where that is seen.
-    `score`: for such a worker that does not see the folders; None where it cannot be read, and the
-    worker tells why.
-    """
-
-    arguments: argparse.Namespace
+    arguments: argparse.Namespace  # those of the command
     entry: Entry
-    picture: Path | None
-    key: str
-    seconds: float = 0.0
+    picture: Path | None  # where the picture of it goes
+    key: str  # of all that the result depends on, beside files of settings
+    seconds: float = 0.0  # how long it lasts, as far as that is known from an earlier run; else 0
+    # For a worker of a cluster: a file in the output, which is found where that is seen.
     mark: Path = Path()
+    # For such a worker that does not see the folders; None where it cannot be read, and the worker
+    # tells why.
     score: bytes | None = None
 
     @property
@@ -59,16 +53,12 @@ class Task:
 
 @dataclass(frozen=True)
 class Done:
-    """What became of a task: its line of the manifest, and whether the disk was full.
-
-    `read`: the files of settings that the sound was made from.
-    `made`: the results, where they have to travel.
-    """
+    """What became of a task: its line of the manifest, and whether the disk was full."""
 
     line: Line
     is_full: bool = False
-    read: tuple[Path, ...] = ()
-    made: tuple[bytes, ...] = ()
+    read: tuple[Path, ...] = ()  # the files of settings that the sound was made from
+    made: tuple[bytes, ...] = ()  # the results, where they have to travel
 
     def as_plain(self) -> dict[str, Any]:
         """It as what a cluster's worker may answer."""

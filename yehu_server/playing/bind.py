@@ -59,33 +59,26 @@ class Bind:
     The source's position, 0 to 1, is mapped to `span` along `curve`; a span from high to low
     inverts, as does `invert`. The pitch wheel without a span moves ``/playing/bend`` in
     semitones, by the bend range.
-
-    `source`: canonical name of the source (``sources``).
-    `target`: address of the parameter.
-    `span`: the target's values at the two ends; by default its whole range.
-    `smoothing_ms`: shortest time in which a move changes a sounding note; see `WishPoster.write`.
-    `channels`: MIDI channels, 1 to 16, that it receives on; all if empty.
-    `is_soft`: soft take-over: the target moves only once the source has reached the target's value.
-    `input_range`: the values that an OSC address sends at its two ends.
-    `is_exclusive`: whether it replaces all binds of the base that move the same target; ``alone``
-    in files.
-    `is_global`: whether it moves every note, on whichever port and channel the source is moved; see
-    ``scope``.
-    `replaces`: binds of the same file that MIDI learn took away for it; they come back with
-    `unlearn`.
     """
 
-    source: str
-    target: str
+    source: str  # canonical name of the source (``sources``)
+    target: str  # address of the parameter
+    # The target's values at the two ends; by default its whole range.
     span: tuple[float, float] | None = None
     curve: Curve | Breakpoints = Curve.LIN
     invert: bool = False
+    # Shortest time in which a move changes a sounding note; see `WishPoster.write`.
     smoothing_ms: float = 0.0
-    channels: tuple[int, ...] = ()
+    channels: tuple[int, ...] = ()  # MIDI channels, 1 to 16, that it receives on; all if empty
+    # Soft take-over: the target moves only once the source has reached the target's value.
     is_soft: bool = False
+    # The values that an OSC address sends at its two ends.
     input_range: tuple[float, float] = (0.0, 1.0)
+    # Whether it replaces all binds of the base that move the same target; ``alone`` in files.
     is_exclusive: bool = False
+    # Whether it moves every note, on whichever port and channel the source is moved; see ``scope``.
     is_global: bool = False
+    # Binds of the same file that MIDI learn took away for it; they come back with `unlearn`.
     replaces: tuple[Bind, ...] = ()
 
     @property

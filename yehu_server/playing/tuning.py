@@ -60,18 +60,15 @@ _NO_TEXT = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f]")  # 1a (hex) ends a DOS t
 
 @dataclass(frozen=True)
 class Tuning:
-    """The pitch of every key.
-
-    `keys`: pitches of keys 0 to 127 (fractional MIDI notes; None for an unmapped key), relative to
-    A4; None where each key sounds its own number.
-    `fixed`: whether pitches are relative to an A4 of 440 Hz, whatever the instrument's A4 is.
-    `files`: the files that it was read from.
-    """
+    """The pitch of every key."""
 
     name: str
+    # Pitches of keys 0 to 127 (fractional MIDI notes; None for an unmapped key), relative to A4;
+    # None where each key sounds its own number.
     keys: tuple[float | None, ...] | None = None
+    # Whether pitches are relative to an A4 of 440 Hz, whatever the instrument's A4 is.
     fixed: bool = False
-    files: tuple[Path, ...] = field(default=(), compare=False)
+    files: tuple[Path, ...] = field(default=(), compare=False)  # the files that it was read from
 
     @property
     def has_octaves(self) -> bool:

@@ -37,21 +37,17 @@ LINKING = ("-shared", "-s")
 
 @dataclass(frozen=True)
 class Format:
-    """A format of plug-ins.
-
-    `files`: the source files of its entry points.
-    `headers`: the folder of its headers; `sign` lies in it, and `package` of Debian's brings it.
-    `put`: puts linked libraries, by system, into a folder; returns what it wrote.
-    `face`: the source files of its window.
-    """
+    """A format of plug-ins."""
 
     name: str
-    files: tuple[str, ...]
+    files: tuple[str, ...]  # the source files of its entry points
+    # The folder of its headers; `sign` lies in it, and `package` of Debian's brings it.
     headers: Path
     sign: Path
     package: str
+    # Puts linked libraries, by system, into a folder; returns what it wrote.
     put: Callable[[Path, Mapping[System, Path]], Path]
-    face: tuple[str, ...] = ()
+    face: tuple[str, ...] = ()  # the source files of its window
 
 
 FORMATS = (

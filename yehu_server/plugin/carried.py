@@ -30,18 +30,13 @@ MAPPINGS = (
 
 @dataclass(frozen=True)
 class Carried:
-    """Values by address, and runs of words of tables (``ahead.memory_images``), by name.
+    """Values by address, and runs of words of tables (``ahead.memory_images``), by name."""
 
-    `presets`, `starts`: values of parameters by address: of each preset, and those that each
-    mapping starts with.
-    `mappings`, `tunings`: runs of words of ``midi.tables``; those of a tuning are for the fields
-    OF_TUNING.
-    """
-
+    # Values of parameters by address: of each preset, and those that each mapping starts with.
     presets: dict[str, dict[str, float]]
-    mappings: dict[str, Array]
+    mappings: dict[str, Array]  # runs of words of ``midi.tables``
     starts: dict[str, dict[str, float]]
-    tunings: dict[str, Array]
+    tunings: dict[str, Array]  # the same, for the fields OF_TUNING
 
     @cached_property
     def names(self) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]:

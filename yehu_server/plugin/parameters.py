@@ -25,12 +25,7 @@ CHANCES = ("goes on", "begins with the transport")
 
 @dataclass(frozen=True)
 class HostParameter:
-    """One parameter as a host sees it.
-
-    `row`: in the parameter table; -1 for a choice of the plug-in's own.
-    `steps`: how many steps there are from the lowest to the highest value; 0: it is continuous.
-    `choices`: what each step is called; empty: by its number.
-    """
+    """One parameter as a host sees it."""
 
     address: str
     name: str
@@ -40,10 +35,11 @@ class HostParameter:
     hi: float
     default: float
     doc: str
-    row: int = -1
+    row: int = -1  # in the parameter table; -1 for a choice of the plug-in's own
+    # How many steps there are from the lowest to the highest value; 0: it is continuous.
     steps: int = 0
     is_exponential: bool = False
-    choices: tuple[str, ...] = ()
+    choices: tuple[str, ...] = ()  # what each step is called; empty: by its number
 
     @property
     def number(self) -> int:

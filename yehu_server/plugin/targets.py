@@ -17,21 +17,14 @@ X11 = "window_x11.cpp"
 
 @dataclass(frozen=True)
 class System:
-    """A system and kind of processor.
+    """A system and kind of processor."""
 
-    `name`: as `--target` has it; macOS is both of its processors.
-    `triple`, `zig`: by LLVM's name, and by zig's.
-    `cpu`: the least processor that it runs on, by LLVM's name.
-    `ending`: of a shared library.
-    `vst3`: the folder of VST3's bundle that has the library, and the library's ending there.
-    """
-
-    name: str
-    triple: str
-    zig: str
-    ending: str
-    vst3: tuple[str, str]
-    cpu: str = ANY
+    name: str  # as `--target` has it; macOS is both of its processors
+    triple: str  # LLVM's name
+    zig: str  # zig's name
+    ending: str  # of a shared library
+    vst3: tuple[str, str]  # the folder of a VST3 bundle for the library, and its ending there
+    cpu: str = ANY  # the least processor that it runs on, by LLVM's name
 
     @property
     def has_wide(self) -> bool:

@@ -58,17 +58,14 @@ class Axis:
 
 @dataclass(frozen=True)
 class Pad:
-    """A pad with an axis across and one upwards.
-
-    `calls`: the calls that it makes, each with the numbers of the axes that are its arguments.
-    `lifted`: the call that is made with zeros when the hand leaves the pad.
-    """
+    """A pad with an axis across and one upwards."""
 
     name: str
     axes: tuple[Axis, Axis]
     frame: Frame
+    # The calls that it makes, each with the numbers of the axes that are its arguments.
     calls: tuple[tuple[str, tuple[int, ...]], ...]
-    lifted: str = ""
+    lifted: str = ""  # the call that is made with zeros when the hand leaves the pad
 
     @property
     def title(self) -> str:

@@ -31,17 +31,13 @@ P = ParamSpec("P")
 
 @dataclass(eq=False)
 class Document:
-    """A text of a user, and the errors found in it.
+    """A text of a user, and the errors found in it."""
 
-    `name`: what errors begin with.
-    `what`: what it should be, such as "a mapping file".
-    `error`: of errors in entries; all of them are raised as one, up to `most_errors`.
-    `unreadable`: of errors in what is no such document at all, if that is another.
-    """
-
-    name: Path | str = ""
-    what: str = "a document"
+    name: Path | str = ""  # what errors begin with
+    what: str = "a document"  # what it should be, such as "a mapping file"
+    # Of errors in entries; all of them are raised as one, up to `most_errors`.
     error: type[YehuError] = ParameterError
+    # Of errors in what is no such document at all, if that is another.
     unreadable: type[YehuError] | None = None
     text: str = ""
     most_errors: int = 1

@@ -92,19 +92,14 @@ class Argument:
 
 @dataclass(frozen=True)
 class Call:
-    """A call.
+    """A call."""
 
-    `address`: after the prefix.
-    `doc`: what it does, for OSCQuery and the surfaces.
-    `act`: carries it out for a group of addresses; raises YehuError where it refuses.
-    `is_for_all`: whether no part has one of its own.
-    """
-
-    address: str
-    doc: str
+    address: str  # after the prefix
+    doc: str  # what it does, for OSCQuery and the surfaces
     arguments: tuple[Argument, ...]
+    # Carries it out for a group of addresses; raises YehuError where it refuses.
     act: Callable[[Any, Request], None]
-    is_for_all: bool = False
+    is_for_all: bool = False  # whether no part has one of its own
 
 
 def osc_call(

@@ -30,28 +30,24 @@ class CallContext:
 
     Addresses come in groups: `FIRST` has those of the first part and of what all share, and each
     part has one.
-
-    `players`: those of all parts.
-    `states`: returns the status values of a group, by name; any thread may call.
-    `start_recording`, `stop_recording`: record to a file of a plain name, or end that; return the
-    file's name. Raise YehuError.
-    `log`: prints or logs a line for whoever runs the server.
-    `run_in_background`: calls a function that may take long, such as one that writes a file, in
-    another thread; those that are given one after another in this order.
-    `call_soon`: calls a function in the thread that handles packets; any thread may call.
-    `tree_changed`: announces that the tree of addresses has changed at a path or below.
-    `drop_scheduled`: drops the messages of a group that wait for their time; of `FIRST`, all.
     """
 
-    players: Sequence[LivePlayer]
+    players: Sequence[LivePlayer]  # those of all parts
+    # Returns the status values of a group, by name; any thread may call.
     states: Callable[[str], Mapping[str, float | str]]
+    # Record to a file of a plain name, or end that; return the file's name. Raise YehuError.
     start_recording: Callable[[str], str]
     stop_recording: Callable[[], str]
-    log: Callable[[str], None]
+    log: Callable[[str], None]  # prints or logs a line for whoever runs the server
+    # Calls a function that may take long, such as one that writes a file, in another thread; those
+    # that are given one after another in this order.
     run_in_background: Callable[[Callable[[], None]], object]
     # Set by those who serve, as they are made.
+    # Calls a function in the thread that handles packets; any thread may call.
     call_soon: Callable[[Callable[[], None]], object] = lambda action: action()
+    # Announces that the tree of addresses has changed at a path or below.
     tree_changed: Callable[[str], None] = lambda _path: None
+    # Drops the messages of a group that wait for their time; of `FIRST`, all.
     drop_scheduled: Callable[[str], None] = lambda _addressed: None
     counts: Counts = field(default_factory=Counts)
     writes: set[object] = field(default_factory=set)  # a mark for each file that is being written

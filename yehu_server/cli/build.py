@@ -10,7 +10,9 @@ from yehu_server.cli.arguments import add_command, add_folder, add_options
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.playing_options import add_tables, table_options_of
 from yehu_server.cli.terminal import print_result
+from yehu_server.errors import ParameterError
 from yehu_server.plugin.targets import ALL, NAMES, usual
+from yehu_server.util.files import write_bytes
 
 EXAMPLES = """\
 examples:
@@ -86,7 +88,6 @@ def build_plugin(arguments: argparse.Namespace) -> int:
 def write_tables(arguments: argparse.Namespace) -> int:
     """Write tables to a file, and the numbers of named controls; return the exit code."""
     from yehu_server.playing.tables import Controls
-    from yehu_server.util.files import write_bytes
 
     playing, controls = table_options_of(arguments), Controls()
     tables = playing.tables(controls)
@@ -102,7 +103,6 @@ def run(arguments: argparse.Namespace) -> int:
     from llvmlite import binding
 
     from yehu_server.ahead.build import RATES, build
-    from yehu_server.errors import ParameterError
 
     folder: Path = arguments.output
     cpu = binding.get_host_cpu_name() if arguments.cpu == "native" else arguments.cpu

@@ -24,7 +24,10 @@ from yehu_server.cli.arguments import (
 from yehu_server.cli.converters import positive
 from yehu_server.cli.terminal import print_report, progress_bar, warn, warn_of_compiling
 from yehu_server.errors import OutputError, ParameterError
+from yehu_server.rendering import build_records
+from yehu_server.rendering.build_records import HIDDEN, check_manifest
 from yehu_server.util.files import why
+from yehu_server.util.source_key import key_of
 
 if TYPE_CHECKING:
     from yehu_server.lab.dataset.making import Part
@@ -71,8 +74,6 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.lab.dataset import making
     from yehu_server.lab.dataset.card import write_card
     from yehu_server.lab.dataset.description import read_description
-    from yehu_server.rendering import build_records
-    from yehu_server.rendering.build_records import check_manifest
 
     if arguments.dask is not None and arguments.jobs is not None:
         raise ParameterError("--jobs is for this machine: a cluster uses all of its workers")
@@ -114,8 +115,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _check_folder(folder: Path) -> None:
     """Refuse a folder with other things in it; raises OutputError where there are some."""
-    from yehu_server.rendering.build_records import HIDDEN
-
     try:
         is_other = any(folder.iterdir()) and not (folder / HIDDEN).is_dir()
     except FileNotFoundError:
@@ -134,7 +133,6 @@ def _key(description: str) -> str:
     """Key of description and code."""
     from yehu_server.compile.cache_folder import source_hash
     from yehu_server.util import PACKAGE
-    from yehu_server.util.source_key import key_of
 
     code = [path for name in SOUNDING for path in sorted((PACKAGE / name).glob("*.py"))]
     return key_of([*code, PACKAGE / "lab" / "simulation.py"], source_hash(), description)
@@ -149,7 +147,6 @@ def _on_cores(jobs: int | None, parts: Sequence[Part]) -> Any:
 
 def _on_cluster(cluster: Any, folder: Path, parts: Sequence[Part]) -> Iterator[Any]:
     from yehu_server.lab.dataset.making import perform
-    from yehu_server.rendering.build_records import HIDDEN
 
     mark = folder / HIDDEN / f"seen-{secrets.token_hex(8)}"
     mark.touch()

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_command, add_options
-from yehu_server.errors import one_line
+from yehu_server.errors import DeviceError, one_line
 
 if TYPE_CHECKING:
     from yehu_server.live.audio.devices import AudioDevice
@@ -37,7 +37,6 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.errors import DeviceError
     from yehu_server.live.audio.devices import INPUT, OUTPUT, devices, load_portaudio, quiet
     from yehu_server.live.midi.input_process import list_inputs
 

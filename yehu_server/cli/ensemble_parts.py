@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 from yehu_server.cli.sound_options import BY_MIDI, Values, is_of_room, room_of
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import EnsembleError, ParameterError, YehuError
+from yehu_server.scores.score import Score, concatenate
 
 if TYPE_CHECKING:
     from yehu_server.core.physics.quantities import Quantities
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Part
     from yehu_server.scores.ensemble_file import EnsembleFile, PartEntry
-    from yehu_server.scores.score import Score
 
 SECTION = "/playing/section"
 
@@ -179,7 +179,6 @@ def _part(
     from yehu_server.rendering.options import Part
     from yehu_server.scores.phrasing import is_fingered, phrased
     from yehu_server.scores.reading import part_of
-    from yehu_server.scores.score import concatenate
 
     own = [part_of(score, entry.channel, entry.track) for score in scores]
     score = concatenate([phrased(each, phrasing) for each in own])

@@ -18,6 +18,9 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.arguments import replaceable
 from yehu_server.cli.folder_tasks import Done, Task, perform
 from yehu_server.errors import OutputError, ParameterError
+from yehu_server.rendering import build_records
+from yehu_server.rendering.build_records import HIDDEN, hash_of
+from yehu_server.util.files import anything, make_folder, replacing, shipped_folder
 
 if TYPE_CHECKING:
     from yehu_server.rendering.cluster import Cluster
@@ -68,8 +71,6 @@ def absolute(arguments: argparse.Namespace) -> argparse.Namespace:
 
 def render_on_cluster(tasks: Sequence[Task], cluster: Cluster) -> Generator[Event]:
     """Yield what becomes of tasks on a cluster; the result of each is its `Done`."""
-    from yehu_server.rendering.build_records import HIDDEN
-
     arguments = absolute(tasks[0].arguments)
     mark = arguments.output / HIDDEN / f"seen-{secrets.token_hex(8)}"
     mark.touch()
@@ -102,7 +103,6 @@ def _check_settings(arguments: argparse.Namespace, cluster: Cluster) -> None:
 def _settings(arguments: argparse.Namespace) -> list[Path]:
     """Files of settings that options name, beside those that are shipped."""
     from yehu_server.cli.playing_options import playing_options_of
-    from yehu_server.util.files import shipped_folder
 
     named = [arguments.instrument, arguments.ensemble, *playing_options_of(arguments).files]
     files = [path.absolute() for path in named if isinstance(path, Path)]
@@ -112,8 +112,6 @@ def _settings(arguments: argparse.Namespace) -> list[Path]:
 
 def hashes_of(paths: Sequence[str]) -> dict[str, str]:
     """The hashes of files; workers are asked for theirs."""
-    from yehu_server.rendering.build_records import hash_of
-
     return {path: hash_of(Path(path)) for path in paths}
 
 
@@ -141,9 +139,6 @@ def _received(task: Task, told: Any) -> Done:
 
 
 def _put(task: Task, done: Done) -> None:
-    from yehu_server.rendering import build_records
-    from yehu_server.util.files import anything, make_folder, replacing
-
     build_records.make_folder_for(task.entry.target)
     may_replace = replaceable(task.arguments)
     for path, data in zip(task.results, done.made, strict=True):

@@ -22,6 +22,7 @@ from yehu_server.cli.terminal import (
     warn_of_compiling,
 )
 from yehu_server.errors import one_line
+from yehu_server.rendering.build_records import line_of
 
 if TYPE_CHECKING:
     from yehu_server.rendering.cluster import Cluster
@@ -123,8 +124,6 @@ def _on_cores(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator
 
 def _tell_one(arguments: argparse.Namespace, line: Line, number: int, total: int) -> None:
     """Tell of a file: as JSON, or as a line where there is no progress bar."""
-    from yehu_server.rendering.build_records import line_of
-
     if arguments.json:
         print(line_of(line), flush=True)
     elif not arguments.quiet and not sys.stderr.isatty():

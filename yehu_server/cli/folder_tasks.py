@@ -16,7 +16,16 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import replaceable
 from yehu_server.errors import OutputError, ScoreError, YehuError
-from yehu_server.util.files import why
+from yehu_server.rendering import build_records
+from yehu_server.rendering.build_records import checked_line, hash_of, keep, make_folder_for
+from yehu_server.util.files import (
+    check_distinct,
+    check_free,
+    check_target,
+    make_folder,
+    shipped_folder,
+    why,
+)
 
 if TYPE_CHECKING:
     from yehu_server.rendering.folder_tree import Entry
@@ -67,8 +76,6 @@ class Done:
     @classmethod
     def of_plain(cls, task: Task, told: Any) -> Done:
         """What a worker answered, or anybody on the cluster; raises OutputError if no result."""
-        from yehu_server.rendering.build_records import checked_line
-
         try:
             line = checked_line(told["line"], file=task.entry.name)
             read = tuple(Path(path) for path in told["read"])
@@ -104,8 +111,6 @@ def perform(task: Task, report_progress: ProgressCallback) -> Done:
 
 def _keep_failure(task: Task, line: Line) -> None:
     """Keep that a score cannot be played: another try would end alike, unless it is another."""
-    from yehu_server.rendering.build_records import hash_of, keep, make_folder_for
-
     found = hash_of(task.entry.source)
     if not found or not task.key.endswith(found):
         return
@@ -117,8 +122,6 @@ def _keep_failure(task: Task, line: Line) -> None:
 def _made(task: Task, report_progress: ProgressCallback) -> Done:
     from yehu_server.cli.render_one import rendered
     from yehu_server.lab.plot.png import check_picture
-    from yehu_server.rendering import build_records
-    from yehu_server.util.files import check_distinct, check_free, check_target, make_folder
 
     entry, options = task.entry, task.arguments
     may_replace = replaceable(options)
@@ -173,8 +176,6 @@ def _made(task: Task, report_progress: ProgressCallback) -> Done:
 
 def _programs(arguments: argparse.Namespace) -> list[Path]:
     """The presets that programs may select."""
-    from yehu_server.util.files import shipped_folder
-
     if not arguments.programs:
         return []
     folders = [shipped_folder("presets"), *filter(None, (arguments.presets,))]

@@ -11,6 +11,8 @@ from yehu_server.cli.arguments import add_command, add_options, add_server, serv
 from yehu_server.cli.converters import positive
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import ParameterError, YehuError
+from yehu_server.live.part_addresses import group
+from yehu_server.params.table import TABLE
 
 if TYPE_CHECKING:
     from yehu_server.live.osc.command_client import OscClient
@@ -66,8 +68,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None:
-    from yehu_server.live.part_addresses import group
-
     own = "" if arguments.part is None else group(arguments.part - 1)
     if arguments.forget:
         client.send(f"{own}/unlearn", address)
@@ -116,7 +116,6 @@ def _complete() -> None:
         import readline
     except ImportError:  # not on every system
         return
-    from yehu_server.params.table import TABLE
 
     addresses = [param.address for param in TABLE if not param.owned]
 

@@ -21,6 +21,7 @@ from yehu_server.cli.arguments import (
 from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import MappingError, ParameterError
+from yehu_server.util.files import write_bytes
 
 if TYPE_CHECKING:
     from yehu_server.live.osc.command_client import OscClient
@@ -176,7 +177,6 @@ def _convert(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.mapping import find_file, with_bases
     from yehu_server.playing.mapping_file import mapping_file_of_json, read_mapping_file, text_of
     from yehu_server.playing.mapping_writer import as_toml, canonical
-    from yehu_server.util.files import write_bytes
 
     path = find_file(arguments.mapping, user_first=True)
     text = text_of(path)

@@ -12,6 +12,8 @@ from yehu_server.cli.converters import whole_within
 from yehu_server.cli.playing_options import mapping_of, playing_options_of
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError, YehuError
+from yehu_server.live.part_addresses import check_own, group, no_part
+from yehu_server.params.table import assignment, find
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,7 +52,6 @@ def add_parts(group: Any) -> None:
 def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
     """The options of all parts; raises YehuError where one is wrong, or a part is not there."""
     from yehu_server.live.options import PartOptions
-    from yehu_server.live.part_addresses import no_part
     from yehu_server.playing.parts import number_of_instruments
 
     for option in ("part_mapping", "part_preset", "part_set"):
@@ -107,9 +108,6 @@ def _own(arguments: argparse.Namespace, number: int) -> argparse.Namespace | Non
 
 def _options_of(own: argparse.Namespace, number: int) -> PlayingOptions:
     """The options of a part with arguments of its own."""
-    from yehu_server.live.part_addresses import check_own, group
-    from yehu_server.params.table import assignment, find
-
     try:
         playing = playing_options_of(own, is_live=True)
         for part, text in own.part_set:

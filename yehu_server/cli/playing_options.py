@@ -11,6 +11,7 @@ from yehu_server.cli.arguments import add_options
 from yehu_server.cli.converters import HIGHEST_A4, LOWEST_A4, number_within, whole_within
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError
+from yehu_server.params.table import assignment
 
 if TYPE_CHECKING:
     from yehu_server.playing.mapping import Mapping
@@ -110,7 +111,6 @@ def add_presets_folder(group: Any) -> None:
 def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
     """What the options of `add_playing` ask for, as `table_options_of`; raises YehuError."""
     from yehu_server.core.player.fingering import OpenStrings
-    from yehu_server.params.table import assignment
     from yehu_server.playing.practice_files import read_practice
 
     return replace(

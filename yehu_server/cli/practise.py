@@ -16,6 +16,7 @@ from yehu_server.cli.arguments import (
 from yehu_server.cli.converters import target
 from yehu_server.cli.playing_options import add_tuning, tuning_of
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar
+from yehu_server.util.files import check_distinct, check_target
 
 A4 = 440.0  # Hz
 
@@ -65,7 +66,6 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.practice import Practice
     from yehu_server.playing.practice_files import shipped_practice, write_practice
     from yehu_server.playing.preset_folders import Presets
-    from yehu_server.util.files import check_distinct, check_target
 
     check_rate(arguments.rate)
     tuning = tuning_of(arguments)

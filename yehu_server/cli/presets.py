@@ -11,6 +11,8 @@ from typing import Any
 from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
 from yehu_server.cli.playing_options import add_presets_folder
 from yehu_server.cli.terminal import print_result, warn
+from yehu_server.errors import PresetError
+from yehu_server.params.table import find
 
 EXAMPLES = """\
 examples:
@@ -65,7 +67,6 @@ def _list(arguments: argparse.Namespace) -> int:
 
 
 def _show(arguments: argparse.Namespace) -> int:
-    from yehu_server.params.table import find
     from yehu_server.playing.preset_folders import Presets
 
     preset = Presets(arguments.presets).find(arguments.preset)
@@ -85,7 +86,6 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from yehu_server.errors import PresetError
     from yehu_server.playing.preset_folders import read_preset
 
     code = 0

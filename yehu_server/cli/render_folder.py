@@ -14,6 +14,9 @@ from yehu_server.cli.folder_tasks import Line, Task
 from yehu_server.cli.render_pipe import is_piped
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import OutputError, ParameterError, ScoreError
+from yehu_server.rendering import build_records
+from yehu_server.rendering.build_records import hash_of, previous_line, up_to_date
+from yehu_server.util.source_key import key_of
 
 if TYPE_CHECKING:
     from yehu_server.rendering.folder_tree import Tree
@@ -38,7 +41,6 @@ def run(arguments: argparse.Namespace) -> int:
     """Render a folder; return the exit code: 1 where some of its scores failed."""
     from yehu_server.cli.folder_cluster import absolute
     from yehu_server.cli.folder_runs import prepare, render_all
-    from yehu_server.rendering import build_records
     from yehu_server.rendering.folder_tree import tree_of
 
     [folder] = arguments.midi
@@ -153,8 +155,6 @@ def split_up_to_date(arguments: argparse.Namespace, tree: Tree) -> tuple[list[Ta
     A score that failed is up to date too, as long as nothing has changed; ``--overwrite`` tries
     it again.
     """
-    from yehu_server.rendering.build_records import hash_of, previous_line, up_to_date
-
     base = base_key(arguments)
     hashing = cache(hash_of)
     tasks, lines = [], []
@@ -183,7 +183,6 @@ def base_key(arguments: argparse.Namespace) -> str:
     """Key of version and options."""
     from yehu_server.compile.cache_folder import source_hash
     from yehu_server.util import PACKAGE, __version__
-    from yehu_server.util.source_key import key_of
 
     code = [path for name in SOUNDING for path in sorted((PACKAGE / name).rglob("*.py"))]
     options = sorted(

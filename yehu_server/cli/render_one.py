@@ -20,7 +20,8 @@ from yehu_server.cli.sound_options import (
 )
 from yehu_server.cli.terminal import compile_all, progress_bar, warn
 from yehu_server.errors import OutputError
-from yehu_server.util.files import anything, make_folder
+from yehu_server.scores.score import Score, check_duration, concatenate
+from yehu_server.util.files import anything, check_distinct, make_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Options, Part
     from yehu_server.rendering.summary import PartSummary, Summary
-    from yehu_server.scores.score import Score
 
 PHRASING = 0.5  # of files, where nothing else is asked for
 
@@ -53,7 +53,6 @@ def rendered(
     """
     from yehu_server.playing.calibration import calibration_key
     from yehu_server.rendering.to_files import render
-    from yehu_server.util.files import check_distinct
 
     check_stage(arguments)
     playing = playing_in_room(arguments)
@@ -137,7 +136,6 @@ def _players(
 ) -> Players:
     """Who plays: one instrument the whole score, or an ensemble."""
     from yehu_server.scores.phrasing import is_fingered, phrased
-    from yehu_server.scores.score import concatenate
 
     if arguments.ensemble is not None:
         return players_of(arguments, scores, options.playing, options.quantities, phrasing)
@@ -199,7 +197,6 @@ def _scores(arguments: argparse.Namespace, playing: PlayingOptions) -> list[Scor
     """
     from yehu_server.playing.tuning import RangePolicy
     from yehu_server.scores.reading import How, read_any
-    from yehu_server.scores.score import check_duration
 
     longest = arguments.max_duration
     how = How(

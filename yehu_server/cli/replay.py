@@ -15,6 +15,7 @@ from yehu_server.cli.arguments import (
 )
 from yehu_server.cli.converters import hours
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn
+from yehu_server.util.files import check_distinct
 
 MAX_DURATION_H = 12.0
 EXAMPLES = """\
@@ -57,7 +58,6 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.cli.report import replay_report
     from yehu_server.rendering.replay import replay
     from yehu_server.scores.capture import read_capture
-    from yehu_server.util.files import check_distinct
     from yehu_server.util.sound_file import DEFAULT_SUBTYPES, format_of
 
     check_distinct({"-o": arguments.output}, [arguments.capture])

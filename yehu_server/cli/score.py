@@ -12,6 +12,7 @@ from yehu_server.cli.arguments import add_action, add_actions, add_command, add_
 from yehu_server.cli.converters import number_within, positive, target
 from yehu_server.cli.terminal import print_result, warn, warn_of_lost
 from yehu_server.errors import OutputError, ScoreError
+from yehu_server.scores.score import naming
 from yehu_server.util.files import check_distinct, write_bytes
 
 if TYPE_CHECKING:
@@ -100,7 +101,6 @@ def _plot(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.lab.plot.bowed_score import write_bowed_score
     from yehu_server.lab.plot.png import check_picture
     from yehu_server.scores.chosen_parts import numbers_of
-    from yehu_server.scores.score import naming
     from yehu_server.scores.written.in_range import usual_parts
 
     output = arguments.plot
@@ -118,7 +118,6 @@ def _write(arguments: argparse.Namespace) -> int:
     from yehu_server.scores.chosen_parts import numbers_of
     from yehu_server.scores.jianpu.writer import jianpu_of
     from yehu_server.scores.musicxml.writer import musicxml_of
-    from yehu_server.scores.score import naming
     from yehu_server.scores.transcription import read_to_write
     from yehu_server.scores.written.notated import times
 
@@ -149,7 +148,6 @@ def _write(arguments: argparse.Namespace) -> int:
 
 def _export(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.scores.midi_export import midi_file
-    from yehu_server.scores.score import naming
     from yehu_server.scores.written.performed import performed
 
     output = arguments.export_midi

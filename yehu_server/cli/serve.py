@@ -22,6 +22,7 @@ from yehu_server.cli.terminal import (
     warn_of_compiling,
 )
 from yehu_server.errors import YehuError
+from yehu_server.live.network import lan_address, lan_interface
 
 if TYPE_CHECKING:
     from yehu_server.live.page.pages import PageOptions
@@ -123,7 +124,6 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     """Serve until a signal or the end of --duration; return the exit code."""
     from yehu_server.cli.report import connect_lines, query_line
     from yehu_server.live.audio.devices import ADVICE, NO_OUTPUT
-    from yehu_server.live.network import lan_interface
     from yehu_server.live.server import Server
     from yehu_server.playing.mapping import is_own
 
@@ -169,7 +169,6 @@ def _tell_of_page(
 ) -> None:
     from yehu_server.cli.page import show
     from yehu_server.cli.report import page_for_phones, page_lines
-    from yehu_server.live.network import lan_address
 
     where = (pages.host, pages.port, lan_address())
     lines = page_lines(*where, networks=options.networks, guests=options.guests)

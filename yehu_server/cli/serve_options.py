@@ -12,16 +12,19 @@ from yehu_server.cli.converters import number_within, port, positive, target, wh
 from yehu_server.cli.part_options import add_parts, part_options, routes_of
 from yehu_server.cli.playing_options import add_playing
 from yehu_server.cli.terminal import LEVELS
+from yehu_server.errors import ParameterError
 from yehu_server.live.network import (
     ANYWHERE,
     HTTP_ADDRESS,
     OSC_ADDRESS,
+    Allowed,
     format_address,
     lan_interface,
     parse_address,
 )
 from yehu_server.live.page.guests import PLAY, ROLES, Guests
 from yehu_server.params.table import PREFIX
+from yehu_server.util.files import check_distinct
 
 HERE = ("127.0.0.0/8", "::1")
 FIRST_NOTE = "first-note"
@@ -143,10 +146,8 @@ def options_of(arguments: argparse.Namespace) -> Any:
     from yehu_server.live.audio.output import OutputOptions
     from yehu_server.live.midi.input_process import check_api
     from yehu_server.live.midi.ports import MidiOptions
-    from yehu_server.live.network import Allowed
     from yehu_server.live.options import ServeOptions
     from yehu_server.live.web.server import WebOptions
-    from yehu_server.util.files import check_distinct
 
     parts = part_options(arguments)
     outputs = {"--record": arguments.record, "--capture": arguments.capture}
@@ -192,7 +193,6 @@ def options_of(arguments: argparse.Namespace) -> Any:
 
 def _follow_of(arguments: argparse.Namespace) -> Any:
     """The input that is followed; None for none."""
-    from yehu_server.errors import ParameterError
     from yehu_server.live.audio.voice_input import FollowOptions
 
     if arguments.follow is None:
@@ -204,7 +204,6 @@ def _follow_of(arguments: argparse.Namespace) -> Any:
 
 def _page_of(arguments: argparse.Namespace) -> Any:
     """Where the page is served; None where it is not."""
-    from yehu_server.errors import ParameterError
     from yehu_server.live.page.pages import PageOptions
 
     wished = arguments.panel_port

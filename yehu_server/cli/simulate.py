@@ -10,6 +10,8 @@ from typing import Any
 from yehu_server.cli.arguments import add_command, add_options, add_reporting
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
+from yehu_server.errors import OutputError
+from yehu_server.util.files import check_distinct, check_target
 
 EXAMPLES = """\
 examples:
@@ -48,10 +50,8 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.cli.report import simulate_report
-    from yehu_server.errors import OutputError
     from yehu_server.lab.simulation import simulate
     from yehu_server.scores.gesture import read_gesture
-    from yehu_server.util.files import check_distinct, check_target
 
     gesture = read_gesture(arguments.gesture)
     check_target(arguments.output)

@@ -8,7 +8,9 @@ from typing import Any
 
 from yehu_server.cli.arguments import add_command, add_folder, add_options
 from yehu_server.cli.terminal import print_result
+from yehu_server.errors import ParameterError
 from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
+from yehu_server.util.files import make_folder
 
 EXAMPLES = """\
 examples:
@@ -50,10 +52,8 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.core.engine.rig import MOST_PARTS
-    from yehu_server.errors import ParameterError
     from yehu_server.surfaces.catalogue import chosen, file_of, is_fresh, write
     from yehu_server.surfaces.common_layout import ALL
-    from yehu_server.util.files import make_folder
 
     folder: Path = arguments.output
     server = parse_address(arguments.server, *OSC_ADDRESS)

@@ -17,6 +17,8 @@ from yehu_server.cli.arguments import (
 )
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
+from yehu_server.errors import ParameterError
+from yehu_server.util.files import anything, check_free, check_target, nothing
 
 EXAMPLES = """\
 examples:
@@ -143,12 +145,10 @@ def add_show(command: Parser) -> None:
 
 def show(arguments: argparse.Namespace) -> int:
     """Draw a result; return the exit code. Raises ParameterError where the call is wrong."""
-    from yehu_server.errors import ParameterError
     from yehu_server.lab.plot.png import check_picture
     from yehu_server.lab.plot.study import write_picture
     from yehu_server.lab.plot.study_page import write_page
     from yehu_server.lab.sweeps.result import Result
-    from yehu_server.util.files import anything, check_free, check_target, nothing
 
     output = arguments.output or arguments.result.with_suffix(".png")
     if output.suffix not in {".png", ".html"}:

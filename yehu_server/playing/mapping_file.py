@@ -73,7 +73,11 @@ def _binds_of_json(binds: list[Any]) -> list[Any]:
 
 
 def _of_json(entry: dict[str, Any]) -> dict[str, Any]:
-    return {name: v for name, v in _without_null(entry).items() if name not in ("from", "to")}
+    ends = [entry.pop(name, None) for name in ("from", "to")]
+    # Older versions printed no span beside them; both are null for the bend range.
+    if "span" not in entry and ends != [None, None]:
+        entry["span"] = ends
+    return _without_null(entry)
 
 
 def _without_null(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -226,6 +226,19 @@ def check_output(
     return may_replace
 
 
+def picture_output(arguments: argparse.Namespace) -> dict[str, Path]:
+    """The picture that --plot asks for, by the option; none without it.
+
+    Raises YehuError where it cannot be drawn, or may not be written.
+    """
+    if arguments.plot is None:
+        return {}
+    from yehu_server.lab.plot.png import check_picture
+
+    check_picture(arguments.plot, "--plot", overwrite=arguments.overwrite)
+    return {"--plot": arguments.plot}
+
+
 def replaceable(arguments: argparse.Namespace) -> Callable[[Path], bool]:
     """Which older files a sound may replace, as of ``files.replacing``."""
     from yehu_server.util.sound_file import is_rendered

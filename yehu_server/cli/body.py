@@ -9,7 +9,13 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
+from yehu_server.cli.arguments import (
+    add_action,
+    add_actions,
+    add_command,
+    add_options,
+    picture_output,
+)
 from yehu_server.cli.converters import number_within, positive, target, whole
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.util.files import check_distinct
@@ -108,16 +114,12 @@ def _fit(arguments: argparse.Namespace) -> int:
     from yehu_server.lab.body import fit, read
     from yehu_server.lab.body.body_file import body_file_of, check_targets
     from yehu_server.lab.plot.body import write_picture
-    from yehu_server.lab.plot.png import check_picture
 
     measurements = [*arguments.measurements, *arguments.radiation]
     outputs = {"-o": arguments.output}
     if body_file_of(arguments.output) != arguments.output:
         outputs["the body file"] = body_file_of(arguments.output)
-    if arguments.plot is not None:
-        check_picture(arguments.plot, "--plot", overwrite=arguments.overwrite)
-        outputs["--plot"] = arguments.plot
-    check_distinct(outputs, measurements)
+    check_distinct(outputs | picture_output(arguments), measurements)
     check_targets(arguments.output, overwrite=arguments.overwrite)
     measured = read(
         arguments.measurements,

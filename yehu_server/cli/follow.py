@@ -15,6 +15,7 @@ from yehu_server.cli.arguments import (
     add_output,
     add_reporting,
     check_output,
+    picture_output,
 )
 from yehu_server.cli.converters import hours, number_within, target
 from yehu_server.cli.playing_options import add_playing
@@ -140,14 +141,9 @@ def _options(arguments: argparse.Namespace) -> Options:
     ending = arguments.output.suffix.lower()
     check_sound(arguments)
     playing = playing_in_room(arguments)
-    outputs = {"-o": arguments.output}
-    if arguments.plot is not None:
-        from yehu_server.lab.plot.png import check_picture
-
-        if ending in (*MIDI, *CAPTURE):
-            raise OutputError("--plot shows what is played: name a sound file with -o")
-        check_picture(arguments.plot, "--plot", overwrite=arguments.overwrite)
-        outputs["--plot"] = arguments.plot
+    if arguments.plot is not None and ending in (*MIDI, *CAPTURE):
+        raise OutputError("--plot shows what is played: name a sound file with -o")
+    outputs = {"-o": arguments.output, **picture_output(arguments)}
     own = [] if arguments.instrument is None else [arguments.instrument]
     check_distinct(outputs, [arguments.recording, *playing.files, *own])
     form = "wav"

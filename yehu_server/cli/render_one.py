@@ -9,7 +9,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import check_output
+from yehu_server.cli.arguments import check_output, picture_output
 from yehu_server.cli.ensemble_parts import Players, players_of
 from yehu_server.cli.render_pipe import is_piped
 from yehu_server.cli.sound_options import (
@@ -60,7 +60,8 @@ def rendered(
     if phrasing is None:
         phrasing = dict(playing.settings).get("/playing/phrasing", PHRASING)
     instrument = [] if arguments.instrument is None else [arguments.instrument]
-    outputs = _outputs(arguments)
+    outputs = {} if is_piped(arguments.output) else {"-o": arguments.output}
+    outputs |= picture_output(arguments)
     check_distinct(outputs, [*arguments.midi, *playing.files, *instrument])
     form = _format(arguments)
     may_replace = anything if is_piped(arguments.output) else check_output(arguments)
@@ -104,17 +105,6 @@ def rendered(
     summary = replace(summary, percussion_notes=summary.percussion_notes + players.percussion_notes)
     fields = {**_fields(summary, playing, stems), "phrasing": phrasing, "calibration": key}
     return Rendered(summary, fields, read)
-
-
-def _outputs(arguments: argparse.Namespace) -> dict[str, Path]:
-    """The files to write, by their options, beside stems."""
-    outputs = {} if is_piped(arguments.output) else {"-o": arguments.output}
-    if arguments.plot is not None:
-        from yehu_server.lab.plot.png import check_picture
-
-        check_picture(arguments.plot, "--plot", overwrite=arguments.overwrite)
-        outputs["--plot"] = arguments.plot
-    return outputs
 
 
 def _format(arguments: argparse.Namespace) -> str:

@@ -8,7 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
+from yehu_server.cli.arguments import (
+    add_action,
+    add_actions,
+    add_command,
+    add_options,
+    picture_output,
+)
 from yehu_server.cli.converters import number_within, positive, target
 from yehu_server.cli.terminal import print_result, warn, warn_of_lost
 from yehu_server.errors import OutputError, ScoreError
@@ -99,19 +105,16 @@ def _show(arguments: argparse.Namespace) -> int:
 
 def _plot(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.lab.plot.bowed_score import write_bowed_score
-    from yehu_server.lab.plot.png import check_picture
     from yehu_server.scores.chosen_parts import numbers_of
     from yehu_server.scores.written.in_range import usual_parts
 
-    output = arguments.plot
-    check_picture(output, "--plot", overwrite=arguments.overwrite)
-    check_distinct({"--plot": output}, [arguments.score])
+    check_distinct(picture_output(arguments), [arguments.score])
     with naming(arguments.score):
         asked = [arguments.part] if arguments.part else []
         numbers = numbers_of(written.names, asked) if asked else usual_parts(written)
         if not numbers or not written.parts[numbers[0]].notes:
             raise ScoreError("has no note to draw")
-    write_bowed_score(written, numbers[0], output, overwrite=arguments.overwrite)
+    write_bowed_score(written, numbers[0], arguments.plot, overwrite=arguments.overwrite)
 
 
 def _write(arguments: argparse.Namespace) -> int:

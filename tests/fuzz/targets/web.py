@@ -13,13 +13,13 @@ from aiohttp import web as aiohttp_web
 from aiohttp.test_utils import make_mocked_request
 from fuzz.target import ROOT, target
 
+from yehu_server.errors import RefusedError
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import PacketError, unpack
 from yehu_server.live.osc.status import STATUS, Kind
 from yehu_server.live.web import web_sockets
 from yehu_server.live.web.query import LISTENABLE, Snapshot
 from yehu_server.live.web.server import Sources, WebOptions, WebServer
-from yehu_server.live.web.web_sockets import CommandError
 from yehu_server.params.table import PREFIX, TABLE
 
 HOST = "127.0.0.1"
@@ -249,7 +249,7 @@ def websocket(data: bytes) -> None:
 
 @target(
     "websocket-command",
-    CommandError,
+    RefusedError,
     words=(
         b'{"COMMAND": ',
         b'"LISTEN"',
@@ -260,7 +260,7 @@ def websocket(data: bytes) -> None:
     ),
 )
 def websocket_command(data: bytes) -> None:
-    """A text frame is a command for an existing address, or a CommandError."""
+    """A text frame is a command for an existing address, or a RefusedError."""
     command, address = web_sockets._read(data.decode(errors="replace"), 1)
     assert command in {"LISTEN", "IGNORE"}
     assert address in LISTENABLE

@@ -23,17 +23,13 @@ _RANGES = re.compile(r"(.)-(.)|(.)", re.DOTALL)
 Piece = Callable[[set[int], str], set[int]]  # the positions after it, from those before it
 
 
-class PatternError(ValueError):
-    """A pattern with an unclosed bracket."""
-
-
 def is_pattern(address: str) -> bool:
     """Whether an address has characters of a pattern."""
     return not SPECIAL.isdisjoint(address)
 
 
 def matches(pattern: str, address: str) -> bool:
-    """Whether a pattern matches a whole address; raises PatternError for an unclosed bracket."""
+    """Whether a pattern matches a whole address; raises RefusedError for an unclosed bracket."""
     places = {0}
     for piece in _pieces(pattern):
         places = piece(places, address)
@@ -44,14 +40,14 @@ def matches(pattern: str, address: str) -> bool:
 
 @lru_cache(maxsize=256)
 def _pieces(pattern: str) -> tuple[Piece, ...]:
-    """The pieces of a pattern; raises PatternError."""
+    """The pieces of a pattern; raises RefusedError for an unclosed bracket."""
     return tuple(map(_piece, _PIECES.finditer(pattern)))
 
 
 def _piece(found: re.Match[str]) -> Piece:
     stars, question, negated, members, words, plain, unclosed = found.groups()
     if unclosed:
-        raise PatternError(f"{unclosed} is never closed")
+        raise RefusedError(f"{unclosed} is never closed")
     if stars:
         return _any_number
     if question:
@@ -133,15 +129,12 @@ def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[st
     if len(pattern) > LONGEST_PATTERN:
         raise RefusedError("the pattern is too long")
     literal = re.split(r"[*?\[{]", pattern, maxsplit=1)[0]  # by which most are told apart
-    try:
-        matches(pattern, "")  # raises where it is wrong, whatever there is
-        found = [
-            address
-            for address in addresses
-            if (prefix + address).startswith(literal) and matches(pattern, prefix + address)
-        ]
-    except PatternError as error:
-        raise RefusedError(str(error)) from error
+    matches(pattern, "")  # raises where it is wrong, whatever there is
+    found = [
+        address
+        for address in addresses
+        if (prefix + address).startswith(literal) and matches(pattern, prefix + address)
+    ]
     if not found:
         raise RefusedError("the pattern matches no address")
     return found

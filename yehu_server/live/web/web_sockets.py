@@ -11,7 +11,7 @@ from typing import Any
 
 from aiohttp import WSMsgType, web
 
-from yehu_server.errors import shortened
+from yehu_server.errors import RefusedError, shortened
 from yehu_server.live.osc.answering import MOST_UNSENT_BYTES, WebTraffic
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.receiving import OscPorts
@@ -22,10 +22,6 @@ FRAME_BYTES = 1 << 16  # longest frame that is read
 HEARTBEAT_S = 20.0  # a socket that does not answer within half of this is closed
 CLOSING_S = 0.3
 BEHIND_S = 0.005
-
-
-class CommandError(ValueError):
-    """A text frame that is not a command."""
 
 
 class WebPeer:
@@ -142,7 +138,7 @@ class WebSockets:
     def _obey(self, text: str, peer: WebPeer) -> None:
         try:
             command, address = _read(text, self._parts)
-        except CommandError as error:
+        except RefusedError as error:
             peer.send(_command("ERROR", str(error)))
             return
         act = self._clients.listen if command == "LISTEN" else self._clients.ignore
@@ -154,17 +150,17 @@ def _command(command: str, data: Any) -> str:
 
 
 def _read(text: str, parts: int) -> tuple[str, str]:
-    """Read a command and its address (without the prefix); raises CommandError."""
+    """Read a command and its address (without the prefix); raises RefusedError."""
     try:
         message = json.loads(text)
     except (ValueError, RecursionError):
-        raise CommandError("not JSON") from None
+        raise RefusedError("not JSON") from None
     if not isinstance(message, dict):
-        raise CommandError("expected an object with COMMAND and DATA")
+        raise RefusedError("expected an object with COMMAND and DATA")
     command, path = message.get("COMMAND"), message.get("DATA")
     if command not in ("LISTEN", "IGNORE"):
-        raise CommandError(f"unknown command {shortened(repr(command))}; there are LISTEN, IGNORE")
+        raise RefusedError(f"unknown command {shortened(repr(command))}; there are LISTEN, IGNORE")
     address = path.removeprefix(PREFIX) if isinstance(path, str) else ""
     if not is_listenable(address, parts) or address == path:
-        raise CommandError(f"{command}: nothing to listen to at {shortened(repr(path))}")
+        raise RefusedError(f"{command}: nothing to listen to at {shortened(repr(path))}")
     return command, address

@@ -54,6 +54,7 @@ class RefString:
     L: float  # m
     N: int
     EA: float = 0.0  # N; stiffness against stretching, 0 for constant tension
+    felt: Array  # (N-1,), 1/s; what felt adds to sigma_0 at each inner node
 
     @property
     def h(self) -> float:
@@ -428,15 +429,14 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
     for i, string in enumerate(strings):  # (32)
         rho_A, one = string.rho * string.A, np.eye(string.N - 1)
         D2, D4 = D_2(string), D_4(string)
-        A_s = rho_A / k**2 + rho_A * string.sigma_0 / k
+        local = string.sigma_0 + string.felt
+        A_s = rho_A / k**2 + rho_A * local / k
         B_s = (
             2.0 * rho_A / k**2 * one
             + (string.T + 2.0 * rho_A * string.sigma_1 / k) * D2
             - string.EI * D4
         )
-        C_s = (-rho_A / k**2 + rho_A * string.sigma_0 / k) * one - (
-            2.0 * rho_A * string.sigma_1 / k
-        ) * D2
+        C_s = np.diag(-rho_A / k**2 + rho_A * local / k) - (2.0 * rho_A * string.sigma_1 / k) * D2
         a[in_u[i]] = A_s
         b[in_u[i]] = B_s @ state.u[i][1:-1] + C_s @ state.u_prev[i][1:-1]
         # + J_pluck |f_pluck|, (30)
@@ -701,7 +701,7 @@ def losses(
     for i, string in enumerate(params.strings):  # (56b)
         v = (after.u[i] - before.u_prev[i])[1:-1] / (2.0 * k)
         slope = D_minus(string) @ v
-        loss = string.sigma_0 * float(v @ v) + string.sigma_1 * float(slope @ slope)
+        loss = float((string.sigma_0 + string.felt) * v @ v) + string.sigma_1 * float(slope @ slope)
         q_s += 2.0 * string.rho * string.A * string.h * loss
     v_q = (after.q - before.q_prev) / (2.0 * k)
     v_zeta = (after.zeta - before.zeta_prev) / (2.0 * k)

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from measures.heard import Figures, figures, heard
-from measures.shuffled import STIFFER, ringing_hz
 from measures.take import Setup, Take, in_parallel
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
@@ -141,20 +140,11 @@ def play(
 def heard_figures(setup: Setup, way: Way, notes: tuple[int, ...]) -> list[Figures]:
     """Play notes and return what is heard of each."""
     sound, begins = play(setup, way, notes)
-    track = heard(sound, setup.rate, string_ends(setup))
+    track = heard(sound, setup.rate)
     may = STATED[way.name].may
     return [
         figures(track, begin, way.length_s, note, may)
         for begin, note in zip(begins, notes, strict=True)
-    ]
-
-
-def string_ends(setup: Setup) -> list[tuple[float, float]]:
-    """The bands (Hz) in which the strings' ends behind the bridge ring on."""
-    return [
-        (0.99 * order * hz, (1.0 + STIFFER) * order * hz)
-        for hz in ringing_hz(setup.rate, setup.own)
-        for order in (1, 2)
     ]
 
 

@@ -9,7 +9,6 @@ an octave or a twelfth higher, since a string that rings a fifth above makes bot
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,29 +33,19 @@ ENDS_S, LATEST_S, AFTER_S, LASTING_S = 0.03, 0.06, 0.03, 0.04
 
 @dataclass(frozen=True)
 class Track:
-    """Of each 5 ms: level (dB, A-weighted), pitch (MIDI note; NaN for none). Shapes (frames,).
-
-    `plain` is the pitch with what was left out of the sound for `pitch`.
-    """
+    """Of each 5 ms: level (dB, A-weighted), pitch (MIDI note; NaN for none). Shapes (frames,)."""
 
     level_db: Array
     pitch: Array
-    plain: Array
 
     def part(self, begin_s: float, end_s: float) -> Track:
         """What lies between two times."""
         here = slice(round(begin_s / HOP_S), round(end_s / HOP_S))
-        return Track(self.level_db[here], self.pitch[here], self.plain[here])
+        return Track(self.level_db[here], self.pitch[here])
 
 
-def heard(sound: Array, rate: float, without_hz: Sequence[tuple[float, float]] = ()) -> Track:
-    """Listen to a sound of one voice, ndarray [shape=(samples,)] at a rate (Hz).
-
-    Parameters
-    ----------
-    without_hz : sequence of (float, float)
-        Bands that are left out as the pitch is found, such as those of string ends that ring on.
-    """
+def heard(sound: Array, rate: float) -> Track:
+    """Listen to a sound of one voice, ndarray [shape=(samples,)] at a rate (Hz)."""
     common = math.gcd(round(rate), RATE)
     low = resample_poly(np.asarray(sound, np.float64), RATE // common, round(rate) // common)
     frames = _frames(low)
@@ -65,13 +54,7 @@ def heard(sound: Array, rate: float, without_hz: Sequence[tuple[float, float]] =
     power = np.abs(np.fft.rfft(middle * window, axis=1)) ** 2
     weights = a_weighting(np.fft.rfftfreq(LEVEL_SIZE, 1.0 / RATE)) ** 2
     level = 10.0 * np.log10(power @ weights / np.square(window).sum() / LEVEL_SIZE * 2.0 + 1e-14)
-    plain = _pitches(frames)
-    if not without_hz:
-        return Track(level, plain, plain)
-    spectrum, hz = np.fft.rfft(low), np.fft.rfftfreq(len(low), 1.0 / RATE)
-    for lowest, highest in without_hz:
-        spectrum[(hz > lowest) & (hz < highest)] = 0.0
-    return Track(level, _pitches(_frames(np.fft.irfft(spectrum, len(low)))), plain)
+    return Track(level, _pitches(frames))
 
 
 def _frames(sound: Array) -> Array:
@@ -184,9 +167,7 @@ def figures(track: Track, begin_s: float, length_s: float, pitch: float, may: Ar
     half = np.abs(tone[: len(tone) // 2 + late]) < ON_PITCH
     after = slice(round(AFTER_S / HOP_S), None)
     counted = level[after] > loudest - LOUD_DB
-    right = np.zeros(len(counted), bool)
-    for each in (tone, note.plain - pitch):
-        right |= (each[after] > may[0] - ON_PITCH) & (each[after] < may[1] + ON_PITCH)
+    right = (tone[after] > may[0] - ON_PITCH) & (tone[after] < may[1] + ON_PITCH)
     smooth = _smooth(level)
     at = int(np.argmax(smooth))
     return Figures(

@@ -3,15 +3,11 @@
 A note speaks if its level is within 4 dB of the pitch's median, its pitch within 15 cents in the
 second half, and its harmonics over all else within 15 dB of the pitch's median. Three counts
 follow each note that does not always speak: too loud or soft, out of tune, rough.
-
-What rings on in the strings' ends behind the bridge, after notes whose harmonics they share (A4, E5
-and B5), is no roughness, and is left out.
 """
 
 from __future__ import annotations
 
 import math
-from functools import cache
 from itertools import chain
 from typing import Any
 
@@ -19,16 +15,13 @@ import numpy as np
 
 from measures.intonation import overtones_off_by
 from measures.shares import Share, share_line
-from measures.take import NOTES, Setup, Sound, Take, calibrated, in_parallel
-from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import frequency_hz, wave_speed
+from measures.take import NOTES, Setup, Sound, Take, in_parallel
+from yehu_server.core.player.calibration import frequency_hz
 from yehu_server.playing.pitch_and_level import a_weighted_db
 
 EACH_S, REST_S = 0.4, 0.02
 SHUFFLED, ORDERS = 300, 3
 LEVEL_DB, ROUGH_DB, ERROR_CENTS = 4.0, 15.0, 15.0
-# A stiff, short end of a string rings somewhat higher, by up to this part, in so many modes.
-STIFFER, LAST_RINGING = 0.06, 2
 WAYS: dict[str, dict[str, Any]] = {
     "default": {},
     "bow at 0.08": {"settings": {"/playing/bow_position": 0.08}},
@@ -41,28 +34,14 @@ WAYS: dict[str, dict[str, Any]] = {
 }
 
 
-@cache
-def ringing_hz(rate: float, own: Quantities) -> tuple[float, ...]:
-    """Return the frequencies (Hz) of the strings' ends behind the bridge, without stiffness."""
-    tuned = calibrated(rate, own).tuned(own)
-    return tuple(
-        wave_speed(tuned, i) / (2.0 * (silk.L - tuned.bridge_x))
-        for i, silk in enumerate(tuned.strings)
-    )
-
-
-def _harmonics_db(sound: Sound, setup: Setup, pitch: float) -> float:
+def _harmonics_db(sound: Sound, rate: float, pitch: float) -> float:
     """Return the power of the harmonics (dB) relative to all between them."""
-    size, rate = 4 * len(sound), setup.rate
+    size = 4 * len(sound)
     power = np.abs(np.fft.rfft(sound * np.hanning(len(sound)), size)) ** 2
     frequency = frequency_hz(pitch, 440.0)
     multiples = np.arange(len(power)) * rate / size / frequency
     near = np.abs(multiples - np.rint(multiples)) * frequency < 4.0 * rate / len(sound)
     heard = (multiples > 0.5) & (multiples * frequency < 10000.0)
-    for ringing in ringing_hz(rate, setup.own):
-        part = multiples * frequency / ringing
-        order = np.floor(part)
-        heard &= (part > (1.0 + STIFFER) * order) | (order > LAST_RINGING)
     return 10.0 * math.log10(power[heard & near].sum() / (power[heard & ~near].sum() + 1e-30))
 
 
@@ -81,7 +60,7 @@ def _in_order(
         end = round(((i + 1) * EACH_S - REST_S) * rate)
         half = sound[end - round(0.5 * EACH_S * rate) : end]
         error = overtones_off_by(half, rate, 0.0, 0.5 * EACH_S, note)
-        found.append((note, a_weighted_db(half, rate), error, _harmonics_db(half, setup, note)))
+        found.append((note, a_weighted_db(half, rate), error, _harmonics_db(half, rate, note)))
     return found
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from measures.articulated import Way, play, string_ends
+from measures.articulated import Way, play
 from measures.heard import HOP_S, heard
 from measures.take import Setup
 from scipy.signal import resample_poly
@@ -56,7 +56,7 @@ def draw_all(figures: Path, sounds: Path) -> None:
     )
     for number, (kind, names) in enumerate(kinds().items()):
         sound, begins = sound_of(names, setup)
-        track = heard(sound, RATE, string_ends(setup))
+        track = heard(sound, RATE)
         at = np.arange(len(track.pitch)) * HOP_S
         level, pitch, space = rows[3 * number : 3 * number + 3]
         top = track.level_db.max()

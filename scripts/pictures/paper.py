@@ -21,6 +21,7 @@ from yehu_server.core.physics.quantities import Quantities
 
 NOTEBOOK = ROOT / "examples" / "notebooks" / "2_figures_of_the_paper.ipynb"
 DRAWN = ("2_admittance", "3_bowed", "4_strings", "5_gestures", "6_energy")  # in its order
+PAPERS = {"tension_modulation": 0.0, "felt_loss": 0.0}  # its instrument
 BLUE, RED = "#1f5fa8", "#c03a2b"
 
 
@@ -42,7 +43,7 @@ def from_notebook(folder: Path) -> None:
 def admittance(folder: Path) -> None:
     """Draw figure 2: the admittance of the bridge alone, and how it and a strung one are struck."""
     rate, frames = 44100.0, 1 << 15
-    quantities = Quantities(tension_modulation=0.0)
+    quantities = Quantities(tension_modulation=0.0, felt_loss=0.0)
     model = kernel.prepare(quantities, rate)
     force = np.zeros(frames)
     pulse = int(0.0012 * rate)
@@ -60,8 +61,7 @@ def admittance(folder: Path) -> None:
     theory = sum(omega / (mass * (w**2 + omega**2) + omega * damping) for mass, damping, w in modes)
     simulated = np.fft.rfft(velocity)[band] / np.fft.rfft(force)[band]
     hammer = np.stack([np.arange(pulse + 2) / rate, force[: pulse + 2]], axis=1)
-    instrument = {"tension_modulation": 0.0}
-    strung = yehu.simulate({"duration": 0.05, "instrument": instrument, "hammer": hammer})
+    strung = yehu.simulate({"duration": 0.05, "instrument": PAPERS, "hammer": hammer})
 
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(8, 6.5))
     top.plot(f[band], 20 * np.log10(np.abs(theory)), BLUE, label="11 measured modes")
@@ -83,7 +83,7 @@ def picture(folder: Path) -> None:
         "bow_velocity": [[0, 0], [0.03, 0.3]],
         "press_force": [[0, 0], [0.2, 0], [0.21, 1.0]],
     }
-    gesture = {"duration": 0.5, "instrument": {"tension_modulation": 0.0}, "controls": controls}
+    gesture = {"duration": 0.5, "instrument": PAPERS, "controls": controls}
     arrays = yehu.simulate(gesture, strings_every=6).arrays
     figure, panels = plt.subplots(2, 1, figsize=(9, 5), height_ratios=(1, 2), layout="constrained")
     top: Any = panels[0]

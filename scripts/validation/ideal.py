@@ -52,6 +52,7 @@ def instrument(bridge: str = "rigid", **bow: Any) -> Quantities:
         bow=BowQuantities(**hair),
         bridge_x=BRIDGE,
         tension_modulation=0.0,
+        felt_loss=0.0,
         body=body,
     )
 

@@ -7,7 +7,9 @@ from yehu_server.params.table import find
 from yehu_server.playing.preset_folders import MOST_TOGETHER, Presets, is_name
 
 ROOMS = ("dry", "study", "courtyard", "hall")
-OF_A_ROOM = {"/room/size", "/room/decay", "/room/damping", "/room/level", "/body/width"}
+OF_A_ROOM = {
+    *("/room/size", "/room/decay", "/room/damping", "/room/level", "/room/distance", "/body/width")
+}
 
 
 @pytest.fixture

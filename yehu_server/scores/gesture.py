@@ -131,10 +131,10 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
     }
     controls.only(*CONTROLS)
     shortest = min(string.L for string in quantities.strings)
-    ends = (("bow_position", quantities.bridge_x, "bridge"), ("finger_position", shortest, "stub"))
-    for name, end, what in ends:
+    for name in ("bow_position", "finger_position"):
         with controls.at(name):
-            _stays_within(curves.get(name, ((0.0, CONTROLS[name].default),)), end, what)
+            curve = curves.get(name, ((0.0, CONTROLS[name].default),))
+            _stays_within(curve, quantities.bridge_x)
     has_pluck, has_hammer = (table.data.get(name) is not None for name in ("pluck", "hammer"))
     pluck = _pluck(table.table("pluck"), quantities.bridge_x, shortest) if has_pluck else None
     hammer: Curve = ()
@@ -188,9 +188,9 @@ def _curve(value: Any, lo: float, hi: float, unit: str) -> Curve:
     return tuple(points)
 
 
-def _stays_within(curve: Curve, end: float, what: str) -> None:
+def _stays_within(curve: Curve, bridge: float) -> None:
     for _, position in curve:
-        if not 0.0 < position < end:
+        if not 0.0 < position < bridge:
             raise ParameterError(
-                f"{position} m is not between the loop (0) and the {what} ({end} m)"
+                f"{position} m is not between the loop (0) and the bridge ({bridge} m)"
             )

@@ -11,6 +11,17 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.string import set_Delta_u
 
 
+def felt(quantities: Quantities, L: float, N: int) -> ref.Array:
+    """1/s at the inner nodes: most halfway from bridge to end, none at both nor where either acts.
+
+    The bridge acts on four nodes, two of them beyond it.
+    """
+    x, x_c = L / N * np.arange(1, N), quantities.bridge_x
+    hump = 0.5 - 0.5 * np.cos(2.0 * np.pi * (x - x_c) / (L - x_c))
+    felt: ref.Array = quantities.felt_loss * np.where(x - x_c > 2.0 * L / N, hump, 0.0)
+    return felt
+
+
 def reference_params(quantities: Quantities, rate: float) -> ref.RefParams:
     """The instrument as the reference's parameters; the reference chooses the grids."""
     strings = []
@@ -31,6 +42,7 @@ def reference_params(quantities: Quantities, rate: float) -> ref.RefParams:
                 L=string.L,
                 N=N,
                 EA=quantities.tension_modulation * string.E * A,
+                felt=felt(quantities, string.L, N),
             )
         )
     bow, finger, body = quantities.bow, quantities.finger, quantities.body

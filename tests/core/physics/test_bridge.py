@@ -151,3 +151,23 @@ def test_what_pulls_the_strings_pushes_the_modes():
         q_prev, q = q, q_next
     error = np.abs(run["bridge_velocity"] - expected).max()
     assert error < 1e-9 * np.abs(expected).max()
+
+
+def test_felt_quiets_the_strings_behind_the_bridge():
+    """There each is a string of its own; how long it rings, and what is left with felt."""
+    levels = {}
+    for felt in (0.0, YEHU.felt_loss):
+        run = play(
+            lambda t: {"hammer": hammer(t)},
+            0.3,
+            quantities=replace(YEHU, felt_loss=felt),
+            ledger=False,
+        )
+        late = run["bridge_force"][-4410:] * np.hanning(4410)
+        spectrum = np.abs(np.fft.rfft(late, 1 << 16))
+        for i, string in enumerate(YEHU.strings):
+            hz = math.sqrt(string.T / string.rho_A) / (2.0 * (string.L - YEHU.bridge_x))
+            near = slice(*(round(hz * part * (1 << 16) / 44100.0) for part in (0.98, 1.05)))
+            levels[felt, i] = 20.0 * math.log10(spectrum[near].max())
+    for i in range(layout.STRINGS):
+        assert levels[0.0, i] - levels[YEHU.felt_loss, i] > 40.0

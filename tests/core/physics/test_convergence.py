@@ -22,6 +22,7 @@ YEHU = replace(
     Quantities(),
     finger=replace(Quantities().finger, rest_height=0.05),
     tension_modulation=0.0,
+    felt_loss=0.0,
 )
 L = YEHU.string_1.L
 PLUCK = bump(0.02, 0.26, 1e-3)

@@ -51,14 +51,14 @@ def contact_places(params, rng, bowed, fingers):
     nearest = x_c - 1.0000001 * h  # the bow keeps one node from the bridge
     near_bridge = x_c - rng.uniform(1.0, 2.0) * h
     x_b = min(rng.choice([rng.uniform(0.04, 0.29), near_bridge]), nearest)
-    x_f = rng.uniform(0.04, 0.33, fingers)
+    x_f = rng.uniform(0.04, x_c, fingers)
     for j in range(fingers):
         kind = rng.random()
         if kind < 0.3:
             x_f[j] = x_b + rng.uniform(-2.0, 2.0) * h
         elif kind < 0.5:
             x_f[j] = x_f[0] + rng.uniform(-2.0, 2.0) * h
-    return float(x_b), np.clip(x_f, 0.04, 0.34)
+    return float(x_b), np.clip(x_f, 0.04, x_c)
 
 
 def random_problem(params, rng):

@@ -121,12 +121,12 @@ def test_the_bow_keeps_one_node_from_the_bridge_and_from_the_loop(x_b, F_N):
 
 @settings(max_examples=30)
 @given(st.floats(0.0, 0.38))
-def test_a_finger_keeps_one_node_from_the_ends(x_f):
-    """Seen by what it reads of a curve: next to an end the fixed node has no weight."""
+def test_a_finger_keeps_one_node_from_the_loop_and_stays_before_the_bridge(x_f):
+    """Seen by what it reads of a curve: next to the loop the fixed node has no weight."""
     run = play({"x_f": [x_f]}, 2.0 / 44100.0, ledger=False)
     for i in range(layout.STRINGS):
         h, N = float(run.model["h"][0, i]), int(run.model["N"][0, i])
-        expected = min(max(x_f / h, 1.0), N - 1.0)
+        expected = max(min(x_f, YEHU.bridge_x) / h, 1.0)
         nodes = np.arange(N + 1.0)
         curve = on_grid(nodes * (N - nodes) * (nodes + 3.0))
         c = run.state["contacts"]

@@ -17,7 +17,7 @@ from yehu_server.core.physics.string import advance_nodes, prepare_strings, supp
 
 PARTIALS = 10
 RATES = (44100.0, 48000.0, 96000.0)
-YEHU = Quantities()
+YEHU = Quantities(felt_loss=0.0)
 
 both_strings = pytest.mark.parametrize("i", [0, 1], ids=["F4", "C5"])
 three_rates = pytest.mark.parametrize("rate", RATES)
@@ -48,7 +48,7 @@ def advanced(model, shape, steps):
     for n in range(steps):
         now, following, before = n % 3, (n + 1) % 3, (n + 2) % 3
         kept[n] = u[now, 0, layout.GHOST + 1 : layout.GHOST + N]
-        rows = u[following], u[now], u[before], bend, model["inside"]
+        rows = u[following], u[now], u[before], bend, model["inside"], model["held"]
         advance_nodes(*rows, N, model["B"], model["C"])
         for row in u[following]:
             support(row, N)

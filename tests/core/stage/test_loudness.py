@@ -49,9 +49,12 @@ def test_a_tune_in_the_middle_is_as_loud_to_both_sides(air):
     assert left == pytest.approx(right, abs=1.5)
 
 
-@pytest.mark.parametrize(("distance", "clarity"), [(2.0, 11.6), (12.0, -0.8)])
-def test_the_hall_is_clear_near_the_player_and_a_hall_in_its_middle(distance, clarity):
+@pytest.mark.parametrize(
+    ("moved", "least", "most"), [({}, 1.0, 3.0), ({"distance": 2.0}, 10.0, 13.0)]
+)
+def test_the_hall_is_as_clear_as_halls_are_and_clearer_near_the_player(moved, least, most):
+    """Concert halls have a C80 of -2 to 4 dB at most seats."""
     values = Presets().load("hall").values
     asked = {address.rpartition("/")[2]: value for address, value in values.items()}
-    direct, room = response(48000.0, 2.3, **asked, distance=distance)
-    assert clarity_db(direct + room, 48000.0) == pytest.approx(clarity, abs=0.3)
+    direct, room = response(48000.0, 2.3, **asked | moved)
+    assert least < clarity_db(direct + room, 48000.0) < most

@@ -36,8 +36,9 @@ Response = tuple[float, float, float, float]
 def place_contacts(model: Model, c: Contacts, control: Array, bowed_string: int) -> bool:
     """Move bow and fingers to the places in a row of controls.
 
-    The bow keeps one node away from the bridge and from the loop, a finger one node
-    away from the ends. Only what moved is worked out anew.
+    The bow keeps one node away from the bridge and from the loop, a finger one
+    node away from the loop, and it goes no farther than to the bridge. Only what moved is worked
+    out anew.
     Real time: safe.
 
     Returns whether contacts may share other nodes now: a finger moved, or the bow touches others.
@@ -60,7 +61,7 @@ def place_contacts(model: Model, c: Contacts, control: Array, bowed_string: int)
             for i in range(STRINGS):
                 p = STRINGS * j + i
                 c.x[p], c.string[p] = x_f, i
-                position = max(1.0, min(x_f / model.h[i], model.N[i] - 1.0))
+                position = max(1.0, min(x_f, model.bridge_x) / model.h[i])
                 c.first[p] = place_cubic(position, model.N[i], c.weights[p])
                 set_compliances(model, c, p)
     if fingers_moved:

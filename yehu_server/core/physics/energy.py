@@ -51,17 +51,25 @@ def string_energy(model: Model, i: int, u_next: Array, u: Array) -> float:
 
 @compiled
 def string_loss(model: Model, i: int, u_next: Array, u_prev: Array) -> float:
-    """q_s of eq. (56b) for string `i` (W)."""
+    """q_s of eq. (56b) for string `i` (W), with what felt takes."""
     h, N = model.h[i], model.N[i]
-    straight, sloped = 0.0, 0.0
+    straight, sloped, felt = 0.0, 0.0, 0.0
     for l in range(1, N + 1):
         at = GHOST + l
         v = (u_next[at] - u_prev[at]) / (2.0 * model.k)
         v_left = (u_next[at - 1] - u_prev[at - 1]) / (2.0 * model.k)
         straight += v * v
+        if l < N:
+            felt += v * v * model.held[i, at] / model.inside[i, at]
         sloped += (v - v_left) ** 2
     return float(
-        2.0 * model.rho_A[i] * (model.sigma_0[i] * h * straight + model.sigma_1[i] * sloped / h)
+        2.0
+        * model.rho_A[i]
+        * (
+            model.sigma_0[i] * h * straight
+            + (model.rate + model.sigma_0[i]) * h * felt
+            + model.sigma_1[i] * sloped / h
+        )
     )
 
 

@@ -83,6 +83,7 @@ MODEL = lined_up(
         ("C", np.float64, (STRINGS, 2)),
         ("spread", np.float64, STRINGS),
         ("inside", np.float64, (STRINGS, POINTS)),
+        ("held", np.float64, (STRINGS, POINTS)),
         ("rho_A", np.float64, STRINGS),
         ("T", np.float64, STRINGS),
         ("EI", np.float64, STRINGS),

@@ -23,7 +23,7 @@ def pluck(model: Model, s: Motion, c: Contacts, w: Work, control: Array, u_next:
     x = control[X_PLUCK]
     if x != c.x_pluck or i != c.pluck_string:
         c.x_pluck, c.pluck_string = x, i
-        position = max(1.0, min(x / model.h[i], model.N[i] - 1.0))
+        position = max(1.0, min(x, model.bridge_x) / model.h[i])
         c.pluck_first = place_cubic(position, model.N[i], c.pluck_weights)
     moved = model.spread[i] * abs(force)
     spread(u_next[i], c.pluck_first, c.pluck_weights, moved)

@@ -209,6 +209,9 @@ class Quantities:
     tension_modulation: float = quantity(
         1.0, "1", 0.0, 1.0, "chosen: share of EA that tightens a stretched string; [Yehu]: 0"
     )
+    felt_loss: float = quantity(
+        300.0, "1/s", 0.0, 1e4, "chosen: felt under the strings behind the bridge; [Yehu]: 0"
+    )
     body: Body = field(default_factory=measured_body)
 
     def __post_init__(self) -> None:

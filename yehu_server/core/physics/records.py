@@ -36,6 +36,7 @@ class Model(Protocol):
     C: Array
     spread: Array
     inside: Array
+    held: Array
     rho_A: Array
     T: Array
     EI: Array

@@ -8,7 +8,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.grid import intervals
-from yehu_server.core.physics.layout import GHOST, LEVELS, whole_vectors
+from yehu_server.core.physics.layout import GHOST, LEVELS, STENCIL, whole_vectors
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Model, Motion, Work
 
@@ -18,10 +18,24 @@ def prepare_strings(model: Any, quantities: Quantities) -> None:
     for i, string in enumerate(quantities.strings):
         N = intervals(string, model["k"], quantities.tension_headroom)
         model["N"][i], model["h"][i] = N, string.L / N
-        model["inside"][i, GHOST + 1 : GHOST + N] = 1.0
+        felt = felt_at_nodes(string.L, N, quantities)
+        held = felt / (1.0 / model["k"] + string.sigma_0 + felt)
+        model["held"][i, GHOST + 1 : GHOST + N] = held
+        model["inside"][i, GHOST + 1 : GHOST + N] = 1.0 - held
         model["rho_A"][i], model["EI"][i] = string.rho_A, string.EI
         model["T"][i], model["sigma_0"][i] = string.T, string.sigma_0
         model["sigma_1"][i] = string.sigma_1
+
+
+def felt_at_nodes(L: float, N: int, quantities: Quantities) -> np.ndarray:
+    """Return what felt behind the bridge adds to sigma_0 at the inner nodes of a string (1/s).
+
+    It fills the space between bridge and stub, and presses most in the middle. It leaves out the
+    nodes that the bridge touches, as would be a contact's: they move by their mass alone.
+    """
+    nodes, bridge = np.arange(1, N), quantities.bridge_x * N / L
+    behind = np.where(nodes > int(bridge) + STENCIL // 2, (nodes - bridge) / (N - bridge), 0.0)
+    return np.asarray(quantities.felt_loss * np.sin(np.pi * behind) ** 2)
 
 
 @compiled
@@ -63,6 +77,7 @@ def advance_node(
     u_prev: Array,
     Delta_u: Array,
     inside: Array,
+    held: Array,
     at: int,
     B: Array,
     C: Array,
@@ -71,9 +86,10 @@ def advance_node(
     beside = u[at - 1] + u[at + 1]
     star = B[0] * u[at] + B[1] * beside + B[2] * (u[at - 2] + u[at + 2])
     star += (C[0] + 2.0 * C[1]) * u_prev[at] + C[1] * Delta_u[at]
-    delta = (beside - 2.0 * u[at]) * inside[at]
-    u_next[at], Delta_u[at] = star * inside[at], delta
-    return delta * delta, delta * (star + u_prev[at])
+    delta = (beside - 2.0 * u[at]) * (inside[at] + held[at])
+    star = star * inside[at] + u_prev[at] * held[at]
+    u_next[at], Delta_u[at] = star, delta
+    return delta * delta * inside[at], delta * (star + u_prev[at])
 
 
 @compiled
@@ -83,6 +99,7 @@ def advance_nodes(
     u_prev: Array,
     Delta_u: Array,
     inside: Array,
+    held: Array,
     N: int,
     B: Array,
     C: Array,
@@ -98,8 +115,10 @@ def advance_nodes(
         each end, and zeros beyond.
     Delta_u : ndarray [shape=(STRINGS, POINTS), m]
         The second difference of u_prev; written: that of u.
-    inside : ndarray [shape=(STRINGS, POINTS)]
-        One between the ends of a string, zero there and beyond.
+    inside, held : ndarray [shape=(STRINGS, POINTS)]
+        How much of its free motion a node makes, and how much of u_prev it keeps: one and none
+        between the ends of a string, less and the rest where felt damps it; at the ends and
+        beyond none of both.
     N : int
         The grid intervals of the longer string.
     B : ndarray [shape=(STRINGS, 3)]
@@ -110,7 +129,7 @@ def advance_nodes(
     Returns
     -------
     squared_1, travel_1, squared_2, travel_2 : float, m^2
-        <Delta u, Delta u> and <Delta u, u* + u_prev> over the nodes, for tension.py.
+        <Delta u, inside Delta u> and <Delta u, u* + u_prev> over the nodes, for tension.py.
 
     Real time: safe; no allocation, linear in N.
     Source: [Yehu] eq. (32) with simple supports, eq. (3).
@@ -119,12 +138,12 @@ def advance_nodes(
     for l in range(whole_vectors(N - 1)):
         at = GHOST + 1 + l
         squared, travel = advance_node(
-            u_next[0], u[0], u_prev[0], Delta_u[0], inside[0], at, B[0], C[0]
+            u_next[0], u[0], u_prev[0], Delta_u[0], inside[0], held[0], at, B[0], C[0]
         )
         squared_1 += squared
         travel_1 += travel
         squared, travel = advance_node(
-            u_next[1], u[1], u_prev[1], Delta_u[1], inside[1], at, B[1], C[1]
+            u_next[1], u[1], u_prev[1], Delta_u[1], inside[1], held[1], at, B[1], C[1]
         )
         squared_2 += squared
         travel_2 += travel
@@ -135,7 +154,7 @@ def set_Delta_u(model: np.void, s: np.void) -> None:
     """Write Delta u^{n-1} into a motion whose displacements were set from outside."""
     u_prev = s["u"][(int(s["level"]) + 2) % LEVELS]
     delta = u_prev[:, :-2] - 2.0 * u_prev[:, 1:-1] + u_prev[:, 2:]
-    s["Delta_u"][:, 1:-1] = delta * model["inside"][:, 1:-1]
+    s["Delta_u"][:, 1:-1] = delta * (model["inside"] + model["held"])[:, 1:-1]
 
 
 @compiled
@@ -153,5 +172,5 @@ def advance_strings(
     N = max(model.N[0], model.N[1])
     squared, travel = w.Delta_u_squared, w.Delta_u_travel
     squared[0], travel[0], squared[1], travel[1] = advance_nodes(
-        u_next, u, u_prev, s.Delta_u, model.inside, N, model.B, model.C
+        u_next, u, u_prev, s.Delta_u, model.inside, model.held, N, model.B, model.C
     )

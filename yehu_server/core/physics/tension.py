@@ -64,5 +64,5 @@ def move_by_tension(model: Model, s: Motion, w: Work, u_next: Array) -> None:
         return
     for l in range(whole_vectors(max(model.N[0], model.N[1]) - 1)):
         at = GHOST + 1 + l
-        u_next[0, at] += tau_1 * s.Delta_u[0, at]
-        u_next[1, at] += tau_2 * s.Delta_u[1, at]
+        u_next[0, at] += tau_1 * s.Delta_u[0, at] * model.inside[0, at]
+        u_next[1, at] += tau_2 * s.Delta_u[1, at] * model.inside[1, at]

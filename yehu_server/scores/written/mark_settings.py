@@ -107,7 +107,7 @@ class Active:
         elif name in PLACES:
             self.place = name
         elif name == "ordinary":
-            self.place, self.tremolo, self.articulation = "", False, 0.0
+            self.place, self.tremolo, self.short, self.articulation = "", False, False, 0.0
         elif name == "articulation":
             self.articulation = sign.value or 0.0
         elif name == "gesture":

@@ -101,7 +101,7 @@ SIGNS: Mapping[str, str] = {
     "sul-ponticello": "near the bridge",
     "sul-tasto": "far from the bridge",
     "flautando": "a light, quick bow",
-    "ordinary": "takes back place, lightness and tremolo of the bow",
+    "ordinary": "takes back place, lightness, tremolo and shortness of the bow's strokes",
     "legato": "all notes slurred until `non-legato`",
     "non-legato": "takes `legato` back",
     "staccato": "all notes short until `non-staccato`",

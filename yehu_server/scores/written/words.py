@@ -30,7 +30,7 @@ SIGNS: tuple[tuple[str, tuple[str, float | None]], ...] = (
 # Names of articulations, English and Chinese, where no word above is meant: those of the fingers
 # are for one note, others hold.
 ARTICULATED: Mapping[str, tuple[str, float]] = {
-    name: ("gesture" if row.fingers else "articulation", float(number))
+    name: ("gesture" if row.fingers or row.vibrato else "articulation", float(number))
     for number, row in enumerate(ARTICULATIONS)
     for name in (row.name, row.name.replace("-", " "), row.chinese)
 }

@@ -2,6 +2,9 @@
 
 import { onLanguage, translate } from "./i18n.js";
 
+/** Whether a server of the instrument has sent this page. */
+export const isServed = document.querySelector('meta[name="yehu-server"]') !== null;
+
 /** @typedef {string | (() => string)} Words A function is asked again in another language. */
 
 /**

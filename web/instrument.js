@@ -19,7 +19,7 @@ const AHEAD_HIDDEN_S = 1.5;
 /**
  * Tells by events: 'prepare' while a server prepares what the page plays by, 'ready' once it can be
  * played, 'lack' when it cannot (with the error as `error`); 'start' when it sounds, 'fail' when it
- * cannot; 'state' of each new snapshot; 'silence' when all has to end, and 'wish' of each wish (a `CustomEvent<Wish>`).
+ * cannot; 'way' when it is to sound in another one; 'state' of each new snapshot; 'silence' when all has to end, and 'wish' of each wish (a `CustomEvent<Wish>`).
  *
  * @typedef {object} Wish
  * @property {number} frame
@@ -34,7 +34,7 @@ export class Instrument extends EventTarget {
     /** @type {Sound | null} */
     this.sound = null;
     this.isSeen = false;
-    /** @type {Promise<void> | null} */
+    /** @type {Promise<unknown> | null} */
     this.opening = null;
     /** @type {unknown} */
     this.error = null;
@@ -42,7 +42,7 @@ export class Instrument extends EventTarget {
     this.others = null;
     /** A sound of this page, which may be opened before it is asked for. @type {Promise<Sound> | null} */
     this.here = null;
-    /** How the sound is opened; `change` takes another way. @type {() => Promise<Sound>} */
+    /** How the sound is opened; `change` takes another way. @type {() => Promise<Sound | void>} */
     this.way = () => this.openHere();
     /** @type {Parameters<Post>[]} */
     this.waiting = [];
@@ -136,18 +136,21 @@ export class Instrument extends EventTarget {
   }
 
   /**
-   * Sound in another way from now on; it begins when it is started.
-   * @param {() => Promise<Sound>} way
+   * Sound in another way from now on; it begins when it is started, or was already.
+   * @param {() => Promise<Sound | void>} way
    */
   change(way) {
     this.dispatchEvent(new Event("silence"));
     if (this.sound) this.player.endNotes(null, false); // only what this page holds
     this.player.restartFrames();
     this.waiting.length = 0;
+    const isAwaited = this.opening !== null && this.sound === null;
     this.sound?.close();
     this.sound = this.opening = null;
     this.isSeen = false;
     this.way = way;
+    this.dispatchEvent(new Event("way"));
+    if (isAwaited) this.start(); // whoever has asked for a sound gets that of the new way
   }
 
   /** End all that plays or sounds. */
@@ -173,9 +176,10 @@ export class Instrument extends EventTarget {
     try {
       const sound = await way();
       if (way !== this.way) {
-        sound.close(); // another way was chosen meanwhile
-        return;
+        sound?.close(); // another way was chosen meanwhile
+        return this.opening;
       }
+      if (!sound) throw new Error("nothing sounds");
       sound.addEventListener("state", () => {
         if (this.sound !== sound) return;
         this.isSeen = true;
@@ -187,7 +191,7 @@ export class Instrument extends EventTarget {
       this.error = null;
       this.dispatchEvent(new Event("start"));
     } catch (error) {
-      if (way !== this.way) return;
+      if (way !== this.way) return this.opening;
       this.error = error;
       this.opening = null; // another touch may try again
       this.dispatchEvent(new Event("fail"));

@@ -1,6 +1,6 @@
 /** Puts the page together. */
 
-import { find } from "./elements.js";
+import { find, isServed } from "./elements.js";
 import { Bow } from "./hands/bow.js";
 import { Diagram } from "./hands/schelleng.js";
 import { Fingerboard } from "./hands/fingerboard.js";
@@ -137,8 +137,10 @@ function connect({ instrument, hands, keys, fingerboard, bow, gallery }) {
 }
 
 async function main() {
+  const server = isServed ? import("./views/server.js") : null;
   await loadWords();
   fillWords(document);
+  const views = await server;
   find("page", HTMLElement).hidden = false; // measured by what follows
   const page = assemble();
   connect(page);
@@ -150,6 +152,7 @@ async function main() {
   const lesson = showTunes(page, clear);
   showRecording(page);
   showConnections(page);
+  views?.showServer(page.instrument); // before anybody can touch it
   showParameters(page);
   showGuide(page, lesson);
 }

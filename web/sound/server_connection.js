@@ -45,11 +45,6 @@ const UNKNOWN = {
   sounds: "preparing",
 };
 
-/** Whether this page was served by a server that plays. */
-export function hasServer() {
-  return document.querySelector('meta[name="yehu-server"]') !== null;
-}
-
 /**
  * The address of a WebSocket beside the page.
  * @param {string} name

@@ -15,11 +15,10 @@ export class StreamPlayer {
    */
   static async open(rate) {
     const context = new AudioContext({ latencyHint: "interactive" });
-    const resumed = context.resume();
+    context.resume().catch(() => {}); // while the touch counts; another touch resumes it, too
     try {
       const listener = new StreamPlayer(context, rate);
       await listener.#connect();
-      await resumed;
       return listener;
     } catch (error) {
       await context.close();

@@ -16,6 +16,7 @@ export default {
   "header.other": "中文",
   "header.theme": "Dark or light",
 
+  "status.opening": "Starting …",
   "status.off": "Touch a string, or press Start",
   "status.waiting": "The sound waits; touch the page",
   "status.on": "load {load} % · latency {latency} ms",

@@ -13,6 +13,7 @@ export default {
   "header.other": "English",
   "header.theme": "深色或浅色",
 
+  "status.opening": "正在开始……",
   "status.off": "触碰琴弦，或按“开始”",
   "status.waiting": "声音在等待，请触碰页面",
   "status.on": "负载 {load} % · 延迟 {latency} 毫秒",

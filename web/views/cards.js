@@ -2,10 +2,9 @@
 
 /** @typedef {import('../interfaces.js').Player} Player */
 
-import { make } from "../elements.js";
+import { isServed, make } from "../elements.js";
 import { translateOr } from "../i18n.js";
 
-const isServed = document.querySelector('meta[name="yehu-server"]') !== null;
 /** Presets that the page begins with; a server has a sound of its own. */
 export const AT_FIRST = isServed ? [] : ["vibrato", "courtyard"];
 

@@ -31,9 +31,9 @@ export function showConnections(page) {
     settings.isBuffered,
     (isBuffered) => {
       remember({ isBuffered });
-      const { instrument } = page;
-      instrument.change(instrument.way);
-      instrument.start();
+      const { way } = page.instrument;
+      page.instrument.change(() => way());
+      page.instrument.start();
     },
   );
   const recent = dropoutsOf(page.instrument);
@@ -62,9 +62,6 @@ export function showConnections(page) {
       buffer,
     ]),
   );
-  if (document.querySelector('meta[name="yehu-server"]')) {
-    import("./server.js").then(({ showServer }) => panel.prepend(showServer(page.instrument)));
-  }
 }
 
 /**

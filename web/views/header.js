@@ -15,18 +15,20 @@ export function showHeader({ instrument, gallery }) {
   start.addEventListener("click", () => {
     if (instrument.sound?.status.running) instrument.silence();
     else instrument.start();
-  });
-  instrument.addEventListener("start", () => {
-    start.dataset.text = "header.silence";
-    start.textContent = translate("header.silence");
+    tell();
   });
   showNotice(instrument);
   const tell = () => {
-    status.textContent = statusText(instrument.sound?.status ?? null);
+    start.textContent = translate(instrument.sound ? "header.silence" : "header.start");
+    status.textContent =
+      instrument.opening && !instrument.sound
+        ? translate("status.opening")
+        : statusText(instrument.sound?.status ?? null);
   };
   onLanguage(tell);
+  for (const event of ["start", "fail", "way"]) instrument.addEventListener(event, tell);
   setInterval(() => {
-    if (!document.hidden && instrument.sound) tell();
+    if (!document.hidden) tell();
   }, EVERY);
   find("language", HTMLButtonElement).addEventListener("click", () => {
     setLanguage(language() === "zh" ? "en" : "zh");

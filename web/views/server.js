@@ -24,6 +24,7 @@ const LOOKED_MS = 1000; // a server that is away is not waited for any longer
 export function showServer(instrument) {
   const line = new ServerConnection();
   instrument.others = line;
+  instrument.way = () => line.ready; // where to sound is chosen once the server tells what it has
   showPart(line);
   const about = make("p", { class: "soft" });
   const state = make("p", { class: "soft", role: "status" });
@@ -115,13 +116,15 @@ export function showServer(instrument) {
     if (chosen !== "here") instrument.silence(); // the server has ended what this page held
     tell();
   });
-  return make("section", { class: "group" }, [
-    make("h2", {}, [() => translate("server.name")]),
-    choice,
-    about,
-    state,
-    askForPin(line),
-  ]);
+  find("panel-connect", HTMLElement).prepend(
+    make("section", { class: "group" }, [
+      make("h2", {}, [() => translate("server.name")]),
+      choice,
+      about,
+      state,
+      askForPin(line),
+    ]),
+  );
 }
 
 /**

@@ -40,6 +40,46 @@ async function listensWithoutModule(browser, url) {
 }
 
 /**
+ * Press Start while the line to the server is still being made.
+ * @param {import("playwright-core").BrowserContext} browser
+ * What the page says, and once there is a line; and how many sounds it has begun.
+ */
+async function startsEarly(browser, url) {
+  const page = await browser.newPage();
+  let connect = () => {};
+  const mayConnect = new Promise((resolve) => (connect = () => resolve(undefined)));
+  await page.routeWebSocket(/\/socket/, async (socket) => {
+    await mayConnect;
+    socket.connectToServer();
+  });
+  await page.addInitScript(() => {
+    globalThis.begun = 0;
+    globalThis.AudioContext = class extends globalThis.AudioContext {
+      constructor(...words) {
+        super(...words);
+        globalThis.begun += 1;
+      }
+    };
+  });
+  await page.goto(url);
+  await page.waitForSelector("#play #ways input");
+  await page.click("#start");
+  const status = page.locator("#status");
+  const before = await status.textContent();
+  connect();
+  await page.waitForFunction(() => /load/.test(document.querySelector("#status").textContent));
+  await page.click("#tab-connect");
+  const panel = page.locator("#panel-connect");
+  await page.waitForFunction(() =>
+    document.querySelector("#panel-connect").innerText.includes("Hz"),
+  );
+  const after = await panel.textContent();
+  const begun = await page.evaluate(() => globalThis.begun);
+  await page.close();
+  return { before, after, begun };
+}
+
+/**
  * Wait until the server's note is heard, and until it has gone on for a while without another gap: a
  * busy machine has some, until enough of the sound waits.
  * @param {import("playwright-core").Page} page
@@ -64,6 +104,8 @@ await run(async (browser, url) => {
   const touch = await fingersOf(page);
   const found = {};
   const status = () => page.locator("#status").textContent();
+  found.early = await startsEarly(browser, url);
+  await page.bringToFront();
   await page.click("#tab-connect");
   await page.waitForSelector("#way-there[aria-pressed], #way-listen[aria-pressed]");
   found.first = await page.locator('.choice [id^="way-"][aria-pressed=true]').getAttribute("id");

@@ -57,6 +57,12 @@ def test_a_page_hears_a_server_without_a_device_if_nobody_chose(seen) -> None:
     assert seen[0]["first"] == "way-listen"
 
 
+def test_start_pressed_while_the_line_is_made_begins_what_the_server_offers(seen) -> None:
+    assert seen[0]["early"]["before"] == "Starting …"
+    assert "heard here" in seen[0]["early"]["after"]
+    assert seen[0]["early"]["begun"] == 1
+
+
 def test_there_a_finger_plays_the_server(seen) -> None:
     page, server = seen
     assert server["holds"]

@@ -35,12 +35,12 @@ export function make(tag, attributes = {}, children = []) {
     if (typeof value === "function") onLanguage(() => element.setAttribute(name, value()));
     else element.setAttribute(name, value === true ? "" : String(value));
   }
-  element.append(...children.map((child) => (typeof child === "function" ? words(child) : child)));
+  element.append(...children.map((child) => (typeof child === "function" ? live(child) : child)));
   return element;
 }
 
 /** @param {() => string} tell */
-function words(tell) {
+function live(tell) {
   const text = new Text();
   onLanguage(() => {
     text.data = tell();
@@ -49,16 +49,79 @@ function words(tell) {
 }
 
 /**
+ * The words of a key, in any language.
+ * @param {string} key
+ * @returns {() => string}
+ */
+export const words = (key) => () => translate(key);
+
+/** A quiet line of text. @param {Words} text */
+export const note = (text) => make("p", { class: "soft" }, [text]);
+
+/**
+ * A part of a panel.
+ * @param {string} key of its title
+ * @param {(Node | Words)[]} children
+ */
+export function section(key, ...children) {
+  return make("section", { class: "group" }, [make("h2", {}, [words(key)]), ...children]);
+}
+
+/**
+ * @param {Words} text
+ * @param {() => unknown} action
+ * @param {Record<string, Words | boolean | number>} [attributes]
+ */
+export function makeButton(text, action, attributes = {}) {
+  const button = make("button", { type: "button", ...attributes }, [text]);
+  button.addEventListener("click", action);
+  return button;
+}
+
+/**
+ * Buttons of which one is pressed.
+ * @template {string} T
+ * @param {Words} label of all
+ * @param {readonly T[]} names
+ * @param {string} prefix of the keys of their words, and of their ids
+ * @param {(name: T) => void} choose
+ */
+export function makeChoice(label, names, prefix, choose) {
+  const buttons = names.map((name) =>
+    makeButton(words(`${prefix}.${name}`), () => choose(name), { id: `${prefix}-${name}` }),
+  );
+  const show = (/** @type {string} */ chosen) =>
+    buttons.forEach((button, i) =>
+      button.setAttribute("aria-pressed", String(names[i] === chosen)),
+    );
+  const element = make("div", { class: "choice", role: "group", "aria-label": label }, buttons);
+  return { element, buttons, show };
+}
+
+/**
+ * A list to choose from.
+ * @param {Words} label
+ * @param {Node[]} options
+ * @param {(value: string) => void} choose
+ */
+export function makeSelect(label, options, choose) {
+  const select = make("select", { "aria-label": label }, options);
+  select.addEventListener("change", () => choose(select.value));
+  return select;
+}
+
+/**
  * A switch, as a labelled checkbox.
  * @param {Words} text
  * @param {boolean} isOn
  * @param {(isOn: boolean) => void} changed
+ * @param {Words} [title]
  */
-export function makeSwitch(text, isOn, changed) {
+export function makeSwitch(text, isOn, changed, title = "") {
   const box = make("input", { type: "checkbox", role: "switch" });
   box.checked = isOn;
   box.addEventListener("change", () => changed(box.checked));
-  return make("label", { class: "switch" }, [box, make("span", {}, [text])]);
+  return make("label", { class: "switch", title }, [box, make("span", {}, [text])]);
 }
 
 /**
@@ -90,20 +153,27 @@ export function download(blob, name) {
  */
 export function toggle(off, on, changed) {
   let isOn = false;
-  const button = make("button", { type: "button" });
-  const tell = () => {
+  const set = (/** @type {boolean} */ isOnNow) => {
+    isOn = isOnNow;
     button.setAttribute("aria-pressed", String(isOn));
     button.textContent = translate(isOn ? on : off);
   };
-  const set = (/** @type {boolean} */ isOnNow) => {
-    isOn = isOnNow;
-    tell();
-  };
-  onLanguage(tell);
-  button.addEventListener("click", () => {
-    isOn = !isOn;
-    tell();
+  const button = makeButton("", () => {
+    set(!isOn);
     changed(isOn);
   });
+  onLanguage(() => set(isOn));
   return { button, set };
+}
+
+/**
+ * Do something now and again, while an element is shown.
+ * @param {HTMLElement} element
+ * @param {() => void} action
+ * @param {number} [every] ms
+ */
+export function whileShown(element, action, every = 250) {
+  setInterval(() => {
+    if (element.checkVisibility() && !document.hidden) action();
+  }, every);
 }

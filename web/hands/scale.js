@@ -17,10 +17,10 @@ const FLAT_NAMES = { 3: "E♭", 10: "B♭" };
 
 const NAMES = facts.notes.NAMES.map((name) => name.replace("#", "♯"));
 
-/** @param {number} pitch */
+/** A note's letter with its octave. @param {number} pitch */
 export function nameOf(pitch) {
   const note = Math.round(pitch);
-  return `${NAMES[((note % 12) + 12) % 12]}${Math.floor(note / 12) - 1}`;
+  return letterOf(note) + (Math.floor(note / 12) - 1);
 }
 
 const MAJOR = [0, 2, 4, 5, 7, 9, 11];
@@ -85,7 +85,7 @@ export function fingerOf(note) {
 
 /** @param {number} note */
 export function letterOf(note) {
-  const step = note % 12;
+  const step = ((note % 12) + 12) % 12;
   return FLAT_NAMES[step] ?? NAMES[step];
 }
 

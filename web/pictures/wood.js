@@ -5,6 +5,7 @@
 /** @typedef {import("./picture.js").Colours} Colours */
 
 import { HIGHEST, LOWEST, OPEN, isDegree, jianpu, letterOf } from "../hands/scale.js";
+import { translate } from "../i18n.js";
 import { font } from "./picture.js";
 
 const NECK = 0.055; // half its width, of the breadth
@@ -218,12 +219,11 @@ export function writeNotes(write, context, surface, scale, colours, keys) {
       write(key, along, across);
     }
   }
-  context.font = `italic 600 20px Georgia, "Times New Roman", serif`;
+  context.font = font(14, 600);
   context.fillStyle = colours.soft;
-  for (const [mark, share] of /** @type {const} */ ([["f", 1], ["p", 0]])) {
-    const inside = (isUpright ? 1 : -1) * (share ? -18 : isUpright ? LABELS + 10 : LABELS + 10);
-    write(mark, board[0] - 16, surface.loudnessAt(share) + inside);
-  } // prettier-ignore
+  const loud = isUpright ? breadth - 24 : 14;
+  write(translate("board.loud"), board[0] - 18, loud);
+  write(translate("board.soft"), board[0] - 18, put(LABELS + (isUpright ? -24 : 10)));
 }
 
 /** @param {Scale} scale */

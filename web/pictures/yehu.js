@@ -40,6 +40,13 @@ export class Yehu extends Picture {
     fingerboard.hands.addEventListener("change", () => this.wake());
   }
 
+  /** Put a ring around a note, or none. @param {number | null} pitch */
+  ask(pitch) {
+    const still = { repeats: 1, due: null, asked: 0, isAgain: false, wrong: null };
+    this.targets = pitch === null ? null : { pitches: [pitch], ...still };
+    this.isStale = true;
+  }
+
   get isWanted() {
     return this.strings.view !== "still";
   }
@@ -120,7 +127,8 @@ export class Yehu extends Picture {
     if (bow.hands.isBowing) drawForces(context, surface, bow, colours);
     strings.draw(context, surface, colours, state?.level ?? -Infinity, this.#knots(state));
     for (const { x, press } of state?.fingers ?? []) this.#finger(this.#placeOfFinger(x), press);
-    this.#touches();
+    const isBowed = (state?.bow.string ?? -1) >= 0;
+    this.#touches(isBowed);
     drawBow(context, surface, bow, colours, state, isCalm);
     const placeOf = (/** @type {number} */ pitch) => this.#placeOf(pitch);
     const middle = surface.breadth / 2;
@@ -128,8 +136,7 @@ export class Yehu extends Picture {
       this.wake();
     }
     const pitch = state ? soundingPitch(state) : NaN;
-    const isSounding = !Number.isNaN(pitch) && (state?.bow.string ?? -1) >= 0;
-    if (isSounding) this.#sounding(pitch);
+    if (isBowed && !Number.isNaN(pitch)) this.#sounding(pitch);
     context.restore();
     this.#words(state);
     if (bow.hands.isBowing && this.height > LEAST_FOR_NUMBERS) this.#numbers();
@@ -181,16 +188,16 @@ export class Yehu extends Picture {
     disc(context, place, lane, FINGER - (this.showsFingers ? 3 : 6), colours.surface);
   }
 
-  /** Where hands touch: how loud. */
-  #touches() {
+  /** Where hands touch: how loud. @param {boolean} isBowed */
+  #touches(isBowed) {
     const { context, surface, fingerboard } = this;
     for (const { id, pitch } of fingerboard.hands.fingers) {
       const loud = fingerboard.touches.get(Number(id))?.loud;
       const along = this.#placeOf(pitch);
-      const string = stringOf(pitch);
+      const isTop = id === fingerboard.hands.top?.id;
+      const string = isTop && isBowed ? this.strings.bowed : stringOf(pitch);
       const lane = laneOf(surface, string);
       const across = loud === undefined ? lane : surface.loudnessAt(loud);
-      const isTop = id === fingerboard.hands.top?.id;
       context.globalAlpha = isTop ? 0.5 : 0.2;
       context.strokeStyle = this.colours[STRINGS[string]];
       context.lineWidth = 3;
@@ -241,15 +248,20 @@ export class Yehu extends Picture {
   #numbers() {
     const { context, colours, surface, height } = this;
     const { speed, force } = this.bow.hands.stroke;
-    const text = `${Math.abs(speed).toFixed(2)} m/s  ${force.toFixed(2)} N`;
+    const numbers = `${Math.abs(speed).toFixed(2)} m/s  ${force.toFixed(2)} N`;
+    const left = surface.isUpright ? 8 : surface.board[1] + 8;
+    const green = translate("bow.green");
     context.font = font(14, 600);
-    context.fillStyle = colours.ink;
+    const wide = Math.max(context.measureText(green).width, context.measureText(numbers).width);
+    context.fillStyle = colours.surface;
+    context.beginPath();
+    context.roundRect(left, height - 54, wide + 20, 46, 8);
+    context.fill();
     context.textAlign = "left";
     context.textBaseline = "bottom";
-    const left = surface.isUpright ? 12 : surface.board[1] + 10;
-    context.fillText(text, left, height - 56);
-    context.font = font(14);
     context.fillStyle = colours.good;
-    context.fillText(translate("bow.green"), left, height - 76);
+    context.fillText(green, left + 10, height - 32);
+    context.fillStyle = colours.ink;
+    context.fillText(numbers, left + 10, height - 12);
   }
 }

@@ -8,6 +8,13 @@ import { clamp } from "./range.js";
 
 /** @type {readonly Param[]} */
 export const TABLE = facts.parameters;
+/** Their groups, in the order of their use. */
+export const GROUPS = [
+  ...new Set([
+    ...["playing", "bow", "finger", "vibrato", "pluck", "string", "body", "room", "output"],
+    ...TABLE.map(({ group }) => group),
+  ]),
+];
 const BY_ADDRESS = new Map(TABLE.map((param) => [param.address, param]));
 
 /** An address that does not exist, or a value that is no finite number. */

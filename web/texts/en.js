@@ -53,11 +53,16 @@ export default {
 
   "play.name": "The instrument",
   "strings.name": "The yehu: both strings in motion, with bow and fingers",
-  "strings.view": "View of the strings",
-  "strings.slowed": "Slowed",
-  "strings.moving": "As it is",
+  "strings.view": "Motion of the strings",
+  "strings.direction": "The instrument",
+  "view.slowed": "Slowed",
+  "view.moving": "As it is",
+  "lies.across": "Lying",
+  "lies.down": "Upright",
 
   "board.name": "Fingerboard: arrow keys move the finger, Space plays",
+  "board.soft": "soft",
+  "board.loud": "loud",
   "board.lower": "Lower notes",
   "board.higher": "Higher notes",
 
@@ -69,9 +74,6 @@ export default {
     "On: a touched note is bowed by the instrument. Off: the fingerboard only stops the string, and you bow.",
   "ways.landing": "Land in tune",
   "ways.landing.about": "A finger lands on the nearest note, and slides freely from there.",
-  "ways.direction": "How the instrument lies",
-  "ways.across": "Lying",
-  "ways.down": "Upright",
   "ways.volume": "Loudness",
   "ways.vibrato": "Vibrato",
 
@@ -80,9 +82,9 @@ export default {
   "tab.see": "Look inside",
   "tab.sound": "Sound",
   "tab.tunes": "Tunes",
-  "tab.keep": "Keep",
+  "tab.keep": "Record",
   "tab.connect": "Connect",
-  "tab.all": "All",
+  "tab.all": "Expert",
 
   "tuner.name": "Tuner",
   "tuner.silent": "Tuner: silence",
@@ -277,14 +279,13 @@ export default {
   "connect.dropouts.server": "They are the server’s, or of the way to it: its terminal tells more.",
 
   "server.name": "The server",
-  "server.here": "Here",
-  "server.there": "There",
-  "server.listen": "Listen",
-  "server.here.about":
+  "way.here": "Here",
+  "way.there": "There",
+  "way.listen": "Listen",
+  "way.here.about":
     "This page sounds by itself. What you play is also played on the server and on other pages that sound by themselves.",
-  "server.there.about":
-    "You play the server’s instrument and see it. It sounds where the server is.",
-  "server.listen.about": "You play the server’s instrument and hear it in this page.",
+  "way.there.about": "You play the server’s instrument and see it. It sounds where the server is.",
+  "way.listen.about": "You play the server’s instrument and hear it in this page.",
   "server.parts": "Another part is chosen at the top. The room is one for all parts.",
   "part.name": "Part that this page plays",
   "part.of": "Part {part}/{parts}",

@@ -1,15 +1,26 @@
-/** MIDI keyboards, the computer's keyboard, and the state of the sound. */
+/** MIDI keyboards, a voice, the computer's keyboard, and the state of the sound. */
 
 /** @typedef {import('../main.js').Page} Page */
+/** @typedef {import('../instrument.js').Instrument} Instrument */
 
-import { find, make, makeSwitch } from "../elements.js";
+import {
+  find,
+  make,
+  makeButton,
+  makeSelect,
+  makeSwitch,
+  note,
+  section,
+  whileShown,
+  words,
+} from "../elements.js";
 import { NOTES, signOf } from "../hands/keys.js";
 import { isNatural, nameOf } from "../hands/scale.js";
 import { onLanguage, translate } from "../i18n.js";
 import { remember, settings } from "../settings.js";
 import { statusText } from "./header.js";
 import { showLearning } from "./learn.js";
-import { whileShown } from "./tabs.js";
+import { makeVoice } from "./voice.js";
 
 const ALL = "";
 const MINUTE = 60_000; // ms
@@ -23,50 +34,48 @@ const ROWS = [
 
 /** @param {Page} page */
 export function showConnections(page) {
-  const panel = find("panel-connect", HTMLElement);
-  const status = make("p", { class: "soft" });
-  const gaps = make("p", { class: "soft", role: "status", hidden: true });
-  const buffer = makeSwitch(
-    () => translate("connect.buffer"),
-    settings.isBuffered,
-    (isBuffered) => {
-      remember({ isBuffered });
-      const { way } = page.instrument;
-      page.instrument.change(() => way());
-      page.instrument.start();
-    },
-  );
-  const recent = dropoutsOf(page.instrument);
-  const tell = () => {
-    const known = page.instrument.sound?.status ?? null;
-    const backend = known ? ` · ${translate(`status.${known.backend}`)} · ${known.rate} Hz` : "";
-    status.textContent = statusText(known) + backend;
-    const count = recent();
-    const isHere = known?.backend === "worklet" || known?.backend === "script";
-    gaps.hidden = count === 0;
-    gaps.textContent = `${translate("connect.dropouts", { count })} ${translate(
-      isHere ? "connect.dropouts.here" : "connect.dropouts.server",
-    )}`;
-    buffer.hidden = !isHere || (count === 0 && !settings.isBuffered);
-  };
-  whileShown(panel, tell, 500);
-  onLanguage(tell);
-  panel.append(
+  find("panel-connect", HTMLElement).append(
     inputs(page),
-    showLearning(page),
+    makeVoice(page),
     keyboard(page),
-    make("section", { class: "group" }, [
-      make("h2", {}, [() => translate("connect.sound")]),
-      status,
-      gaps,
-      buffer,
-    ]),
+    showLearning(page),
+    sound(page.instrument),
   );
 }
 
 /**
+ * The state of the sound, and what helps against drop-outs.
+ * @param {Instrument} instrument
+ */
+function sound(instrument) {
+  const status = make("p", { class: "soft" });
+  const gaps = make("p", { class: "soft", role: "status", hidden: true });
+  const buffer = makeSwitch(words("connect.buffer"), settings.isBuffered, (isBuffered) => {
+    remember({ isBuffered });
+    const { way } = instrument;
+    instrument.change(() => way());
+    instrument.start();
+  });
+  const recent = dropoutsOf(instrument);
+  const tell = () => {
+    const { backend, rate } = instrument.sound?.status ?? {};
+    status.textContent = statusText(instrument);
+    if (backend) status.textContent += ` · ${translate(`status.${backend}`)} · ${rate} Hz`;
+    const count = recent();
+    const isHere = backend === "worklet" || backend === "script";
+    const advice = translate(isHere ? "connect.dropouts.here" : "connect.dropouts.server");
+    gaps.hidden = count === 0;
+    gaps.textContent = `${translate("connect.dropouts", { count })} ${advice}`;
+    buffer.hidden = !isHere || (count === 0 && !settings.isBuffered);
+  };
+  whileShown(status, tell, 500);
+  onLanguage(tell);
+  return section("connect.sound", status, gaps, buffer);
+}
+
+/**
  * Counts the drop-outs of the last minute.
- * @param {import('../instrument.js').Instrument} instrument
+ * @param {Instrument} instrument
  */
 function dropoutsOf(instrument) {
   /** @type {number[]} */
@@ -90,60 +99,50 @@ function dropoutsOf(instrument) {
 
 /** @param {Page} page */
 function inputs({ midi }) {
-  const select = make("select", { "aria-label": () => translate("connect.midi") });
+  const choose = (/** @type {string} */ id) => midi.choose(id);
+  const select = makeSelect(words("connect.midi"), [], choose);
   const word = make("p", { class: "soft", role: "status" });
-  const ask = make("button", { type: "button" }, [() => translate("connect.ask")]);
+  const ask = makeButton(words("connect.ask"), () => midi.open());
   ask.disabled = !midi.isAble;
-  ask.addEventListener("click", () => midi.open());
-  select.addEventListener("change", () => midi.choose(select.value));
+  const told = () => {
+    if (!midi.isAble) return translate(midi.whyNot);
+    if (midi.isRefused) return translate("connect.refused");
+    if (!midi.isOpen) return translate("connect.about");
+    const count = midi.inputs.length;
+    return translate(count ? "connect.count" : "connect.waiting", { count });
+  };
   const tell = () => {
-    const { inputs: connected } = midi;
     select.replaceChildren(
-      make("option", { value: ALL }, [translate("connect.all")]),
-      ...connected.map(({ id, name }) => make("option", { value: id }, [name ?? id])),
+      new Option(translate("connect.all"), ALL),
+      ...midi.inputs.map(({ id, name }) => new Option(name ?? id, id)),
     );
     select.value = midi.chosen;
     select.hidden = !midi.isOpen;
     ask.hidden = midi.isOpen;
-    if (!midi.isAble) word.textContent = translate(midi.whyNot);
-    else if (midi.isRefused) word.textContent = translate("connect.refused");
-    else if (!midi.isOpen) word.textContent = translate("connect.about");
-    else if (connected.length === 0) word.textContent = translate("connect.waiting");
-    else word.textContent = translate("connect.count", { count: connected.length });
+    word.textContent = told();
   };
   midi.addEventListener("change", tell);
   onLanguage(tell);
-  return make("section", { class: "group" }, [
-    make("h2", {}, [() => translate("connect.midi")]),
-    word,
-    ask,
-    select,
-  ]);
+  return section("connect.midi", word, ask, select);
 }
 
 /** @param {Page} page */
 function keyboard({ keys }) {
   const octave = make("output");
   const tell = () => {
-    octave.textContent = translate("connect.octave", {
-      octave: Math.sign(keys.octave) * Math.abs(keys.octave / 12),
-    });
+    octave.textContent = translate("connect.octave", { octave: keys.octave / 12 });
   };
   keys.addEventListener("octave", tell);
   onLanguage(tell);
   const lines = ROWS.map((row, i) =>
-    make(
-      "div",
-      { class: i % 2 ? "line" : "line upper" },
-      row.map((code) => key(code)),
-    ),
+    make("div", { class: i % 2 ? "line" : "line upper" }, row.map(key)),
   );
-  return make("section", { class: "group" }, [
-    make("h2", {}, [() => translate("connect.keyboard")]),
-    make("p", { class: "soft" }, [() => translate("connect.keyboard.about")]),
+  return section(
+    "connect.keyboard",
+    note(words("connect.keyboard.about")),
     make("div", { class: "keyboard", "aria-hidden": "true" }, lines),
     octave,
-  ]);
+  );
 }
 
 /** @param {string} code */

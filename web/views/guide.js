@@ -3,7 +3,7 @@
 /** @typedef {import('../main.js').Page} Page */
 
 import { LASTS, Challenge, toneOf } from "../challenge.js";
-import { find, make } from "../elements.js";
+import { find, make, makeButton, words } from "../elements.js";
 import { NOTES, signOf } from "../hands/keys.js";
 import { onLanguage, translate } from "../i18n.js";
 import { remember, settings } from "../settings.js";
@@ -15,6 +15,7 @@ const FAR = 1.5; // semitones that are a slide
 const LONG = 0.4; // s in the green
 const SLOWEST = 0.04; // m/s that is a stroke
 const HELP = "?";
+const FIRST_NOTE = 69; // that a ring invites to
 
 /**
  * @param {Page} page
@@ -28,22 +29,19 @@ export function showGuide({ instrument, hands, bow, fingerboard, keys, yehu }, l
   let last = 0; // s
   let challenge = new Challenge();
 
-  const words = make("p", { role: "status" });
+  const said = make("p", { role: "status" });
   const live = make("p", { class: "live", "aria-hidden": "true" });
   const dots = STEPS.slice(1).map(() => make("i"));
-  const again = make("button", { type: "button" }, [() => translate("guide.again")]);
-  const easy = make("button", { type: "button", class: "main", id: "easy" }, [
-    () => translate("guide.easy"),
-  ]);
-  const skip = make("button", { type: "button", class: "quiet", id: "skip" });
-  guide.append(
-    make("span", { class: "steps", "aria-hidden": "true" }, dots),
-    words,
-    live,
-    again,
-    easy,
-    skip,
-  );
+  const again = makeButton(words("guide.again"), () => go(TONE));
+  const play = () => lesson.first && lesson.toggle(lesson.first, "along");
+  const easy = makeButton(words("guide.easy"), play, { class: "main", id: "easy" });
+  const close = () => {
+    remember({ isTaught: true });
+    go(-1);
+  };
+  const skip = makeButton("", close, { class: "quiet", id: "skip" });
+  const steps = make("span", { class: "steps", "aria-hidden": "true" }, dots);
+  guide.append(steps, said, live, again, easy, skip);
 
   const result = () => {
     const { tone, longest, found } = challenge;
@@ -61,7 +59,7 @@ export function showGuide({ instrument, hands, bow, fingerboard, keys, yehu }, l
     const [key, about, values] = name
       ? [`guide.${name}`, translate(`guide.${name}.about`)]
       : result();
-    words.replaceChildren(
+    said.replaceChildren(
       translate(/** @type {string} */ (key), /** @type {any} */ (values)),
       make("span", {}, [/** @type {string} */ (about)]),
     );
@@ -77,6 +75,7 @@ export function showGuide({ instrument, hands, bow, fingerboard, keys, yehu }, l
     good = 0;
     guide.hidden = at < 0;
     stage.dataset.step = STEPS[at] === "tone" ? "bow" : (STEPS[at] ?? "");
+    if (!lesson.course) yehu.ask(STEPS[at] === "begin" ? FIRST_NOTE : null);
     if (at >= TONE) remember({ isTaught: true });
     if (at === TONE) challenge = new Challenge();
     tell();
@@ -110,12 +109,6 @@ export function showGuide({ instrument, hands, bow, fingerboard, keys, yehu }, l
       remember({ bestTone: Math.max(settings.bestTone, challenge.tone) });
       go(DONE);
     }
-  });
-  again.addEventListener("click", () => go(TONE));
-  easy.addEventListener("click", () => lesson.first && lesson.toggle(lesson.first, "along"));
-  skip.addEventListener("click", () => {
-    remember({ isTaught: true });
-    go(-1);
   });
   lesson.addEventListener("change", () => lesson.course && go(-1)); // one at a time
   const help = () => go(at < 0 ? 1 : -1);

@@ -1,4 +1,4 @@
-/** The header: start, status, language, theme. */
+/** The header: start, status, language, theme; and what stands in the way of playing. */
 
 /** @typedef {import('../main.js').Page} Page */
 
@@ -12,27 +12,21 @@ const EVERY = 500; // ms
 export function showHeader({ instrument, gallery }) {
   const start = find("start", HTMLButtonElement);
   const status = find("status", HTMLElement);
+  const tell = () => {
+    start.textContent = translate(instrument.sound ? "header.silence" : "header.start");
+    status.textContent = statusText(instrument);
+  };
   start.addEventListener("click", () => {
     if (instrument.sound?.status.running) instrument.silence();
     else instrument.start();
     tell();
   });
-  showNotice(instrument);
-  const tell = () => {
-    start.textContent = translate(instrument.sound ? "header.silence" : "header.start");
-    status.textContent =
-      instrument.opening && !instrument.sound
-        ? translate("status.opening")
-        : statusText(instrument.sound?.status ?? null);
-  };
   onLanguage(tell);
   for (const event of ["start", "fail", "way"]) instrument.addEventListener(event, tell);
-  setInterval(() => {
-    if (!document.hidden) tell();
-  }, EVERY);
-  find("language", HTMLButtonElement).addEventListener("click", () => {
-    setLanguage(language() === "zh" ? "en" : "zh");
-  });
+  setInterval(() => document.hidden || tell(), EVERY);
+  find("language", HTMLButtonElement).addEventListener("click", () =>
+    setLanguage(language() === "zh" ? "en" : "zh"),
+  );
   find("theme", HTMLButtonElement).addEventListener("click", () => {
     const isDark = document.documentElement.dataset.theme === "dark";
     remember({ theme: isDark ? "light" : "dark" });
@@ -40,7 +34,8 @@ export function showHeader({ instrument, gallery }) {
     gallery.renew();
   });
   onLanguage(() => gallery.renew());
-  darkSystem.addEventListener("change", () => gallery.renew());
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => gallery.renew());
+  showNotice(instrument);
 }
 
 /**
@@ -49,15 +44,14 @@ export function showHeader({ instrument, gallery }) {
  */
 function showNotice(instrument) {
   const notice = find("notice", HTMLElement);
-  let [key, why] = ["", ""];
+  let key = "";
   const tell = () => {
     notice.hidden = key === "";
-    notice.textContent = key && translate(key, { why });
+    notice.textContent = key && translate(key, { why: String(instrument.error) });
   };
   for (const event of ["prepare", "ready", "lack", "fail"]) {
     instrument.addEventListener(event, () => {
       key = event === "ready" ? "" : `header.${event}`;
-      why = String(instrument.error);
       tell();
       if (event !== "prepare") find("play", HTMLElement).removeAttribute("aria-busy");
     });
@@ -65,18 +59,13 @@ function showNotice(instrument) {
   onLanguage(tell);
 }
 
-const darkSystem = matchMedia("(prefers-color-scheme: dark)");
-
 /**
  * The state of the sound in a line.
- * @param {import('../interfaces.js').Status | null} status
+ * @param {import('../instrument.js').Instrument} instrument
  */
-export function statusText(status) {
-  if (!status) return translate("status.off");
-  if (!status.running) {
-    return translate(status.backend === "remote" ? "status.broken" : "status.waiting");
-  }
-  const load = status.loadPercent.toFixed(0);
-  const latency = status.latencyMs.toFixed(0);
-  return translate("status.on", { load, latency });
+export function statusText({ sound, opening }) {
+  if (!sound) return translate(opening ? "status.opening" : "status.off");
+  const { running, backend, loadPercent, latencyMs } = sound.status;
+  if (!running) return translate(backend === "remote" ? "status.broken" : "status.waiting");
+  return translate("status.on", { load: loadPercent.toFixed(0), latency: latencyMs.toFixed(0) });
 }

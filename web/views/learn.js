@@ -5,10 +5,19 @@
 /** @typedef {import('../midi.js').Midi} Midi */
 /** @typedef {import('../playing/learned.js').LearnedBind} LearnedBind */
 
-import { allow, make, makeSwitch, download } from "../elements.js";
+import {
+  allow,
+  download,
+  make,
+  makeButton,
+  makeSwitch,
+  note,
+  section,
+  words,
+} from "../elements.js";
 import { FREE } from "../playing/learned.js";
 import { BEND } from "../playing/sources.js";
-import { find } from "../playing/table.js";
+import { GROUPS, find } from "../playing/table.js";
 import { onLanguage, translate, translateOr } from "../i18n.js";
 import { nameFor, unitFor, written } from "./slider.js";
 
@@ -19,13 +28,11 @@ import { nameFor, unitFor, written } from "./slider.js";
  * @param {Midi} midi
  */
 export function makeLearning(target, taught, midi) {
-  const button = make("button", {
-    type: "button",
+  const button = teacher(() => target, taught, midi, {
     class: "quiet knob",
-    title: () => translate("learn"),
+    title: words("learn"),
   });
   const told = make("p", { class: "soft told", role: "status" });
-  teachBy(button, () => target, taught, midi);
   const tell = () => {
     const isAwaited = taught.awaited === target;
     const bind = taught.binds.find((own) => own.target === target);
@@ -44,27 +51,18 @@ export function makeLearning(target, taught, midi) {
  * @param {Page} page
  */
 export function showLearning({ taught, midi }) {
-  const select = make("select", { "aria-label": () => translate("learn.target") }, groups());
-  const button = make("button", { type: "button" });
-  teachBy(button, () => select.value, taught, midi);
-  const soft = makeSwitch(
-    () => translate("learn.soft"),
-    taught.isSoft,
-    (isOn) => {
-      taught.isSoft = isOn;
-    },
-  );
-  const about = make("p", { class: "soft" }, [() => translate("learn.soft.about")]);
+  const select = make("select", { "aria-label": words("learn.target") }, groups());
+  const button = teacher(() => select.value, taught, midi);
+  const soft = makeSwitch(words("learn.soft"), taught.isSoft, (isOn) => (taught.isSoft = isOn));
   const word = make("p", { class: "soft", role: "status" });
-  const list = make("ul", { class: "binds", "aria-label": () => translate("learn.list") });
-  const save = make("button", { type: "button" }, [() => translate("learn.save")]);
-  save.addEventListener("click", () => {
+  const list = make("ul", { class: "binds", "aria-label": words("learn.list") });
+  const save = makeButton(words("learn.save"), () => {
     const { blob, name } = taught.file();
     download(blob, name);
   });
   const saving = make("div", { class: "group" }, [
     make("div", { class: "row" }, [save]),
-    make("p", { class: "soft" }, [() => translate("learn.save.about")]),
+    note(words("learn.save.about")),
   ]);
   const tell = () => {
     const { awaited, found } = taught;
@@ -90,15 +88,15 @@ export function showLearning({ taught, midi }) {
     else rows.forEach(({ show }, at) => show(binds[at]));
   });
   onLanguage(renew);
-  return make("section", { class: "group" }, [
-    make("h2", {}, [() => translate("learn.name")]),
-    make("p", { class: "soft" }, [() => translate("learn.about")]),
+  return section(
+    "learn.name",
+    note(words("learn.about")),
     make("div", { class: "row" }, [make("div", { class: "wide" }, [select]), button]),
-    make("div", {}, [soft, about]),
+    make("div", {}, [soft, note(words("learn.soft.about"))]),
     word,
     list,
     saving,
-  ]);
+  );
 }
 
 /**
@@ -112,28 +110,26 @@ function follow(taught, tell) {
 }
 
 /**
- * Let a button await a control, or end that.
- * @param {HTMLButtonElement} button
+ * A button that awaits a control, or ends that.
  * @param {() => string} target
  * @param {MidiLearn} taught
  * @param {Midi} midi
+ * @param {Record<string, import("../elements.js").Words>} [attributes]
  */
-function teachBy(button, target, taught, midi) {
-  const isOn = () => button.getAttribute("aria-pressed") === "true";
-  button.addEventListener("click", async () => {
-    if (isOn()) {
-      taught.cancel();
-      return;
-    }
+function teacher(target, taught, midi, attributes) {
+  const toggle = async () => {
+    if (button.ariaPressed === "true") return taught.cancel();
     await midi.open();
     if (midi.isOpen) taught.await(target());
-  });
+  };
+  const button = makeButton("", toggle, attributes);
   if (!midi.isAble) onLanguage(() => allow(button, translate(midi.whyNot)));
+  return button;
 }
 
 /** The parameters by their groups. */
 function groups() {
-  const names = [...new Set(FREE.map(({ group }) => group))];
+  const names = GROUPS.filter((name) => FREE.some(({ group }) => group === name));
   return names.map((name) =>
     make(
       "optgroup",
@@ -178,14 +174,12 @@ function row(bind, taught) {
     });
   };
   show(bind);
-  const forget = make("button", {
-    type: "button",
+  const title = translate("learn.forget");
+  const forget = makeButton("✕", () => taught.forget(bind), {
     class: "quiet",
-    "aria-label": `${translate("learn.forget")}: ${sourceName(bind.source)}, ${name}`,
-    title: translate("learn.forget"),
+    "aria-label": `${title}: ${sourceName(bind.source)}, ${name}`,
+    title,
   });
-  forget.append("✕");
-  forget.addEventListener("click", () => taught.forget(bind));
   // Pitch bend moves the bend by the bend range: it has no ends of its own.
   const isByRange = bind.source === BEND && bind.target === "/playing/bend";
   const span = [inputs[0], "–", inputs[1], ` ${unitFor(param.unit)}`];

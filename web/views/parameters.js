@@ -3,38 +3,19 @@
 /** @typedef {import('../main.js').Page} Page */
 /** @typedef {import('../playing/table.js').Param} Param */
 
-import { find, make } from "../elements.js";
-import { TABLE } from "../playing/table.js";
+import { find, make, makeButton, whileShown, words } from "../elements.js";
+import { GROUPS, TABLE } from "../playing/table.js";
 import { onLanguage, translate, translateOr } from "../i18n.js";
 import { makeLearning } from "./learn.js";
 import { aboutOf, makeRange, nameFor, unitFor, written } from "./slider.js";
-import { whileShown } from "./tabs.js";
-
-/** Groups in the order of their use; others follow. */
-const ORDER = [
-  "playing",
-  "bow",
-  "finger",
-  "vibrato",
-  "pluck",
-  "string",
-  "body",
-  "room",
-  "output",
-  "engine",
-];
-const EVERY = 250; // ms
 
 /** @param {Page} page */
 export function showParameters({ instrument, taught, midi }) {
   const panel = find("panel-all", HTMLElement);
-  const search = make("input", {
-    type: "search",
-    "aria-label": () => translate("all.search"),
-    placeholder: () => translate("all.search"),
-  });
+  const label = words("all.search");
+  const search = make("input", { type: "search", "aria-label": label, placeholder: label });
   const none = make("p", { class: "soft", role: "status" });
-  const groups = [...new Set([...ORDER, ...TABLE.map(({ group }) => group)])].map((name) => {
+  const groups = GROUPS.map((name) => {
     const rows = TABLE.filter(({ group }) => group === name).map((param) =>
       row(instrument, param, param.owned ? [] : makeLearning(param.address, taught, midi)),
     );
@@ -43,47 +24,39 @@ export function showParameters({ instrument, taught, midi }) {
       make("summary", {}, [make("h2", {}, [() => translateOr(`group.${name}`, name)]), " ", count]),
       ...rows.map(({ element }) => element),
     ]);
-    details.open = name === ORDER[0];
+    details.open = name === GROUPS[0];
     return { rows, details };
   });
   const seek = () => {
-    const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+    const sought = search.value.toLowerCase().split(/\s+/).filter(Boolean);
     let found = 0;
     for (const { rows, details } of groups) {
       let inGroup = 0;
       for (const { element, text } of rows) {
         const all = text();
-        element.hidden = !words.every((word) => all.includes(word));
+        element.hidden = !sought.every((word) => all.includes(word));
         if (!element.hidden) inGroup++;
       }
       details.hidden = inGroup === 0;
-      if (words.length) details.open = inGroup > 0;
+      if (sought.length) details.open = inGroup > 0;
       found += inGroup;
     }
     none.textContent = found ? "" : translate("all.none");
   };
   search.addEventListener("input", seek);
   onLanguage(seek);
-  const reset = make("button", { type: "button", class: "reset-all" }, [
-    () => translate("all.reset"),
-  ]);
-  reset.addEventListener("click", () => {
-    for (const { rows } of groups) for (const one of rows) one.reset();
-  });
+  const resetAll = () => groups.forEach(({ rows }) => rows.forEach((one) => one.reset()));
+  const reset = makeButton(words("all.reset"), resetAll, { class: "reset-all" });
   panel.append(
     make("div", { class: "row" }, [make("div", { class: "wide" }, [search]), reset]),
     none,
     ...groups.map(({ details }) => details),
   );
-  whileShown(
-    panel,
-    () => {
-      for (const { rows, details } of groups) {
-        if (details.open) for (const one of rows) one.follow();
-      }
-    },
-    EVERY,
-  );
+  whileShown(panel, () => {
+    for (const { rows, details } of groups) {
+      if (details.open) for (const one of rows) one.follow();
+    }
+  });
 }
 
 /**
@@ -93,13 +66,9 @@ export function showParameters({ instrument, taught, midi }) {
  */
 function row({ player }, param, learning) {
   const { address, lo, hi, unit } = param;
-  const number = make("input", {
-    type: "number",
-    min: lo,
-    max: hi,
-    step: "any",
-    "aria-label": () => nameFor(address),
-  });
+  const label = () => nameFor(address);
+  const limits = { min: lo, max: hi, step: "any" };
+  const number = make("input", { type: "number", ...limits, "aria-label": label });
   const tell = (/** @type {number} */ value) => {
     number.value = written(param, value);
   };
@@ -107,19 +76,14 @@ function row({ player }, param, learning) {
     tell(value);
     mark(value);
   });
-  const back = make(
-    "button",
-    {
-      type: "button",
-      class: "quiet reset",
-      title: () => translate("all.back", { value: written(param, param.default) }),
-      "aria-label": () =>
-        `${nameFor(address)}: ${translate("all.back", { value: written(param, param.default) })}`,
-    },
-    ["↺"],
-  );
+  const title = () => translate("all.back", { value: written(param, param.default) });
+  const back = makeButton("↺", () => reset(), {
+    class: "quiet reset",
+    title,
+    "aria-label": () => `${label()}: ${title()}`,
+  });
   const element = make("div", { class: "parameter" }, [
-    make("h3", {}, [() => nameFor(address)]),
+    make("h3", {}, [label]),
     make("div", { class: "value" }, [number, make("span", {}, [() => unitFor(unit)])]),
     back,
     range,
@@ -148,8 +112,7 @@ function row({ player }, param, learning) {
     tell(player.value(address));
     follow();
   });
-  back.addEventListener("click", reset);
   onLanguage(follow);
-  const text = () => `${nameFor(address)} ${address} ${param.doc} ${aboutOf(param)}`.toLowerCase();
+  const text = () => `${label()} ${address} ${param.doc} ${aboutOf(param)}`.toLowerCase();
   return { element, text, follow, reset };
 }

@@ -1,83 +1,66 @@
-/** How the instrument is played: assist, landing, direction, loudness and vibrato. */
+/** How the instrument is played, beside it: assist, landing, articulation, loudness and vibrato. */
 
 /** @typedef {import('../main.js').Page} Page */
 
-import { find, make, makeSwitch } from "../elements.js";
+import { find, make, makeSelect, makeSwitch, whileShown, words } from "../elements.js";
+import facts from "../facts.js";
+import { language } from "../i18n.js";
 import { remember, settings } from "../settings.js";
-import { onLanguage, translate } from "../i18n.js";
-import { makeArticulationChooser } from "./articulations.js";
-import { makeSlider } from "./slider.js";
+import { makeSliders, nameFor } from "./slider.js";
 
-const SLIDERS = [
-  ["/playing/volume", "ways.volume"],
-  ["/playing/vibrato", "ways.vibrato"],
-];
-const EVERY = 250; // ms
+const ARTICULATION = "/playing/articulation";
+const SLIDERS = { "/playing/volume": "ways.volume", "/playing/vibrato": "ways.vibrato" };
 
 /** @param {Page} page */
-export function showPlayingOptions({ instrument, hands, fingerboard, surface }) {
+export function showPlayingOptions({ instrument: { player }, hands, fingerboard }) {
   const assist = makeSwitch(
-    () => translate("ways.assist"),
+    words("ways.assist"),
     settings.isAssisted,
-    (isOn) => {
+    (isAssisted) => {
       hands.rest();
-      hands.isAssisted = isOn;
-      remember({ isAssisted: isOn });
+      hands.isAssisted = isAssisted;
+      remember({ isAssisted });
     },
+    words("ways.assist.about"),
   );
   const landing = makeSwitch(
-    () => translate("ways.landing"),
+    words("ways.landing"),
     settings.isLandingInTune,
-    (isOn) => {
-      fingerboard.isLandingInTune = isOn;
-      remember({ isLandingInTune: isOn });
+    (isLandingInTune) => {
+      fingerboard.isLandingInTune = isLandingInTune;
+      remember({ isLandingInTune });
     },
+    words("ways.landing.about"),
   );
-  onLanguage(() => {
-    assist.title = translate("ways.assist.about");
-    landing.title = translate("ways.landing.about");
-  });
-  const switches = make("div", { class: "switches" }, [assist, landing]);
-  const sliders = SLIDERS.map(([address, key]) =>
-    makeSlider(instrument.player, address, () => translate(key)),
-  );
-  const articulation = makeArticulationChooser(instrument.player);
   find("ways", HTMLElement).append(
-    switches,
-    articulation.element,
-    ...sliders.map(({ element }) => element),
+    make("div", { class: "switches" }, [assist, landing]),
+    articulations(player),
+    makeSliders(player, Object.keys(SLIDERS), Object.values(SLIDERS).map(words)),
   );
-  setInterval(() => {
-    if (!document.hidden) for (const each of [...sliders, articulation]) each.follow();
-  }, EVERY);
-  find("bowing", HTMLElement).after(directions(surface));
   shiftBy(fingerboard);
 }
 
-/** @param {import('../hands/surface.js').Surface} surface */
-function directions(surface) {
-  const buttons = /** @type {const} */ (["across", "down"]).map((direction) => {
-    const button = make("button", { type: "button" }, [() => translate(`ways.${direction}`)]);
-    button.addEventListener("click", () => {
-      // Chosen again, it lies as there is room.
-      const wished = surface.wished === direction ? "" : direction;
-      remember({ direction: wished });
-      surface.turn(wished);
-    });
-    return { direction, button };
+/**
+ * What both hands do in the notes that begin; follows whoever else chooses: keys, controllers, presets.
+ * @param {import('../interfaces.js').Player} player
+ */
+function articulations(player) {
+  const options = facts.articulations.map(([name, chinese], number) => {
+    const english = name.replaceAll("-", " ");
+    return make("option", { value: String(number) }, [
+      () => (language() === "zh" ? `${chinese} (${english})` : `${english} ${chinese}`),
+    ]);
   });
-  const show = () => {
-    for (const { direction, button } of buttons) {
-      button.setAttribute("aria-pressed", String(direction === surface.direction));
-    }
+  const name = () => nameFor(ARTICULATION);
+  const select = makeSelect(name, options, (value) => player.write(ARTICULATION, Number(value)));
+  const follow = () => {
+    const number = Math.round(player.value(ARTICULATION));
+    const chosen = String(number < options.length ? number : 0);
+    if (select.value !== chosen) select.value = chosen;
   };
-  surface.addEventListener("change", show);
-  show();
-  return make(
-    "div",
-    { class: "choice", role: "group", "aria-label": () => translate("ways.direction") },
-    buttons.map(({ button }) => button),
-  );
+  follow();
+  whileShown(select, follow);
+  return make("label", { class: "articulation" }, [make("span", {}, [name]), select]);
 }
 
 /** @param {import('../hands/fingerboard.js').Fingerboard} fingerboard */

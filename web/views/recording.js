@@ -3,19 +3,24 @@
 /** @typedef {import('../main.js').Page} Page */
 /** @typedef {import('../instrument.js').Instrument} Instrument */
 
-import { allow, find, make, download, toggle } from "../elements.js";
+import {
+  allow,
+  download,
+  find,
+  make,
+  makeButton,
+  note,
+  section,
+  toggle,
+  words,
+} from "../elements.js";
 import { CaptureWriter, Replayer, fileOf, readCapture } from "../capture.js";
 import { linkOf, readLink } from "../link.js";
 import { onLanguage, translate } from "../i18n.js";
-import { makeVoice } from "./voice.js";
 
 /** @param {Page} page */
 export function showRecording(page) {
-  find("panel-keep", HTMLElement).append(
-    performances(page),
-    makeVoice(page),
-    recording(page.instrument),
-  );
+  find("panel-keep", HTMLElement).append(performances(page), recording(page.instrument));
 }
 
 /**
@@ -48,11 +53,8 @@ function recording(instrument) {
   };
   instrument.addEventListener("start", judge);
   onLanguage(judge);
-  return make("section", { class: "group" }, [
-    make("h2", {}, [() => translate("keep.sound")]),
-    make("p", { class: "soft" }, [() => translate("keep.sound.about")]),
-    make("div", { class: "row" }, [button, time]),
-  ]);
+  const row = make("div", { class: "row" }, [button, time]);
+  return section("keep.sound", note(words("keep.sound.about")), row);
 }
 
 /** @param {Page} page */
@@ -66,11 +68,12 @@ function performances({ instrument, keys, fingerboard, bow }) {
     if (isOn) keeper.start();
     else await tellKept(await keeper.stop());
   });
+  const label = words("keep.load");
   const input = make("input", {
     type: "file",
     accept: ".jsonl",
     hidden: true,
-    "aria-label": () => translate("keep.load"),
+    "aria-label": label,
   });
   /** @type {Replayer | null} */
   let replayer = null;
@@ -100,21 +103,19 @@ function performances({ instrument, keys, fingerboard, bow }) {
    */
   async function tellKept(kept) {
     const link = await linkOf(kept);
-    const copy = make("button", { type: "button", class: "main" }, [translate("keep.copy")]);
-    copy.addEventListener("click", async () => {
-      await navigator.clipboard?.writeText(link ?? "").catch(() => {});
-      word.textContent = translate("keep.copied");
-    });
-    const save = make("button", { type: "button" }, [translate("keep.save")]);
-    save.addEventListener("click", async () => download(await fileOf(kept), fileName("jsonl")));
-    const field = make("input", {
-      type: "text",
-      readonly: true,
-      value: link ?? "",
-      "aria-label": translate("keep.link"),
-    });
-    offer.replaceChildren(...(link ? [field, copy] : []), save);
+    const save = async () => download(await fileOf(kept), fileName("jsonl"));
+    offer.replaceChildren(makeButton(translate("keep.save"), save));
     word.textContent = link ? "" : translate("keep.long");
+    if (!link) return;
+    const copy = async () => {
+      await navigator.clipboard?.writeText(link).catch(() => {});
+      word.textContent = translate("keep.copied");
+    };
+    const label = translate("keep.link");
+    offer.prepend(
+      make("input", { type: "text", readonly: true, value: link, "aria-label": label }),
+      makeButton(translate("keep.copy"), copy, { class: "main" }),
+    );
   }
 
   input.addEventListener("change", async () => {
@@ -144,13 +145,8 @@ function performances({ instrument, keys, fingerboard, bow }) {
   };
   instrument.addEventListener("start", judge);
   onLanguage(judge);
-  return make("section", { class: "group" }, [
-    make("h2", {}, [() => translate("keep.performance")]),
-    make("p", { class: "soft" }, [() => translate("keep.performance.about")]),
-    make("div", { class: "row" }, [keep.button, load.button, input]),
-    offer,
-    word,
-  ]);
+  const row = make("div", { class: "row" }, [keep.button, load.button, input]);
+  return section("keep.performance", note(words("keep.performance.about")), row, offer, word);
 }
 
 /**
@@ -159,25 +155,24 @@ function performances({ instrument, keys, fingerboard, bow }) {
  * @param {(performance: import('../capture.js').Performance) => void} play
  */
 async function invite(instrument, play) {
-  const words = find("invite", HTMLElement);
+  const invitation = find("invite", HTMLElement);
   try {
     const brought = await readLink(location.hash);
     if (brought === null) return;
     const { wishes, rate } = brought;
     const seconds = Math.ceil((wishes.at(-1)?.frame ?? 0) / rate);
-    const button = make("button", { type: "button", class: "main", id: "listen" }, [
-      () => translate("keep.listen", { time: clock(seconds) }),
-    ]);
-    words.before(button);
-    words.hidden = true;
-    button.addEventListener("click", async () => {
+    const listen = async () => {
       button.remove();
       await instrument.start();
       if (instrument.sound) play(brought);
-    });
+    };
+    const text = () => translate("keep.listen", { time: clock(seconds) });
+    const button = makeButton(text, listen, { class: "main", id: "listen" });
+    invitation.before(button);
+    invitation.hidden = true;
     instrument.addEventListener("start", () => button.remove(), { once: true });
   } catch {
-    words.textContent = translate("keep.broken");
+    invitation.textContent = translate("keep.broken");
   }
 }
 

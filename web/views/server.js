@@ -4,14 +4,13 @@
 /** @typedef {'here' | 'there' | 'listen'} Way */
 
 import facts from "../facts.js";
-import { find, make } from "../elements.js";
+import { find, make, makeChoice, section, words } from "../elements.js";
 import { TABLE } from "../playing/table.js";
 import { remember, settings } from "../settings.js";
 import { ServerConnection } from "../sound/server_connection.js";
 import { Remote } from "../sound/remote.js";
 import { Sharing } from "../sound/sharing.js";
 import { onLanguage, translate } from "../i18n.js";
-import { showPart } from "./part.js";
 
 /** @type {Way[]} */
 const WAYS = ["here", "there", "listen"];
@@ -28,27 +27,15 @@ export function showServer(instrument) {
   showPart(line);
   const about = make("p", { class: "soft" });
   const state = make("p", { class: "soft", role: "status" });
-  const choice = make("div", {
-    class: "choice",
-    role: "group",
-    "aria-label": () => translate("server.name"),
-  });
   /** @type {Way | null} */
   let chosen = null;
   let rate = 0;
   /** @type {Sharing | null} */
   let sharing = null;
-  const buttons = WAYS.map((way) => {
-    const button = make("button", { type: "button", id: `way-${way}` }, [
-      () => translate(`server.${way}`),
-    ]);
-    button.addEventListener("click", () => {
-      remember({ way });
-      choose(way);
-      instrument.start(); // while the touch counts
-    });
-    choice.append(button);
-    return { way, button };
+  const choice = makeChoice(words("server.name"), WAYS, "way", (way) => {
+    remember({ way });
+    choose(way);
+    instrument.start(); // while the touch counts
   });
 
   /** @param {Way} way */
@@ -77,12 +64,10 @@ export function showServer(instrument) {
 
   function tell() {
     const { device, pages, sounds, parts } = line.status;
-    for (const { way, button } of buttons) {
-      button.setAttribute("aria-pressed", String(way === chosen));
-      button.disabled = way === "here" && sounds !== "ready";
-    }
+    choice.show(chosen ?? "");
+    choice.buttons[WAYS.indexOf("here")].disabled = sounds !== "ready";
     document.documentElement.dataset.role = line.status.role; // hides what the owner alone may do
-    about.textContent = chosen ? translate(`server.${chosen}.about`) : "";
+    about.textContent = chosen ? translate(`way.${chosen}.about`) : "";
     if (line.status.role !== "own") {
       about.textContent += ` ${translate(`server.role.${line.status.role}`)}`;
     }
@@ -117,13 +102,7 @@ export function showServer(instrument) {
     tell();
   });
   find("panel-connect", HTMLElement).prepend(
-    make("section", { class: "group" }, [
-      make("h2", {}, [() => translate("server.name")]),
-      choice,
-      about,
-      state,
-      askForPin(line),
-    ]),
+    section("server.name", choice.element, about, state, askForPin(line)),
   );
 }
 
@@ -132,17 +111,13 @@ export function showServer(instrument) {
  * @param {ServerConnection} line
  */
 function askForPin(line) {
-  const pin = make("input", { inputmode: "numeric", "aria-label": () => translate("server.pin") });
-  const form = make("form", { hidden: true }, [
-    make("p", {}, [() => translate("server.pin")]),
-    pin,
-    make("button", {}, [() => translate("server.pin.send")]),
-  ]);
+  const label = words("server.pin");
+  const pin = make("input", { inputmode: "numeric", "aria-label": label });
+  const send = make("button", {}, [words("server.pin.send")]);
+  const form = make("form", { hidden: true }, [make("p", {}, [label]), pin, send]);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    const url = new URL(location.href);
-    url.searchParams.set("pin", pin.value.trim());
-    location.assign(url);
+    reload("pin", pin.value.trim());
   });
   line.addEventListener("refuse", () => {
     form.hidden = false;
@@ -151,4 +126,39 @@ function askForPin(line) {
     pin.focus();
   });
   return form;
+}
+
+/**
+ * The choice of the part that this page plays, where a server has several.
+ * @param {ServerConnection} line
+ */
+function showPart(line) {
+  const select = find("part", HTMLSelectElement);
+  const tell = () => {
+    const { part, parts } = line.status;
+    select.hidden = parts < 2;
+    const numbers = Array.from({ length: parts }, (_, i) => String(i + 1));
+    if (select.length !== parts) {
+      select.replaceChildren(...numbers.map((number) => new Option("", number)));
+    }
+    for (const option of select.options)
+      option.text = translate("part.of", { part: option.value, parts });
+    select.value = String(part);
+    document.title = parts < 2 ? translate("title") : `${translate("title")} ${part}`;
+  };
+  // A player of its own, that knows nothing of the part before.
+  select.addEventListener("change", () => reload("part", select.value));
+  line.addEventListener("status", tell);
+  onLanguage(tell);
+}
+
+/**
+ * Load this page with another word in its address.
+ * @param {string} name
+ * @param {string} value
+ */
+function reload(name, value) {
+  const url = new URL(location.href);
+  url.searchParams.set(name, value);
+  location.assign(url);
 }

@@ -3,7 +3,7 @@
 /** @typedef {import('../interfaces.js').Player} Player */
 /** @typedef {import('../interfaces.js').Parameter} Parameter */
 
-import { make } from "../elements.js";
+import { make, whileShown } from "../elements.js";
 import { find, fromUnit, toUnit } from "../playing/table.js";
 import { onLanguage, translateOr } from "../i18n.js";
 
@@ -45,6 +45,17 @@ export function written(param, value) {
 }
 
 /**
+ * A value with its unit; shares in percent.
+ * @param {Parameter} param
+ * @param {number} value
+ */
+function told(param, value) {
+  const isShare = param.unit === "1" && param.lo === 0 && param.hi === 1;
+  if (isShare) return `${Math.round(100 * value)} %`;
+  return `${written(param, value)} ${unitFor(param.unit)}`.trim();
+}
+
+/**
  * A range input along the parameter's curve.
  * @param {Player} player
  * @param {string} address
@@ -52,63 +63,62 @@ export function written(param, value) {
  */
 export function makeRange(player, address, changed) {
   const param = find(address);
-  const steps = param.isChoice && param.hi - param.lo < STEPS ? param.hi - param.lo : STEPS;
-  const range = make("input", {
-    type: "range",
-    min: 0,
-    max: steps,
-    step: 1,
-    "aria-label": () => nameFor(address),
-  });
+  const max = param.isChoice && param.hi - param.lo < STEPS ? param.hi - param.lo : STEPS;
+  const label = () => nameFor(address);
+  const range = make("input", { type: "range", min: 0, max, step: 1, "aria-label": label });
   let isHeld = false;
-  range.addEventListener("pointerdown", () => {
-    isHeld = true;
-  });
+  const tell = (/** @type {number} */ value) =>
+    range.setAttribute("aria-valuetext", told(param, value));
+  range.addEventListener("pointerdown", () => (isHeld = true));
   for (const end of ["pointerup", "pointercancel", "blur"]) {
-    range.addEventListener(end, () => {
-      isHeld = false;
-    });
+    range.addEventListener(end, () => (isHeld = false));
   }
   range.addEventListener("input", () => {
-    const value = fromUnit(param, Number(range.value) / steps);
+    const value = fromUnit(param, Number(range.value) / max);
     player.write(address, value);
-    range.setAttribute("aria-valuetext", `${written(param, value)} ${unitFor(param.unit)}`);
+    tell(value);
     changed(value);
   });
 
   /** @param {number} value */
   function show(value) {
     if (isHeld) return;
-    range.value = String(Math.round(toUnit(param, value) * steps));
-    range.setAttribute("aria-valuetext", `${written(param, value)} ${unitFor(param.unit)}`);
+    range.value = String(Math.round(toUnit(param, value) * max));
+    tell(value);
   }
   show(player.value(address));
   return { range, show };
 }
 
 /**
- * A slider with its name and value above it.
+ * Sliders with their names and values above them, which follow whoever else moves them.
  * @param {Player} player
- * @param {string} address
- * @param {() => string} [name] a shorter one
+ * @param {string[]} addresses
+ * @param {(() => string)[]} [names] shorter ones
  */
-export function makeSlider(player, address, name = () => nameFor(address)) {
-  const param = find(address);
-  const output = make("output");
-  const tell = (/** @type {number} */ value) => {
-    output.textContent = `${written(param, value)} ${unitFor(param.unit)}`.trim();
-  };
-  const { range, show } = makeRange(player, address, tell);
-  const element = make("label", { class: "slider", title: () => aboutOf(param) }, [
-    make("span", {}, [name]),
-    output,
-    range,
-  ]);
-  const follow = () => {
-    const value = player.value(address);
-    show(value);
-    tell(value);
-  };
-  onLanguage(follow);
-  return { element, follow };
+export function makeSliders(player, addresses, names = []) {
+  const sliders = addresses.map((address, i) => {
+    const param = find(address);
+    const output = make("output");
+    const tell = (/** @type {number} */ value) => {
+      output.textContent = told(param, value);
+    };
+    const { range, show } = makeRange(player, address, tell);
+    const name = names[i] ?? (() => nameFor(address));
+    const element = make("label", { class: "slider", title: () => aboutOf(param) }, [
+      make("span", {}, [name]),
+      output,
+      range,
+    ]);
+    const follow = () => {
+      const value = player.value(address);
+      show(value);
+      tell(value);
+    };
+    onLanguage(follow);
+    return { element, follow };
+  });
+  const element = make("div", { class: "sliders" }, sliders.map((one) => one.element)); // prettier-ignore
+  whileShown(element, () => sliders.forEach((one) => one.follow()));
+  return element;
 }

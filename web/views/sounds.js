@@ -1,23 +1,43 @@
 /** The sounds: presets, the room, tunings, and what a MIDI keyboard's controllers do. */
 
 /** @typedef {import('../main.js').Page} Page */
+/** @typedef {import('../interfaces.js').Player} Player */
 
-import { find, make } from "../elements.js";
+import { find, isServed, make, makeButton, makeSelect, note, section, words } from "../elements.js";
 import facts from "../facts.js";
-import { onLanguage, translate, translateOr } from "../i18n.js";
+import { onLanguage, translateOr } from "../i18n.js";
 import { MAPPINGS } from "../playing/learned.js";
-import { makeCards } from "./cards.js";
 import { sourceName } from "./learn.js";
-import { ROOMS, showRoom } from "./room.js";
-import { nameFor } from "./slider.js";
+import { makeSliders, nameFor } from "./slider.js";
+
+/** Presets that the page begins with; a server has a sound of its own. */
+export const AT_FIRST = isServed ? [] : ["vibrato", "courtyard"];
+/** Of the room, and of where in it the player is. */
+const ROOM = [
+  ...["level", "size", "decay", "damping", "distance", "pan"].map((name) => `/room/${name}`),
+  "/body/width",
+];
 
 /** @param {Page} page */
-export function showSounds({ instrument, tuned, yehu, taught }) {
-  const { player } = instrument;
-  const panel = find("panel-sound", HTMLElement);
-  panel.append(
-    presets(player),
-    showRoom(player, panel),
+export function showSounds({ instrument: { player }, tuned, yehu, taught }) {
+  const presets = Object.values(facts.presets.shipped).sort(
+    (one, other) => (one.program ?? Infinity) - (other.program ?? Infinity),
+  );
+  const rooms = presets.filter(({ values }) => {
+    const addresses = Object.keys(values);
+    return addresses.length > 0 && addresses.every((address) => ROOM.includes(address));
+  });
+  const sounds = presets.filter((preset) => !rooms.includes(preset));
+  const room = section(
+    "room.name",
+    note(words("room.about")),
+    ...(rooms.length ? [cards(player, rooms, words("room.name"))] : []),
+    makeSliders(player, ROOM),
+  );
+  room.id = "room";
+  find("panel-sound", HTMLElement).append(
+    section("sound.presets", cards(player, sounds, words("sound.presets"))),
+    room,
     chooser("tuning", Object.keys(facts.tunings), "equal", aboutTuning, (name) => {
       player.applyTuning(name);
       tuned.choose(name);
@@ -29,22 +49,36 @@ export function showSounds({ instrument, tuned, yehu, taught }) {
   );
 }
 
-/** @param {import('../interfaces.js').Player} player */
-function presets(player) {
-  const sounds = Object.values(facts.presets.shipped).filter((preset) => !ROOMS.includes(preset));
-  return make("section", { class: "group" }, [
-    make("h2", {}, [() => translate("sound.presets")]),
-    makeCards(player, sounds, () => translate("sound.presets")),
-  ]);
+/**
+ * Presets to choose from.
+ * @param {Player} player
+ * @param {{name: string, about: string}[]} presets
+ * @param {() => string} label of all of them, for screen readers
+ */
+function cards(player, presets, label) {
+  const buttons = presets.map(({ name, about }) => {
+    const card = makeButton(
+      "",
+      () => {
+        player.applyPreset(name);
+        for (const one of buttons) one.setAttribute("aria-pressed", String(one === card));
+      },
+      { "aria-pressed": String(AT_FIRST.includes(name)) },
+    );
+    card.append(
+      make("span", {}, [() => translateOr(`preset.${name}`, name)]),
+      make("small", {}, [() => translateOr(`preset.${name}.about`, about)]),
+    );
+    return card;
+  });
+  return make("div", { class: "cards", role: "group", "aria-label": label }, buttons);
 }
 
 /** @param {string} name */
-function aboutTuning(name) {
-  return translateOr(`tuning.${name}.about`, "");
-}
+const aboutTuning = (name) => translateOr(`tuning.${name}.about`, "");
 
 /**
- * What each control of a mapping moves.
+ * What each control of a mapping moves, in lines.
  * @param {string} name
  */
 function aboutMapping(name) {
@@ -53,8 +87,9 @@ function aboutMapping(name) {
   for (const { source, target } of MAPPINGS[name].binds) {
     moved.set(source, [...(moved.get(source) ?? []), nameFor(target)]);
   }
-  const told = [...moved].map(([source, names]) => `${sourceName(source)}: ${names.join(", ")}`);
-  return told.join(" · ");
+  return [...moved]
+    .map(([source, names]) => `${sourceName(source)}: ${names.join(", ")}`)
+    .join("\n");
 }
 
 /**
@@ -66,26 +101,18 @@ function aboutMapping(name) {
  * @param {(name: string) => void} apply
  */
 function chooser(what, names, first, tellAbout, apply) {
-  const select = make(
-    "select",
-    { "aria-label": () => translate(`sound.${what}`) },
-    names.map((name) =>
-      make("option", { value: name }, [() => translateOr(`${what}.${name}`, name)]),
-    ),
+  const options = names.map((name) =>
+    make("option", { value: name }, [() => translateOr(`${what}.${name}`, name)]),
   );
-  select.value = first;
-  const about = make("p", { class: "soft" });
+  const about = make("p", { class: "soft lines" });
+  const select = makeSelect(words(`sound.${what}`), options, (name) => {
+    apply(name);
+    tell();
+  });
   const tell = () => {
     about.textContent = tellAbout(select.value);
   };
-  select.addEventListener("change", () => {
-    apply(select.value);
-    tell();
-  });
+  select.value = first;
   onLanguage(tell);
-  return make("section", { class: "group" }, [
-    make("h2", {}, [() => translate(`sound.${what}`)]),
-    select,
-    about,
-  ]);
+  return section(`sound.${what}`, select, about);
 }

@@ -2,9 +2,8 @@
 
 /** @typedef {import('../main.js').Page} Page */
 
-import { find, make } from "../elements.js";
+import { find, makeButton, words } from "../elements.js";
 import { remember, settings } from "../settings.js";
-import { translate } from "../i18n.js";
 
 const PANELS = ["see", "sound", "tunes", "keep", "connect", "all"];
 
@@ -16,17 +15,11 @@ export function showTabs({ gallery }) {
   const list = find("tabs", HTMLElement);
   const more = find("more", HTMLElement);
   const tabs = PANELS.map((name) => {
-    const tab = make(
-      "button",
-      {
-        type: "button",
-        role: "tab",
-        id: `tab-${name}`,
-        "aria-controls": `panel-${name}`,
-      },
-      [() => translate(`tab.${name}`)],
+    const tab = makeButton(
+      words(`tab.${name}`),
+      () => choose(settings.panel === name ? "" : name),
+      { role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}` },
     );
-    tab.addEventListener("click", () => choose(settings.panel === name ? "" : name));
     find(`panel-${name}`, HTMLElement).setAttribute("aria-labelledby", tab.id);
     return tab;
   });
@@ -43,6 +36,7 @@ export function showTabs({ gallery }) {
     });
     const tab = tabs[Math.max(PANELS.indexOf(chosen), 0)];
     more.hidden = chosen === "";
+    more.scrollTop = 0;
     list.scrollLeft = Math.min(list.scrollLeft, tab.offsetLeft); // on a narrow screen they scroll
     list.scrollLeft = Math.max(
       list.scrollLeft,
@@ -70,16 +64,4 @@ export function showTabs({ gallery }) {
   });
   choose(PANELS.includes(settings.panel) ? settings.panel : "");
   return () => getComputedStyle(more).position === "fixed" && choose("");
-}
-
-/**
- * Do something now and again, while a panel is shown.
- * @param {HTMLElement} panel
- * @param {() => void} action
- * @param {number} every ms
- */
-export function whileShown(panel, action, every) {
-  setInterval(() => {
-    if (panel.checkVisibility() && !document.hidden) action();
-  }, every);
 }

@@ -4,7 +4,7 @@
 /** @typedef {import('../tune.js').Tune} Tune */
 /** @typedef {'listen' | 'along' | 'timed'} Way */
 
-import { find, make, makeSwitch } from "../elements.js";
+import { find, make, makeButton, makeSwitch, note, words } from "../elements.js";
 import { jianpuText } from "../hands/scale.js";
 import { TuneGuide, TunePlayer } from "../tune.js";
 import { onLanguage, translate, translateOr } from "../i18n.js";
@@ -22,17 +22,11 @@ const SHOWN = 3; // notes that come next, on the fingerboard
  */
 export function showTunes(page, clear) {
   const lesson = new Lesson(page, clear);
-  const slowly = makeSwitch(
-    () => translate("tunes.slowly"),
-    settings.isSlow,
-    (isSlow) => remember({ isSlow }),
+  const slowly = makeSwitch(words("tunes.slowly"), settings.isSlow, (isSlow) =>
+    remember({ isSlow }),
   );
   const list = make("div", { class: "group" });
-  find("panel-tunes", HTMLElement).append(
-    make("p", { class: "soft" }, [() => translate("tunes.about")]),
-    slowly,
-    list,
-  );
+  find("panel-tunes", HTMLElement).append(note(words("tunes.about")), slowly, list);
   import("../examples.js").then(
     ({ default: examples }) => {
       // A JSON list has no type of its places, so that `events` is told here.
@@ -40,7 +34,7 @@ export function showTunes(page, clear) {
       list.append(...tunes.map((tune) => row(lesson, tune)));
       lesson.first = tunes[0];
     },
-    () => list.append(make("p", {}, [() => translate("tunes.none")])),
+    () => list.append(make("p", {}, [words("tunes.none")])),
   );
   return lesson;
 }
@@ -55,7 +49,7 @@ const nameOf = ({ name }) => translateOr(`tune.${name}`, name.replace(/_/g, " ")
 function row(lesson, tune) {
   const name = () => nameOf(tune);
   const buttons = WAYS.map((way) => {
-    const button = make("button", { type: "button" });
+    const button = makeButton("", () => lesson.toggle(tune, way));
     const tell = () => {
       const isOn = lesson.tune === tune && lesson.way === way;
       const word = translate(isOn ? "tunes.stop" : `tunes.${way}`);
@@ -63,7 +57,6 @@ function row(lesson, tune) {
       button.setAttribute("aria-pressed", String(isOn));
       button.textContent = word;
     };
-    button.addEventListener("click", () => lesson.toggle(tune, way));
     lesson.addEventListener("change", tell);
     onLanguage(tell);
     return button;
@@ -73,12 +66,10 @@ function row(lesson, tune) {
     bar.hidden = lesson.tune !== tune || !lesson.course;
     bar.value = lesson.course?.progress ?? 0;
   });
-  const easy = tune.isEasy
-    ? [make("span", { class: "easy" }, [() => translate("tunes.easy")])]
-    : [];
+  const easy = tune.isEasy ? [make("span", { class: "easy" }, [words("tunes.easy")])] : [];
   return make("article", { class: "tune" }, [
     make("h2", {}, [name, " ", make("span", { class: "soft" }, [clock(tune.seconds)]), ...easy]),
-    make("p", { class: "soft" }, [() => translateOr(`tune.${tune.name}.about`, "")]),
+    note(() => translateOr(`tune.${tune.name}.about`, "")),
     make("div", { class: "row" }, buttons),
     bar,
   ]);
@@ -194,9 +185,8 @@ export class Lesson extends EventTarget {
     if (this.course !== course) return;
     this.course = this.way = null;
     const { yehu, score, fingerboard } = this.page;
-    yehu.targets = null;
+    yehu.ask(null);
     yehu.showsFingers = false;
-    yehu.isStale = true;
     fingerboard.bring(null);
     score.take(null);
     const result = course instanceof TuneGuide ? course.result : null;
@@ -230,14 +220,14 @@ export class Lesson extends EventTarget {
  * @param {boolean} isTimed
  */
 function told({ right, count, run, late, hardest }, isTimed) {
-  const words = [translate(isTimed ? "tunes.intime" : "tunes.right", { right, count })];
-  if (right === count) words.push(translate("tunes.all"));
-  else if (run > 2) words.push(translate("tunes.run", { run }));
+  const said = [translate(isTimed ? "tunes.intime" : "tunes.right", { right, count })];
+  if (right === count) said.push(translate("tunes.all"));
+  else if (run > 2) said.push(translate("tunes.run", { run }));
   const ms = Math.abs(Math.round(100 * late) * 10);
-  if (isTimed && ms) words.push(translate(late > 0 ? "tunes.late" : "tunes.early", { ms }));
+  if (isTimed && ms) said.push(translate(late > 0 ? "tunes.late" : "tunes.early", { ms }));
   if (hardest) {
     const [from, to] = hardest.map(({ pitch }) => jianpuText(pitch));
-    words.push(translate("tunes.hardest", { from, to }));
+    said.push(translate("tunes.hardest", { from, to }));
   }
-  return words.join(" ");
+  return said.join(" ");
 }

@@ -2,7 +2,7 @@
 
 /** @typedef {import('../main.js').Page} Page */
 
-import { allow, find, make, toggle } from "../elements.js";
+import { allow, find, make, note, section, toggle, words } from "../elements.js";
 import { Voice } from "../pictures/voice.js";
 import facts from "../facts.js";
 import { onLanguage, translate } from "../i18n.js";
@@ -20,9 +20,10 @@ export function makeVoice({ instrument, gallery }) {
   const canvas = make("canvas", {
     role: "img",
     hidden: true,
-    "aria-label": () => translate("voice.picture"),
+    "aria-label": words("voice.picture"),
   });
-  const lines = make("p", { class: "soft", hidden: true }, [() => translate("voice.lines")]);
+  const lines = note(words("voice.lines"));
+  lines.hidden = true;
   gallery.add(new Voice(canvas, () => instrument.sound?.heard ?? NaN));
   /** What is given back at the end. @type {[string, number][]} */
   let before = [];
@@ -64,12 +65,6 @@ export function makeVoice({ instrument, gallery }) {
   };
   instrument.addEventListener("start", judge);
   onLanguage(judge);
-  return make("section", { class: "group" }, [
-    make("h2", {}, [() => translate("voice")]),
-    make("p", { class: "soft" }, [() => translate("voice.about")]),
-    make("div", { class: "row" }, [hum.button]),
-    word,
-    canvas,
-    lines,
-  ]);
+  const row = make("div", { class: "row" }, [hum.button]);
+  return section("voice", note(words("voice.about")), row, word, canvas, lines);
 }

@@ -55,7 +55,7 @@ function shown(page) {
 }
 
 /** @param {import("playwright-core").Page} page */
-const pressed = (page) => page.locator(".views .choice [aria-pressed=true]").allTextContents();
+const pressed = (page) => page.locator('[id^="view-"][aria-pressed=true]').allTextContents();
 
 /**
  * Whether the frog of the bow is seen to move, which is beside the strings.

@@ -20,19 +20,20 @@ await run(
     await page.click("#tab-keep");
     await page.getByRole("button", { name: "Keep", exact: true }).click();
     await page.getByRole("button", { name: "Record", exact: true }).click();
+    await page.click("#tab-connect");
     await page.getByRole("button", { name: "Use the microphone" }).click();
     const word = page.getByText("Wear headphones");
     await word.waitFor();
     await page.waitForTimeout(4000);
-    await page.locator("#panel-keep canvas").scrollIntoViewIfNeeded();
-    const colours = await page.locator("#panel-keep canvas").evaluate((canvas) => {
+    await page.locator("#panel-connect canvas").scrollIntoViewIfNeeded();
+    const colours = await page.locator("#panel-connect canvas").evaluate((canvas) => {
       const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
       return new Set(new Uint32Array(data.buffer)).size;
     });
     await page.screenshot({ path: `${folder}/voice.png` });
     const pressed = page.locator("#panel-keep button[aria-pressed=true]");
-    const names = await pressed.allTextContents();
-    await pressed.nth(1).click(); // the microphone's
+    await page.locator("#panel-connect button[aria-pressed=true]").click();
+    await page.click("#tab-keep");
     await pressed.first().click(); // what was kept
     for (const [button, name] of [
       [page.getByRole("button", { name: "Save as a file" }), "hum.jsonl"],
@@ -42,7 +43,7 @@ await run(
       await button.click();
       await (await download).saveAs(`${folder}/${name}`);
     }
-    return { errors, names, colours, still: await word.count() };
+    return { errors, colours, still: await word.count() };
   },
   { args: [...FLAGS, ...MICROPHONE] },
 );

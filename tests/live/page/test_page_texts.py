@@ -82,7 +82,7 @@ def test_every_key_that_the_page_names_is_there(texts) -> None:
         WEB / "index.html",
     ]
     named = re.compile(
-        r"\btranslate\(\s*[\"']([^\"'$]+)[\"']|data-(?:text|label|hint)=\"([^\"]+)\""
+        r"\b(?:translate|words|section|row)\(\s*[\"']([^\"'$]+)[\"']|data-(?:text|label|hint)=\"([^\"]+)\""
     )
     keys = {one or other for file in sources for one, other in named.findall(file.read_text())}
     assert len(keys) > 50

@@ -63,10 +63,7 @@ export class CaptureWriter {
   }
 }
 
-/**
- * A performance as a file.
- * @param {Performance & {frames: number}} performance
- */
+/** A performance as a file. @param {Performance & {frames: number}} performance */
 export async function fileOf({ rate, values, wishes, frames }) {
   const answer = await fetch(new URL(`captures/${rate}.json`, import.meta.url));
   if (!answer.ok) throw new Error(`${answer.status} ${answer.statusText}`);
@@ -173,10 +170,7 @@ function finite(value) {
 
 /** Plays a performance; tells by the event 'end'. */
 export class Replayer extends EventTarget {
-  /**
-   * @param {Instrument} instrument
-   * @param {Performance} performance
-   */
+  /** @param {Instrument} instrument @param {Performance} performance */
   constructor(instrument, { rate, values, wishes }) {
     super();
     this.instrument = instrument;

@@ -1,4 +1,7 @@
-/** The page's words, in the language chosen. */
+/**
+ * The page's words, in the language chosen. What parameters and presets do is told by the server's own
+ * tables (`facts.js`); other languages translate that too, under `about/...` and `preset.NAME.about`.
+ */
 
 import { remember, settings } from "./settings.js";
 
@@ -17,20 +20,17 @@ export function language() {
 
 /** Load the words of the language. */
 export async function loadWords() {
-  const module = language() === "zh" ? import("./texts/zh.js") : import("./texts/en.js");
-  texts = (await module).default;
+  const answer = await fetch(new URL(`texts/${language()}.json`, import.meta.url));
+  texts = await answer.json();
   document.documentElement.lang = language() === "zh" ? "zh-Hans" : "en";
   document.title = translate("title");
 }
 
-/**
- * Speak another language from now on; nothing else changes.
- * @param {'en' | 'zh'} chosen
- */
+/** Speak another language from now on; nothing else changes. @param {'en' | 'zh'} chosen */
 export async function setLanguage(chosen) {
   remember({ language: chosen });
   await loadWords();
-  fillWords(document);
+  fillWords();
   changes.dispatchEvent(new Event("change"));
 }
 
@@ -63,23 +63,15 @@ export function translateOr(key, otherwise) {
 }
 
 /**
- * Put the words into all elements that name one: `data-text` is content, `data-label` the name
- * that screen readers read, `data-hint` a placeholder.
- * @param {ParentNode} root
+ * Put the words into all elements that name one: `data-text` is content, `data-label` the name that
+ * screen readers read.
  */
-export function fillWords(root) {
-  for (const element of root.querySelectorAll("[data-text]")) {
-    element.textContent = translate(/** @type {HTMLElement} */ (element).dataset.text ?? "");
-  }
-  for (const element of root.querySelectorAll("[data-label]")) {
-    const label = translate(/** @type {HTMLElement} */ (element).dataset.label ?? "");
-    element.setAttribute("aria-label", label);
-    if (element instanceof HTMLButtonElement) element.title = label;
-  }
-  for (const element of root.querySelectorAll("[data-hint]")) {
-    element.setAttribute(
-      "placeholder",
-      translate(/** @type {HTMLElement} */ (element).dataset.hint ?? ""),
-    );
+export function fillWords() {
+  for (const element of document.querySelectorAll("[data-text], [data-label]")) {
+    if (!(element instanceof HTMLElement)) continue;
+    const { text, label } = element.dataset;
+    if (text) element.textContent = translate(text);
+    if (label) element.ariaLabel = translate(label);
+    if (label && element instanceof HTMLButtonElement) element.title = translate(label);
   }
 }

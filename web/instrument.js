@@ -9,10 +9,10 @@ import facts from "./facts.js";
 import { Interpreter } from "./playing/interpreter.js";
 import { MAPPINGS } from "./playing/learned.js";
 import { Player } from "./playing/player.js";
-import { fetchModule } from "./sound/module.js";
 
 /** Wishes before the sound is open wait for it; more than these are of no use to anybody. */
 const MOST_WAITING = 1000;
+const PREPARING = 503;
 const AHEAD_S = 0.25;
 const AHEAD_HIDDEN_S = 1.5;
 
@@ -197,4 +197,29 @@ export class Instrument extends EventTarget {
       this.dispatchEvent(new Event("fail"));
     }
   }
+}
+
+/**
+ * The instrument in WebAssembly, which a server may still be preparing. Throws an error that tells why there is none.
+ * @param {() => void} waits called whenever it is still being prepared
+ * @returns {Promise<ArrayBuffer>}
+ */
+async function fetchModule(waits) {
+  for (;;) {
+    const answer = await fetch(new URL("yehu.wasm", import.meta.url));
+    if (answer.ok) return answer.arrayBuffer();
+    const seconds = Number(answer.headers.get("Retry-After"));
+    if (answer.status !== PREPARING || !seconds) throw new Error(await reasonOf(answer));
+    waits();
+    await new Promise((resolve) => setTimeout(resolve, 1e3 * seconds));
+  }
+}
+
+/**
+ * Why there is none: a server of this instrument tells, others have their own pages for that.
+ * @param {Response} answer
+ */
+async function reasonOf(answer) {
+  const isTold = answer.headers.get("Content-Type")?.startsWith("text/plain");
+  return isTold ? (await answer.text()).trim() : `${answer.status} ${answer.statusText}`;
 }

@@ -2,21 +2,18 @@
 
 import { find, isServed } from "./elements.js";
 import { Bow } from "./hands/bow.js";
-import { Diagram } from "./hands/schelleng.js";
 import { Fingerboard } from "./hands/fingerboard.js";
-import { setTonic } from "./hands/scale.js";
+import { KeyTuning, setTonic } from "./hands/scale.js";
 import { Surface } from "./hands/surface.js";
 import { Hands } from "./hands/hands.js";
 import { Keys } from "./hands/keys.js";
-import { KeyTuning } from "./hands/key_tuning.js";
 import { Instrument } from "./instrument.js";
 import { Midi } from "./midi.js";
-import { Level } from "./pictures/level.js";
 import { Gallery } from "./pictures/picture.js";
 import { Score } from "./pictures/score.js";
-import { Schelleng } from "./pictures/schelleng.js";
+import { Diagram, Schelleng } from "./pictures/schelleng.js";
 import { Spectrum } from "./pictures/spectrum.js";
-import { Tuner } from "./pictures/tuner.js";
+import { Level, Tuner } from "./pictures/tuner.js";
 import { Yehu } from "./pictures/yehu.js";
 import { settings } from "./settings.js";
 import { MidiLearn } from "./midi_learn.js";
@@ -138,7 +135,7 @@ function connect({ instrument, hands, keys, fingerboard, bow, gallery }) {
 async function main() {
   const server = isServed ? import("./views/server.js") : null;
   await loadWords();
-  fillWords(document);
+  fillWords();
   const views = await server;
   find("page", HTMLElement).hidden = false; // measured by what follows
   const page = assemble();

@@ -12,10 +12,7 @@ export class Midi extends EventTarget {
   /** @type {MIDIAccess | null} */
   #access = null;
 
-  /**
-   * @param {Instrument} instrument
-   * @param {MidiLearn} taught
-   */
+  /** @param {Instrument} instrument @param {MidiLearn} taught */
   constructor(instrument, taught) {
     super();
     this.instrument = instrument;

@@ -63,10 +63,7 @@ export class MidiLearn extends EventTarget {
     return this.#wait?.target ?? null;
   }
 
-  /**
-   * Bind the control that is moved next.
-   * @param {string} target
-   */
+  /** Bind the control that is moved next. @param {string} target */
   await(target) {
     this.#end();
     this.found = null;

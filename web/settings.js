@@ -40,10 +40,7 @@ function read() {
 
 export const settings = read();
 
-/**
- * Change some, and remember them.
- * @param {Partial<Values>} changes
- */
+/** Change some, and remember them. @param {Partial<Values>} changes */
 export function remember(changes) {
   Object.assign(settings, changes);
   try {

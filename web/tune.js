@@ -4,7 +4,7 @@
 
 import facts from "./facts.js";
 import { MAPPINGS } from "./playing/learned.js";
-import { transposed } from "./playing/range.js";
+import { transposed } from "./playing/table.js";
 
 /**
  * @typedef {object} Tune As `examples.js` has it.

@@ -100,20 +100,14 @@ export class Bow extends EventTarget {
     this.hands.liftBow();
   }
 
-  /**
-   * Notice a finger that rests: no event tells of it.
-   * @param {number} now ms
-   */
+  /** Notice a finger that rests: no event tells of it. @param {number} now ms */
   #tick(now) {
     if (this.by === null) return;
     this.#draw(this.#speedAt(now));
     requestAnimationFrame((next) => this.#tick(next));
   }
 
-  /**
-   * Speed of the bow over the last moments, m/s.
-   * @param {number} now ms
-   */
+  /** Speed of the bow over the last moments, m/s. @param {number} now ms */
   #speedAt(now) {
     const last = this.way[this.way.length - 1];
     while (this.way.length > 2 && this.way[1].time <= last.time - WINDOW) this.way.shift();
@@ -140,10 +134,7 @@ export class Bow extends EventTarget {
     return /** @type {const} */ ([BELOW * Math.min(this.least, WIDEST_LEAST), ABOVE]);
   }
 
-  /**
-   * The bow force (N) at a speed, at the height of the finger.
-   * @param {number} speed m/s
-   */
+  /** The bow force (N) at a speed, at the height of the finger. @param {number} speed m/s */
   forceAt(speed) {
     const [light, firm] = this.range;
     const amount = light * (firm / light) ** this.height;

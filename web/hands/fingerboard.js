@@ -4,7 +4,6 @@
 /** @typedef {import('./pointers.js').Touch} Touch */
 
 import { Pointers } from "./pointers.js";
-import { Rocking } from "./rocking.js";
 import { HIGHEST, Landing, LOWEST, Scale, nameOf, withinRange } from "./scale.js";
 
 const VELOCITY = 0.63; // of a keyboard's 80
@@ -16,11 +15,18 @@ const ARROWS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 };
 const FINE = 0.1; // semitones, with the shift key
 const BY_KEYS = "arrows";
 
+// Of a finger that rocks:
+const LEAST = 0.03; // semitones from one turn to the next; less is a hand at rest
+const MOST = 1.2; // and more is a slide
+const SOONEST = 40; // ms from turn to turn
+const LATEST = 350;
+const TURNS = 3;
+
 export class Fingerboard extends EventTarget {
   /**
    * @param {HTMLElement} element
    * @param {Hands} hands
-   * @param {import('./key_tuning.js').KeyTuning} tuned
+   * @param {import('./scale.js').KeyTuning} tuned
    * @param {import('./surface.js').Surface} surface
    */
   constructor(element, hands, tuned, surface) {
@@ -119,10 +125,7 @@ export class Fingerboard extends EventTarget {
     if (held.rocking.isOn(place, touch.time)) this.hands.rock();
   }
 
-  /**
-   * @param {number} id
-   * @param {string} kind of its pointer
-   */
+  /** @param {number} id @param {string} kind of its pointer */
   #up(id, kind) {
     this.touches.delete(id);
     // A mouse cannot hold a finger and draw the bow: what it has stopped stays so.
@@ -177,10 +180,39 @@ export class Fingerboard extends EventTarget {
   }
 }
 
-/**
- * The dynamics of a loudness, as a share of the usual ones.
- * @param {number} loud 0 to 1
- */
+/** The dynamics of a loudness, as a share of the usual ones. @param {number} loud 0 to 1 */
 function dynamicsOf(loud) {
   return SOFTEST ** ((1 - loud) ** BEND);
+}
+
+/** Notices a finger that rocks to and fro, as in a vibrato. */
+class Rocking {
+  constructor() {
+    this.turns = 0;
+    this.way = 0; // the direction in which it moves
+    this.farthest = NaN; // where it came to on its way, and where it had turned
+    this.turned = NaN;
+    this.time = 0;
+  }
+
+  /**
+   * Whether a finger rocks, being at a pitch.
+   * @param {number} pitch
+   * @param {number} time ms
+   */
+  isOn(pitch, time) {
+    if (Number.isNaN(this.turned)) {
+      [this.turned, this.farthest, this.time] = [pitch, pitch, time];
+    }
+    if ((pitch - this.farthest) * this.way >= 0 && this.way !== 0) this.farthest = pitch;
+    else if (Math.abs(pitch - this.farthest) >= LEAST) {
+      const size = Math.abs(this.farthest - this.turned);
+      const lasted = time - this.time;
+      const isTurn = this.way !== 0 && size <= MOST && lasted >= SOONEST && lasted <= LATEST;
+      this.turns = isTurn ? this.turns + 1 : 0;
+      [this.turned, this.time, this.way] = [this.farthest, time, Math.sign(pitch - this.farthest)];
+      this.farthest = pitch;
+    }
+    return this.turns >= TURNS;
+  }
 }

@@ -101,10 +101,7 @@ export class Hands extends EventTarget {
     this.dispatchEvent(new Event("rock"));
   }
 
-  /**
-   * @param {string} address
-   * @param {number} factor on its usual value
-   */
+  /** @param {string} address @param {number} factor on its usual value */
   #move(address, factor) {
     const usual = this.usual.get(address) ?? this.player.value(address);
     this.usual.set(address, usual);
@@ -118,10 +115,7 @@ export class Hands extends EventTarget {
     this.dynamics = 1;
   }
 
-  /**
-   * A finger goes.
-   * @param {NoteId} id
-   */
+  /** A finger goes. @param {NoteId} id */
   lift(id) {
     const at = this.fingers.findIndex((one) => one.id === id);
     if (at < 0) return;
@@ -135,10 +129,7 @@ export class Hands extends EventTarget {
     this.#changed();
   }
 
-  /**
-   * The string is stopped by the finger before, or open.
-   * @param {HeldFinger} last
-   */
+  /** The string is stopped by the finger before, or open. @param {HeldFinger} last */
   #stopBelow(last) {
     const top = this.top;
     if (!top) {
@@ -182,10 +173,7 @@ export class Hands extends EventTarget {
   }
 }
 
-/**
- * The open string that sounds when a finger is lifted.
- * @param {number} pitch
- */
+/** The open string that sounds when a finger is lifted. @param {number} pitch */
 function openBelow(pitch) {
   return pitch > OPEN[1] ? OPEN[1] : OPEN[0];
 }

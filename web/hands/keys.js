@@ -26,10 +26,7 @@ export const NOTES = new Map([
 
 const SIGNS = { Comma: ",", Period: ".", Slash: "/", Semicolon: ";" };
 
-/**
- * What is written on a key.
- * @param {string} code
- */
+/** What is written on a key. @param {string} code */
 export function signOf(code) {
   return SIGNS[/** @type {keyof typeof SIGNS} */ (code)] ?? code.replace(/Key|Digit/, "");
 }
@@ -38,10 +35,7 @@ export function signOf(code) {
 const WRITING = "input:not([type=range], [type=checkbox], [type=radio]), select, textarea";
 
 export class Keys extends EventTarget {
-  /**
-   * @param {Hands} hands
-   * @param {import('./key_tuning.js').KeyTuning} tuned
-   */
+  /** @param {Hands} hands @param {import('./scale.js').KeyTuning} tuned */
   constructor(hands, tuned) {
     super();
     this.tuned = tuned;

@@ -18,10 +18,7 @@
 const NO_PRESSURE = new Set([0, 0.5, 1]);
 
 export class Pointers {
-  /**
-   * @param {HTMLElement} element
-   * @param {Followers} followers
-   */
+  /** @param {HTMLElement} element @param {Followers} followers */
   constructor(element, followers) {
     this.element = element;
     this.followers = followers;

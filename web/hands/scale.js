@@ -1,5 +1,7 @@
 /** Where pitches are on the fingerboard, and what they are called. */
 
+/** @typedef {import('../playing/tables.js').Tuning} Tuning */
+
 import facts from "../facts.js";
 
 /** The instrument's lowest and highest notes (MIDI), and its open strings. */
@@ -37,10 +39,7 @@ export function setTonic(note) {
 /** @param {number} note */
 const stepOf = (note) => (((note - tonic) % 12) + 12) % 12;
 
-/**
- * Whether a note is one of the major scale on do.
- * @param {number} note
- */
+/** Whether a note is one of the major scale on do. @param {number} note */
 export function isDegree(note) {
   return MAJOR.includes(stepOf(note));
 }
@@ -57,10 +56,7 @@ export function jianpu(note) {
   return { digit: sign + degree, dots: Math.floor((note - tonic) / 12) };
 }
 
-/**
- * The same in words, with dots above or below.
- * @param {number} note
- */
+/** The same in words, with dots above or below. @param {number} note */
 export function jianpuText(note) {
   const { digit, dots } = jianpu(note);
   return digit + (dots < 0 ? "\u0323" : "\u0307").repeat(Math.abs(dots));
@@ -74,10 +70,7 @@ export function stringOf(note) {
 /** Fingers by semitones above the open string, in the first position, and in those that follow. */
 const FINGERS = [0, 1, 1, 2, 2, 3, 4, 4];
 
-/**
- * A finger that a note is at hand for: 0 is the open string.
- * @param {number} note
- */
+/** A finger that a note is at hand for: 0 is the open string. @param {number} note */
 export function fingerOf(note) {
   const above = Math.round(note) - OPEN[stringOf(note)];
   return FINGERS[above] ?? FINGERS[1 + ((above - FINGERS.length) % (FINGERS.length - 1))];
@@ -101,10 +94,7 @@ export function withinRange(pitch) {
 
 /** The part of the range that is shown, on a line of some length. */
 export class Scale {
-  /**
-   * @param {number} length px
-   * @param {number} lowest note that should be shown first
-   */
+  /** @param {number} length px @param {number} lowest note that should be shown first */
   constructor(length, lowest = LOWEST) {
     const whole = HIGHEST - LOWEST;
     this.length = Math.max(length, 1);
@@ -145,5 +135,48 @@ export class Landing {
   /** @param {number} place pitch where the finger is now */
   pitchAt(place) {
     return place + this.offset * Math.max(0, 1 - Math.abs(place - this.place));
+  }
+}
+
+/** The tuning, as hands meet it: which pitch a key has, and on which a finger lands. */
+export class KeyTuning {
+  constructor() {
+    /** @type {Record<string, Tuning>} */
+    this.all = facts.tunings;
+    /** @type {Tuning} */
+    this.tuning = facts.tunings.equal;
+    /** Pitches of the keys within the instrument's range. @type {number[]} */
+    this.pitches = [];
+    this.#collect();
+  }
+
+  /** @param {string} name of `facts.tunings` */
+  choose(name) {
+    this.tuning = this.all[name];
+    this.#collect();
+  }
+
+  #collect() {
+    this.pitches = [];
+    for (let key = 0; key < facts.notes.KEYS; key++) {
+      const found = this.pitchOf(key);
+      if (found !== null && found > LOWEST - 0.5 && found < HIGHEST + 0.5) this.pitches.push(found);
+    }
+  }
+
+  /** The pitch of a key; null where it has none. @param {number} key */
+  pitchOf(key) {
+    const { keys } = this.tuning;
+    return keys === null ? key : (keys[key] ?? null);
+  }
+
+  /** The nearest pitch that a key has. @param {number} place pitch */
+  nearest(place) {
+    let best = place;
+    let least = Infinity;
+    for (const one of this.pitches) {
+      if (Math.abs(one - place) < least) [least, best] = [Math.abs(one - place), one];
+    }
+    return best;
   }
 }

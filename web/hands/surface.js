@@ -73,10 +73,7 @@ export class Surface extends EventTarget {
     return nearest - Math.min(away, 1) * (nearest - this.board[1]);
   }
 
-  /**
-   * Where across the strings a loudness is.
-   * @param {number} share 0: soft, 1: loud
-   */
+  /** Where across the strings a loudness is. @param {number} share 0: soft, 1: loud */
   loudnessAt(share) {
     return (this.isUpright ? share : 1 - share) * this.breadth;
   }

@@ -1,11 +1,9 @@
 /** The bow on the instrument, and where on the hand's way the string sounds well. */
 
-/** @typedef {import('../hands/bow.js').Bow} Bow */
-/** @typedef {import('../hands/surface.js').Surface} Surface */
-/** @typedef {import('./picture.js').Colours} Colours */
-/** @typedef {import('../interfaces.js').Snapshot} Snapshot */
+/** @typedef {import('./yehu.js').Yehu} Yehu */
 
-import { disc, laneOf } from "./wood.js";
+import { disc } from "./picture.js";
+import { laneOf } from "./wood.js";
 
 const USUAL_BETA = 0.13;
 const LONG = 0.84; // of the breadth, the whole hair
@@ -17,14 +15,11 @@ const MARKS = 26; // along the hair
 const NEAR_END = 0.06; // of the hair
 
 /**
- * @param {CanvasRenderingContext2D} context along and across the strings, px
- * @param {Surface} surface
- * @param {Bow} bow
- * @param {Colours} colours
- * @param {Snapshot | null} state
+ * @param {Yehu} yehu whose context goes along and across the strings
+ * @param {import('../interfaces.js').Snapshot | null} state
  * @param {boolean} isCalm the bow rests, and the string goes along it
  */
-export function drawBow(context, surface, bow, colours, state, isCalm) {
+export function drawBow({ context, surface, bow, colours }, state, isCalm) {
   const { breadth } = surface;
   const along = surface.bowAt(state?.bow.beta ?? USUAL_BETA);
   const string = state?.bow.string ?? -1;
@@ -77,12 +72,9 @@ export function drawBow(context, surface, bow, colours, state, isCalm) {
 
 /**
  * The forces with which the string sounds well, at the present speed, along the hand's way.
- * @param {CanvasRenderingContext2D} context
- * @param {Surface} surface
- * @param {Bow} bow
- * @param {Colours} colours
+ * @param {Yehu} yehu
  */
-export function drawForces(context, surface, bow, colours) {
+export function drawForces({ context, surface, bow, colours }) {
   const { length, breadth, board } = surface;
   const heights = bow.playable;
   const placeOf = (/** @type {number} */ height) => board[1] + height * (length - board[1]);

@@ -55,6 +55,38 @@ export function font(size, weight = 400) {
   return `${weight} ${size}px system-ui, -apple-system, "Noto Sans", "PingFang SC", sans-serif`;
 }
 
+/** @typedef {CanvasRenderingContext2D} Context */
+/** @typedef {readonly [x: number, y: number]} Point */
+
+/** Draw a line through points. @param {Context} context @param {Point[]} points */
+export function line(context, ...points) {
+  context.beginPath();
+  for (const point of points) context.lineTo(...point);
+  context.stroke();
+}
+
+/** Fill the room between points. @param {Context} context @param {Point[]} points */
+export function fill(context, ...points) {
+  context.beginPath();
+  for (const point of points) context.lineTo(...point);
+  context.fill();
+}
+
+/**
+ * Fill a disc.
+ * @param {Context} context
+ * @param {number} x
+ * @param {number} y
+ * @param {number} radius
+ * @param {string | CanvasGradient} colour
+ */
+export function disc(context, x, y, radius, colour) {
+  context.fillStyle = colour;
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.fill();
+}
+
 /** A base for pictures, which say how they are drawn. */
 export class Picture {
   /** @param {HTMLCanvasElement} canvas */
@@ -93,10 +125,7 @@ export class Picture {
     return colours ?? readColours();
   }
 
-  /**
-   * Draw one moment, if it can be seen and differs from the last.
-   * @param {Moment} moment
-   */
+  /** Draw one moment, if it can be seen and differs from the last. @param {Moment} moment */
   show(moment) {
     if (!this.isSeen) return;
     this.notice(moment);
@@ -110,7 +139,7 @@ export class Picture {
     const elapsed = this.drawnAt ? Math.min(lasted, LONGEST) : 0;
     this.drawnAt = moment.now;
     this.context.clearRect(0, 0, this.width, this.height);
-    this.draw(this.context, { ...moment, elapsed });
+    this.draw({ ...moment, elapsed });
   }
 
   /** Whether all of it becomes larger on a large canvas. */
@@ -123,16 +152,10 @@ export class Picture {
     return false;
   }
 
-  /**
-   * Take note of a moment, whether or not it is drawn.
-   * @param {Moment} _moment
-   */
+  /** Take note of a moment, whether or not it is drawn. @param {Moment} _moment */
   notice(_moment) {}
 
-  /**
-   * Whether it has to be drawn again at a moment.
-   * @param {Moment} moment
-   */
+  /** Whether it has to be drawn again at a moment. @param {Moment} moment */
   changes(moment) {
     return moment.isNew || moment.isTouched;
   }
@@ -140,12 +163,8 @@ export class Picture {
   /** Draw what stays until it is stale again. */
   fitted() {}
 
-  /**
-   * Draw it.
-   * @param {CanvasRenderingContext2D} _context in px
-   * @param {Moment} _moment
-   */
-  draw(_context, _moment) {
+  /** Draw it, in px. @param {Moment} _moment */
+  draw(_moment) {
     throw new Error("says each picture");
   }
 

@@ -5,11 +5,18 @@
 
 /** @typedef {import('../interfaces.js').Snapshot} Snapshot */
 /** @typedef {import('./picture.js').Moment} Moment */
+/** @typedef {import('../interfaces.js').Player} Player */
 
+import { Pointers } from "../hands/pointers.js";
 import { translate } from "../i18n.js";
-import { Limits } from "./limits.js";
-import { Picture, font } from "./picture.js";
-import { regimeOf } from "./regime.js";
+import { Picture, disc, fill, font, line } from "./picture.js";
+import { regimeOf } from "../sound/snapshot.js";
+
+const USUAL_BETA = 0.13;
+/** N, of an ordinary stroke there. */
+const USUAL_LEAST = 0.04;
+const USUAL_MOST = 1.46;
+const SMOOTH = 0.15; // s: they follow the bow's speed
 
 const NEAREST = 0.035; // beta, at the left
 const FARTHEST = 0.5;
@@ -42,27 +49,22 @@ export class Schelleng extends Picture {
     this.limits = new Limits();
   }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {Moment} moment
-   */
-  draw(context, { state, elapsed }) {
+  /** @param {Moment} moment */
+  draw({ state, elapsed }) {
+    const { context } = this;
     if (state) this.#follow(state, elapsed);
     context.save();
     context.beginPath();
     context.rect(LEFT, 0, this.width - LEFT, this.height - BOTTOM);
     context.clip();
-    this.#wedge(context);
+    this.#wedge();
     context.restore();
-    this.#frame(context);
-    this.#names(context);
-    if (state && state.bow.string >= 0 && Math.abs(state.bow.force) > 0) this.#dot(context, state);
+    this.#frame();
+    this.#names();
+    if (state && state.bow.string >= 0 && Math.abs(state.bow.force) > 0) this.#dot(state);
   }
 
-  /**
-   * @param {Snapshot} state
-   * @param {number} elapsed s
-   */
+  /** @param {Snapshot} state @param {number} elapsed s */
   #follow(state, elapsed) {
     const { bow } = state;
     this.limits.follow(state, elapsed);
@@ -104,34 +106,27 @@ export class Schelleng extends Picture {
     };
   }
 
-  /** @param {CanvasRenderingContext2D} context */
-  #wedge(context) {
-    const first = Math.max(Math.min(this.limits.tip, FARTHEST), NEAREST);
-    context.beginPath();
-    for (const beta of [first, FARTHEST]) {
-      context.lineTo(this.#across(beta), this.#down(this.limits.at(beta).most));
-    }
-    for (const beta of [FARTHEST, first]) {
-      context.lineTo(this.#across(beta), this.#down(this.limits.at(beta).least));
-    }
-    context.closePath();
-    context.globalAlpha = 0.14;
-    context.fillStyle = this.colours.good;
-    context.fill();
-    context.globalAlpha = 1;
-    context.strokeStyle = this.colours.good;
-    context.lineWidth = 1.8;
-    for (const which of /** @type {const} */ (["most", "least"])) {
-      context.beginPath();
-      for (const beta of [NEAREST, FARTHEST]) {
-        context.lineTo(this.#across(beta), this.#down(this.limits.at(beta)[which]));
-      }
-      context.stroke();
-    }
+  /** @param {number} beta @param {number} force N @returns {import("./picture.js").Point} */
+  #at(beta, force) {
+    return [this.#across(beta), this.#down(force)];
   }
 
-  /** @param {CanvasRenderingContext2D} context */
-  #frame(context) {
+  #wedge() {
+    const { context, colours, limits } = this;
+    const edge = (/** @type {"least" | "most"} */ which, /** @type {number[]} */ ...betas) =>
+      betas.map((beta) => this.#at(beta, limits.at(beta)[which]));
+    const first = Math.max(Math.min(limits.tip, FARTHEST), NEAREST);
+    context.fillStyle = context.strokeStyle = colours.good;
+    context.globalAlpha = 0.14;
+    fill(context, ...edge("most", first, FARTHEST), ...edge("least", FARTHEST, first));
+    context.globalAlpha = 1;
+    context.lineWidth = 1.8;
+    line(context, ...edge("most", NEAREST, FARTHEST));
+    line(context, ...edge("least", NEAREST, FARTHEST));
+  }
+
+  #frame() {
+    const { context } = this;
     const bottom = this.height - BOTTOM;
     context.font = font(11);
     context.fillStyle = this.colours.line;
@@ -155,11 +150,9 @@ export class Schelleng extends Picture {
     context.fillText(translate("schelleng.force"), LEFT + 8, 12);
   }
 
-  /**
-   * What is heard on either side of the wedge, and in it.
-   * @param {CanvasRenderingContext2D} context
-   */
-  #names(context) {
+  /** What is heard on either side of the wedge, and in it. */
+  #names() {
+    const { context } = this;
     context.font = font(12);
     context.fillStyle = this.colours.soft;
     context.textBaseline = "middle";
@@ -175,30 +168,90 @@ export class Schelleng extends Picture {
     context.fillText(translate("regime.helmholtz"), right, Math.min(y, this.height - BOTTOM - 14));
   }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {Snapshot} state
-   */
-  #dot(context, state) {
-    const colour = this.colours[COLOURS[regimeOf(state)]];
+  /** @param {Snapshot} state */
+  #dot(state) {
+    const { context, colours } = this;
+    const colour = colours[COLOURS[regimeOf(state)]];
     context.strokeStyle = colour;
     context.lineWidth = 2;
     context.globalAlpha = 0.35;
-    context.beginPath();
-    for (const { beta, force } of this.trail) context.lineTo(this.#across(beta), this.#down(force));
-    context.stroke();
+    line(context, ...this.trail.map(({ beta, force }) => this.#at(beta, force)));
     context.globalAlpha = 1;
-    context.fillStyle = colour;
-    context.strokeStyle = this.colours.surface;
-    context.beginPath();
-    context.arc(
-      this.#across(state.bow.beta),
-      this.#down(Math.abs(state.bow.force)),
-      8,
-      0,
-      2 * Math.PI,
-    );
-    context.fill();
-    context.stroke();
+    const [x, y] = this.#at(state.bow.beta, Math.abs(state.bow.force));
+    disc(context, x, y, 9, colours.surface);
+    disc(context, x, y, 7, colour);
+  }
+}
+
+/** Schelleng's limits of the bow force at every place of the bow, as they are told of one place. */
+export class Limits {
+  constructor() {
+    this.beta = USUAL_BETA;
+    /** Logarithms of the limits at `beta`. */
+    this.least = Math.log(USUAL_LEAST);
+    this.most = Math.log(USUAL_MOST);
+  }
+
+  /**
+   * Follow what is told of the bow.
+   * @param {Pick<Snapshot, 'bow' | 'schelleng'>} state
+   * @param {number} elapsed s
+   */
+  follow({ bow, schelleng: { min, max } }, elapsed) {
+    if (bow.string < 0 || !(min > 0 && max > 0) || bow.speed === 0) return;
+    const share = Math.min(elapsed / SMOOTH, 1);
+    // Carried to where the bow is now, along their slopes, before they are averaged.
+    const away = Math.log(this.beta / bow.beta);
+    this.least += 2 * away;
+    this.most += away;
+    this.beta = bow.beta;
+    this.least += share * (Math.log(min) - this.least);
+    this.most += share * (Math.log(max) - this.most);
+  }
+
+  /**
+   * The limits at a place (N): the least force falls with its square, the greatest with itself.
+   * @param {number} beta
+   */
+  at(beta) {
+    const away = Math.log(this.beta / beta);
+    return { least: Math.exp(this.least + 2 * away), most: Math.exp(this.most + away) };
+  }
+
+  /** The place (beta) where both meet: nearer the bridge no force will do. */
+  get tip() {
+    return this.beta * Math.exp(this.least - this.most);
+  }
+}
+
+/** Places the bow by the diagram: where it is touched, there the bow is until it is let go. */
+export class Diagram {
+  /** @param {Schelleng} picture @param {Player} player */
+  constructor(picture, player) {
+    this.picture = picture;
+    this.player = player;
+    /** @type {number | null} the pointer that places the bow */
+    this.by = null;
+    new Pointers(picture.canvas, {
+      down: (touch) => {
+        this.by ??= touch.id;
+        this.#place(touch);
+      },
+      move: (touches) => this.#place(touches[touches.length - 1]),
+      up: (id) => {
+        if (id !== this.by) return;
+        this.by = null;
+        player.release(); // the player has its bow back
+      },
+    });
+  }
+
+  /** @param {import("../hands/pointers.js").Touch} touch */
+  #place({ id, x, y }) {
+    if (id !== this.by) return;
+    const { beta, force } = this.picture.pointAt(x, y);
+    this.player.write("/bow/position", beta);
+    this.player.write("/bow/force", force);
+    this.picture.isStale = true; // seen at once
   }
 }

@@ -5,7 +5,7 @@
 /** @typedef {import("./picture.js").Moment} Moment */
 
 import { fingerOf, jianpu, stringOf } from "../hands/scale.js";
-import { Picture, font } from "./picture.js";
+import { Picture, disc, font, line } from "./picture.js";
 
 const NOW = 0.16; // of the width, where the present note is
 const NEAREST = 30; // px between notes
@@ -47,11 +47,9 @@ export class Score extends Picture {
     return false;
   }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {Moment} moment
-   */
-  draw(context, { state, elapsed, isCalm }) {
+  /** @param {Moment} moment */
+  draw({ state, elapsed, isCalm }) {
+    const { context } = this;
     const course = this.#course;
     if (!course) return;
     const { colours, width, height } = this;
@@ -105,9 +103,7 @@ export class Score extends Picture {
     context.fillText(digit, x, 0.4 * height);
     for (let dot = 1; dot <= Math.abs(dots); dot++) {
       const away = dots > 0 ? -9 - 5 * dot : 8 + 4 * dot;
-      context.beginPath();
-      context.arc(x, 0.4 * height + away, 2, 0, 2 * Math.PI);
-      context.fill();
+      disc(context, x, 0.4 * height + away, 2, context.fillStyle);
     }
     context.globalAlpha = 1;
   }
@@ -149,17 +145,8 @@ export class Score extends Picture {
     context.fillRect(left - 4, 0.1 * height, 22, 0.48 * height);
     context.strokeStyle = colours.ink;
     context.lineWidth = 2.5;
-    context.beginPath();
-    if (speed > 0) {
-      context.moveTo(left, top + 14);
-      context.lineTo(left, top);
-      context.lineTo(left + 14, top);
-      context.lineTo(left + 14, top + 14);
-    } else {
-      context.moveTo(left, top);
-      context.lineTo(left + 7, top + 14);
-      context.lineTo(left + 14, top);
-    }
-    context.stroke();
+    const [right, bottom] = [left + 14, top + 14];
+    if (speed > 0) line(context, [left, bottom], [left, top], [right, top], [right, bottom]);
+    else line(context, [left, top], [left + 7, bottom], [right, top]);
   }
 }

@@ -3,7 +3,7 @@
 /** @typedef {import('./picture.js').Moment} Moment */
 
 import { Picture, font } from "./picture.js";
-import { soundingPitch } from "./regime.js";
+import { soundingPitch } from "../sound/snapshot.js";
 
 const LOWEST = 200; // Hz
 const HIGHEST = 12000;
@@ -20,22 +20,17 @@ const MARKS = /** @type {const} */ ([
 const A4 = 440;
 
 export class Spectrum extends Picture {
-  /**
-   * @param {HTMLCanvasElement} canvas
-   * @param {() => AnalyserNode | null} analyser
-   */
+  /** @param {HTMLCanvasElement} canvas @param {() => AnalyserNode | null} analyser */
   constructor(canvas, analyser) {
     super(canvas);
     this.analyser = analyser;
     this.levels = new Float32Array(0);
   }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {Moment} moment
-   */
-  draw(context, { state }) {
-    this.#frame(context);
+  /** @param {Moment} moment */
+  draw({ state }) {
+    const { context } = this;
+    this.#frame();
     const analyser = this.analyser();
     if (!analyser || !state) return;
     if (this.levels.length !== analyser.frequencyBinCount) {
@@ -43,8 +38,8 @@ export class Spectrum extends Picture {
     }
     analyser.getFloatFrequencyData(this.levels);
     const pitch = soundingPitch(state);
-    if (!Number.isNaN(pitch)) this.#partials(context, A4 * 2 ** ((pitch - 69) / 12));
-    this.#curve(context, analyser.context.sampleRate / analyser.fftSize);
+    if (!Number.isNaN(pitch)) this.#partials(A4 * 2 ** ((pitch - 69) / 12));
+    this.#curve(analyser.context.sampleRate / analyser.fftSize);
   }
 
   /** @param {number} frequency Hz */
@@ -57,8 +52,8 @@ export class Spectrum extends Picture {
     return ((TOP - Math.min(Math.max(level, FLOOR), TOP)) / (TOP - FLOOR)) * (this.height - 18);
   }
 
-  /** @param {CanvasRenderingContext2D} context */
-  #frame(context) {
+  #frame() {
+    const { context } = this;
     const bottom = this.height - 18;
     context.font = font(11);
     context.textBaseline = "top";
@@ -74,11 +69,9 @@ export class Spectrum extends Picture {
     context.fillRect(0, bottom, this.width, 1);
   }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {number} fundamental Hz
-   */
-  #partials(context, fundamental) {
+  /** @param {number} fundamental Hz */
+  #partials(fundamental) {
+    const { context } = this;
     context.fillStyle = this.colours.outer;
     for (let n = 1; n * fundamental < HIGHEST && n <= 20; n++) {
       context.globalAlpha = 0.7 / Math.sqrt(n);
@@ -87,12 +80,9 @@ export class Spectrum extends Picture {
     context.globalAlpha = 1;
   }
 
-  /**
-   * The greatest level within each px.
-   * @param {CanvasRenderingContext2D} context
-   * @param {number} step Hz from bin to bin
-   */
-  #curve(context, step) {
+  /** The greatest level within each px. @param {number} step Hz from bin to bin */
+  #curve(step) {
+    const { context } = this;
     const bottom = this.height - 18;
     context.beginPath();
     context.moveTo(0, bottom);

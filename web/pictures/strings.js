@@ -1,13 +1,11 @@
 /** Both strings in motion: slowed or as they are, glowing as they are loud. */
 
 /** @typedef {import("../interfaces.js").Snapshot} Snapshot */
-/** @typedef {import("./picture.js").Colours} Colours */
-/** @typedef {import("../hands/surface.js").Surface} Surface */
 /** @typedef {'slowed' | 'moving' | 'still'} View still: the room in which they move, and no motion */
 
 import { POINTS } from "../sound/snapshot.js";
-import { RestShape } from "./rest_shape.js";
-import { Stroboscope } from "./stroboscope.js";
+import { RestShape, Stroboscope } from "./stroboscope.js";
+import { line } from "./picture.js";
 import { laneOf } from "./wood.js";
 
 export const STRINGS = /** @type {const} */ (["inner", "outer"]);
@@ -74,13 +72,11 @@ export class Strings {
   }
 
   /**
-   * @param {CanvasRenderingContext2D} context along and across the strings, px
-   * @param {Surface} surface
-   * @param {Colours} colours
+   * @param {import("./yehu.js").Yehu} yehu whose context goes along and across the strings
    * @param {number} level dBFS
    * @param {[number, number][]} knots places on the string (m) and on the picture (px)
    */
-  draw(context, surface, colours, level, knots) {
+  draw({ context, surface, colours }, level, knots) {
     const along = placesOf(knots);
     const side = surface.isUpright ? 1 : -1;
     const gain = (side * Math.min(SWING * surface.breadth, MOST_SWING)) / this.swing;
@@ -89,10 +85,8 @@ export class Strings {
       const lane = laneOf(surface, string);
       context.strokeStyle = context.fillStyle = colours[STRINGS[string]];
       context.lineWidth = 1.5;
-      context.beginPath(); // to its peg
-      context.moveTo(surface.board[0] * (string ? 0.34 : 0.68), lane);
-      context.lineTo(along[0], lane);
-      context.stroke();
+      const peg = surface.board[0] * (string ? 0.34 : 0.68);
+      line(context, [peg, lane], [along[0], lane]);
       // Else it only gives way to a finger that sways.
       const isHeard = level > SILENT && string === this.bowed;
       this.#string(context, string, along, (y) => lane + gain * y, isHeard ? level : SILENT);
@@ -111,11 +105,9 @@ export class Strings {
     const { slow, trail } = this.both[string];
     const isHeard = level > SILENT;
     if (isHeard) this.#envelope(context, string, along, across);
-    const line = (/** @type {Float32Array} */ shape, /** @type {number} */ width) => {
+    const draw = (/** @type {Float32Array} */ shape, /** @type {number} */ width) => {
       context.lineWidth = width;
-      context.beginPath();
-      for (let i = 0; i < POINTS; i++) context.lineTo(along[i], across(shape[i]));
-      context.stroke();
+      line(context, ...along.map((x, i) => /** @type {const} */ ([x, across(shape[i])])));
     };
     /** @type {Float32Array} */
     let shape = STILL;
@@ -124,16 +116,16 @@ export class Strings {
     const glow = Math.min(Math.max((level - QUIET) / (LOUD - QUIET), 0), 1);
     for (const width of glow > 0 ? [16, 9, 5] : []) {
       context.globalAlpha = 0.16 * glow;
-      line(shape, width);
+      draw(shape, width);
     }
     if (view === "moving") {
       trail.slice(0, -1).forEach((one, i) => {
         context.globalAlpha = (0.3 * (i + 1)) / TRAIL;
-        line(one, 1);
+        draw(one, 1);
       });
     }
     context.globalAlpha = 1;
-    line(shape, 2.2);
+    draw(shape, 2.2);
   }
 
   /**
@@ -160,10 +152,7 @@ export class Strings {
   }
 }
 
-/**
- * The places of a shape's points.
- * @param {[number, number][]} knots
- */
+/** The places of a shape's points. @param {[number, number][]} knots */
 function placesOf(knots) {
   const end = knots[knots.length - 1][0];
   return Array.from({ length: POINTS }, (_, i) => {

@@ -1,8 +1,8 @@
 /** On the fingerboard: the notes of a tune that come next, and the way there from a wrong one. */
 
-/** @typedef {import("./picture.js").Colours} Colours */
+/** @typedef {import("./yehu.js").Yehu} Yehu */
 
-import { disc } from "./wood.js";
+import { disc, fill, line } from "./picture.js";
 
 const RINGS = [25, 15, 10]; // px
 const PULSE_S = 0.7;
@@ -23,27 +23,23 @@ const WRONG_S = 1.4;
 
 /**
  * Draw them; return whether they move.
- * @param {CanvasRenderingContext2D} context along and across the strings, px
- * @param {number} middle px across
- * @param {(pitch: number) => number} placeOf
+ * @param {Yehu} yehu whose context goes along and across the strings
  * @param {Targets} targets
- * @param {Colours} colours
- * @param {number} now s
- * @param {boolean} isCalm
+ * @param {import("./picture.js").Moment} moment
  */
-export function drawTargets(context, middle, placeOf, targets, colours, now, isCalm) {
+export function drawTargets(yehu, targets, { now, isCalm }) {
+  const { context, colours } = yehu;
+  const middle = yehu.surface.breadth / 2;
   const { pitches, due, asked, isAgain, wrong } = targets;
   if (pitches.length === 0) return false;
-  const places = pitches.map(placeOf);
+  const places = pitches.map((pitch) => yehu.placeOf(pitch));
   const since = now - asked;
   const isPulsing = isAgain && since < PULSE_S;
   const isWrong = wrong !== null && now - wrong.at < WRONG_S;
   context.strokeStyle = colours.accent;
   context.lineWidth = 2;
   context.globalAlpha = 0.35;
-  context.beginPath();
-  for (const place of places) context.lineTo(place, middle);
-  context.stroke();
+  line(context, ...places.map((place) => /** @type {const} */ ([place, middle])));
   places.slice(0, RINGS.length).forEach((place, i) => {
     if (i > 0 && pitches[i] === pitches[0]) return;
     context.globalAlpha = [1, 0.6, 0.4][i];
@@ -62,7 +58,7 @@ export function drawTargets(context, middle, placeOf, targets, colours, now, isC
     ring(context, first, middle, RINGS[0] + CLOSES * due);
     context.globalAlpha = 1;
   }
-  if (isWrong) arrow(context, placeOf(wrong.pitch), first, middle, colours);
+  if (isWrong) arrow(yehu, yehu.placeOf(wrong.pitch), first);
   return isPulsing || isWrong || due !== null;
 }
 
@@ -79,26 +75,18 @@ function ring(context, x, y, radius) {
 }
 
 /**
- * @param {CanvasRenderingContext2D} context
+ * @param {Yehu} yehu
  * @param {number} from px along
  * @param {number} to
- * @param {number} middle px across
- * @param {Colours} colours
  */
-function arrow(context, from, to, middle, colours) {
+function arrow({ context, colours, surface }, from, to) {
   const side = Math.sign(to - from);
   const tip = to - side * (RINGS[0] + 4);
+  const middle = surface.breadth / 2;
   if ((tip - from) * side < 6) return;
-  context.strokeStyle = context.fillStyle = colours.bad;
+  context.strokeStyle = colours.bad;
   context.lineWidth = 5;
-  context.beginPath();
-  context.moveTo(from, middle);
-  context.lineTo(tip - side * 8, middle);
-  context.stroke();
-  context.beginPath();
-  context.moveTo(tip, middle);
-  context.lineTo(tip - side * 14, middle - 9);
-  context.lineTo(tip - side * 14, middle + 9);
-  context.fill();
+  line(context, [from, middle], [tip - side * 8, middle]);
   disc(context, from, middle, 7, colours.bad);
+  fill(context, [tip, middle], [tip - side * 14, middle - 9], [tip - side * 14, middle + 9]);
 }

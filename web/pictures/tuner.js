@@ -1,16 +1,22 @@
-/** The tuner: the note that sounds, and how far from it, in cents; now and over the last seconds. */
+/** The tuner, and the level meter below it. */
 
 /** @typedef {import('./picture.js').Moment} Moment */
 
 import { nameOf } from "../hands/scale.js";
 import { Picture, font } from "./picture.js";
-import { soundingPitch } from "./regime.js";
+import { soundingPitch } from "../sound/snapshot.js";
 
 const RANGE = 50; // cents to either side
 const TRUE_WITHIN = 5;
 const LASTS = 4; // s of the trace
 const SMOOTH = 0.08; // s
 
+const QUIETEST = -60; // dBFS, at the left
+const LOUD = -3; // from here on the limiter works
+const FALL = 24; // dB/s
+const HOLD = 1.5; // s that the greatest level is marked
+
+/** The note that sounds, and how far from it, in cents; now and over the last seconds. */
 export class Tuner extends Picture {
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
@@ -20,11 +26,9 @@ export class Tuner extends Picture {
     this.pitch = NaN;
   }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {Moment} moment
-   */
-  draw(context, { state, isNew, now, elapsed }) {
+  /** @param {Moment} moment */
+  draw({ state, isNew, now, elapsed }) {
+    const { context } = this;
     if (state && isNew) this.#hear(soundingPitch(state), now, elapsed);
     const { width, height } = this;
     const note = Math.round(this.pitch);
@@ -43,9 +47,9 @@ export class Tuner extends Picture {
       const sign = cents < 0 ? "−" : "+";
       context.fillText(`${sign}${Math.abs(cents).toFixed(0)} ct`, 4, height * 0.8);
     }
-    this.#frame(context, left);
-    this.#trace(context, left, note, now);
-    if (sounds) this.#needle(context, left, cents, isTrue);
+    this.#frame(left);
+    this.#trace(left, note, now);
+    if (sounds) this.#needle(left, cents, isTrue);
   }
 
   /**
@@ -61,19 +65,14 @@ export class Tuner extends Picture {
     while (this.trace.length && this.trace[0].time < now - LASTS) this.trace.shift();
   }
 
-  /**
-   * @param {number} left
-   * @param {number} cents
-   */
+  /** @param {number} left @param {number} cents */
   #across(left, cents) {
     return left + ((cents + RANGE) / (2 * RANGE)) * (this.width - left - 8);
   }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {number} left
-   */
-  #frame(context, left) {
+  /** @param {number} left */
+  #frame(left) {
+    const { context } = this;
     const bottom = this.height - 20;
     context.font = font(11);
     context.textAlign = "center";
@@ -99,12 +98,12 @@ export class Tuner extends Picture {
 
   /**
    * The pitch over time: the latest at the bottom, as the needle leaves it behind.
-   * @param {CanvasRenderingContext2D} context
    * @param {number} left
    * @param {number} note
    * @param {number} now
    */
-  #trace(context, left, note, now) {
+  #trace(left, note, now) {
+    const { context } = this;
     const bottom = this.height - 20;
     context.save();
     context.beginPath();
@@ -127,16 +126,51 @@ export class Tuner extends Picture {
   }
 
   /**
-   * @param {CanvasRenderingContext2D} context
    * @param {number} left
    * @param {number} cents
    * @param {boolean} isTrue
    */
-  #needle(context, left, cents, isTrue) {
+  #needle(left, cents, isTrue) {
+    const { context } = this;
     const bottom = this.height - 20;
     context.fillStyle = isTrue ? this.colours.good : this.colours.bad;
     context.beginPath();
     context.roundRect(this.#across(left, cents) - 2.5, bottom - 26, 5, 26, 2.5);
     context.fill();
+  }
+}
+
+/** How loud it is now, and at most of late. */
+export class Level extends Picture {
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    super(canvas);
+    this.level = QUIETEST;
+    this.most = QUIETEST;
+    this.until = 0;
+  }
+
+  /** @param {Moment} moment */
+  draw({ state, now, elapsed }) {
+    const { context } = this;
+    const heard = Math.max(state?.level ?? QUIETEST, QUIETEST); // NaN never comes: silence is -inf
+    this.level = Math.max(heard, this.level - FALL * elapsed);
+    if (this.level >= this.most || now > this.until) {
+      this.most = this.level;
+      this.until = now + HOLD;
+    }
+    const { width, height } = this;
+    const place = (/** @type {number} */ level) => (Math.min(level, 0) / -QUIETEST + 1) * width;
+    context.fillStyle = this.colours.line;
+    context.beginPath();
+    context.roundRect(0, 0, width, height, height / 2);
+    context.fill();
+    context.save();
+    context.clip();
+    context.fillStyle = this.level > LOUD ? this.colours.bad : this.colours.soft;
+    context.fillRect(0, 0, place(this.level), height);
+    context.fillStyle = this.colours.ink;
+    if (this.most > QUIETEST) context.fillRect(place(this.most) - 2, 0, 2, height);
+    context.restore();
   }
 }

@@ -4,7 +4,7 @@
 
 import { nameOf } from "../hands/scale.js";
 import { Picture, font } from "./picture.js";
-import { soundingPitch } from "./regime.js";
+import { soundingPitch } from "../sound/snapshot.js";
 
 const LASTS = 6; // s
 const LEAST = 5; // semitones that are shown
@@ -22,11 +22,9 @@ export class Voice extends Picture {
     this.trace = [];
   }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {Moment} moment
-   */
-  draw(context, { state, isNew, now }) {
+  /** @param {Moment} moment */
+  draw({ state, isNew, now }) {
+    const { context } = this;
     if (state && isNew) {
       const played = soundingPitch(state);
       const octaves = Math.round((played - this.heard()) / OCTAVE); // as it is played
@@ -48,19 +46,19 @@ export class Voice extends Picture {
       context.fillStyle = this.colours.soft;
       if (span < 2 * OCTAVE) context.fillText(nameOf(note), 2, y(note));
     }
-    this.#line(context, "heard", this.colours.accent, 3, x, y);
-    this.#line(context, "played", this.colours.outer, 1.5, x, y);
+    this.#line("heard", this.colours.accent, 3, x, y);
+    this.#line("played", this.colours.outer, 1.5, x, y);
   }
 
   /**
-   * @param {CanvasRenderingContext2D} context
    * @param {'heard' | 'played'} which
    * @param {string} colour
    * @param {number} width px
    * @param {(time: number) => number} x
    * @param {(pitch: number) => number} y
    */
-  #line(context, which, colour, width, x, y) {
+  #line(which, colour, width, x, y) {
+    const { context } = this;
     context.strokeStyle = colour;
     context.lineWidth = width;
     context.beginPath();

@@ -6,19 +6,17 @@
 
 import { HIGHEST, LOWEST, OPEN, isDegree, jianpu, letterOf } from "../hands/scale.js";
 import { translate } from "../i18n.js";
-import { font } from "./picture.js";
+import { disc, font, line } from "./picture.js";
 
 const NECK = 0.055; // half its width, of the breadth
 const MOST_NECK = 30; // px
 const APART = 0.55; // of the neck's half width: each string from the middle
 const LABELS = 66; // px at the soft side, with the names of notes
 const GRAINS = 5;
+const LEAST_FOR_SOFT = 260; // px across: else a button is there
 const KEY = 22; // px, the side of a printed key
 
-/**
- * Half the width of the neck, px.
- * @param {Surface} surface
- */
+/** Half the width of the neck, px. @param {Surface} surface */
 export function neckOf({ breadth }) {
   return Math.min(NECK * breadth, MOST_NECK);
 }
@@ -60,10 +58,7 @@ export class Wood {
     context.globalAlpha = 1;
   }
 
-  /**
-   * A line where each note is.
-   * @param {Scale} scale
-   */
+  /** A line where each note is. @param {Scale} scale */
   drawNotes(scale) {
     const { context, surface, colours } = this;
     const [from] = surface.board;
@@ -73,10 +68,8 @@ export class Wood {
       context.globalAlpha = open >= 0 ? 0.9 : isDegree(note) ? 0.8 : 0.35;
       context.strokeStyle = open < 0 ? colours.line : colours[open ? "outer" : "inner"];
       context.lineWidth = open >= 0 ? 2 : isDegree(note) ? 1.5 : 1;
-      context.beginPath();
-      context.moveTo(from + scale.placeOf(note), soft);
-      context.lineTo(from + scale.placeOf(note), surface.loudnessAt(1));
-      context.stroke();
+      const along = from + scale.placeOf(note);
+      line(context, [along, soft], [along, surface.loudnessAt(1)]);
     }
     context.globalAlpha = 1;
   }
@@ -119,16 +112,13 @@ export class Wood {
     context.lineWidth = 1;
     context.globalAlpha = 0.5;
     for (let angle = 0; angle < 2 * Math.PI; angle += Math.PI / 24) {
-      context.beginPath(); // fibres of the shell
-      context.moveTo(
-        centre + 0.9 * round * Math.cos(angle),
-        middle + 0.9 * round * Math.sin(angle),
+      // Fibres of the shell.
+      const [inner, outer] = [0.9 * round, 0.985 * round];
+      line(
+        context,
+        [centre + inner * Math.cos(angle), middle + inner * Math.sin(angle)],
+        [centre + outer * Math.cos(angle + 0.06), middle + outer * Math.sin(angle + 0.06)],
       );
-      context.lineTo(
-        centre + 0.985 * round * Math.cos(angle + 0.06),
-        middle + 0.985 * round * Math.sin(angle + 0.06),
-      );
-      context.stroke();
     }
     context.globalAlpha = 1;
     const lid = context.createRadialGradient(centre, middle, 0, centre, middle, 0.88 * round);
@@ -172,14 +162,9 @@ export class Wood {
 
 /**
  * Write the notes' names as jianpu and letters; and the computer's keys, once they are played.
- * @param {(text: string, along: number, across: number) => void} write
- * @param {CanvasRenderingContext2D} context
- * @param {Surface} surface
- * @param {Scale} scale
- * @param {Colours} colours
- * @param {Map<number, string>} keys by note
+ * @param {import("./yehu.js").Yehu} yehu
  */
-export function writeNotes(write, context, surface, scale, colours, keys) {
+export function writeNotes({ context, surface, colours, fingerboard: { scale }, keys, write }) {
   const { board, breadth, isUpright } = surface;
   const put = (/** @type {number} */ beside) => (isUpright ? beside : breadth - beside);
   context.textAlign = "center";
@@ -223,7 +208,9 @@ export function writeNotes(write, context, surface, scale, colours, keys) {
   context.fillStyle = colours.soft;
   const loud = isUpright ? breadth - 24 : 14;
   write(translate("board.loud"), board[0] - 18, loud);
-  write(translate("board.soft"), board[0] - 18, put(LABELS + (isUpright ? -24 : 10)));
+  if (isUpright || breadth > LEAST_FOR_SOFT) {
+    write(translate("board.soft"), board[0] - 18, put(LABELS + (isUpright ? -24 : 10)));
+  }
 }
 
 /** @param {Scale} scale */
@@ -231,18 +218,4 @@ function notesOf(scale) {
   const first = Math.max(Math.ceil(scale.pitchAt(0)), LOWEST);
   const last = Math.min(Math.floor(scale.pitchAt(scale.length)), HIGHEST);
   return Array.from({ length: last - first + 1 }, (_, step) => first + step);
-}
-
-/**
- * @param {CanvasRenderingContext2D} context
- * @param {number} x
- * @param {number} y
- * @param {number} radius
- * @param {string | CanvasGradient} fill
- */
-export function disc(context, x, y, radius, fill) {
-  context.fillStyle = fill;
-  context.beginPath();
-  context.arc(x, y, radius, 0, 2 * Math.PI);
-  context.fill();
 }

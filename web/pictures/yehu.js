@@ -8,11 +8,11 @@
 import { LOWEST, OPEN, fingerOf, stringOf } from "../hands/scale.js";
 import { translate } from "../i18n.js";
 import { drawBow, drawForces } from "./bow.js";
-import { Picture, font } from "./picture.js";
-import { soundingPitch } from "./regime.js";
+import { Picture, disc, fill, font, line } from "./picture.js";
+import { soundingPitch } from "../sound/snapshot.js";
 import { STRINGS, Strings } from "./strings.js";
 import { drawTargets } from "./targets.js";
-import { Wood, disc, laneOf, writeNotes } from "./wood.js";
+import { Wood, laneOf, writeNotes } from "./wood.js";
 
 const FINGER = 15; // px
 const SAME = 0.01; // semitones
@@ -71,13 +71,13 @@ export class Yehu extends Picture {
   }
 
   /** Write upright, whichever way the instrument lies. */
-  #write = (
+  write = (
     /** @type {string} */ text,
     /** @type {number} */ along,
     /** @type {number} */ across,
   ) => {
-    const [x, y] = this.surface.isUpright ? [across, along] : [along, across];
-    this.context.fillText(text, x, y);
+    if (this.surface.isUpright) this.context.fillText(text, across, along);
+    else this.context.fillText(text, along, across);
   };
 
   /** What stands still. */
@@ -98,43 +98,37 @@ export class Yehu extends Picture {
     for (const pitch of fingerboard.tuned.pitches) {
       // Where a finger lands in another tuning than the keyboard's.
       if (Math.abs(pitch - Math.round(pitch)) > SAME) {
-        disc(behind, this.#placeOf(pitch), surface.breadth / 2, 4, this.colours.ink);
+        disc(behind, this.placeOf(pitch), surface.breadth / 2, 4, this.colours.ink);
       }
     }
     behind.restore();
-    writeNotes(this.#write, behind, surface, fingerboard.scale, this.colours, this.keys);
+    writeNotes(this);
     this.context = context;
   }
 
   /** @param {number} pitch */
-  #placeOf(pitch) {
+  placeOf(pitch) {
     return this.surface.board[0] + this.fingerboard.scale.placeOf(pitch);
   }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {Moment} moment
-   */
-  draw(context, { state, elapsed, now, isCalm }) {
-    const { surface, bow, colours, strings } = this;
-    strings.go(elapsed);
+  /** @param {Moment} moment */
+  draw(moment) {
+    const { context, bow, strings } = this;
+    const { state } = moment;
+    strings.go(moment.elapsed);
     context.save();
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(this.backdrop, 0, 0);
     context.restore();
     context.save();
     this.#lie();
-    if (bow.hands.isBowing) drawForces(context, surface, bow, colours);
-    strings.draw(context, surface, colours, state?.level ?? -Infinity, this.#knots(state));
+    if (bow.hands.isBowing) drawForces(this);
+    strings.draw(this, state?.level ?? -Infinity, this.#knots(state));
     for (const { x, press } of state?.fingers ?? []) this.#finger(this.#placeOfFinger(x), press);
     const isBowed = (state?.bow.string ?? -1) >= 0;
     this.#touches(isBowed);
-    drawBow(context, surface, bow, colours, state, isCalm);
-    const placeOf = (/** @type {number} */ pitch) => this.#placeOf(pitch);
-    const middle = surface.breadth / 2;
-    if (this.targets && drawTargets(context, middle, placeOf, this.targets, colours, now, isCalm)) {
-      this.wake();
-    }
+    drawBow(this, state, moment.isCalm);
+    if (this.targets && drawTargets(this, this.targets, moment)) this.wake();
     const pitch = state ? soundingPitch(state) : NaN;
     if (isBowed && !Number.isNaN(pitch)) this.#sounding(pitch);
     context.restore();
@@ -150,7 +144,7 @@ export class Yehu extends Picture {
    */
   #knots(state) {
     const { bridge } = this.surface;
-    const start = this.#placeOf(OPEN[0]);
+    const start = this.placeOf(OPEN[0]);
     if (!state) return [[0, start], [1, bridge]]; // prettier-ignore
     const { length } = state.string;
     this.length = length;
@@ -173,7 +167,7 @@ export class Yehu extends Picture {
 
   /** @param {number} x m */
   #placeOfFinger(x) {
-    return this.#placeOf(this.#pitchAt(x));
+    return this.placeOf(this.#pitchAt(x));
   }
 
   /**
@@ -193,7 +187,7 @@ export class Yehu extends Picture {
     const { context, surface, fingerboard } = this;
     for (const { id, pitch } of fingerboard.hands.fingers) {
       const loud = fingerboard.touches.get(Number(id))?.loud;
-      const along = this.#placeOf(pitch);
+      const along = this.placeOf(pitch);
       const isTop = id === fingerboard.hands.top?.id;
       const string = isTop && isBowed ? this.strings.bowed : stringOf(pitch);
       const lane = laneOf(surface, string);
@@ -201,30 +195,20 @@ export class Yehu extends Picture {
       context.globalAlpha = isTop ? 0.5 : 0.2;
       context.strokeStyle = this.colours[STRINGS[string]];
       context.lineWidth = 3;
-      context.beginPath();
-      context.moveTo(along, lane);
-      context.lineTo(along, across);
-      context.stroke();
+      line(context, [along, lane], [along, across]);
       disc(context, along, across, isTop ? 22 : 14, context.strokeStyle);
       context.globalAlpha = 1;
     }
   }
 
-  /**
-   * What is heard, wherever the finger may be: a mark at the loud side.
-   * @param {number} pitch
-   */
+  /** What is heard, wherever the finger may be: a mark at the loud side. @param {number} pitch */
   #sounding(pitch) {
     const { context, surface, colours } = this;
     const tip = surface.loudnessAt(1) + (surface.isUpright ? -38 : 38);
     const end = tip + (surface.isUpright ? 14 : -14);
-    const along = this.#placeOf(pitch);
+    const along = this.placeOf(pitch);
     context.fillStyle = colours.ink;
-    context.beginPath();
-    context.moveTo(along, tip);
-    context.lineTo(along - 6, end);
-    context.lineTo(along + 6, end);
-    context.fill();
+    fill(context, [along, tip], [along - 6, end], [along + 6, end]);
   }
 
   /** Numbers of fingers, and how often a note comes. @param {Snapshot | null} state */
@@ -236,12 +220,12 @@ export class Yehu extends Picture {
     context.fillStyle = colours.ink;
     const lane = laneOf(surface, strings.bowed);
     for (const { x } of (this.showsFingers && state?.fingers) || []) {
-      this.#write(String(fingerOf(this.#pitchAt(x))), this.#placeOfFinger(x), lane);
+      this.write(String(fingerOf(this.#pitchAt(x))), this.#placeOfFinger(x), lane);
     }
     if (!targets || targets.repeats < 2) return;
     context.fillStyle = colours.accent;
     const beside = surface.breadth / 2 - 46;
-    this.#write(`×${targets.repeats}`, this.#placeOf(targets.pitches[0]), beside);
+    this.write(`×${targets.repeats}`, this.placeOf(targets.pitches[0]), beside);
   }
 
   /** How fast and firm the hand draws. */

@@ -64,10 +64,7 @@ export class Interpreter {
     return (this.#whole(record.tables) + 1) % slots;
   }
 
-  /**
-   * Some tables: see `writeTables`.
-   * @param {number} [slot] by default those in use
-   */
+  /** Some tables: see `writeTables`. @param {number} [slot] by default those in use */
   tables(slot = this.#whole(record.tables)) {
     return this.#of([tablesAt + slot * length, length]);
   }

@@ -151,10 +151,7 @@ export function merged(mapping, learned) {
   return { ...mapping, binds: [...kept, ...learned] };
 }
 
-/**
- * Controller and channels: binds of equal keys replace each other.
- * @param {Bind} bind
- */
+/** Controller and channels: binds of equal keys replace each other. @param {Bind} bind */
 function overrideKey(bind) {
   const channels = "row" in bind ? bind.channels : undefined;
   return `${controller(bind.source)}; ${channels ?? ""}`;
@@ -176,10 +173,7 @@ export function fileOf(base, mapping, learned) {
   return lines(head) + tables.join("");
 }
 
-/**
- * The entries of a bind, without those at their defaults.
- * @param {LearnedBind} bind
- */
+/** The entries of a bind, without those at their defaults. @param {LearnedBind} bind */
 function entriesOf({ source, target, span, isSoft, isGlobal }) {
   return {
     source,

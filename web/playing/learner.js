@@ -1,7 +1,6 @@
 /** MIDI learn: detects which source somebody moves, so that it can be bound. */
 
 import facts from "../facts.js";
-import * as midi from "./midi_bytes.js";
 import * as sources from "./sources.js";
 
 const { DISTANCE, AT_REST } = facts.learner;
@@ -10,6 +9,16 @@ const [NRPN, NRPN_FINE] = facts.sources.NRPN;
 const [RPN, RPN_FINE] = facts.sources.RPN;
 /** @type {ReadonlyMap<string, number>} */
 const REST = new Map(Object.entries(AT_REST));
+
+const NOTE_OFF = 0x80;
+const NOTE_ON = 0x90;
+const POLY_TOUCH = 0xa0;
+const CONTROL_CHANGE = 0xb0;
+const PROGRAM_CHANGE = 0xc0;
+const AFTERTOUCH = 0xd0;
+const PITCH_WHEEL = 0xe0;
+const SYSTEM = 0xf0;
+const SYSTEM_RESET = 0xff;
 
 /**
  * @typedef {object} Channel The control changes received on one channel.
@@ -33,20 +42,20 @@ export class Learner {
    * @returns {string | null}
    */
   hear(bytes, port = 0) {
-    const kind = midi.kindOf(bytes);
-    if (kind === null || kind === midi.SYSTEM_RESET) return null;
+    const kind = kindOf(bytes);
+    if (kind === null || kind === SYSTEM_RESET) return null;
     const channel = sources.CHANNELS * port + (bytes[0] & 0x0f);
     const [, first, second] = Array.from(bytes);
-    if (kind === midi.PITCH_WHEEL) {
+    if (kind === PITCH_WHEEL) {
       return this.#moved(channel, sources.BEND, (first | (second << 7)) / sources.FINEST);
     }
-    if (kind === midi.AFTERTOUCH) {
+    if (kind === AFTERTOUCH) {
       return this.#moved(channel, sources.PRESSURE, first / sources.STEPS);
     }
-    if (kind === midi.POLY_TOUCH) {
+    if (kind === POLY_TOUCH) {
       return this.#moved(channel, sources.POLY_PRESSURE, second / sources.STEPS);
     }
-    return kind === midi.CONTROL_CHANGE ? this.#control(channel, first, second) : null;
+    return kind === CONTROL_CHANGE ? this.#control(channel, first, second) : null;
   }
 
   /**
@@ -91,4 +100,19 @@ export class Learner {
     this.#beganAt.set(key, began);
     return Math.abs(position - began) >= DISTANCE ? source : null;
   }
+}
+
+/**
+ * The kind of a message: the status of a channel message without its channel, or SYSTEM_RESET;
+ * null for any other message, and for bytes that are none.
+ * @param {ArrayLike<number>} bytes
+ * @returns {number | null}
+ */
+function kindOf(bytes) {
+  const status = bytes[0] ?? 0;
+  if (status >= SYSTEM) return status === SYSTEM_RESET && bytes.length === 1 ? status : null;
+  const kind = status & 0xf0;
+  const length = kind === PROGRAM_CHANGE || kind === AFTERTOUCH ? 2 : 3;
+  if (kind < NOTE_OFF || bytes.length !== length) return null;
+  return bytes[1] < 0x80 && (length === 2 || bytes[2] < 0x80) ? kind : null;
 }

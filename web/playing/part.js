@@ -71,10 +71,7 @@ export class Part {
     }
   }
 
-  /**
-   * Let the interpreter know what others have set.
-   * @param {Interpreter} interpreter
-   */
+  /** Let the interpreter know what others have set. @param {Interpreter} interpreter */
   #learnValues(interpreter) {
     const { values } = interpreter;
     for (const { address, row, owned } of TABLE) {
@@ -203,10 +200,7 @@ export class Part {
     this.take(frame, TABLES_TO, nextSlot);
   }
 
-  /**
-   * Tune keys, from the next note on.
-   * @param {Tuning} tuning
-   */
+  /** Tune keys, from the next note on. @param {Tuning} tuning */
   tune(tuning) {
     if (this.interpreter) writeTuning(this.interpreter.tables(), tuning);
   }

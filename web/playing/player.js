@@ -3,8 +3,7 @@
 import facts from "../facts.js";
 import { MAPPINGS } from "./learned.js";
 import { Part } from "./part.js";
-import { clamp } from "./range.js";
-import { ParameterError, accept, find } from "./table.js";
+import { ParameterError, accept, clamp, find } from "./table.js";
 
 const { DRAW, LIFT, SLIDE, RELEASE } = facts.kinds;
 const { MESSAGE, FINGER_ON, NOTE_OFF, LOAD, DISCONNECT, RELEASE_ALL } = facts.events;
@@ -52,10 +51,7 @@ export class Player {
     this.#part = new Part(sink);
   }
 
-  /**
-   * Play by an interpreter that was sent nothing.
-   * @param {Interpreter} interpreter
-   */
+  /** Play by an interpreter that was sent nothing. @param {Interpreter} interpreter */
   playBy(interpreter) {
     this.#part.interpreter = interpreter;
     this.remap(this.#mapping);
@@ -112,10 +108,7 @@ export class Player {
     this.#part.set(this.#at(frame), param, accept(param, value));
   }
 
-  /**
-   * Return to the player what direct writes took over.
-   * @param {number | null} frame
-   */
+  /** Return to the player what direct writes took over. @param {number | null} frame */
   release(frame = null) {
     this.#part.take(this.#at(frame), RELEASE);
   }
@@ -134,10 +127,7 @@ export class Player {
     }
   }
 
-  /**
-   * Tune the keys of MIDI, from the next note on.
-   * @param {string} name
-   */
+  /** Tune the keys of MIDI, from the next note on. @param {string} name */
   applyTuning(name) {
     this.#tuning = named(TUNINGS, name);
     this.#part.tune(this.#tuning);
@@ -242,10 +232,7 @@ export class Player {
     this.#part.take(this.#at(frame), DRAW, 0, accept(BOW_SPEED, speed), accept(BOW_FORCE, force));
   }
 
-  /**
-   * Lift a bow drawn by hand, and return it to the player.
-   * @param {number | null} frame
-   */
+  /** Lift a bow drawn by hand, and return it to the player. @param {number | null} frame */
   lift(frame = null) {
     this.#part.take(this.#at(frame), LIFT);
   }
@@ -268,10 +255,7 @@ export class Player {
     this.#part.restartFrames();
   }
 
-  /**
-   * End all notes and all sound at once, whoever plays.
-   * @param {number | null} frame
-   */
+  /** End all notes and all sound at once, whoever plays. @param {number | null} frame */
   panic(frame = null) {
     this.endNotes(frame);
     this.#part.stop(this.#afterAll(frame));

@@ -18,10 +18,7 @@ const LEARNED = new Set([
   ...PAIRS.filter((_, number) => isPair(number)),
 ]);
 
-/**
- * The source of a 7-bit control change.
- * @param {number} number
- */
+/** The source of a 7-bit control change. @param {number} number */
 export const control = (number) => CONTROLS[number];
 
 /**
@@ -30,24 +27,15 @@ export const control = (number) => CONTROLS[number];
  */
 export const pair = (coarse) => PAIRS[coarse];
 
-/**
- * The source of a non-registered parameter, 0 to 16382.
- * @param {number} number
- */
+/** The source of a non-registered parameter, 0 to 16382. @param {number} number */
 export const nrpn = (number) => `nrpn ${number}`;
 
-/**
- * Whether a controller has a fine half, `FINE_ABOVE` higher.
- * @param {number} number
- */
+/** Whether a controller has a fine half, `FINE_ABOVE` higher. @param {number} number */
 export function isCoarse(number) {
   return FIRST_COARSE <= number && number <= LAST_COARSE;
 }
 
-/**
- * Whether a pair of this coarse half can be a source.
- * @param {number} number
- */
+/** Whether a pair of this coarse half can be a source. @param {number} number */
 function isPair(number) {
   const { RESERVED } = facts.sources;
   return isCoarse(number) && !RESERVED.includes(number) && !RESERVED.includes(number + FINE_ABOVE);
@@ -70,10 +58,7 @@ export function isSource(name) {
   return LEARNED.has(/** @type {string} */ (name));
 }
 
-/**
- * Whether a source belongs to one note.
- * @param {string} source
- */
+/** Whether a source belongs to one note. @param {string} source */
 export const isOfOneNote = (source) => facts.sources.OF_ONE_NOTE.includes(source);
 
 /**

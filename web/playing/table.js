@@ -1,10 +1,11 @@
 /** The parameter table: ranges, defaults and curves of all that can be set, by address. */
 
 import facts from "../facts.js";
-import * as curves from "./curves.js";
-import { clamp } from "./range.js";
 
 /** @typedef {typeof facts.parameters[number]} Param A row of the table. */
+
+const { LOWEST_NOTE, HIGHEST_NOTE, OPEN_WITHIN } = facts.notes;
+const OCTAVE = 12;
 
 /** @type {readonly Param[]} */
 export const TABLE = facts.parameters;
@@ -45,19 +46,45 @@ export function accept(param, value) {
 /**
  * Map 0..1, clamped, to a parameter's range along its curve.
  * @param {Param} param
- * @param {number} unit
- * @returns {number}
+ * @param {number} share
  */
-export function fromUnit(param, unit) {
-  return curves.fromUnit(param.curve, clamp(unit, 0, 1), param.lo, param.hi);
+export function fromUnit({ curve, lo, hi }, share) {
+  const unit = clamp(share, 0, 1);
+  if (curve === "exp") return lo * (hi / lo) ** unit;
+  return lo + (hi - lo) * (curve === "s" ? unit * unit * (3 - 2 * unit) : unit);
 }
 
 /**
  * Map a value to 0..1, the inverse of `fromUnit`.
  * @param {Param} param
  * @param {number} value
+ */
+export function toUnit({ curve, lo, hi }, value) {
+  const within = clamp(value, lo, hi);
+  if (curve === "exp") return Math.log(within / lo) / Math.log(hi / lo);
+  const unit = (within - lo) / (hi - lo);
+  return curve === "s" ? 0.5 - Math.sin(Math.asin(1 - 2 * unit) / 3) : unit;
+}
+
+/**
+ * A number, moved to the nearer end of a range if it lies outside.
+ * @param {number} number
+ * @param {number} lo
+ * @param {number} hi
  * @returns {number}
  */
-export function toUnit(param, value) {
-  return curves.toUnit(param.curve, value, param.lo, param.hi);
+export function clamp(number, lo, hi) {
+  return Math.min(Math.max(number, lo), hi);
+}
+
+/**
+ * The note that is played for one that may be out of range: some octaves higher or lower.
+ * @param {number} note
+ * @returns {number}
+ */
+export function transposed(note) {
+  const isNear = LOWEST_NOTE - OPEN_WITHIN < note && note < HIGHEST_NOTE + OPEN_WITHIN;
+  if (isNear) return clamp(note, LOWEST_NOTE, HIGHEST_NOTE);
+  if (note < LOWEST_NOTE) return note + OCTAVE * Math.ceil((LOWEST_NOTE - note) / OCTAVE);
+  return note - OCTAVE * Math.ceil((note - HIGHEST_NOTE) / OCTAVE);
 }

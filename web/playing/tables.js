@@ -58,10 +58,7 @@ export function writeTables(tables, { mpe, keySwitches, start, x, y, binds }, tu
   writeTuning(tables, tuning);
 }
 
-/**
- * @param {Float64Array} tables
- * @param {Tuning} tuning
- */
+/** @param {Float64Array} tables @param {Tuning} tuning */
 export function writeTuning(tables, { keys }) {
   tables[AT.is_equal] = Number(keys === null);
   if (keys)

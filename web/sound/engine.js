@@ -80,10 +80,7 @@ export class Engine {
     } else if (record === false) this.#endRecording();
   }
 
-  /**
-   * @param {number} frame or NOW
-   * @param {Float64Array} wish kind, index, value, other
-   */
+  /** @param {number} frame or NOW @param {Float64Array} wish kind, index, value, other */
   #post(frame, wish) {
     const isTaken = this.kernel.post(frame, wish[0], wish[1], wish[2], wish[3]);
     this.restless = Math.max(this.restless, frame);
@@ -101,10 +98,7 @@ export class Engine {
     this.follows = isSung;
   }
 
-  /**
-   * Follow a voice, where one is followed.
-   * @param {Float32Array} samples at most a block
-   */
+  /** Follow a voice, where one is followed. @param {Float32Array} samples at most a block */
   hear(samples) {
     if (!this.follows) return;
     const wishes = this.kernel.follow(samples);

@@ -31,10 +31,7 @@ const SINCS = Array.from({ length: PHASES + 1 }, (_, phase) =>
 );
 
 export class JitterBuffer {
-  /**
-   * @param {number} rate of what is read, in Hz
-   * @param {number} sourceRate of what is written
-   */
+  /** @param {number} rate of what is read, in Hz @param {number} sourceRate of what is written */
   constructor(rate, sourceRate = rate) {
     this.rate = rate;
     this.sourceRate = sourceRate;
@@ -113,10 +110,7 @@ export class JitterBuffer {
     this.aim = Math.min(MOST, Math.round(this.aim * GROWTH));
   }
 
-  /**
-   * Find the frames to go on for each that is read.
-   * @param {number} seconds that it is for
-   */
+  /** Find the frames to go on for each that is read. @param {number} seconds that it is for */
   #follow(seconds) {
     const error = (this.fill - this.aim) / this.sourceRate;
     this.average += (error - this.average) * Math.min(1, seconds / AVERAGE_S);

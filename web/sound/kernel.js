@@ -22,10 +22,7 @@ export const WISH = 5;
 export const VOICE_WISH = WISH - 1;
 const VOICE_WISHES = 64;
 
-/**
- * What the module needs of its surroundings.
- * @param {() => DataView} view of its memory
- */
+/** What the module needs of its surroundings. @param {() => DataView} view of its memory */
 export function wasmImports(view) {
   return {
     asin: Math.asin,
@@ -124,10 +121,7 @@ export class Kernel {
     return Number(this.exported.yehu_lost(this.rig));
   }
 
-  /**
-   * The value that a parameter has, or moves to.
-   * @param {number} row
-   */
+  /** The value that a parameter has, or moves to. @param {number} row */
   value(row) {
     return this.exported.yehu_value(this.rig, BigInt(row));
   }
@@ -153,10 +147,7 @@ export class Kernel {
     this.exported.yehu_process(this.rig, this.outAt, this.lengths[frames]);
   }
 
-  /**
-   * Follow a voice from now on, at a rate in Hz.
-   * @param {number} rate
-   */
+  /** Follow a voice from now on, at a rate in Hz. @param {number} rate */
   prepareVoice(rate) {
     const bytes = Number(this.exported.yehu_voice_size());
     new Uint8Array(this.exported.memory.buffer, this.voice, bytes).fill(0);

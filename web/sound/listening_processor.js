@@ -20,10 +20,7 @@ class Listening extends AudioWorkletProcessor {
     };
   }
 
-  /**
-   * @param {Float32Array[][]} _inputs
-   * @param {Float32Array[][]} outputs
-   */
+  /** @param {Float32Array[][]} _inputs @param {Float32Array[][]} outputs */
   process(_inputs, outputs) {
     const [left, right] = outputs[0];
     this.sound.fillIn(left, right);

@@ -28,10 +28,7 @@ export class Remote extends EventTarget {
     return new Remote(line, await opening);
   }
 
-  /**
-   * @param {ServerConnection} line
-   * @param {StreamPlayer | null} listener
-   */
+  /** @param {ServerConnection} line @param {StreamPlayer | null} listener */
   constructor(line, listener) {
     super();
     this.line = line;
@@ -77,10 +74,7 @@ export class Remote extends EventTarget {
     return targetOf(this.seen, address);
   }
 
-  /**
-   * The value of any other parameter, whoever set it.
-   * @param {string} address
-   */
+  /** The value of any other parameter, whoever set it. @param {string} address */
   reported(address) {
     const row = ROWS.get(address);
     return row === undefined || !this.isSeen ? undefined : this.seen[facts.lookLength + row];

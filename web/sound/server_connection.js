@@ -45,10 +45,7 @@ const UNKNOWN = {
   sounds: "preparing",
 };
 
-/**
- * The address of a WebSocket beside the page.
- * @param {string} name
- */
+/** The address of a WebSocket beside the page. @param {string} name */
 export function socketUrl(name) {
   const url = new URL(`../${name}`, import.meta.url);
   url.protocol = url.protocol.replace("http", "ws");

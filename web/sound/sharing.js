@@ -13,10 +13,7 @@ const FIRST = 1 << 16;
 const CHANNELS = 1 << 12;
 
 export class Sharing {
-  /**
-   * @param {Instrument} instrument
-   * @param {ServerConnection} line
-   */
+  /** @param {Instrument} instrument @param {ServerConnection} line */
   constructor(instrument, line) {
     this.instrument = instrument;
     this.line = line;
@@ -56,10 +53,7 @@ export class Sharing {
     this.wishes.length = 0;
   }
 
-  /**
-   * @param {number} page
-   * @param {Float64Array} wish
-   */
+  /** @param {number} page @param {Float64Array} wish */
   #play(page, [frame, kind, index, value, other]) {
     const { sound } = this.instrument;
     if (!sound) return;
@@ -85,10 +79,7 @@ export class Sharing {
     this.held.set(page, held);
   }
 
-  /**
-   * End what a page held that is gone.
-   * @param {number} page
-   */
+  /** End what a page held that is gone. @param {number} page */
   #let(page) {
     for (const [channel, key] of this.held.get(page) ?? []) {
       this.instrument.sound?.post(null, END, channel, key, 0);

@@ -1,4 +1,4 @@
-/** Reads a look at the instrument: numbers in the order of `facts.look`. */
+/** Reads a look at the instrument, numbers in the order of `facts.look`; and names the motion of its string. */
 
 import facts from "../facts.js";
 
@@ -55,10 +55,7 @@ export function targetOf(look, address) {
   return slot === undefined ? undefined : look[AT.targets + slot];
 }
 
-/**
- * @param {Float64Array} look
- * @param {number} string
- */
+/** @param {Float64Array} look @param {number} string */
 function shapeOf(look, string) {
   const start = AT.shapes + string * POINTS;
   return Float32Array.from(look.subarray(start, start + POINTS));
@@ -76,4 +73,30 @@ function fingersOf(look, string) {
     if (press > 0) fingers.push({ x: look[AT.finger_x + i], press, string: Math.max(string, 0) });
   }
   return fingers;
+}
+
+/** From here on a motion repeats itself well enough to be a tone. */
+const CERTAIN = 0.8;
+const FAINT = -70; // dBFS; below is silence
+const TWICE = 1.5; // slips in a period; from here on the string slips too often
+
+/**
+ * The regime of the string: its motion, from what the ear hears.
+ * @param {Snapshot} state
+ * @returns {'silent' | 'ringing' | 'unheard' | 'helmholtz' | 'slipping' | 'raucous' | 'settling'}
+ */
+export function regimeOf({ bow, heard, level, schelleng }) {
+  if (bow.string < 0 || bow.speed === 0) return level > FAINT ? "ringing" : "silent";
+  if (heard.certainty === 0) return "unheard";
+  if (heard.certainty >= CERTAIN) return heard.slips < TWICE ? "helmholtz" : "slipping";
+  if (Math.abs(bow.force) > schelleng.max) return "raucous";
+  return heard.slips >= TWICE ? "slipping" : "settling";
+}
+
+/**
+ * The pitch that sounds, as far as it is heard: a fractional MIDI note, or NaN.
+ * @param {Snapshot} state
+ */
+export function soundingPitch({ pitch, heard }) {
+  return pitch + (heard.certainty >= CERTAIN ? heard.errorCents / 100 : 0);
 }

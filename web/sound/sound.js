@@ -5,7 +5,6 @@ import { openBackend } from "./backends.js";
 import { CHANNELS, NOW } from "./kernel.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
 import { settings } from "../settings.js";
-import { wav } from "./wav.js";
 
 /** @typedef {import('../interfaces.js').Status} Status */
 /** @typedef {import('./engine.js').Told} Told */
@@ -16,6 +15,10 @@ const LAG_S = 0.03; // by which sound falls behind the clock where samples were 
 const FFT = 4096;
 const SUSPENDS_AFTER_MS = 10_000;
 const FADE_S = 0.01;
+// Of WAV files:
+const FLOAT = 3; // the format's number
+const BITS = 32;
+const HEAD = 44; // bytes
 
 export class Sound extends EventTarget {
   /**
@@ -226,4 +229,32 @@ function newContext() {
   if (facts.rates.includes(context.sampleRate)) return context;
   context.close();
   return new AudioContext({ latencyHint, sampleRate: USUAL_RATE });
+}
+
+/**
+ * A WAV file of 32-bit floats, as they were heard.
+ * @param {Float32Array[]} chunks of samples, of all channels in turn
+ * @param {number} rate in Hz
+ * @param {number} channels
+ */
+function wav(chunks, rate, channels) {
+  const frameBytes = (channels * BITS) / 8;
+  const bytes = 4 * chunks.reduce((sum, chunk) => sum + chunk.length, 0);
+  const view = new DataView(new ArrayBuffer(HEAD));
+  /** @param {number} at @param {string} text */
+  const write = (at, text) =>
+    [...text].forEach((letter, i) => view.setUint8(at + i, letter.charCodeAt(0)));
+  write(0, "RIFF");
+  view.setUint32(4, HEAD - 8 + bytes, true);
+  write(8, "WAVEfmt ");
+  view.setUint32(16, 16, true);
+  view.setUint16(20, FLOAT, true);
+  view.setUint16(22, channels, true);
+  view.setUint32(24, rate, true);
+  view.setUint32(28, rate * frameBytes, true);
+  view.setUint16(32, frameBytes, true);
+  view.setUint16(34, BITS, true);
+  write(36, "data");
+  view.setUint32(40, bytes, true);
+  return new Blob([view, .../** @type {BlobPart[]} */ (chunks)], { type: "audio/wav" });
 }

@@ -26,10 +26,7 @@ export class StreamPlayer {
     }
   }
 
-  /**
-   * @param {AudioContext} context
-   * @param {number} rate of the server's sound, in Hz
-   */
+  /** @param {AudioContext} context @param {number} rate of the server's sound, in Hz */
   constructor(context, rate) {
     this.context = context;
     this.rate = rate;

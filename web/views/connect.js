@@ -43,10 +43,7 @@ export function showConnections(page) {
   );
 }
 
-/**
- * The state of the sound, and what helps against drop-outs.
- * @param {Instrument} instrument
- */
+/** The state of the sound, and what helps against drop-outs. @param {Instrument} instrument */
 function sound(instrument) {
   const status = make("p", { class: "soft" });
   const gaps = make("p", { class: "soft", role: "status", hidden: true });
@@ -73,10 +70,7 @@ function sound(instrument) {
   return section("connect.sound", status, gaps, buffer);
 }
 
-/**
- * Counts the drop-outs of the last minute.
- * @param {Instrument} instrument
- */
+/** Counts the drop-outs of the last minute. @param {Instrument} instrument */
 function dropoutsOf(instrument) {
   /** @type {number[]} */
   let times = []; // ms

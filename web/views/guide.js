@@ -17,10 +17,7 @@ const SLOWEST = 0.04; // m/s that is a stroke
 const HELP = "?";
 const FIRST_NOTE = 69; // that a ring invites to
 
-/**
- * @param {Page} page
- * @param {import('./tunes.js').Lesson} lesson
- */
+/** @param {Page} page @param {import('./tunes.js').Lesson} lesson */
 export function showGuide({ instrument, hands, bow, fingerboard, keys, yehu }, lesson) {
   const stage = find("stage", HTMLElement);
   const guide = find("guide", HTMLElement);

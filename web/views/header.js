@@ -59,10 +59,7 @@ function showNotice(instrument) {
   onLanguage(tell);
 }
 
-/**
- * The state of the sound in a line.
- * @param {import('../instrument.js').Instrument} instrument
- */
+/** The state of the sound in a line. @param {import('../instrument.js').Instrument} instrument */
 export function statusText({ sound, opening }) {
   if (!sound) return translate(opening ? "status.opening" : "status.off");
   const { running, backend, loadPercent, latencyMs } = sound.status;

@@ -46,10 +46,7 @@ export function makeLearning(target, taught, midi) {
   return [button, told];
 }
 
-/**
- * All that was taught, as a part of the panel of connections.
- * @param {Page} page
- */
+/** All that was taught, as a part of the panel of connections. @param {Page} page */
 export function showLearning({ taught, midi }) {
   const select = make("select", { "aria-label": words("learn.target") }, groups());
   const button = teacher(() => select.value, taught, midi);
@@ -196,10 +193,7 @@ function movedBy({ source }) {
   return translate("learn.by", { source: sourceName(source) });
 }
 
-/**
- * The name of a source, for people.
- * @param {string} source
- */
+/** The name of a source, for people. @param {string} source */
 export function sourceName(source) {
   return translateOr(`source.${source}`, source.toUpperCase()); // cc 74, nrpn 300
 }

@@ -23,10 +23,7 @@ export function showRecording(page) {
   find("panel-keep", HTMLElement).append(performances(page), recording(page.instrument));
 }
 
-/**
- * A name for a file of now.
- * @param {string} ending
- */
+/** A name for a file of now. @param {string} ending */
 function fileName(ending) {
   const stamp = new Date().toISOString().slice(0, 19).replace(/[T:]/g, "-");
   return `yehu-${stamp}.${ending}`;

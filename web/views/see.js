@@ -5,7 +5,7 @@
 
 import { find, make, makeChoice, whileShown, words } from "../elements.js";
 import { nameOf } from "../hands/scale.js";
-import { regimeOf, soundingPitch } from "../pictures/regime.js";
+import { regimeOf, soundingPitch } from "../sound/snapshot.js";
 import { remember, settings } from "../settings.js";
 import { onLanguage, translate } from "../i18n.js";
 import { makeSliders } from "./slider.js";

@@ -16,10 +16,7 @@ import { onLanguage, translate } from "../i18n.js";
 const WAYS = ["here", "there", "listen"];
 const LOOKED_MS = 1000; // a server that is away is not waited for any longer
 
-/**
- * The choice, and the state of the server.
- * @param {Instrument} instrument
- */
+/** The choice, and the state of the server. @param {Instrument} instrument */
 export function showServer(instrument) {
   const line = new ServerConnection();
   instrument.others = line;

@@ -9,26 +9,17 @@ import { onLanguage, translateOr } from "../i18n.js";
 
 const STEPS = 1000;
 
-/**
- * The name of a parameter, for people.
- * @param {string} address
- */
+/** The name of a parameter, for people. @param {string} address */
 export function nameFor(address) {
   return translateOr(`parameter${address}`, find(address).label);
 }
 
-/**
- * What a parameter is, in a sentence.
- * @param {Parameter} param
- */
+/** What a parameter is, in a sentence. @param {Parameter} param */
 export function aboutOf({ address, doc }) {
   return translateOr(`about${address}`, doc);
 }
 
-/**
- * A unit as it is written after a number; nothing for a bare one.
- * @param {string} unit
- */
+/** A unit as it is written after a number; nothing for a bare one. @param {string} unit */
 export function unitFor(unit) {
   return unit === "1" ? "" : translateOr(`unit.${unit}`, unit);
 }

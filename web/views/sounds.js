@@ -77,10 +77,7 @@ function cards(player, presets, label) {
 /** @param {string} name */
 const aboutTuning = (name) => translateOr(`tuning.${name}.about`, "");
 
-/**
- * What each control of a mapping moves, in lines.
- * @param {string} name
- */
+/** What each control of a mapping moves, in lines. @param {string} name */
 function aboutMapping(name) {
   /** @type {Map<string, string[]>} */
   const moved = new Map();

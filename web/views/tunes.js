@@ -16,10 +16,7 @@ const WAYS = ["listen", "along", "timed"];
 const SLOWLY = 2 / 3;
 const SHOWN = 3; // notes that come next, on the fingerboard
 
-/**
- * @param {Page} page
- * @param {() => void} clear shows the instrument, where a panel lies over it
- */
+/** @param {Page} page @param {() => void} clear shows the instrument, where a panel lies over it */
 export function showTunes(page, clear) {
   const lesson = new Lesson(page, clear);
   const slowly = makeSwitch(words("tunes.slowly"), settings.isSlow, (isSlow) =>
@@ -42,10 +39,7 @@ export function showTunes(page, clear) {
 /** @param {Tune} tune */
 const nameOf = ({ name }) => translateOr(`tune.${name}`, name.replace(/_/g, " "));
 
-/**
- * @param {Lesson} lesson
- * @param {Tune} tune
- */
+/** @param {Lesson} lesson @param {Tune} tune */
 function row(lesson, tune) {
   const name = () => nameOf(tune);
   const buttons = WAYS.map((way) => {
@@ -90,10 +84,7 @@ export class Lesson extends EventTarget {
   /** The easiest tune. @type {Tune | null} */
   first = null;
 
-  /**
-   * @param {Page} page
-   * @param {() => void} clear
-   */
+  /** @param {Page} page @param {() => void} clear */
   constructor(page, clear) {
     super();
     this.page = page;

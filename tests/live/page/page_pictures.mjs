@@ -1,10 +1,15 @@
-/** Asks the pictures' own arithmetic, without a browser; prints what it answers. */
+/** Asks the pictures' own arithmetic, without a browser; prints what it answers.
+ *
+ *   node page_pictures.mjs FOLDER
+ */
 
-const web = new URL("../../../web/", import.meta.url);
-const { Stroboscope } = await import(new URL("pictures/stroboscope.js", web));
-const { RestShape } = await import(new URL("pictures/rest_shape.js", web));
-const { Limits } = await import(new URL("pictures/limits.js", web));
-const { regimeOf, soundingPitch } = await import(new URL("pictures/regime.js", web));
+import { resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const web = pathToFileURL(`${resolve(process.argv[2])}/`);
+const { RestShape, Stroboscope } = await import(new URL("pictures/stroboscope.js", web).href);
+const { Limits } = await import(new URL("pictures/schelleng.js", web).href);
+const { regimeOf, soundingPitch } = await import(new URL("sound/snapshot.js", web).href);
 
 const POINTS = 64;
 

@@ -120,14 +120,15 @@ log = logging.getLogger(__name__)
 
 MODULE, CAPTURES = "yehu.wasm", "captures"
 SERVED = {".css", ".html", ".js", ".png", ".svg", ".webmanifest"}
-FACTS = "facts.js"
+FACTS, TEXTS = "facts.js", "texts"
 GENERATED = {FACTS, "examples.js"}
 
 
 def page_files() -> Iterator[Path]:
     """The files of the page that are written by hand, relative to `page_folder`."""
     for file in _files_of(page_folder()):
-        if file.suffix in SERVED and file.name not in GENERATED:
+        is_served = file.suffix in SERVED or file.parent.name == TEXTS
+        if is_served and file.name not in GENERATED:
             yield file
 
 

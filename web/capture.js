@@ -16,9 +16,29 @@ const MOST_A_SECOND = 5000; // wishes: two hands come to some hundreds
 const LONGEST_S = 24 * 3600;
 const EVERY = 60; // ms
 const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW } = facts.kinds;
+/** Kinds of wishes, by their numbers. */
 const NAMES = Object.keys(facts.kinds).map((name) => name.toLowerCase());
 const OF_SLOT = TABLE.filter(({ slot }) => slot !== null).map(({ address }) => address);
 const SILENCE = "silence"; // in place of an engine's parameter
+
+/** Kinds of wishes whose index means a parameter. */
+export const OF_PARAMETERS = [RAMP, WRITE, HOLD, EXPRESS];
+
+/** The parameter of a wish, which its index means; null where it means something else. @param {Wish} wish */
+export function addressOf({ kind, index }) {
+  if (kind === RAMP) return OF_SLOT[index] ?? SILENCE;
+  return OF_PARAMETERS.includes(kind) ? TABLE[index].address : null;
+}
+
+/**
+ * The index of a wish of a parameter.
+ * @param {number} kind
+ * @param {string} address
+ */
+export function indexOf(kind, address) {
+  if (kind !== RAMP) return find(address).row;
+  return address === SILENCE ? OF_SLOT.length : OF_SLOT.indexOf(find(address).address);
+}
 
 /** Keeps the wishes that the instrument fulfils. */
 export class CaptureWriter {
@@ -75,11 +95,11 @@ export async function fileOf({ rate, values, wishes, frames }) {
 }
 
 /** @param {Wish} wish */
-function lineOf({ frame, kind, index, value, other }) {
+function lineOf(wish) {
+  const { frame, kind, index, value, other } = wish;
   const line = [frame, OWN, NAMES[kind]];
-  if (kind === RAMP) return [...line, OF_SLOT[index] ?? SILENCE, value, other];
-  if (kind === WRITE || kind === HOLD) return [...line, TABLE[index].address, value, other];
-  if (kind === EXPRESS) return [...line, TABLE[index].address, value];
+  const address = addressOf(wish);
+  if (address !== null) return [...line, address, value, ...(kind === EXPRESS ? [] : [other])];
   if (kind === BEGIN || kind === END) return [...line, index, value, other];
   if (kind === SLIDE || kind === STOP) return [...line, value];
   return kind === DRAW ? [...line, value, other] : line;
@@ -153,10 +173,8 @@ function wishOf([frame, name, ...rest]) {
   if (kind < 0) throw new TypeError(`no ${name}`);
   /** @type {Wish} */
   const wish = { frame: finite(frame), kind, index: 0, value: 0, other: 0 };
-  if ([RAMP, WRITE, HOLD, EXPRESS].includes(kind)) {
-    const address = String(rest.shift());
-    if (kind !== RAMP) wish.index = find(address).row;
-    else wish.index = address === SILENCE ? OF_SLOT.length : OF_SLOT.indexOf(find(address).address);
+  if (OF_PARAMETERS.includes(kind)) {
+    wish.index = indexOf(kind, String(rest.shift()));
   } else if (kind === BEGIN || kind === END) wish.index = finite(rest.shift());
   [wish.value, wish.other] = [finite(rest[0] ?? 0), finite(rest[1] ?? 0)];
   return wish;

@@ -8,8 +8,6 @@ import { remember, settings } from "./settings.js";
 /** @type {Record<string, string>} */
 let texts = {};
 
-export const LANGUAGES = /** @type {const} */ (["en", "zh"]);
-
 const changes = new EventTarget();
 
 /** @returns {'en' | 'zh'} */

@@ -46,7 +46,7 @@ export class Instrument extends EventTarget {
     this.way = () => this.openHere();
     /** @type {Parameters<Post>[]} */
     this.waiting = [];
-    this.player = new Player(this.#sink());
+    this.player = new Player(this);
     /** The instrument in WebAssembly: the page plays by it, and may sound by it. */
     this.module = fetchModule(() => this.dispatchEvent(new Event("prepare")));
     this.#prepare();
@@ -64,31 +64,26 @@ export class Instrument extends EventTarget {
     }
   }
 
-  /**
-   * Where the player's wishes go.
-   * @returns {Sink}
-   */
-  #sink() {
-    const instrument = this;
-    return {
-      post: (...wish) => instrument.post(...wish),
-      target: (address) => instrument.sound?.target?.(address),
-      reported: (address) => instrument.sound?.reported?.(address),
-      wasSet: (address) => instrument.others?.wasSet?.(address),
-      follow(row, value) {
-        const { sound } = instrument;
-        if (!sound?.reported) sound?.post(null, facts.kinds.WRITE, row, value, 0);
-      },
-      get frame() {
-        return instrument.frame;
-      },
-      get people() {
-        return instrument.sound?.people;
-      },
-      get rate() {
-        return instrument.sound?.status.rate ?? 0;
-      },
-    };
+  // What the player asks of it, besides `post` and `frame` (its `Sink`).
+
+  /** @param {string} address */
+  target = (address) => this.sound?.target?.(address);
+  /** @param {string} address */
+  reported = (address) => this.sound?.reported?.(address);
+  /** @param {string} address */
+  wasSet = (address) => this.others?.wasSet?.(address);
+
+  /** Take what others have set. @param {number} row @param {number} value */
+  follow(row, value) {
+    if (!this.sound?.reported) this.sound?.post(null, facts.kinds.WRITE, row, value, 0);
+  }
+
+  get people() {
+    return this.sound?.people;
+  }
+
+  get rate() {
+    return this.sound?.status.rate ?? 0;
   }
 
   /** Number of the sample at which a wish is fulfilled now, about. */
@@ -101,8 +96,7 @@ export class Instrument extends EventTarget {
    * more in a hidden page, which is woken once a second only.
    */
   get horizon() {
-    const rate = this.sound?.status.rate ?? 0;
-    return this.frame + Math.round(rate * (document.hidden ? AHEAD_HIDDEN_S : AHEAD_S));
+    return this.frame + Math.round(this.rate * (document.hidden ? AHEAD_HIDDEN_S : AHEAD_S));
   }
 
   /** The latest snapshot, or null before the first. */

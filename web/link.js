@@ -3,8 +3,8 @@
 /** @typedef {import('./capture.js').Performance} Performance */
 
 import facts from "./facts.js";
-import { checked } from "./capture.js";
-import { TABLE, find } from "./playing/table.js";
+import { OF_PARAMETERS, addressOf, checked, indexOf } from "./capture.js";
+import { TABLE } from "./playing/table.js";
 
 const MARK = "#play=";
 const VERSION = 1;
@@ -14,9 +14,6 @@ const BASE = 128; // of numbers of many bytes
 const MOST = 24_000; // characters that browsers and letters pass on
 const MOST_BYTES = 4 << 20; // unpacked
 const NAMES = Object.keys(facts.kinds);
-const { WRITE, HOLD, EXPRESS, RAMP } = facts.kinds;
-const SLOTS = TABLE.filter(({ slot }) => slot !== null);
-const SILENCE = "silence"; // in place of an engine's parameter
 const OWN = TABLE.filter(({ owned }) => !owned);
 
 /**
@@ -125,11 +122,8 @@ function unpack(bytes) {
     frame += take();
     const wish = { frame, kind: kinds[take()], index: take(), value: 0, other: 0 };
     if (!(wish.kind >= 0)) throw new TypeError("another kind");
-    if (isOfTable(wish)) {
-      const address = head.addresses[wish.index];
-      const row = address === SILENCE ? -1 : find(address).row;
-      wish.index = wish.kind === RAMP ? slotOf(row) : row;
-    }
+    if (OF_PARAMETERS.includes(wish.kind))
+      wish.index = indexOf(wish.kind, head.addresses[wish.index]);
     for (const name of /** @type {const} */ (["value", "other"])) {
       const value = last.get(wish, name) + take();
       last.swap(wish, name, value);
@@ -162,23 +156,6 @@ class Last {
     this.#known.set(`${wish.kind} ${wish.index} ${name}`, value);
     return before;
   }
-}
-
-/** @param {number} row -1: all silence */
-function slotOf(row) {
-  return row < 0 ? SLOTS.length : SLOTS.findIndex((one) => one.row === row);
-}
-
-/** @param {{kind: number}} wish whose index is that of a parameter */
-function isOfTable({ kind }) {
-  return [WRITE, HOLD, EXPRESS, RAMP].includes(kind);
-}
-
-/** @param {{kind: number, index: number}} wish */
-function addressOf(wish) {
-  if (!isOfTable(wish)) return null;
-  const param = wish.kind === RAMP ? SLOTS[wish.index] : TABLE[wish.index];
-  return param?.address ?? SILENCE;
 }
 
 /**

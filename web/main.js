@@ -34,25 +34,8 @@ const FIRST = "first";
 const FIRST_MS = 1500;
 const FIRST_VELOCITY = 0.63;
 
-/**
- * All that the views work with.
- * @typedef {object} Page
- * @property {Instrument} instrument
- * @property {Hands} hands
- * @property {KeyTuning} tuned
- * @property {Keys} keys
- * @property {Fingerboard} fingerboard
- * @property {Bow} bow
- * @property {Surface} surface
- * @property {Yehu} yehu
- * @property {Score} score
- * @property {(note: number | null) => void} setTonic which note is do; null: the inner string
- * @property {Gallery} gallery
- * @property {MidiLearn} taught
- * @property {Midi} midi
- */
+/** @typedef {ReturnType<typeof assemble>} Page All that the views work with. */
 
-/** @returns {Page} */
 function assemble() {
   const instrument = new Instrument();
   const hands = new Hands(instrument.player);
@@ -60,26 +43,25 @@ function assemble() {
   const midi = new Midi(instrument, taught);
   const tuned = new KeyTuning();
   const keys = new Keys(hands, tuned);
-  const wished = settings.direction === "down" || settings.direction === "across";
-  const surface = new Surface(
-    find("stage", HTMLElement),
-    wished ? /** @type {'across' | 'down'} */ (settings.direction) : "",
-  );
+  const surface = new Surface(find("stage", HTMLElement), settings.direction);
   const fingerboard = new Fingerboard(find("fingerboard", HTMLElement), hands, tuned, surface);
   const bow = new Bow(find("bow", HTMLElement), hands, surface);
   const yehu = new Yehu(find("yehu", HTMLCanvasElement), fingerboard, bow);
-  const gallery = new Gallery(() => instrument.state);
-  gallery.add(yehu);
   const score = new Score(find("score", HTMLCanvasElement));
-  gallery.add(score);
-  gallery.add(new Tuner(find("tuner", HTMLCanvasElement)));
-  gallery.add(new Level(find("level", HTMLCanvasElement)));
   const schelleng = new Schelleng(find("schelleng", HTMLCanvasElement));
-  gallery.add(schelleng);
   new Diagram(schelleng, instrument.player);
-  gallery.add(
-    new Spectrum(find("spectrum", HTMLCanvasElement), () => instrument.sound?.analyser ?? null),
-  );
+  const analyser = () => instrument.sound?.analyser ?? null;
+  const gallery = new Gallery(() => instrument.state);
+  for (const picture of [
+    yehu,
+    score,
+    new Tuner(find("tuner", HTMLCanvasElement)),
+    new Level(find("level", HTMLCanvasElement)),
+    schelleng,
+    new Spectrum(find("spectrum", HTMLCanvasElement), analyser),
+  ]) {
+    gallery.add(picture);
+  }
   return {
     instrument,
     hands,
@@ -93,7 +75,8 @@ function assemble() {
     gallery,
     taught,
     midi,
-    setTonic: (note) => {
+    /** Which note is do; null: the inner string. @param {number | null} note */
+    setTonic(note) {
       setTonic(note);
       yehu.isStale = true;
     },

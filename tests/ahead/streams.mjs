@@ -20,7 +20,7 @@ const kernel = new Kernel(
   job.lookLength,
 );
 const wasm = kernel.exported;
-const given = new Uint8Array(kernel.view.buffer, kernel.outAt, 8 * ROOM);
+const given = new Uint8Array(kernel.view.buffer, kernel.at.out, 8 * ROOM);
 const tables = readFileSync(job.tables);
 const size = tables.length / job.count;
 
@@ -30,21 +30,28 @@ function step(name, frame, ...numbers) {
   if (name === "map") {
     const first = size * Number(numbers[0]);
     given.set(tables.subarray(first, first + size));
-    return wasm.yehu_use_tables(kernel.rig, at, kernel.outAt, BigInt(size));
+    return wasm.yehu_use_tables(kernel.at.rig, at, kernel.at.out, BigInt(size));
   }
   if (name === "midi") {
     const [count, ...bytes] = numbers.map(Number);
     given.set(bytes);
-    return wasm.yehu_midi(kernel.rig, at, kernel.outAt, BigInt(count)) >= 0n ? 1n : 0n;
+    return wasm.yehu_midi(kernel.at.rig, at, kernel.at.out, BigInt(count)) >= 0n ? 1n : 0n;
   }
   if (name === "control") {
-    return wasm.yehu_control(kernel.rig, at, BigInt(numbers[0]), Number(numbers[1]));
+    return wasm.yehu_control(kernel.at.rig, at, BigInt(numbers[0]), Number(numbers[1]));
   }
   const [kind, index, value, other] = numbers;
-  return wasm.yehu_post(kernel.rig, at, BigInt(kind), BigInt(index), Number(value), Number(other));
+  return wasm.yehu_post(
+    kernel.at.rig,
+    at,
+    BigInt(kind),
+    BigInt(index),
+    Number(value),
+    Number(other),
+  );
 }
 
-kernel.view.setBigInt64(kernel.rig + 8 * job.reporting, 1n, true);
+kernel.view.setBigInt64(kernel.at.rig + 8 * job.reporting, 1n, true);
 const lines = readFileSync(job.steps, "utf8").trimEnd().split("\n");
 const samples = new Float32Array(CHANNELS * BLOCK * job.blocks);
 let next = 0;
@@ -58,5 +65,5 @@ for (let block = 1; block <= job.blocks; block += 1) {
 }
 const length = Number(wasm.yehu_size());
 writeFileSync(job.samples, samples);
-writeFileSync(job.memory, new Uint8Array(kernel.view.buffer, kernel.rig, length));
+writeFileSync(job.memory, new Uint8Array(kernel.view.buffer, kernel.at.rig, length));
 process.stdout.write(JSON.stringify({ finite: samples.every(Number.isFinite), lost: kernel.lost }));

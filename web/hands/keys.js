@@ -2,6 +2,7 @@
 
 /** @typedef {import('./hands.js').Hands} Hands */
 
+import { onLeave } from "./pointers.js";
 import { HIGHEST, LOWEST } from "./scale.js";
 
 /** Keys by their places, so that any national layout is the same piano. */
@@ -45,11 +46,7 @@ export class Keys extends EventTarget {
     this.down = new Set();
     window.addEventListener("keydown", (event) => this.#press(event));
     window.addEventListener("keyup", (event) => this.#release(event.code));
-    window.addEventListener("blur", () => this.releaseAll());
-    window.addEventListener("pagehide", () => this.releaseAll());
-    document.addEventListener("visibilitychange", () => {
-      if (document.hidden) this.releaseAll();
-    });
+    onLeave(() => this.releaseAll());
     // A field that takes letters also takes the keyup.
     document.addEventListener("focusin", (event) => {
       if (event.target instanceof Element && event.target.matches(WRITING)) this.releaseAll();

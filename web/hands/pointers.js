@@ -17,6 +17,12 @@
 /** Pressures that devices without a sensor report. */
 const NO_PRESSURE = new Set([0, 0.5, 1]);
 
+/** Do something whenever the page is left: events of what is let go then never arrive. @param {() => void} action */
+export function onLeave(action) {
+  for (const left of ["blur", "pagehide"]) window.addEventListener(left, action);
+  document.addEventListener("visibilitychange", () => document.hidden && action());
+}
+
 export class Pointers {
   /** @param {HTMLElement} element @param {Followers} followers */
   constructor(element, followers) {
@@ -35,12 +41,7 @@ export class Pointers {
       element.addEventListener(left, () => delete element.dataset.touched);
     }
     element.addEventListener("contextmenu", (event) => event.preventDefault());
-    // Whoever leaves the page lifts all fingers: the events of their lifting never arrive.
-    window.addEventListener("blur", () => this.endAll());
-    window.addEventListener("pagehide", () => this.endAll());
-    document.addEventListener("visibilitychange", () => {
-      if (document.hidden) this.endAll();
-    });
+    onLeave(() => this.endAll());
   }
 
   /** Lift all that are down. */

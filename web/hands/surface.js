@@ -16,13 +16,12 @@ const FARTHEST = 0.5;
 export class Surface extends EventTarget {
   /**
    * @param {HTMLElement} stage
-   * @param {"" | "across" | "down"} wished direction of rising pitches; "": as the stage has room
+   * @param {string} wished direction of rising pitches, "across" or "down"; else as the stage has room
    */
   constructor(stage, wished) {
     super();
     this.stage = stage;
     this.wished = wished;
-    /** @type {"across" | "down"} */
     this.direction = "across";
     this.length = this.breadth = 1; // px
     this.board = [0, 1]; // where it begins and ends along the strings, px
@@ -31,7 +30,7 @@ export class Surface extends EventTarget {
     this.measure();
   }
 
-  /** @param {"" | "across" | "down"} wished */
+  /** @param {string} wished */
   turn(wished) {
     this.wished = wished;
     this.measure();
@@ -39,7 +38,8 @@ export class Surface extends EventTarget {
 
   measure() {
     const { clientWidth: width, clientHeight: height, style } = this.stage;
-    this.direction = this.wished || (height > width ? "down" : "across");
+    const isWished = ["across", "down"].includes(this.wished);
+    this.direction = isWished ? this.wished : height > width ? "down" : "across";
     this.stage.classList.toggle("down", this.isUpright);
     [this.length, this.breadth] = this.isUpright ? [height, width] : [width, height];
     this.round = Math.min(ROUND * this.length, WIDEST * this.breadth);

@@ -41,11 +41,6 @@ function readColours() {
   return colours;
 }
 
-/** Read them again, after the theme changed. */
-export function forgetColours() {
-  colours = null;
-}
-
 /**
  * The font of the page, for text in a picture.
  * @param {number} size px
@@ -218,7 +213,7 @@ export class Gallery {
 
   /** Draw all anew: the theme or the language has changed. */
   renew() {
-    forgetColours();
+    colours = null;
     for (const picture of this.pictures) picture.isStale = true;
   }
 

@@ -111,7 +111,7 @@ export class Strings {
     };
     /** @type {Float32Array} */
     let shape = STILL;
-    if (isHeard && view === "slowed" && slow.known > 0) shape = slow.at(this.phase);
+    if (isHeard && view === "slowed" && slow.isSeen) shape = slow.at(this.phase);
     else if (isHeard && view === "moving" && trail.length) shape = trail[trail.length - 1];
     const glow = Math.min(Math.max((level - QUIET) / (LOUD - QUIET), 0), 1);
     for (const width of glow > 0 ? [16, 9, 5] : []) {

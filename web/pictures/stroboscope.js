@@ -80,11 +80,9 @@ export class Stroboscope {
     return this.age[bin] < OLDEST;
   }
 
-  /** Share of the period that is known. */
-  get known() {
-    let count = 0;
-    for (const age of this.age) if (age < OLDEST) count++;
-    return count / BINS;
+  /** Whether anything is known of it. */
+  get isSeen() {
+    return this.age.some((age) => age < OLDEST);
   }
 
   /**

@@ -32,14 +32,13 @@ export class Tuner extends Picture {
     if (state && isNew) this.#hear(soundingPitch(state), now, elapsed);
     const { width, height } = this;
     const note = Math.round(this.pitch);
-    const left = Math.min(120, width * 0.3);
     const sounds = !Number.isNaN(this.pitch);
     const cents = (this.pitch - note) * 100;
     const isTrue = Math.abs(cents) <= TRUE_WITHIN;
     context.textBaseline = "middle";
     context.textAlign = "left";
     context.fillStyle = sounds ? this.colours.ink : this.colours.faint;
-    context.font = font(Math.min(height * 0.42, left * 0.45), 600);
+    context.font = font(Math.min(height * 0.42, this.left * 0.45), 600);
     context.fillText(sounds ? nameOf(note) : "–", 2, height * 0.4);
     if (sounds) {
       context.font = font(13);
@@ -47,9 +46,13 @@ export class Tuner extends Picture {
       const sign = cents < 0 ? "−" : "+";
       context.fillText(`${sign}${Math.abs(cents).toFixed(0)} ct`, 4, height * 0.8);
     }
-    this.#frame(left);
-    this.#trace(left, note, now);
-    if (sounds) this.#needle(left, cents, isTrue);
+    this.#frame();
+    this.#trace(note, now);
+    if (!sounds) return;
+    context.fillStyle = isTrue ? this.colours.good : this.colours.bad;
+    context.beginPath(); // the needle
+    context.roundRect(this.#across(cents) - 2.5, this.bottom - 26, 5, 26, 2.5);
+    context.fill();
   }
 
   /**
@@ -65,46 +68,47 @@ export class Tuner extends Picture {
     while (this.trace.length && this.trace[0].time < now - LASTS) this.trace.shift();
   }
 
-  /** @param {number} left @param {number} cents */
-  #across(left, cents) {
-    return left + ((cents + RANGE) / (2 * RANGE)) * (this.width - left - 8);
+  /** Where the scale begins. */
+  get left() {
+    return Math.min(120, this.width * 0.3);
   }
 
-  /** @param {number} left */
-  #frame(left) {
-    const { context } = this;
-    const bottom = this.height - 20;
+  get bottom() {
+    return this.height - 20;
+  }
+
+  /** @param {number} cents */
+  #across(cents) {
+    return this.left + ((cents + RANGE) / (2 * RANGE)) * (this.width - this.left - 8);
+  }
+
+  #frame() {
+    const { context, colours, bottom } = this;
     context.font = font(11);
     context.textAlign = "center";
     context.textBaseline = "top";
     for (let cents = -RANGE; cents <= RANGE; cents += 10) {
-      const x = this.#across(left, cents);
-      const isLong = cents % 25 === 0 || cents === 0;
-      context.fillStyle = cents === 0 ? this.colours.soft : this.colours.line;
-      context.fillRect(
-        x - 0.5,
-        cents === 0 ? 6 : bottom - (isLong ? 10 : 6),
-        1,
-        cents === 0 ? bottom - 6 : isLong ? 10 : 6,
-      );
-      if (Math.abs(cents) === RANGE || cents === 0) {
-        context.fillStyle = this.colours.soft;
-        const text = cents === 0 ? "0" : `${cents > 0 ? "+" : "−"}${Math.abs(cents)}`;
-        const inset = cents === 0 ? 0 : cents > 0 ? -8 : 8;
-        context.fillText(text, x + inset, bottom + 5);
-      }
+      const size = cents === 0 ? bottom - 6 : Math.abs(cents) === RANGE ? 10 : 6;
+      context.fillStyle = cents === 0 ? colours.soft : colours.line;
+      context.fillRect(this.#across(cents) - 0.5, bottom - size, 1, size);
+    }
+    context.fillStyle = colours.soft;
+    for (const [cents, text, inset] of /** @type {const} */ ([
+      [-RANGE, "−50", 8],
+      [0, "0", 0],
+      [RANGE, "+50", -8],
+    ])) {
+      context.fillText(text, this.#across(cents) + inset, bottom + 5);
     }
   }
 
   /**
    * The pitch over time: the latest at the bottom, as the needle leaves it behind.
-   * @param {number} left
    * @param {number} note
    * @param {number} now
    */
-  #trace(left, note, now) {
-    const { context } = this;
-    const bottom = this.height - 20;
+  #trace(note, now) {
+    const { context, left, bottom } = this;
     context.save();
     context.beginPath();
     context.rect(left, 0, this.width - left, bottom);
@@ -114,7 +118,7 @@ export class Tuner extends Picture {
     context.beginPath();
     let last = NaN;
     for (const { time, pitch } of this.trace) {
-      const x = this.#across(left, (pitch - note) * 100);
+      const x = this.#across((pitch - note) * 100);
       const y = bottom - ((now - time) / LASTS) * bottom;
       // Another note, or one after silence, begins another line.
       if (Math.abs(pitch - last) < 0.5) context.lineTo(x, y);
@@ -123,20 +127,6 @@ export class Tuner extends Picture {
     }
     context.stroke();
     context.restore();
-  }
-
-  /**
-   * @param {number} left
-   * @param {number} cents
-   * @param {boolean} isTrue
-   */
-  #needle(left, cents, isTrue) {
-    const { context } = this;
-    const bottom = this.height - 20;
-    context.fillStyle = isTrue ? this.colours.good : this.colours.bad;
-    context.beginPath();
-    context.roundRect(this.#across(left, cents) - 2.5, bottom - 26, 5, 26, 2.5);
-    context.fill();
   }
 }
 

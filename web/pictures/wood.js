@@ -17,7 +17,7 @@ const LEAST_FOR_SOFT = 260; // px across: else a button is there
 const KEY = 22; // px, the side of a printed key
 
 /** Half the width of the neck, px. @param {Surface} surface */
-export function neckOf({ breadth }) {
+function neckOf({ breadth }) {
   return Math.min(NECK * breadth, MOST_NECK);
 }
 

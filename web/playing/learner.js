@@ -10,15 +10,12 @@ const [RPN, RPN_FINE] = facts.sources.RPN;
 /** @type {ReadonlyMap<string, number>} */
 const REST = new Map(Object.entries(AT_REST));
 
-const NOTE_OFF = 0x80;
-const NOTE_ON = 0x90;
+// The kinds of channel messages: their status without the channel.
 const POLY_TOUCH = 0xa0;
 const CONTROL_CHANGE = 0xb0;
 const PROGRAM_CHANGE = 0xc0;
 const AFTERTOUCH = 0xd0;
 const PITCH_WHEEL = 0xe0;
-const SYSTEM = 0xf0;
-const SYSTEM_RESET = 0xff;
 
 /**
  * @typedef {object} Channel The control changes received on one channel.
@@ -42,20 +39,20 @@ export class Learner {
    * @returns {string | null}
    */
   hear(bytes, port = 0) {
-    const kind = kindOf(bytes);
-    if (kind === null || kind === SYSTEM_RESET) return null;
-    const channel = sources.CHANNELS * port + (bytes[0] & 0x0f);
-    const [, first, second] = Array.from(bytes);
-    if (kind === PITCH_WHEEL) {
-      return this.#moved(channel, sources.BEND, (first | (second << 7)) / sources.FINEST);
+    const [status, first, second] = Array.from(bytes);
+    const channel = sources.CHANNELS * port + (status & 0x0f);
+    switch (kindOf(bytes)) {
+      case PITCH_WHEEL:
+        return this.#moved(channel, sources.BEND, (first | (second << 7)) / sources.FINEST);
+      case AFTERTOUCH:
+        return this.#moved(channel, sources.PRESSURE, first / sources.STEPS);
+      case POLY_TOUCH:
+        return this.#moved(channel, sources.POLY_PRESSURE, second / sources.STEPS);
+      case CONTROL_CHANGE:
+        return this.#control(channel, first, second);
+      default:
+        return null;
     }
-    if (kind === AFTERTOUCH) {
-      return this.#moved(channel, sources.PRESSURE, first / sources.STEPS);
-    }
-    if (kind === POLY_TOUCH) {
-      return this.#moved(channel, sources.POLY_PRESSURE, second / sources.STEPS);
-    }
-    return kind === CONTROL_CHANGE ? this.#control(channel, first, second) : null;
   }
 
   /**
@@ -103,16 +100,12 @@ export class Learner {
 }
 
 /**
- * The kind of a message: the status of a channel message without its channel, or SYSTEM_RESET;
- * null for any other message, and for bytes that are none.
+ * The kind of a channel message; null for any other message, and for bytes that are none.
  * @param {ArrayLike<number>} bytes
- * @returns {number | null}
  */
-function kindOf(bytes) {
-  const status = bytes[0] ?? 0;
-  if (status >= SYSTEM) return status === SYSTEM_RESET && bytes.length === 1 ? status : null;
+function kindOf({ length, 0: status, 1: first, 2: second }) {
   const kind = status & 0xf0;
-  const length = kind === PROGRAM_CHANGE || kind === AFTERTOUCH ? 2 : 3;
-  if (kind < NOTE_OFF || bytes.length !== length) return null;
-  return bytes[1] < 0x80 && (length === 2 || bytes[2] < 0x80) ? kind : null;
+  const isShort = kind === PROGRAM_CHANGE || kind === AFTERTOUCH;
+  const isWhole = length === (isShort ? 2 : 3) && first < 0x80 && (isShort || second < 0x80);
+  return status >= 0x80 && status < 0xf0 && isWhole ? kind : null;
 }

@@ -18,6 +18,25 @@ export const CHANNELS = 2;
 /** Numbers of a wish in a message: frame or NOW, kind, index, value, other. */
 export const WISH = 5;
 
+/** Gathers the wishes of one turn of the page, which go together. */
+export class WishBatch {
+  /** @type {number[]} */
+  #numbers = [];
+
+  /** @param {(wishes: Float64Array<ArrayBuffer>) => void} send */
+  constructor(send) {
+    this.send = send;
+  }
+
+  /** Post a wish; `frame` null is now. @type {import('../interfaces.js').Post} */
+  post = (frame, kind, index, value, other) => {
+    if (this.#numbers.length === 0) {
+      queueMicrotask(() => this.send(Float64Array.from(this.#numbers.splice(0))));
+    }
+    this.#numbers.push(frame ?? NOW, kind, index, value, other);
+  };
+}
+
 /** Numbers of a wish of a voice, which has no frame; and the most of a block. */
 export const VOICE_WISH = WISH - 1;
 const VOICE_WISHES = 64;
@@ -79,7 +98,7 @@ export class Kernel {
     }).exports;
     this.exported = exported;
     this.most = most;
-    const [rig, outAt, lookAt, voice, sungAt, sungWishesAt] = room(
+    const [rig, out, look, voice, sung, wishes] = room(
       exported,
       Number(exported.yehu_size()),
       4 * CHANNELS * most,
@@ -88,20 +107,15 @@ export class Kernel {
       4 * most,
       8 * VOICE_WISH * VOICE_WISHES,
     );
-    this.rig = rig;
-    this.outAt = outAt;
-    this.lookAt = lookAt;
-    this.voice = voice;
-    this.sungAt = sungAt;
-    this.sungWishesAt = sungWishesAt;
+    this.at = { rig, out, look, voice, sung, wishes };
     const memory = exported.memory.buffer; // it grows no more
     this.view = new DataView(memory);
-    this.out = new Float32Array(memory, this.outAt, CHANNELS * most);
-    this.seen = new Float64Array(memory, this.lookAt, lookLength);
-    this.sung = new Float32Array(memory, this.sungAt, most);
-    this.sungWishes = new Float64Array(memory, this.sungWishesAt, VOICE_WISH * VOICE_WISHES);
+    this.out = new Float32Array(memory, out, CHANNELS * most);
+    this.seen = new Float64Array(memory, look, lookLength);
+    this.sung = new Float32Array(memory, sung, most);
+    this.sungWishes = new Float64Array(memory, wishes, VOICE_WISH * VOICE_WISHES);
     this.lengths = Array.from({ length: most + 1 }, (_, frames) => BigInt(frames));
-    if (exported.yehu_prepare(this.rig, rate, BigInt(CHANNELS)) === 0n) {
+    if (exported.yehu_prepare(this.at.rig, rate, BigInt(CHANNELS)) === 0n) {
       throw new RangeError(`the instrument was not built for ${rate} Hz`);
     }
   }
@@ -113,17 +127,17 @@ export class Kernel {
 
   /** Number of the next frame. */
   get frame() {
-    return Number(this.exported.yehu_frame(this.rig));
+    return Number(this.exported.yehu_frame(this.at.rig));
   }
 
   /** How often the state was lost; it should stay 0. */
   get lost() {
-    return Number(this.exported.yehu_lost(this.rig));
+    return Number(this.exported.yehu_lost(this.at.rig));
   }
 
   /** The value that a parameter has, or moves to. @param {number} row */
   value(row) {
-    return this.exported.yehu_value(this.rig, BigInt(row));
+    return this.exported.yehu_value(this.at.rig, BigInt(row));
   }
 
   /**
@@ -135,8 +149,10 @@ export class Kernel {
    * @param {number} other
    */
   post(frame, kind, index, value, other) {
-    const at = frame === NOW ? this.exported.yehu_frame(this.rig) : BigInt(frame);
-    return this.exported.yehu_post(this.rig, at, BigInt(kind), BigInt(index), value, other) !== 0n;
+    const at = frame === NOW ? this.exported.yehu_frame(this.at.rig) : BigInt(frame);
+    return (
+      this.exported.yehu_post(this.at.rig, at, BigInt(kind), BigInt(index), value, other) !== 0n
+    );
   }
 
   /**
@@ -144,14 +160,14 @@ export class Kernel {
    * @param {number} frames
    */
   compute(frames) {
-    this.exported.yehu_process(this.rig, this.outAt, this.lengths[frames]);
+    this.exported.yehu_process(this.at.rig, this.at.out, this.lengths[frames]);
   }
 
   /** Follow a voice from now on, at a rate in Hz. @param {number} rate */
   prepareVoice(rate) {
     const bytes = Number(this.exported.yehu_voice_size());
-    new Uint8Array(this.exported.memory.buffer, this.voice, bytes).fill(0);
-    this.exported.yehu_voice_prepare(this.voice, rate, NaN);
+    new Uint8Array(this.exported.memory.buffer, this.at.voice, bytes).fill(0);
+    this.exported.yehu_voice_prepare(this.at.voice, rate, NaN);
   }
 
   /**
@@ -161,21 +177,21 @@ export class Kernel {
    */
   follow(samples) {
     this.sung.set(samples);
-    const { voice, sungAt, sungWishesAt } = this;
+    const { voice, sung, wishes } = this.at;
     const count = this.exported.yehu_follow_voice(
-      voice, sungAt, BigInt(samples.length), sungWishesAt, BigInt(VOICE_WISHES),
+      voice, sung, BigInt(samples.length), wishes, BigInt(VOICE_WISHES),
     ); // prettier-ignore
     return this.sungWishes.subarray(0, VOICE_WISH * Number(count));
   }
 
   /** The pitch of the voice, or NaN. */
   get voicePitch() {
-    return this.exported.yehu_voice_pitch(this.voice);
+    return this.exported.yehu_voice_pitch(this.at.voice);
   }
 
   /** Look at the instrument: fills `seen`. */
   look() {
-    this.exported.yehu_look(this.rig, this.lookAt);
+    this.exported.yehu_look(this.at.rig, this.at.look);
     return this.seen;
   }
 }

@@ -7,7 +7,7 @@ import facts from "../facts.js";
 import { TABLE } from "../playing/table.js";
 import { StreamPlayer } from "./stream_player.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
-import { NOW } from "./kernel.js";
+import { WishBatch } from "./kernel.js";
 
 /** @typedef {import('./server_connection.js').ServerConnection} ServerConnection */
 /** @typedef {import('../interfaces.js').Status} Status */
@@ -38,8 +38,7 @@ export class Remote extends EventTarget {
     this.people = Infinity; // the server knows how many there are
     this.state = snapshotOf(this.seen);
     this.analyser = listener?.analyser ?? null;
-    /** @type {number[]} */
-    this.wishes = [];
+    this.post = new WishBatch((wishes) => line.send(wishes)).post;
     this.look = (/** @type {Event} */ event) => {
       this.seen.set(/** @type {CustomEvent<Float64Array>} */ (event).detail);
       this.isSeen = true;
@@ -48,21 +47,6 @@ export class Remote extends EventTarget {
     };
     line.addEventListener("look", this.look);
     line.want({ looks: true, sounds: false });
-  }
-
-  /**
-   * Post a wish; `frame` null is now.
-   * @type {import('../interfaces.js').Post}
-   */
-  post(frame, kind, index, value, other) {
-    if (this.wishes.length === 0) queueMicrotask(() => this.#send());
-    this.wishes.push(frame ?? NOW, kind, index, value, other);
-  }
-
-  /** All wishes of one turn of the page go together. */
-  #send() {
-    this.line.send(Float64Array.from(this.wishes));
-    this.wishes.length = 0;
   }
 
   get frame() {

@@ -5,7 +5,7 @@
 /** @typedef {import('./server_connection.js').ServerConnection} ServerConnection */
 
 import facts from "../facts.js";
-import { NOW } from "./kernel.js";
+import { NOW, WishBatch } from "./kernel.js";
 
 const { BEGIN, END } = facts.kinds;
 // Channels of another page's keys, as the server keeps visitors apart.
@@ -17,8 +17,7 @@ export class Sharing {
   constructor(instrument, line) {
     this.instrument = instrument;
     this.line = line;
-    /** @type {number[]} */
-    this.wishes = [];
+    this.batch = new WishBatch((wishes) => line.send(wishes));
     /** Keys that other pages hold: pairs of channel and key. @type {Map<number, number[][]>} */
     this.held = new Map();
     this.own = (/** @type {Event} */ event) =>
@@ -44,13 +43,7 @@ export class Sharing {
     const { sound, frame: here } = this.instrument;
     const ahead = (frame - here) / (sound?.status.rate ?? 1);
     const there = Math.round(this.line.frame + ahead * this.line.status.rate);
-    if (this.wishes.length === 0) queueMicrotask(() => this.#send());
-    this.wishes.push(ahead > 0 ? Math.max(there, 0) : NOW, kind, index, value, other);
-  }
-
-  #send() {
-    this.line.send(Float64Array.from(this.wishes));
-    this.wishes.length = 0;
+    this.batch.post(ahead > 0 ? Math.max(there, 0) : null, kind, index, value, other);
   }
 
   /** @param {number} page @param {Float64Array} wish */

@@ -2,7 +2,7 @@
 
 import facts from "../facts.js";
 import { openBackend } from "./backends.js";
-import { CHANNELS, NOW } from "./kernel.js";
+import { CHANNELS, WishBatch } from "./kernel.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
 import { settings } from "../settings.js";
 
@@ -51,8 +51,7 @@ export class Sound extends EventTarget {
     this.isAsleep = false; // nothing sounds, and nothing is computed
     this.suspending = 0; // timer
     this.dropouts = 0;
-    /** @type {number[]} */
-    this.wishes = [];
+    this.post = new WishBatch((wishes) => this.#send(wishes)).post;
     /** @type {Float32Array[] | null} */
     this.chunks = null;
     /** @type {((blob: Blob) => void) | null} */
@@ -79,21 +78,10 @@ export class Sound extends EventTarget {
     this.backend.node.connect(this.gain).connect(this.analyser).connect(this.context.destination);
   }
 
-  /**
-   * Post a wish; `frame` null is now.
-   * @type {import('../interfaces.js').Post}
-   */
-  post(frame, kind, index, value, other) {
-    if (this.wishes.length === 0) queueMicrotask(() => this.#send());
-    this.wishes.push(frame ?? NOW, kind, index, value, other);
-  }
-
-  /** All wishes of one turn of the page go together. */
-  #send() {
+  /** @param {Float64Array<ArrayBuffer>} wishes */
+  #send(wishes) {
     clearTimeout(this.suspending);
     if (this.isAsleep) this.resume();
-    const wishes = Float64Array.from(this.wishes);
-    this.wishes.length = 0;
     this.backend?.take({ wishes }, [wishes.buffer]);
   }
 

@@ -139,6 +139,37 @@ export function wishes(page) {
 }
 
 /**
+ * Wait until wishes of a kind were made, so many of them.
+ * @param {import("playwright-core").Page} page
+ * @param {string} kind
+ * @param {number} count
+ */
+export async function wished(page, kind, count = 1) {
+  const number = await page.evaluate(
+    async (name) => (await import("/facts.js")).default.kinds[name],
+    kind,
+  );
+  await page.waitForFunction(
+    ([sought, least]) =>
+      globalThis.imitation?.wishes.filter(([one]) => one === sought).length >= least,
+    [number, count],
+  );
+}
+
+/**
+ * Wait until what was resized is drawn.
+ * @param {import("playwright-core").Page} page
+ */
+export function drawn(page) {
+  return page.evaluate(
+    () =>
+      new Promise((resolve) =>
+        requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(resolve))),
+      ),
+  );
+}
+
+/**
  * The keys that are held, as far as the wishes tell.
  * @param {import("playwright-core").Page} page
  */

@@ -30,7 +30,9 @@ await run(async (browser, url) => {
       await page.evaluate(AXE); // past the page's policy, which allows its own scripts only
       for (const view of VIEWS) {
         await page.click(`#tab-${view}`);
-        const { violations } = await page.evaluate(() => globalThis.axe.run());
+        // What is beside the panel is the same in each view.
+        const part = view === VIEWS[0] ? "html" : "#more";
+        const { violations } = await page.evaluate((one) => globalThis.axe.run(one), part);
         for (const { id, impact, nodes } of violations) {
           found.push({ view, colorScheme, width: viewport.width, id, impact, html: nodes[0].html });
         }

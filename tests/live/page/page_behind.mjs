@@ -12,7 +12,7 @@ import { keepAnalysers, open, pretendMidi, run, sendMidi } from "./browser.mjs";
 
 const [, , folder] = process.argv.slice(2);
 const KEY = "KeyV"; // B4
-const AWAY = 3000; // ms
+const AWAY = 2000; // ms
 const NOTE = 76; // E5
 
 /** Keeps the contexts of the sound, and the times at which the strings are drawn; runs in the page. */

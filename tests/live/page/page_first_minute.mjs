@@ -1,6 +1,6 @@
 /** Plays the first minute: an invitation, three gestures; keeps a performance as a link, and opens it. */
 
-import { fingersOf, held, open, run, wishes } from "./browser.mjs";
+import { drawn, fingersOf, held, open, run, wished, wishes } from "./browser.mjs";
 
 const SIZES = [
   [1920, 1080],
@@ -25,7 +25,7 @@ await run(async (browser, url) => {
   const found = { cut: {}, said: [] };
   for (const [width, height] of SIZES) {
     await page.setViewportSize({ width, height });
-    await page.waitForTimeout(200);
+    await drawn(page);
     found.cut[`${width}x${height}`] = await page.evaluate(cut);
     found.upright ??= {};
     found.upright[`${width}x${height}`] = await page.locator("#stage.down").count();
@@ -105,7 +105,7 @@ await run(async (browser, url) => {
   const { page: friend, errors: others } = await open(browser, link);
   await friend.click("#listen");
   await friend.waitForFunction(() => globalThis.imitation);
-  await friend.waitForTimeout(1500);
+  await wished(friend, "END", found.played.filter(([kind]) => kind === "END").length);
   found.replayed = await wishes(friend);
   found.heldAfter = await held(friend);
   await friend.close();
@@ -117,7 +117,7 @@ await run(async (browser, url) => {
   await third.waitForFunction(() => globalThis.imitation?.notes.length === 1);
   const { x, y, width, height } = await third.locator("#fingerboard").boundingBox();
   await hand("touchStart", [{ x: x + 0.8 * width, y: y + height / 2, id: 1 }]);
-  await third.waitForTimeout(1500);
+  await third.waitForTimeout(800); // longer than what was kept
   found.taken = { held: await held(third), wishes: await wishes(third) };
   await hand("touchEnd", []);
   await third.waitForTimeout(100);

@@ -49,7 +49,7 @@ async function playAndKeep(page) {
   await page.getByRole("button", { name: "Record", exact: true }).click();
   await page.getByRole("button", { name: "Keep", exact: true }).click();
   await page.keyboard.down(KEY);
-  await page.waitForTimeout(1500);
+  await page.waitForTimeout(1000);
   const status = await page.textContent("#status");
   await page.keyboard.up(KEY);
   await page.waitForTimeout(300);
@@ -91,7 +91,7 @@ await run(
     await untrusted.page.click("#tab-keep");
     await untrusted.page.getByRole("button", { name: "Record", exact: true }).click();
     await untrusted.page.keyboard.down(KEY);
-    await untrusted.page.waitForTimeout(1500);
+    await untrusted.page.waitForTimeout(1000);
     const pressed = untrusted.page.locator("#panel-keep button[aria-pressed=true]");
     await save(untrusted.page, pressed.first(), "script.wav");
     const told = untrusted.errors.filter((error) => !error.includes(DEPRECATED));

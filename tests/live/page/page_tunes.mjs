@@ -1,6 +1,6 @@
 /** A newcomer comes to an easy tune, plays it with a mistake, and is told how it went; prints what was seen. */
 
-import { open, run, wishes } from "./browser.mjs";
+import { drawn, open, run, wished, wishes } from "./browser.mjs";
 
 const SIZES = [
   [320, 568],
@@ -36,7 +36,7 @@ await run(async (browser, url) => {
   const look = async (/** @type {string} */ what) => {
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });
-      await page.waitForTimeout(150);
+      await drawn(page);
       found.overlaps[`${what} ${width}x${height}`] = await page.evaluate(overlaps);
       const stage = await page.locator("#stage").boundingBox();
       found.boards[`${what} ${width}x${height}`] = (stage.width * stage.height) / (width * height);
@@ -79,12 +79,15 @@ await run(async (browser, url) => {
   await page.click("#tab-tunes");
   await wishes(page);
   await page.locator("#panel-tunes .tune button").first().click();
-  await page.waitForTimeout(1500);
+  await wished(page, "BEGIN");
   found.heard = (await wishes(page)).filter(([kind]) => kind === "BEGIN").length;
   // The strip of notes is drawn, and goes on.
   const picture = () => page.locator("#score").evaluate((canvas) => canvas.toDataURL());
-  const [one] = [await picture(), await page.waitForTimeout(300)];
-  found.goesOn = one !== (await picture());
+  const one = await picture();
+  for (let look = 0; look < 100 && !found.goesOn; look++) {
+    await drawn(page);
+    found.goesOn = one !== (await picture());
+  }
   await page.click("#stop");
   found.errors = errors;
   return found;

@@ -1,6 +1,6 @@
 /** Looks at the page in every size, theme and language; prints what it finds. */
 
-import { READY, SIZES, held, open, pretendMidi, run, wishes } from "./browser.mjs";
+import { READY, SIZES, held, open, pretendMidi, run, wished, wishes } from "./browser.mjs";
 
 /** Elements that a finger should be able to touch, and their sizes. */
 const TARGETS = "button:not([hidden]), select, input, summary, canvas[tabindex]";
@@ -64,7 +64,7 @@ await run(async (browser, url) => {
   }
   await page.click("#start");
   await page.waitForFunction(() => globalThis.imitation);
-  await page.waitForTimeout(700);
+  await page.waitForFunction(() => /load/.test(document.querySelector("#status").textContent));
   found.status = await page.textContent("#status");
 
   // The bow, placed by the diagram.
@@ -99,7 +99,7 @@ await run(async (browser, url) => {
 
   await page.click("#tab-tunes");
   await page.locator("#panel-tunes button").first().click();
-  await page.waitForTimeout(2500);
+  await wished(page, "BEGIN");
   found.tune = (await wishes(page)).filter(([kind]) => kind === "BEGIN").length;
   await page.locator("#panel-tunes button").first().click();
   found.tuneStopped = { held: await held(page), wishes: await wishes(page) };
@@ -119,15 +119,16 @@ await run(async (browser, url) => {
   found.kept = (await import("node:fs")).readFileSync(file, "utf8").trim().split("\n").slice(1);
   await wishes(page);
   await page.locator("#panel-keep input[type=file]").setInputFiles(file);
-  await page.waitForTimeout(900);
+  await wished(page, "END", 2);
   found.replayed = await wishes(page);
   await page.locator("#panel-keep input[type=file]").setInputFiles({
     name: "wrong.jsonl",
     mimeType: "text/plain",
     buffer: Buffer.from('{"format":1}\n[1]'),
   });
-  await page.waitForTimeout(200);
-  found.wrong = await page.textContent("#panel-keep section:nth-child(1) p[role=status]");
+  const word = page.locator("#panel-keep section:nth-child(1) p[role=status]");
+  await word.getByText("wrong.jsonl").waitFor();
+  found.wrong = await word.textContent();
 
   // A keyboard that is plugged in, plays, and is pulled out while a key is down.
   await page.click("#tab-connect");

@@ -24,7 +24,7 @@ await run(
     await page.getByRole("button", { name: "Use the microphone" }).click();
     const word = page.getByText("Wear headphones");
     await word.waitFor();
-    await page.waitForTimeout(4000);
+    await page.waitForTimeout(3000);
     await page.locator("#panel-connect canvas").scrollIntoViewIfNeeded();
     const colours = await page.locator("#panel-connect canvas").evaluate((canvas) => {
       const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);

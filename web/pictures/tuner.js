@@ -43,8 +43,9 @@ export class Tuner extends Picture {
     if (sounds) {
       context.font = font(13);
       context.fillStyle = isTrue ? this.colours.good : this.colours.soft;
-      const sign = cents < 0 ? "−" : "+";
-      context.fillText(`${sign}${Math.abs(cents).toFixed(0)} ct`, 4, height * 0.8);
+      const whole = Math.round(cents);
+      const sign = whole < 0 ? "−" : whole > 0 ? "+" : "";
+      context.fillText(`${sign}${Math.abs(whole)} ct`, 4, height * 0.8);
     }
     this.#frame();
     this.#trace(note, now);

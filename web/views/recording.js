@@ -33,9 +33,10 @@ function fileName(ending) {
 function recording(instrument) {
   const time = make("output", { class: "soft" });
   let begun = 0;
-  const { button } = toggle("keep.record", "keep.stop", async (isOn) => {
+  const { button, set } = toggle("keep.record", "keep.stop", async (isOn) => {
+    if (isOn) await instrument.start();
     const record = instrument.sound?.record;
-    if (!record) return;
+    if (!record) return set(false);
     begun = isOn ? performance.now() : 0;
     if (isOn) record.start();
     else download(await record.stop(), fileName("wav"));
@@ -43,15 +44,9 @@ function recording(instrument) {
   setInterval(() => {
     if (begun && !document.hidden) time.textContent = clock((performance.now() - begun) / 1000);
   }, 250);
-  const judge = () => {
-    const why = reason(instrument, Boolean(instrument.sound?.record));
-    allow(button, why);
-    if (!begun) time.textContent = why ?? "";
-  };
-  instrument.addEventListener("start", judge);
-  onLanguage(judge);
+  const lack = judge(instrument, button, (sound) => !sound || Boolean(sound.record));
   const row = make("div", { class: "row" }, [button, time]);
-  return section("keep.sound", note(words("keep.sound.about")), row);
+  return section("keep.sound", note(words("keep.sound.about")), row, lack);
 }
 
 /** @param {Page} page */
@@ -62,7 +57,9 @@ function performances({ instrument, keys, fingerboard, bow }) {
   const keep = toggle("keep.begin", "keep.stop", async (isOn) => {
     offer.replaceChildren();
     word.textContent = "";
-    if (isOn) keeper.start();
+    if (isOn) await instrument.start();
+    if (!keeper.isAble) keep.set(false);
+    else if (isOn) keeper.start();
     else await tellKept(await keeper.stop());
   });
   const label = words("keep.load");
@@ -121,6 +118,7 @@ function performances({ instrument, keys, fingerboard, bow }) {
     if (!file) return;
     try {
       const read = await readCapture(file);
+      await instrument.start();
       play(read);
       const { players } = read;
       word.textContent =
@@ -135,15 +133,9 @@ function performances({ instrument, keys, fingerboard, bow }) {
     hand.addEventListener("play", () => replayer?.yield());
   }
   invite(instrument, play);
-  const judge = () => {
-    allow(keep.button, reason(instrument, keeper.isAble));
-    allow(load.button, reason(instrument, true));
-    if (!replayer) word.textContent = reason(instrument, true) ?? "";
-  };
-  instrument.addEventListener("start", judge);
-  onLanguage(judge);
+  const lack = judge(instrument, keep.button, (sound) => !sound || keeper.isAble);
   const row = make("div", { class: "row" }, [keep.button, load.button, input]);
-  return section("keep.performance", note(words("keep.performance.about")), row, offer, word);
+  return section("keep.performance", note(words("keep.performance.about")), row, lack, offer, word);
 }
 
 /**
@@ -174,13 +166,21 @@ async function invite(instrument, play) {
 }
 
 /**
- * Why something cannot be used, if it cannot.
+ * Withhold a button where the page, or the sound once it is there, cannot do what it says.
  * @param {Instrument} instrument
- * @param {boolean} isThere
+ * @param {HTMLButtonElement} button
+ * @param {(sound: Instrument["sound"]) => boolean} isAble
+ * @returns {HTMLElement} which says so
  */
-function reason(instrument, isThere) {
-  if (!instrument.sound) return translate("keep.first");
-  return isThere ? undefined : translate("missing");
+export function judge(instrument, button, isAble) {
+  const lack = note(words("missing"));
+  const tell = () => {
+    lack.hidden = isAble(instrument.sound);
+    allow(button, lack.hidden ? undefined : translate("missing"));
+  };
+  for (const event of ["start", "way"]) instrument.addEventListener(event, tell);
+  onLanguage(tell);
+  return lack;
 }
 
 /** @param {number} seconds */

@@ -2,10 +2,11 @@
 
 /** @typedef {import('../main.js').Page} Page */
 
-import { allow, find, make, note, section, toggle, words } from "../elements.js";
+import { find, make, note, section, toggle, words } from "../elements.js";
 import { Voice } from "../pictures/voice.js";
 import facts from "../facts.js";
-import { onLanguage, translate } from "../i18n.js";
+import { translate } from "../i18n.js";
+import { judge } from "./recording.js";
 
 /** @type {[string, number][]} */
 const AS_IT_SINGS = Object.entries(facts.asItSings);
@@ -58,13 +59,9 @@ export function makeVoice({ instrument, gallery }) {
   instrument.addEventListener("silence", () => {
     if (before.length) end();
   });
-  const judge = () => {
-    const isAble =
-      Boolean(navigator.mediaDevices) && (!instrument.sound || Boolean(instrument.sound.voice));
-    allow(hum.button, isAble ? undefined : translate("missing"));
-  };
-  instrument.addEventListener("start", judge);
-  onLanguage(judge);
+  const isAble = (/** @type {typeof instrument.sound} */ sound) =>
+    Boolean(navigator.mediaDevices) && (!sound || Boolean(sound.voice));
+  const lack = judge(instrument, hum.button, isAble);
   const row = make("div", { class: "row" }, [hum.button]);
-  return section("voice", note(words("voice.about")), row, word, canvas, lines);
+  return section("voice", note(words("voice.about")), row, lack, word, canvas, lines);
 }

@@ -16,8 +16,7 @@ const MICROPHONE = [
 await run(
   async (browser, url) => {
     const { page, errors } = await open(browser, url);
-    await page.click("#start");
-    await page.click("#tab-keep");
+    await page.click("#tab-keep"); // what it asks for there begins the sound
     await page.getByRole("button", { name: "Keep", exact: true }).click();
     await page.getByRole("button", { name: "Record", exact: true }).click();
     await page.click("#tab-connect");

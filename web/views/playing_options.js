@@ -48,7 +48,7 @@ function articulations(player) {
   const options = facts.articulations.map(([name, chinese], number) => {
     const english = name.replaceAll("-", " ");
     return make("option", { value: String(number) }, [
-      () => (language() === "zh" ? `${chinese} (${english})` : `${english} ${chinese}`),
+      () => (language() === "zh" ? chinese : `${english} ${chinese}`),
     ]);
   });
   const name = () => nameFor(ARTICULATION);

@@ -27,9 +27,9 @@ from following import (
     truth,
 )
 
-from yehu_server.core.engine.following import OF_WISH, follow_voice, voice_pitch, voice_prepare
-from yehu_server.core.following.deciding import FOLLOWER
+from yehu_server.core.engine.voice_callback import OF_WISH, follow_voice, voice_pitch, voice_prepare
 from yehu_server.core.player.wishes import BEGIN
+from yehu_server.core.voice.deciding import FOLLOWER
 
 Array = Any
 

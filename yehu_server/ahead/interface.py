@@ -22,9 +22,9 @@ from yehu_server.ahead.table_checks import (
 from yehu_server.compile.jit import Native, native
 from yehu_server.compile.memory import WORD, carray
 from yehu_server.core.controls.record import CONTROLS
-from yehu_server.core.engine import following
 from yehu_server.core.engine import native as engine
 from yehu_server.core.engine import rig as memory
+from yehu_server.core.engine import voice_callback
 from yehu_server.core.engine.atomics import at, load_acquire, record_at
 from yehu_server.core.engine.look import look
 from yehu_server.core.engine.mailbox import SERVER
@@ -296,10 +296,10 @@ def telling(sources: str) -> Native:
 
 
 FOLLOWING = [
-    following.voice_size,
-    following.voice_prepare,
-    following.follow_voice,
-    following.voice_pitch,
+    voice_callback.voice_size,
+    voice_callback.voice_prepare,
+    voice_callback.follow_voice,
+    voice_callback.voice_pitch,
 ]
 
 

@@ -13,8 +13,8 @@ from typing import Any
 import mido
 import numpy as np
 
-from yehu_server.core.following.deciding import dynamics_of
 from yehu_server.core.player import fingering
+from yehu_server.core.voice.deciding import dynamics_of
 from yehu_server.errors import ScoreError
 from yehu_server.following.frames import HOP_S
 from yehu_server.following.heard import Heard

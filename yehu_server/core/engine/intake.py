@@ -44,8 +44,8 @@ from yehu_server.core.engine.rig import (
 )
 from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.midi.events import FINGER_ON, NOTE_OFF, NOTE_ON, RELEASE_ALL
-from yehu_server.core.midi.held_keys import find_key
 from yehu_server.core.midi.interpret_events import interpret
+from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import MIDI, NONE
 from yehu_server.core.player.wishes import BEGIN, END, WISH
 

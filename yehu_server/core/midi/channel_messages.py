@@ -23,7 +23,6 @@ from yehu_server.core.midi.controllers import (
     set_directly,
 )
 from yehu_server.core.midi.emit_wishes import stop_sound
-from yehu_server.core.midi.held_keys import list_key
 from yehu_server.core.midi.note_ends import (
     SUSTAIN,
     end_all,
@@ -34,6 +33,7 @@ from yehu_server.core.midi.note_ends import (
 )
 from yehu_server.core.midi.notes import end_channel, note_off, note_on
 from yehu_server.core.midi.packing import BYTE, LENGTH_AT, PORT_AT
+from yehu_server.core.midi.part_keys import list_key
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE, PORTS, Midi
 from yehu_server.core.midi.registered_parameters import (
     DATA_ENTRY,

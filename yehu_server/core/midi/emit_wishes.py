@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.core.midi.held_keys import find_key, forget_listed, hold_key, list_key
+from yehu_server.core.midi.part_keys import find_key, forget_listed, hold_key, list_key
 from yehu_server.core.midi.record import NONE, SECTION, Midi, emit
 from yehu_server.core.midi.section import (
     add_value,

@@ -43,9 +43,9 @@ from yehu_server.core.midi.events import (
     START,
     TABLES_TO,
 )
-from yehu_server.core.midi.held_keys import list_key
 from yehu_server.core.midi.note_ends import SUSTAIN, end_all, end_notes, lift_pedal
 from yehu_server.core.midi.notes import note_off, note_on
+from yehu_server.core.midi.part_keys import list_key
 from yehu_server.core.midi.record import CHANNELS, NONE, Midi, emit
 from yehu_server.core.midi.remapping import change_binds, start
 from yehu_server.core.midi.section import slide_players

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.midi.held_keys import find_key
+from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import MOST_CHORD, NONE, emit
 from yehu_server.core.midi.section_players import own_value, plan_onset, plan_release
 from yehu_server.core.player.record import MOST_HELD

@@ -11,7 +11,7 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import bend_range, is_midi, master_of, moves_all
 from yehu_server.core.midi.curves import along_curve, from_unit, inverted
-from yehu_server.core.midi.held_keys import find_key
+from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import IN_PORT, NONE, Midi
 from yehu_server.core.midi.tables import KEYS, NOTE, POLY_PRESSURE, VELOCITY, Tables
 

@@ -1,6 +1,6 @@
 """The keys that one instrument holds, in the order pressed, and the one that sounds. Compiled.
 
-Those of the part, which may be a section's, are in ``midi.held_keys``.
+Those of the part, which may be a section's, are in ``midi.part_keys``.
 """
 
 from __future__ import annotations

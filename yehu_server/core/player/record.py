@@ -29,7 +29,7 @@ from yehu_server.params.table import TABLE
 
 # Of what is learnt: half semitones, quarter octaves of bow position, half octaves of speed.
 LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES = 52, 11, 11
-# Keys held at most. Beyond, the one held longest is let go: by the part (``midi.held_keys``), each
+# Keys held at most. Beyond, the one held longest is let go: by the part (``midi.part_keys``), each
 # player of a section (``midi.section``) and each instrument (``held_keys``) of its own list.
 MOST_HELD = 256
 NOTES = len(PITCHES[0])  # measured on each string

@@ -84,8 +84,8 @@ def _following(address: int, order: Message) -> tuple[Any, Any]:
     """The callback of an input, and its data: the record of a follower."""
     import numpy as np
 
-    from yehu_server.core.engine.following import follow_input, voice_prepare
-    from yehu_server.core.following.deciding import FOLLOWER
+    from yehu_server.core.engine.voice_callback import follow_input, voice_prepare
+    from yehu_server.core.voice.deciding import FOLLOWER
 
     voice = np.zeros(1, FOLLOWER)
     voice_prepare.call(voice.ctypes.data, order["rate"], order["transpose"])

@@ -1,4 +1,4 @@
-"""Play by a voice at an audio input, which is followed as it sings (``core.following``)."""
+"""Play by a voice at an audio input, which is followed as it sings (``core.voice``)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from yehu_server.core.following.deciding import KEYS, VOICE
+from yehu_server.core.voice.deciding import KEYS, VOICE
 from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.output import OutputOptions, SharedMemory
 from yehu_server.playing.live_player import LivePlayer

@@ -15,8 +15,8 @@ from yehu_server.core.engine.atomics import pointer, record_at
 from yehu_server.core.engine.mailbox import SOUND_INPUT
 from yehu_server.core.engine.native import post_to
 from yehu_server.core.engine.processor import flush_denormals, monotonic_ns, restore_denormals
-from yehu_server.core.following.deciding import FOLLOWER, decide, end, prepare_follower
-from yehu_server.core.following.hearing import take
+from yehu_server.core.voice.deciding import FOLLOWER, decide, end, prepare_follower
+from yehu_server.core.voice.hearing import take
 
 FOLLOWER_BYTES = FOLLOWER.itemsize
 OF_WISH = 4  # numbers of a wish for others: kind, index, value, other

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.following.hearing import HEARING, HOP_S, prepare_hearing
 from yehu_server.core.player.fingering import HIGHEST_NOTE, HIGHEST_ON_F, LOWEST_NOTE
 from yehu_server.core.player.notes import DYNAMICS_EXPONENT
 from yehu_server.core.player.right_hand import SOFTEST
 from yehu_server.core.player.rows import DYNAMICS, STRING
 from yehu_server.core.player.wishes import BEGIN, END, SLIDE, WRITE
+from yehu_server.core.voice.hearing import HEARING, HOP_S, prepare_hearing
 
 # -- when it is sure ------------------------------------------------------------------------------
 SURE, UNSURE = 0.88, 0.7  # certainty from which a note begins, and below which it is in doubt

@@ -29,8 +29,7 @@ from yehu_server.core.player.bowing import (
     recipe_value,
     share,
 )
-from yehu_server.lab.plot.axes import LABELS
-from yehu_server.lab.plot.cells import limit_lines, regime_patches
+from yehu_server.lab.plot.cells import LABELS, limit_lines, regime_patches
 from yehu_server.lab.plot.study import draw_limits_over
 from yehu_server.lab.plot.sweep_maps import draw_map, map_of
 from yehu_server.lab.sweeps.result import Result

@@ -23,8 +23,8 @@ from matplotlib.ticker import FormatStrFormatter
 from tables import STRINGS, named, write_tables
 
 from yehu_server.core.physics.quantities import measured_body
-from yehu_server.lab.plot.axes import LABELS
 from yehu_server.lab.plot.cells import (
+    LABELS,
     draw_cells,
     draw_limits,
     limit_lines,

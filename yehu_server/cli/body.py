@@ -170,7 +170,7 @@ def _tell(found: Fit, *, as_json: bool) -> None:
 
 def _taps(arguments: argparse.Namespace) -> int:
     from yehu_server.lab.body import made_taps
-    from yehu_server.lab.body.tap_files import write_taps
+    from yehu_server.lab.body.tap import write_taps
 
     taps = made_taps(count=arguments.count, noise_db=arguments.noise_db)
     files, channels = write_taps(taps, arguments.output, overwrite=arguments.overwrite)

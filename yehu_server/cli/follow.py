@@ -177,7 +177,7 @@ def _write(arguments: argparse.Namespace, options: Options, heard: Heard, found:
     options = replace(options, calibration=calibration)
     with progress_bar(arguments, "playing") as progress:
         if ending in CAPTURE:
-            from yehu_server.rendering.to_capture import render_capture
+            from yehu_server.rendering.to_files import render_capture
 
             overwrite = arguments.overwrite
             render_capture(found.score, arguments.output, options, progress, overwrite=overwrite)
@@ -199,7 +199,7 @@ def _render(
     may_replace = check_output(arguments)
     render(found.score, arguments.output, options, progress, may_replace, watch=watch)
     if watch is not None:
-        from yehu_server.lab.plot.followed import write_followed
+        from yehu_server.lab.plot.rendered import write_followed
 
         watch.finish()
         write_followed(heard, found.semitones, watch, arguments.plot, overwrite=arguments.overwrite)

@@ -1,4 +1,4 @@
-"""Render a score, or the parts of an ensemble, to sound files: the mix, and its stems."""
+"""Render a score, or the parts of an ensemble: to sound files and stems, or to a capture."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import contextlib
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from yehu_server.rendering.performance import Performance, Samples
 from yehu_server.rendering.pipe import PIPE, sound_pipe
 from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
+from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.scores.score import Score
 from yehu_server.util.files import anything, why
 from yehu_server.util.sound_file import SoundWriter, check_format, sound_file
@@ -136,3 +138,46 @@ def _takes(
             watch.take(samples, performance.target_pitches)
         if progress is not None:
             progress(frames / rate, total)
+
+
+def render_capture(
+    played: Score | Sequence[Part],
+    target: Path,
+    options: Options,
+    progress: Callable[[float, float], None] | None = None,
+    *,
+    overwrite: bool = False,
+) -> Performance:
+    """Play a score, and write its capture: replayed, it gives the same samples as a rendering.
+
+    Returns the performance, which has been played. Raises YehuError where it fails; no partial file
+    is left.
+    """
+    performance = Performance(played, replace(options, jobs=1, is_mono=False), reports=True)
+    wrong: list[str] = []
+    capture = LiveCapture(
+        performance.ensemble,
+        target,
+        wrong.append,
+        has_room=not options.is_dry,
+        overwrite=overwrite,
+    )
+    total, frames = performance.score_frames / options.rate, 0
+    try:
+        for samples in performance.blocks():
+            frames += len(samples)
+            capture.keep_up()
+            _check(wrong)
+            if progress is not None:
+                progress(frames / options.rate, total)
+    except BaseException:
+        capture.discard()
+        raise
+    capture.close()
+    _check(wrong)
+    return performance
+
+
+def _check(wrong: list[str]) -> None:
+    if wrong:
+        raise OutputError(wrong[0])

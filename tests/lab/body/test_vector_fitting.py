@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from yehu_server.lab.body.vector_fitting import Lines, moved, numerators, usable
+from yehu_server.lab.body.sections import Lines, moved, numerators, usable
 
 RATE = 44100.0
 

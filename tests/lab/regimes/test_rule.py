@@ -19,8 +19,7 @@ from yehu_server.lab.regimes.columns import (
     SILENT,
 )
 from yehu_server.lab.regimes.judge import judge, name_regime
-from yehu_server.lab.regimes.periods import NOWHERE, refined
-from yehu_server.lab.regimes.slips import times_of_slips
+from yehu_server.lab.regimes.periods import NOWHERE, refined, times_of_slips
 
 COUNT = 430  # lags
 

@@ -108,7 +108,7 @@ def test_a_lifted_bow_is_told():
 
 def test_schellengs_limits_bracket_helmholtz_motion():
     """Between them it holds; far beyond them it does not. On the F string, away from its modes."""
-    from yehu_server.lab.sweeps.limits import limits_of
+    from yehu_server.lab.sweeps.study import limits_of
 
     base = {"duration": 0.3, "stroke": {"string": 1, "note": 75, "acceleration": 10.0}}
     for beta in (0.13, 0.16, 0.2):
@@ -124,7 +124,7 @@ def test_schellengs_limits_bracket_helmholtz_motion():
 
 
 def test_schellengs_limits_are_his_formulas():
-    from yehu_server.lab.sweeps.limits import limits_of
+    from yehu_server.lab.sweeps.study import limits_of
 
     stroke = {"string": 2, "note": 79, "speed": 0.25, "position": 0.11}
     limits = limits_of(study_of({"stroke": stroke, "vary": {"seed": [0]}}), {})

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 from yehu_server.errors import MeasurementError
 from yehu_server.lab.body.curve import Floats
-from yehu_server.lab.body.tap import QUANTITIES
 
+# What a channel may be; all but the force are responses.
+QUANTITIES = ("force", "velocity", "acceleration", "displacement", "pressure")
 SKIPPED = "none"
 UNITS = {
     "force": {"n": 1.0, "mn": 1e-3},

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body import tap_files, universal
+from yehu_server.lab.body import universal
 from yehu_server.lab.body.average import KIND, Averaged, average_taps
 from yehu_server.lab.body.channels import parse_channels
 from yehu_server.lab.body.curve import KINDS, RADIATION, Curve, interpolated, to_mobility
 from yehu_server.lab.body.plausible import check_admittance, check_radiation
 from yehu_server.lab.body.tables import Response, read_table
-from yehu_server.lab.body.tap import Tap
+from yehu_server.lab.body.tap import SOUND_ENDINGS, Tap, read_recording
 
 LOWEST_HZ, HIGHEST_HZ = 100.0, 8000.0  # of the band that is used, where nothing else is told
 LEAST_COHERENCE, LEAST_SHARE = 0.8, 0.9
@@ -109,8 +109,8 @@ def _read_all(
         ending = path.suffix.lower()
         if ending in universal.ENDINGS:
             found = universal.read_universal(path, kind)
-        elif ending in tap_files.ENDINGS:
-            found = tap_files.read_recording(path, told)
+        elif ending in SOUND_ENDINGS:
+            found = read_recording(path, told)
         elif ending in (".csv", ".txt", ".tsv"):
             found = read_table(path, told, kind)
         else:

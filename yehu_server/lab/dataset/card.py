@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.lab.dataset.description import Description
-from yehu_server.lab.dataset.files import Line
+from yehu_server.lab.dataset.making import Line
 from yehu_server.lab.labels import Label, as_data, label_of
 from yehu_server.lab.regimes.columns import REGIMES
 from yehu_server.scores.gesture import CONTROLS

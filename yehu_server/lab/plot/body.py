@@ -12,7 +12,7 @@ from yehu_server.lab.body.body_file import Fit
 from yehu_server.lab.body.curve import Curve, as_db
 from yehu_server.lab.body.report import lines_of
 from yehu_server.lab.plot import png
-from yehu_server.lab.plot.axes import ABOVE
+from yehu_server.lab.plot.cells import ABOVE
 from yehu_server.util.extras import need
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""The picture of a rendering: its level, pitch and spectrogram."""
+"""The picture of a rendering: its level, pitch and spectrogram; or over a recording it follows."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.following.heard import Heard
+from yehu_server.following.notes import A4_HZ, midi_of
 from yehu_server.lab.plot import png
-from yehu_server.lab.plot.axes import ABOVE
+from yehu_server.lab.plot.cells import ABOVE
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.rendering.plot_data import PlotData
 
@@ -113,3 +115,48 @@ def write_picture(
         panels[2].set(xlim=(0.0, max(watch.duration_s, 0.01)), xlabel="s")
 
     png.write_picture(target, SIZE, fill, overwrite=overwrite)
+
+
+MARGIN = 1.5  # semitones
+SPAN_DB = 50.0
+
+
+def draw_pitches(axes: Any, heard: Heard, semitones: float, watch: PlotData) -> None:
+    """Draw the pitch that was heard, transposed as it is played, and the one that is played."""
+    shift = semitones + 12.0 * np.log2(A4_HZ / watch.a4)
+    wanted = midi_of(heard.pitch_hz) + shift
+    axes.plot(heard.times_s, wanted, color=ASKED, lw=2.4, label="heard")
+    axes.plot(watch.times_s, watch.pitches, ".", color=HEARD, ms=2.5, label="played")
+    known = wanted[np.isfinite(wanted)]
+    label_notes(axes, float(known.min()) - MARGIN, float(known.max()) + MARGIN)
+    axes.legend(**ABOVE)
+
+
+def draw_levels(axes: Any, heard: Heard, watch: PlotData) -> None:
+    """Draw both levels, each below its highest."""
+    for times, levels, colour, label in (
+        (heard.times_s, heard.level_db, ASKED, "heard (A-weighted)"),
+        (watch.times_s, watch.levels_db, HEARD, "played"),
+    ):
+        axes.plot(times, levels - levels.max(initial=-120.0), color=colour, lw=1.0, label=label)
+    axes.set(ylim=(-SPAN_DB, 3.0), ylabel="dB below the loudest")
+    axes.grid(**GRID)
+    axes.legend(**ABOVE)
+
+
+def write_followed(
+    heard: Heard, semitones: float, watch: PlotData, target: Path, *, overwrite: bool = False
+) -> None:
+    """Draw what was heard over what is played, and write it to a PNG file.
+
+    Raises OutputError where it cannot be written.
+    """
+    moved = f", {semitones:+g} semitones" if semitones else ""
+    write_picture(
+        watch,
+        target,
+        f"{Path(heard.name).name}{moved}",
+        lambda axes: draw_levels(axes, heard, watch),
+        lambda axes: draw_pitches(axes, heard, semitones, watch),
+        overwrite=overwrite,
+    )

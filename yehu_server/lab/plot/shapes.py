@@ -1,4 +1,4 @@
-"""Pictures of the strings' shapes."""
+"""Pictures of a simulation: the strings' shapes, and the energy ledger."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from yehu_server.errors import ParameterError
-from yehu_server.lab.plot.axes import ABOVE, axes_of
+from yehu_server.lab.plot.cells import ABOVE, axes_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,4 +75,74 @@ def strings(simulation: Any, time: float, *, ax: Axes | None = None) -> Axes:
     axes.set(xlabel="m from the loop", ylabel="mm")
     axes.text(0.02, 0.95, f"{times[row]:.4g} s", transform=axes.transAxes, va="top")
     axes.legend(**ABOVE, fontsize="small")
+    return axes
+
+
+LOSSES = {
+    "loss_friction": ("friction of the hair", "#e08a00"),
+    "loss_strings": ("strings", "#1f5fa8"),
+    "loss_bridge": ("body", "#3f9b57"),
+    "loss_finger": ("finger", "#c03a2b"),
+    "loss_hair": ("hair", "#8a6bb1"),
+}
+LEFT_OUT = ("loss_bow_lift", "loss_contact_reset")  # as a bow or a finger leaves
+STORED = "0.8"
+MJ = 1e3
+
+
+def energy(simulation: Any, *, ax: Axes | None = None) -> Axes:
+    """Draw the energy balance: what bow, finger and hammer gave, and where it is.
+
+    What was stored and lost is stacked; its upper edge lies on the line of what was given, and
+    the title tells the largest power that is missing.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        With the energy ledger: ``simulate(..., energy=True)``.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    ParameterError
+        Where there is no ledger, or matplotlib is missing.
+
+    Examples
+    --------
+    >>> import yehu_server as yehu
+    >>> controls = {"bow_force": 0.7, "bow_velocity": 0.3}
+    >>> run = yehu.simulate({"duration": 0.1, "controls": controls}, energy=True)
+    >>> yehu.plot.energy(run).get_ylabel()
+    'mJ'
+    """
+    arrays = getattr(simulation, "arrays", {})
+    if "power_in" not in arrays:
+        raise ParameterError("no energy was kept: simulate with energy=True")
+    axes = axes_of(ax)
+    rate = float(simulation.meta["sample_rate"])
+    lost = sum(arrays[name] for name in (*LOSSES, *LEFT_OUT))
+    begin = arrays["energy"][0] - (arrays["power_in"][0] - lost[0]) / rate  # as of a plucked string
+    given = MJ * (begin + np.cumsum(arrays["power_in"]) / rate)
+    rows = {"stored": (MJ * arrays["energy"], STORED)}
+    for name, (label, colour) in LOSSES.items():
+        rows[label] = (MJ * np.cumsum(arrays[name]) / rate, colour)
+    rest = sum(MJ * np.cumsum(arrays[name]) / rate for name in LEFT_OUT)
+    rows["contacts that ended"] = (rest, "0.5")
+    most = max(float(values.max(initial=0.0)) for values, _ in rows.values())
+    rows = {label: row for label, row in rows.items() if row[0].max(initial=0.0) > 1e-3 * most}
+    axes.stackplot(
+        arrays["time"],
+        [values for values, _ in rows.values()],
+        labels=list(rows),
+        colors=[colour for _, colour in rows.values()],
+    )
+    axes.plot(arrays["time"], given, "k--", lw=1.0, label="given")
+    missing = float(np.abs(arrays["energy_error"]).max(initial=0.0))
+    axes.set(xlabel="s", ylabel="mJ", xlim=(0.0, float(arrays["time"][-1])))
+    axes.set_title(f"at most {missing:.1e} W missing", loc="left", fontsize="medium")
+    axes.legend(loc="upper left", frameon=False, fontsize="small")
     return axes

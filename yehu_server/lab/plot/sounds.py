@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from yehu_server.errors import ParameterError
-from yehu_server.lab.plot.axes import axes_of
+from yehu_server.lab.plot.cells import axes_of
 from yehu_server.lab.plot.rendered import draw_level, draw_pitch, draw_spectrogram
 from yehu_server.rendering.plot_data import TOP_HZ, PlotData
 

@@ -11,12 +11,10 @@ from typing import Any
 import numpy as np
 
 from yehu_server.lab.plot import png
-from yehu_server.lab.plot.axes import LABELS
-from yehu_server.lab.plot.cells import draw_limits, limit_lines, regime_patches, set_scale
+from yehu_server.lab.plot.cells import LABELS, draw_limits, limit_lines, regime_patches, set_scale
 from yehu_server.lab.plot.sweep_maps import ALONG, FORCE, PERIODS, draw_map, is_log_along, map_of
-from yehu_server.lab.sweeps.limits import limits_of
 from yehu_server.lab.sweeps.result import Result
-from yehu_server.lab.sweeps.study import Study
+from yehu_server.lab.sweeps.study import Study, limits_of
 from yehu_server.playing.pitch_and_level import note_name
 
 Array = Any

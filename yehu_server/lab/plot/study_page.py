@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.errors import ParameterError
-from yehu_server.lab.plot.axes import COLOURS, LABELS
+from yehu_server.lab.plot.cells import COLOURS, LABELS
 from yehu_server.lab.plot.study import limits_along, plane_of
 from yehu_server.lab.plot.sweep_maps import MOST_PERIODS, is_log_along
 from yehu_server.lab.sweeps.result import Result

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from yehu_server.errors import ParameterError
-from yehu_server.lab.plot.axes import LABELS, axes_of
 from yehu_server.lab.plot.cells import (
+    LABELS,
+    axes_of,
     draw_cells,
     draw_limits,
     is_log,
@@ -17,8 +18,8 @@ from yehu_server.lab.plot.cells import (
     regime_colours,
     regime_patches,
 )
-from yehu_server.lab.sweeps.limits import limits_of
 from yehu_server.lab.sweeps.result import Result
+from yehu_server.lab.sweeps.study import limits_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -32,9 +32,10 @@ from yehu_server.lab.regimes.periods import (
     correlate,
     first_peak,
     highest_peak,
+    rectify,
     refined,
+    times_of_slips,
 )
-from yehu_server.lab.regimes.slips import rectify, times_of_slips
 from yehu_server.lab.regimes.spectrum import centroid_hz
 
 Array = Any

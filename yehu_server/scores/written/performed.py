@@ -30,9 +30,8 @@ from yehu_server.scores.written.mark_settings import (
     values_of,
 )
 from yehu_server.scores.written.notated import Note, Part, Written, times
-from yehu_server.scores.written.ornaments import touches_of
+from yehu_server.scores.written.ornaments import curve_of, touches_of
 from yehu_server.scores.written.part_bowing import Played, bowed, has_bowing
-from yehu_server.scores.written.pitch_curve import curve_of
 from yehu_server.scores.written.tempo import WrittenClock
 
 CHANNELS = tuple(channel for channel in range(16) if channel != 9)

@@ -124,17 +124,9 @@ def keep(
 ) -> None:
     """Write the record of results that are in their places, or that there can be none.
 
-    Parameters
-    ----------
-    key : str
-        Of all that they depend on beside files.
-    read : iterable of Path
-        The files that they were made from.
-    results : iterable of Path
-        The target, and what was made beside it.
-    line : dict
-        What may be told of them again; it has an `error` where there can be no result, which
-        holds as long as the key is the same.
+    The key is of all that they depend on beside the files they were made from, `read`. The results
+    are the target, and what was made beside it. The line is what may be told of them again; it has
+    an `error` where there can be no result, which holds as long as the key is the same.
     """
     made = {}
     for path in results:

@@ -68,18 +68,11 @@ BATCHES = 4  # in which they are sent off
 class Cluster:
     """A connection to a Dask scheduler, for the time of a `with` block.
 
-    Raises YehuError where there is no such scheduler, no worker, or one that has another version;
-    where Dask is not installed.
-
-    Parameters
-    ----------
-    address : str
-        Of the scheduler, such as ``tcp://10.0.0.1:8786``, or its file.
-    setup : callable, optional
-        Called in each process of a worker before its first job, by one process of a machine at a
-        time. It has to be picklable.
-    warn : callable
-        Told, in one line, what is no error.
+    The address is that of the scheduler, such as ``tcp://10.0.0.1:8786``, or its file. `setup`,
+    which has to be picklable, is called in each process of a worker before its first job, by one
+    process of a machine at a time. `warn` is told, in one line, what is no error. Raises YehuError
+    where there is no such scheduler, no worker, or one that has another version; where Dask is not
+    installed.
     """
 
     def __init__(
@@ -129,20 +122,11 @@ class Cluster:
     def perform_all(self, perform: Perform, tasks: Iterable[Any]) -> Generator[Event]:
         """Do all tasks; yield what becomes of them, in the order in which they end.
 
-        Raises YehuError where the scheduler is lost, or a worker has another version.
-
-        Parameters
-        ----------
-        perform : callable
-            A function of a module, as of ``rendering.workers.perform_all``; its progress is lost.
-        tasks : iterable
-            They are taken one by one, as workers are free.
-
-        Yields
-        ------
-        Event
-            Its result is of plain values: None, numbers, texts, bytes, and lists and dicts of
-            them. Whoever takes it checks it: anybody who reaches the scheduler may have sent it.
+        `perform` is as of ``rendering.workers.perform_all``, but its progress is lost; tasks are
+        taken one by one, as workers are free. Results are plain values: None, numbers, texts,
+        bytes, and lists and dicts of them. Whoever takes one checks it: anybody who reaches the
+        scheduler may have sent it. Raises YehuError where the scheduler is lost, or a worker has
+        another version.
         """
         name = f"yehu-{secrets.token_hex(8)}"
         waiting = enumerate(tasks)

@@ -39,19 +39,9 @@ class Sounded:
 class Cores:
     """Computes blocks of an ensemble.
 
-    Parameters
-    ----------
-    share : callable
-        As `map`, for all cores: calls a function with each item.
-    has_stems : bool
-        Whether `stems` is wanted.
-    is_in_turn : bool
-        Whether the callback computes it all, on one core. It makes no stems.
-
-    Attributes
-    ----------
-    stems : ndarray [shape=(frames, parts + 1, EARS), float64]
-        What each instrument, and at last the room, gave to the last block that was mixed.
+    `share` is as `map`, for all cores. With `is_in_turn` the callback computes it all, on one core,
+    and makes no stems. With `has_stems`, `stems` [shape=(frames, parts + 1, EARS), float64] is what
+    each instrument, and at last the room, gave to the last block that was mixed.
     """
 
     def __init__(

@@ -27,12 +27,7 @@ END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
 class PartPlayer:
     """Plays a part on an instrument, or on those of a section.
 
-    Attributes
-    ----------
-    part : Part
-    instruments : sequence of Instrument
-    wishes : WishPoster
-    midi : MidiPoster
+    Their wishes and MIDI are posted by `wishes` and `midi`.
     """
 
     def __init__(self, part: Part, instruments: Sequence[Instrument]) -> None:

@@ -23,19 +23,8 @@ HEARD_DB = -60.0  # below, no pitch is looked for
 class PlotData:
     """Level, spectrum and pitch of a sound at up to `COLUMNS` times, and the pitches asked for.
 
-    Parameters
-    ----------
-    rate : float, Hz
-    duration_s : float
-        About how long it will be.
-    voices : int
-        How many instruments play; the pitch of a sound is looked for where there is one.
-    a4 : float, Hz
-
-    Attributes
-    ----------
-    step : int
-        Frames between two columns.
+    Rate and A4 are in Hz; the pitch of a sound is looked for where there is one voice. Between two
+    columns there are `step` frames.
     """
 
     def __init__(self, rate: float, duration_s: float, voices: int, a4: float = 440.0) -> None:

@@ -79,21 +79,10 @@ def render(
 ) -> Summary:
     """Render a score on one instrument, or parts on one each, to a sound file.
 
-    Raises YehuError where it fails; no partial file is left.
-
-    Parameters
-    ----------
-    progress : callable, optional
-        Called with the seconds done and those of the score.
-    may_replace : callable
-        Returns whether an older file may be replaced.
-    target : Path
-        `PIPE` for standard output.
-    stems : sequence of Path
-        A file for each part, and one for the room unless it is dry; none: no stems. Their sum is
-        the mix.
-    watch : PlotData, optional
-        Gathers what a picture shows.
+    `progress` is called with the seconds done and those of the score; `may_replace` tells whether
+    an older file may be replaced. The target is `PIPE` for standard output. Stems are a file for
+    each part, and one for the room unless it is dry; their sum is the mix. `watch` gathers what a
+    picture shows. Raises YehuError where it fails; no partial file is left.
     """
     channels = options.sound_channels
     if target is not PIPE:

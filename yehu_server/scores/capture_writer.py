@@ -75,19 +75,10 @@ class CaptureWriter:
 class LiveCapture:
     """Writes the wishes that players fulfil to a file; a full disk ends only the capture.
 
-    Raises OutputError where the file cannot be written, or is there.
-
-    Parameters
-    ----------
-    ensemble : Ensemble
-        Its instruments must report their wishes (``Instrument.report_wishes``) from the first
-        frame on.
-    has_room : bool
-        Whether it plays in a room.
-    on_message : callable
-        Called with a line when the capture ends by itself.
-    overwrite : bool
-        Whether to replace an older file.
+    The ensemble's instruments must report their wishes (``Instrument.report_wishes``) from the
+    first frame on; `has_room` tells whether it plays in a room. `on_message` is called with a line
+    when the capture ends by itself. Raises OutputError where the file cannot be written, or is
+    there.
     """
 
     def __init__(

@@ -34,17 +34,10 @@ class Averaged:
 def average_taps(taps: Sequence[Tap]) -> Averaged:
     """Average taps, leaving out faulty ones while others remain.
 
-    Raises MeasurementError where they differ in rate or responses, or no tap is without fault.
-
-    Parameters
-    ----------
-    taps : sequence of Tap
-        All with the same sample rate and the same responses.
-
-    Notes
-    -----
-    H1, the cross spectrum of force and response over the power spectrum of the force, which noise
-    of the response does not bias. The force is taken as zero before and after the hit.
+    All have the same sample rate and the same responses. It is H1, the cross spectrum of force and
+    response over the power spectrum of the force, which noise of the response does not bias. The
+    force is taken as zero before and after the hit. Raises MeasurementError where they differ in
+    rate or responses, or no tap is without fault.
     """
     if not taps:
         raise MeasurementError("no taps")

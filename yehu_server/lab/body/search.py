@@ -26,24 +26,11 @@ SAME_HZ, SAME_DAMPING = 0.002, 0.15  # relative: poles of two orders that are on
 def starting_poles(frequency_hz: Floats, mobility: Complexes) -> tuple[Floats, Floats]:
     """Candidates for modes: what LSCF of any order takes for a pole.
 
-    Parameters
-    ----------
-    frequency_hz : ndarray [shape=(lines,)]
-        Rising; any spacing.
-    mobility : ndarray [shape=(lines,)]
-        Velocity per force (s/kg).
-
-    Returns
-    -------
-    frequency_hz : ndarray [shape=(candidates,)]
-    damping : ndarray [shape=(candidates,)]
-        Damping ratios, 1 / 2Q.
-
-    Notes
-    -----
-    Source: P. Guillaume and others, the least-squares complex frequency-domain estimator (IMAC
-    2003), as sdypy-EMA has it. It wants an even grid, so an uneven one is interpolated. Poles of
-    different orders that agree are given once.
+    Of a mobility (s/kg) at rising frequencies, each [shape=(lines,)] with any spacing, frequencies
+    and damping ratios (1 / 2Q), each [shape=(candidates,)]. Source: P. Guillaume and others, the
+    least-squares complex frequency-domain estimator (IMAC 2003), as sdypy-EMA has it. It wants an
+    even grid, so an uneven one is interpolated. Poles of different orders that agree are given
+    once.
     """
     need("sdypy.EMA", "the body workshop", "body")
     from sdypy.EMA import Model
@@ -101,17 +88,9 @@ class Search:
     def find(self, most: int, exactly: int | None = None) -> Modes:
         """Find the modes.
 
-        Parameters
-        ----------
-        most : int
-            Number of modes that a body may have.
-        exactly : int, optional
-            Number of modes to find, whether they pay or not.
-
-        Notes
-        -----
-        What pays is told by the Bayesian information criterion: three numbers a mode against the
-        logarithm of the error, over as many values as were measured.
+        That is `most` at most that pay, or `exactly` so many, whether they pay or not. What pays is
+        told by the Bayesian information criterion: three numbers a mode against the logarithm of
+        the error, over as many values as were measured.
         """
         best = step = look(self.problem, np.empty((0, 2)), self.wanted)
         for count in range(1, (exactly or most) + 1):

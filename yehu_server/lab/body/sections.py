@@ -142,22 +142,10 @@ class Sections:
 def fit_sections(curve: Curve, count: int = 32, rate: float = 44100.0) -> Sections:
     """Fit sections to a radiation.
 
-    Raises MeasurementError where there are fewer lines than numbers to find.
-
-    Parameters
-    ----------
-    curve : Curve
-        Pressure per force (Pa/N) over the band that counts. Outside of it the sections are kept
-        quiet, since nobody measured there.
-    count : int
-        Number of sections.
-    rate : float
-        Sample rate (Hz) that the sections are for.
-
-    Notes
-    -----
-    The time that sound takes to the microphone is estimated, and taken off before the fit: as a
-    filter it would want poles of its own.
+    The curve (Pa/N) is over the band that counts. Outside of it the sections are kept quiet, since
+    nobody measured there. They are `count`, for a sample rate (Hz). The time that sound takes to
+    the microphone is estimated, and taken off before the fit: as a filter it would want poles of
+    its own. Raises MeasurementError where there are fewer lines than numbers to find.
     """
     curve = curve.within(LOWEST_HZ, 0.49 * rate)
     lo, hi = float(curve.frequency_hz[0]), float(curve.frequency_hz[-1])

@@ -111,16 +111,8 @@ def draw_cells(
 ) -> Any:
     """Draw values as cells around the places where they are; return the image.
 
-    Parameters
-    ----------
-    x, y : ndarray
-        In any order.
-    cells : ndarray [shape=(len(y), len(x))]
-        Of no colour where they are NaN.
-    log : tuple of bool
-        Which of both are drawn by logarithms.
-    options
-        Of matplotlib's ``pcolormesh``.
+    They are [shape=(len(y), len(x))], the places in any order, and those that are NaN have no
+    colour. `log` tells which of both are drawn by logarithms; options are those of ``pcolormesh``.
     """
     across, up = (_order(values) for values in (x, y))
     x, y = x[across], y[up]

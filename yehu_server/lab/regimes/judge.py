@@ -67,20 +67,9 @@ def name_regime(
 ) -> tuple[int, int]:
     """The regime, and the lag (samples) after which the motion repeats, or NOWHERE.
 
-    Parameters
-    ----------
-    slips : float
-        In a period of the note.
-    sticking : float
-        Share of the time.
-    alike : ndarray
-        Correlation at each lag below `count`.
-    period : float
-        Of the note (samples).
-    motion : float
-        Root mean square of the velocity (m/s) of string on hair, without its mean.
-    speed : float
-        Of the bow (m/s).
+    Of the slips in a period of the note (samples), the share of the time that the hair is sticking,
+    the correlation at each lag below `count`, the root mean square of the velocity of string on
+    hair without its mean, and the bow's speed (m/s).
     """
     if motion < max(QUIET * speed, STILL) or sticking < SLIDING:
         return SILENT, NOWHERE
@@ -119,17 +108,9 @@ def judge_end(
 ) -> None:
     """Judge the last periods of a stroke; write regime, slips, certainty and pitch.
 
-    Parameters
-    ----------
-    relative_velocity, slipping : ndarray [shape=(at least frames,)]
-        Of string on hair (m/s), and as of `slips.rectify`.
-    period : float
-        Of the note (samples); there are at least LEAST_PERIODS.
-    speed : float
-        Of the bow (m/s), not negative.
-    work : ndarray [shape=(2, at least frames)]
-        Written.
-    out : record of dtype FINDING
+    Of the velocity of string on hair (m/s) and the slipping of `periods.rectify` [shape=(at least
+    frames,)], at least LEAST_PERIODS of the note (samples), and the bow's speed (m/s), not
+    negative. `work` [shape=(2, at least frames)] is written.
     """
     count = int(LONGEST * period) + 2
     span = min(int(np.rint(PERIODS * period)), frames - count - 1)
@@ -175,15 +156,8 @@ def judge_stroke(
 ) -> None:
     """Judge a whole stroke; write all of a finding but its faults.
 
-    Parameters
-    ----------
-    relative_velocity, bow_velocity, pressure : ndarray [shape=(at least frames,)]
-        Of string on hair, of the bow (m/s); of the sound (Pa).
-    frequency_hz : float
-        Of the note.
-    work : ndarray [shape=(3, at least frames)]
-        Written.
-    out : record of dtype FINDING
+    Velocities (m/s) of string on hair and of the bow, and pressure (Pa) are [shape=(at least
+    frames,)]; the frequency is that of the note. `work` [shape=(3, at least frames)] is written.
     """
     period = rate / frequency_hz
     slipping, rest = work[2], work[:2]
@@ -218,20 +192,10 @@ def judge(
 ) -> Finding:
     """Judge the end of a stroke, and when its Helmholtz motion began.
 
-    Raises ParameterError where the stroke has less than LEAST_PERIODS.
-
-    Parameters
-    ----------
-    relative_velocity : ndarray [shape=(frames,)]
-        Of the bowed string on the hair (m/s), as `simulate` keeps it.
-    bow_velocity : ndarray [shape=(frames,)] or float
-        m/s.
-    pressure : ndarray [shape=(frames,)]
-        Of the sound (Pa).
-    rate : float
-        Sample rate (Hz).
-    frequency_hz : float
-        Of the note that is fingered. It may be off by 6 %.
+    Of the velocity of the bowed string on the hair (m/s), as `simulate` keeps it, the bow's
+    velocity (m/s), and the pressure (Pa), each [shape=(frames,)]; and the frequency of the note
+    that is fingered, which may be off by 6 %. Raises ParameterError where the stroke has less than
+    LEAST_PERIODS.
     """
     velocity = np.ascontiguousarray(relative_velocity, np.float64)
     check_length(len(velocity), rate, frequency_hz)

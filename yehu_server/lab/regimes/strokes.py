@@ -137,20 +137,9 @@ def bow_strokes(
 ) -> None:
     """Bow strokes one after another, and judge each.
 
-    Parameters
-    ----------
-    models : ndarray [dtype=layout.MODEL]
-    rests : ndarray [dtype=layout.STATE]
-        The state from which each model begins.
-    strokes : ndarray [dtype=STROKE]
-    first, times, values : ndarray
-        Of `ControlCurves`.
-    model, state : ndarray [shape=(1,)]
-        Records to work in.
-    signals : ndarray [shape=(6, most frames)]
-        To work in.
-    findings : ndarray [shape=(strokes,), dtype=FINDING]
-        Written.
+    Each model begins from its state in `rests`; curves are those of `ControlCurves`. It works in
+    `model`, `state` [shape=(1,)] and `signals` [shape=(6, most frames)], and writes `findings`
+    [shape=(strokes,), dtype=FINDING].
     """
     columns = first.shape[0] - 1
     controls = np.zeros((BLOCK, columns))

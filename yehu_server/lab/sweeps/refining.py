@@ -32,18 +32,9 @@ def finer_points(
     """Numbers of the points that halve a step once more where kinds differ, in order.
 
     Wherever the corners of a cell are not all of one kind, all points that halve its edges are
-    wanted. A corner that was not computed is taken to be as in `fill`.
-
-    Parameters
-    ----------
-    shape : sequence of int
-        Of the finest grid.
-    refine : sequence of int
-        Axes that are refined.
-    levels, halved : int
-        How often steps may be halved, and how often they were.
-    known, kinds : ndarray
-        Numbers of the points that are known, and the kind of each.
+    wanted. A corner that was not computed is taken to be as in `fill`. The shape is that of the
+    finest grid, of which some axes are refined; steps may be halved `levels` times, and were
+    `halved`. The points of some numbers are known, and the kind of each.
     """
     step = 2 ** (levels - halved)
     least = most = _grid(fill(shape, refine, levels, known, kinds, halved), refine, step)

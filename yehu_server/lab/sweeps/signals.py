@@ -36,22 +36,10 @@ def keep_signals(
     """Simulate the strokes of a result again, and write the arrays of each to ``NUMBER.npz``.
 
     The number is that of the stroke in the result, from 0. A file that is there is kept, so that an
-    interrupted call goes on. `prepare_folder` comes first. Raises OutputError where one cannot be
-    written.
-
-    Parameters
-    ----------
-    energy, strings_every
-        As of `simulate`.
-    workers : int
-        Number of runs at a time; by default one per core.
-    progress : callable
-        Called with the number of runs done, and of all.
-
-    Returns
-    -------
-    int
-        The number of files.
+    interrupted call goes on. `prepare_folder` comes first. Returns the number of files. `energy`
+    and `strings_every` are as of `simulate`; so many `workers` run at a time, by default one per
+    core; `progress` is called with the number of runs done, and of all. Raises OutputError where
+    one cannot be written.
     """
     width = len(str(len(result) - 1))
 

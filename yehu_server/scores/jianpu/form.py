@@ -163,11 +163,6 @@ def unfolded(written: Sequence[object]) -> tuple[list[object], list[str]]:
 
     After a da capo or dal segno, repeats are not taken again, and of endings the last is played.
     Only the first of several is taken. Raises ScoreError where there are more than MOST_UNFOLDED.
-
-    Parameters
-    ----------
-    written : sequence
-        Elements, Repeats and Jumps as written.
     """
     once = _flat(written, repeated=True)
     back = next((at for at, each in enumerate(once) if each in BACK), None)

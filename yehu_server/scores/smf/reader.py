@@ -99,19 +99,11 @@ def read_score(
     its tracks one after another, as `concatenate` would, each starting at 120 bpm with tempo
     changes of its own. Files that were joined play in turn too. Sysex other than tuning, escapes,
     and metas other than tempo and time signature are dropped. A channel message with a data byte
-    above 127 is dropped as a whole. Raises DamagedError with `strict`: one line naming the file,
-    its first damage and the byte of that; ScoreError, one line naming the file, whatever its bytes:
-    missing, unreadable, too large or too long, not a MIDI file, or without one channel message to
-    play.
-
-    Parameters
-    ----------
-    song : int, optional
-        The only one to play, from 1, of those that play one after another.
-    strict : bool
-        Whether to refuse a file with any damage.
-    max_duration_h : float
-        How long the score may last (hours).
+    above 127 is dropped as a whole. `song` is the only one to play, from 1, of those that play one
+    after another; `strict` refuses a file with any damage. Raises DamagedError with `strict`: one
+    line naming the file, its first damage and the byte of that; ScoreError, one line naming the
+    file, whatever its bytes: missing, unreadable, too large or too long, not a MIDI file, or
+    without one channel message to play.
     """
     faults = DamageReport()
     with naming(path):

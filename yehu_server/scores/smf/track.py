@@ -42,12 +42,8 @@ def checked_division(division: int, at: int, faults: DamageReport) -> int:
 class Clock:
     """Converts ticks to seconds, in integers so that long files do not drift.
 
-    Parameters
-    ----------
-    division : int
-        As in a header, not 0: ticks a quarter note, or frames a second and ticks a frame.
-    tempos : sequence of (int, int)
-        Ticks, in order, and the microseconds of a quarter note from there on.
+    The division is as in a header, not 0: ticks a quarter note, or frames a second and ticks a
+    frame. Tempos are ticks, in order, and the microseconds of a quarter note from there on.
     """
 
     def __init__(self, division: int, tempos: Sequence[tuple[int, int]]) -> None:

@@ -708,7 +708,6 @@ def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
 
 
 def test_a_long_session_is_read_whole(tmp_path, monkeypatch, write):
-    monkeypatch.setattr("yehu_server.scores.capture.CHUNK", 3)
     wishes = [(frame, RAMP, SPEED, 0.1, 0.0) for frame in range(10)]
     assert read_capture(write(tmp_path / "c", wishes)).wishes.tolist() == wishes
     monkeypatch.setattr("yehu_server.scores.capture.MOST_WISHES", 8)

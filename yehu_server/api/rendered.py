@@ -108,15 +108,6 @@ class Rendering:
         return AudioWidget(self.sound, self.sample_rate)._repr_html_()
 
 
-@dataclass(frozen=True)
-class _Written:
-    """The length and level of a sound."""
-
-    frames: int
-    peak: float
-    rms: float
-
-
 def render(
     score: PathLike | Score | Iterable[Note | Sequence[str | float]] | NDArray[Any],
     *,
@@ -271,8 +262,7 @@ def _played(
         peak = float(np.abs(sound).max())
     rms = float(np.sqrt(np.mean(np.square(sound, dtype=np.float64)))) if sound.size else 0.0
     elapsed_s = time.perf_counter() - start
-    written = _Written(frames, peak, rms)
-    summary = summary_of(performance, written, options.rate, elapsed_s)
+    summary = summary_of(performance, frames / options.rate, elapsed_s, peak, rms)
     return sound, (np.array(times), np.array(pitches)), summary
 
 

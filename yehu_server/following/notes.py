@@ -71,13 +71,15 @@ def strokes_of(heard: Heard) -> list[Stroke]:
     pitch = midi_of(heard.pitch_hz)
     runs = [run for run in _runs(heard.is_voiced) if run[1] - run[0] > SHORTEST_S / HOP_S]
     for start, end in runs:
-        pitch[start:end] = _filled(pitch[start:end])
+        known = start + np.flatnonzero(np.isfinite(pitch[start:end]))
+        pitch[start:end] = np.interp(np.arange(start, end), known, pitch[known])
     offset = _offset([pitch[start:end] for start, end in runs])
     strokes = []
     for start, end in runs:
         for first, last in pairwise([start, *_struck_again(heard, start, end), end]):
             notes = _notes(pitch[first:last], first, offset)
-            attack_s = _attack_s(heard.level_db[first:last])
+            near = heard.level_db[first : min(last, first + round(LOOK_S / HOP_S))]
+            attack_s = float(np.argmax(near >= near.max() - ATTACK_DB) * HOP_S)
             strokes.append(Stroke(notes, pitch[first:last], attack_s))
     return strokes
 
@@ -92,11 +94,6 @@ def _runs(is_voiced: Array) -> list[tuple[int, int]]:
         else:
             runs.append((start, end))
     return runs
-
-
-def _filled(pitch: Array) -> Array:
-    known = np.flatnonzero(np.isfinite(pitch))
-    return np.interp(np.arange(len(pitch)), known, pitch[known])
 
 
 def _offset(pitches: list[Array]) -> float:
@@ -202,9 +199,3 @@ def _is_slide(pitch: Array, border: int, before: float, after: float) -> bool:
     if len(left) == 0 or len(arrived) == 0:
         return True
     return bool((len(near) - left[-1] + arrived[0]) * HOP_S > SLIDE_S)
-
-
-def _attack_s(level_db: Array) -> float:
-    """How long a stroke takes to have its level."""
-    near = level_db[: round(LOOK_S / HOP_S)]
-    return float(np.argmax(near >= near.max() - ATTACK_DB) * HOP_S)

@@ -89,7 +89,8 @@ class Cluster:
         self._code = cluster_worker.identity().code
 
     def __enter__(self) -> Self:
-        _quiet_libraries()
+        for name in ("distributed", "tornado.application", "asyncio"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is told in one line
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # of versions: `_check` tells what matters
@@ -257,9 +258,3 @@ def _unpacked(result: Any) -> tuple[Any, Any]:
     except Exception:  # noqa: BLE001 - its errors have no common base
         return cluster_worker.FAILED, "an answer that is none"
     return kind, value
-
-
-def _quiet_libraries() -> None:
-    """Keep Dask's own messages from the terminal: what matters is told in one line."""
-    for name in ("distributed", "tornado.application", "asyncio"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)

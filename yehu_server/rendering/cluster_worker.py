@@ -82,7 +82,7 @@ def do(job: bytes, code: str) -> bytes:
                 with machine_lock():
                     pickle.loads(setup)()  # noqa: S301
                 _set_up.add(setup)
-            return bytes(msgpack.packb((DONE, perform(task, _tell_nobody))))
+            return bytes(msgpack.packb((DONE, perform(task, lambda _done, _total: None))))
     except Exception as error:  # noqa: BLE001 - no exception travels: it would be unpickled
         return bytes(msgpack.packb((FAILED, f"{type(error).__name__}: {error}")))
 
@@ -99,7 +99,3 @@ def no_setup() -> None:
 def packed_setup(setup: Callable[[], object] | None) -> bytes:
     """What is called in each process before its first job, as bytes."""
     return pickle.dumps(setup or no_setup)
-
-
-def _tell_nobody(_done: float, _total: float) -> None:
-    pass

@@ -131,16 +131,13 @@ def _targets(names: list[str], ending: str) -> dict[str, str]:
     """
     taken: set[str] = set()
     targets: dict[str, str] = {}
-    ranked = sorted(names, key=_rank)
-    stems = [(name, os.path.splitext(name)[0]) for name in ranked]  # noqa: PTH122 - no Path
-    for name, stem in (*stems, *zip(ranked, ranked, strict=True)):
+    rank = {ending: number for number, ending in enumerate(ENDINGS)}
+    split = [(name, *os.path.splitext(name)) for name in names]  # noqa: PTH122 - no Path
+    split.sort(key=lambda each: (rank.get(each[2], len(rank)), each[0]))
+    stems = [(name, stem) for name, stem, _ in split]
+    for name, stem in (*stems, *((name, name) for name, _ in stems)):
         target = stem + ending
         if name not in targets and target.casefold() not in taken:
             taken.add(target.casefold())
             targets[name] = target
     return targets
-
-
-def _rank(name: str) -> tuple[int, str]:
-    ending = os.path.splitext(name)[1]  # noqa: PTH122
-    return (ENDINGS.index(ending) if ending in ENDINGS else len(ENDINGS)), name

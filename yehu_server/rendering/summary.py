@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import Protocol
 
 from yehu_server.playing.stringing import range_text
 from yehu_server.playing.tuning import RangePolicy
@@ -62,31 +61,22 @@ class Summary:
     parts: tuple[PartSummary, ...] = ()
 
 
-class Written(Protocol):
-    """What was written of a sound: its length in frames, its peak and its root mean square."""
-
-    @property
-    def frames(self) -> int: ...  # noqa: D102
-    @property
-    def peak(self) -> float: ...  # noqa: D102
-    @property
-    def rms(self) -> float: ...  # noqa: D102
-
-
-def summary_of(performance: Performance, sound: Written, rate: int, elapsed_s: float) -> Summary:
+def summary_of(
+    performance: Performance, duration_s: float, elapsed_s: float, peak: float, rms: float
+) -> Summary:
     """Sum up a performance that has been played."""
     players, instruments = performance.players, performance.ensemble.instruments
-    duration_s = sound.frames / rate
+    parts = tuple(map(_part_summary, players))
     channels: Counter[int] = Counter()
-    for player in players:
-        channels.update(player.midi.notes_by_channel)
+    for part in parts:
+        channels.update(part.notes_by_channel)
     return Summary(
         duration_s=duration_s,
         real_time_factor=duration_s / elapsed_s,
-        peak=sound.peak,
-        rms=sound.rms,
-        notes_played=sum(player.wishes.notes_played for player in players),
-        notes_out_of_range=sum(player.wishes.notes_out_of_range for player in players),
+        peak=peak,
+        rms=rms,
+        notes_played=sum(part.notes_played for part in parts),
+        notes_out_of_range=sum(part.notes_out_of_range for part in parts),
         range=range_text(players[0].part.playing.higher),
         policy=players[0].part.playing.policy,
         unconverged_solves=sum(each.unconverged_solves for each in instruments),
@@ -97,7 +87,7 @@ def summary_of(performance: Performance, sound: Written, rate: int, elapsed_s: f
         unknown_programs=tuple(
             sorted({each for player in players for each in player.midi.unknown_programs})
         ),
-        parts=tuple(map(_part_summary, players)),
+        parts=parts,
     )
 
 

@@ -108,7 +108,8 @@ def render(
             for take in takes:
                 for file, samples in zip(files, take, strict=True):
                     file.write(samples)
-    return summary_of(performance, files[0], options.rate, time.perf_counter() - start)
+    elapsed_s, file = time.perf_counter() - start, files[0]
+    return summary_of(performance, file.frames / options.rate, elapsed_s, file.peak, file.rms)
 
 
 def _takes(

@@ -7,6 +7,7 @@ one player.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -32,7 +33,7 @@ from yehu_server.util.files import read_lines, why
 MOST_BYTES = 1 << 30
 MOST_WISHES = 20_000_000  # each takes 40 bytes
 MOST_RESTS = 1000
-CHUNK = 1 << 16  # wishes
+ROW = np.dtype([("wish", WISH), ("player", np.int64)])
 
 
 @dataclass
@@ -72,44 +73,35 @@ def read_capture(path: Path) -> Capture:
     lines = read_lines(path, MOST_BYTES)
     try:
         capture = _header(path, next(lines, ""))
-        chunks: list[tuple[Any, Any]] = []
-        wishes: list[WishRow] = []
-        players: list[int] = []
-        for number, line in enumerate(lines, start=2):
-            try:
-                if line.strip():
-                    _take(json.loads(line), capture, wishes, players)
-            except _WRONG as error:
-                if not line.endswith("\n"):  # cut short by a crash
-                    break
-                raise ScoreError(
-                    f"{path}: line {number}: not a line of a capture ({error})"
-                ) from error
-            if len(wishes) == CHUNK:
-                chunks.append((np.array(wishes, WISH), np.array(players, np.int64)))
-                wishes.clear()
-                players.clear()
-                if len(chunks) * CHUNK >= MOST_WISHES:
-                    raise ScoreError(f"{path}: has more than {MOST_WISHES} events")
-        chunks.append((np.array(wishes, WISH), np.array(players, np.int64)))
+        rows = np.fromiter(_rows(path, lines, capture), ROW)
     except OSError as error:
         raise ScoreError(f"{path}: {why(error)}") from error
     except ValueError as error:  # no UTF-8, or a NUL in the name
         raise ScoreError(f"{path}: not a capture ({error})") from error
-    _put_in_order(path, capture, chunks)
+    for player in range(len(capture.beginning.players)):
+        if np.any(np.diff(rows["wish"]["frame"][rows["player"] == player]) < 0):
+            raise ScoreError(f"{path}: events are not in order of frames")
+    rows = rows[np.argsort(rows["wish"]["frame"], kind="stable")]
+    capture.wishes, capture.players = rows["wish"].copy(), rows["player"].copy()
     _warn(capture)
     return capture
 
 
-def _put_in_order(path: Path, capture: Capture, chunks: list[tuple[Any, Any]]) -> None:
-    """Put all wishes in the order of frames; those of each player are in it already."""
-    wishes = np.concatenate([chunk for chunk, _ in chunks])
-    players = np.concatenate([chunk for _, chunk in chunks])
-    for player in range(len(capture.beginning.players)):
-        if np.any(np.diff(wishes["frame"][players == player]) < 0):
-            raise ScoreError(f"{path}: events are not in order of frames")
-    order = np.argsort(wishes["frame"], kind="stable")
-    capture.wishes, capture.players = wishes[order], players[order]
+def _rows(path: Path, lines: Iterator[str], capture: Capture) -> Iterator[tuple[WishRow, int]]:
+    """The wishes of all lines and whose they are; what else is told goes into the capture."""
+    count = 0
+    for number, line in enumerate(lines, start=2):
+        try:
+            row = _row(json.loads(line), capture) if line.strip() else None
+        except _WRONG as error:
+            if not line.endswith("\n"):  # cut short by a crash
+                return
+            raise ScoreError(f"{path}: line {number}: not a line of a capture ({error})") from error
+        if row is not None:
+            yield row
+            count += 1
+            if count > MOST_WISHES:
+                raise ScoreError(f"{path}: has more than {MOST_WISHES} events")
 
 
 _WRONG = (
@@ -130,20 +122,16 @@ def _header(path: Path, line: str) -> Capture:
     return Capture(beginning, built, version)
 
 
-def _take(entry: Any, capture: Capture, wishes: list[WishRow], players: list[int]) -> None:
+def _row(entry: Any, capture: Capture) -> tuple[WishRow, int] | None:
     if isinstance(entry, list):
-        player = 0
         if capture.version == 1:
             frame, *ramp = entry
-            wish = frames_of(frame), *ramp_of(*ramp)
-        elif capture.version == 2:
-            wish = from_line(entry)
-        else:
-            player = player_of(entry[1], len(capture.beginning.players))
-            wish = from_line([entry[0], *entry[2:]])
-        wishes.append(wish)
-        players.append(player)
-    elif "end" in entry:
+            return (frames_of(frame), *ramp_of(*ramp)), 0
+        if capture.version == 2:
+            return from_line(entry), 0
+        player = player_of(entry[1], len(capture.beginning.players))
+        return from_line([entry[0], *entry[2:]]), player
+    if "end" in entry:
         capture.end = frames_of(entry["end"])
     elif "rest" in entry:
         rest, since = frames_of(entry["rest"]), frames_of(entry["since"])
@@ -152,6 +140,7 @@ def _take(entry: Any, capture: Capture, wishes: list[WishRow], players: list[int
             raise ValueError("a rest before its beginning, or too many of them")
     elif "lost" in entry:
         capture.lost += frames_of(entry["events"])
+    return None
 
 
 def _warn(capture: Capture) -> None:

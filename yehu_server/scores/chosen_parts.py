@@ -141,7 +141,8 @@ def midi_in_range(score: Score, *, is_mpe: bool, higher: int = 0) -> Score:
         for note, by in zip(own, octaves.of_notes, strict=True):
             if 0 <= note.key + 12 * by <= 127:
                 moves[note.begins] = 12 * by
-                if note.ends >= 0 and _ends_its_key(score, note.ends):
+                end = score.events[note.ends].message  # a note-off, or the key struck again
+                if note.ends >= 0 and (end.type == "note_off" or end.velocity == 0):
                     moves[note.ends] = 12 * by
     if not any(moves.values()):
         return score
@@ -156,12 +157,6 @@ def midi_in_range(score: Score, *, is_mpe: bool, higher: int = 0) -> Score:
     line = line_of([("" if len(by_part) == 1 else name, how) for name, how in told], higher)
     remarks = (*score.remarks, *filter(None, (line.replace(":  ", ": "),)))
     return replace(score, events=tuple(events), remarks=remarks)
-
-
-def _ends_its_key(score: Score, number: int) -> bool:
-    """Whether an event is a note-off, and not the key struck again."""
-    message = score.events[number].message
-    return bool(message.type == "note_off" or message.velocity == 0)
 
 
 def _name(parts: Sequence[ScorePart], channel: int, track: int) -> str:

@@ -173,7 +173,9 @@ def as_text(fit: Fit) -> str:
         },
     }
     text = json.dumps(data, indent=1, allow_nan=False)
-    return re.sub(r"\[\s+([-+\d.eE,\s]+?)\s+\]", _in_a_line, text) + "\n"
+    # Lists of numbers, each in a line.
+    in_a_line = re.compile(r"\[\s+([-+\d.eE,\s]+?)\s+\]")
+    return in_a_line.sub(lambda values: f"[{' '.join(values[1].split())}]", text) + "\n"
 
 
 def quality_of(fit: Fit) -> dict[str, Any]:
@@ -293,7 +295,3 @@ def _differences(data: Any) -> Differences | None:
     if data is None:
         return None
     return Differences(*(float(data[each.name]) for each in fields(Differences)))
-
-
-def _in_a_line(values: re.Match[str]) -> str:
-    return f"[{' '.join(values[1].split())}]"

@@ -13,8 +13,8 @@ from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.lab.dataset.draws import (
     Distribution,
-    Uniform,
     chance,
+    constant,
     read_distribution,
     shares_of,
 )
@@ -157,11 +157,11 @@ def _line(value: Any) -> str:
 
 
 def _draws(table: Fields, kind: str, higher: int) -> dict[str, Distribution]:
-    known = STROKES if kind == "strokes" else NOTES | {"pitch": _higher(NOTES["pitch"], higher)}
+    usual, lowest, highest = NOTES["pitch"]
+    pitch = usual + higher, lowest + higher, highest + higher  # of a fiddle that is tuned higher
+    known = STROKES if kind == "strokes" else NOTES | {"pitch": pitch}
     draws: dict[str, Distribution] = {
-        name: Uniform(default, default)
-        for name, (default, _, _) in known.items()
-        if default is not None
+        name: constant(default) for name, (default, _, _) in known.items() if default is not None
     }
 
     def draw(name: str, entry: Any) -> Distribution:
@@ -182,12 +182,6 @@ def _draws(table: Fields, kind: str, higher: int) -> dict[str, Distribution]:
         return found
 
     return draws | table.each(draw)
-
-
-def _higher(pitch: tuple[float, float, float], by: int) -> tuple[float, float, float]:
-    """Default and bounds of a pitch, on a fiddle that is tuned higher."""
-    usual, lo, hi = pitch
-    return usual + by, lo + by, hi + by
 
 
 def _splits(table: Fields) -> tuple[tuple[str, float], ...]:

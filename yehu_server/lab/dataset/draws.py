@@ -10,9 +10,9 @@ from __future__ import annotations
 import bisect
 import hashlib
 import itertools
-from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from statistics import NormalDist
 from typing import Any
 
@@ -21,6 +21,7 @@ from yehu_server.util.documents import Fields
 from yehu_server.util.values import choice, number
 
 MOST_CHOICES = 1000
+NORMAL = ("mean", "deviation", "from", "to")
 
 
 def chance(seed: int, number: int, name: str) -> float:
@@ -30,73 +31,46 @@ def chance(seed: int, number: int, name: str) -> float:
 
 
 @dataclass(frozen=True)
-class Distribution(ABC):
-    """How a value is drawn: from one number to another."""
+class Distribution:
+    """How a value is drawn: its bounds, and its value for a number drawn from 0 to below 1."""
 
     lo: float
     hi: float
-
-    @abstractmethod
-    def value(self, share: float) -> float:
-        """The value for a number drawn from 0 to below 1."""
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether all values are whole numbers."""
-        return self.lo == self.hi == int(self.lo)
+    value: Callable[[float], float]
+    is_whole: bool  # whether all values are whole numbers
 
 
-@dataclass(frozen=True)
-class Uniform(Distribution):
-    """Even by the difference ("even") or the ratio ("ratio"), or each "whole" number alike."""
-
-    spacing: str = "even"
-
-    def value(self, share: float) -> float:
-        """The value for a number drawn from 0 to below 1."""
-        if self.spacing == "whole":
-            return self.lo + int(share * (self.hi - self.lo + 1))
-        if self.spacing == "ratio":
-            return float(self.lo * (self.hi / self.lo) ** share)
-        return self.lo + (self.hi - self.lo) * share
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether all values are whole numbers."""
-        return self.spacing == "whole" or super().is_whole
+def constant(value: float) -> Distribution:
+    """A value that is always the same."""
+    return Distribution(value, value, partial(_even, value, value), value == int(value))
 
 
-@dataclass(frozen=True)
-class Choice(Distribution):
-    """One of some numbers, by their weights."""
-
-    values: tuple[float, ...]
-    upto: tuple[float, ...]  # sums of the weights, of 1 in all
-
-    def value(self, share: float) -> float:
-        """The value for a number drawn from 0 to below 1."""
-        place = bisect.bisect_right(self.upto, share)
-        return self.values[min(place, len(self.values) - 1)]
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether all values are whole numbers."""
-        return all(value == int(value) for value in self.values)
+# They travel to other processes with the description, as closures could not.
 
 
-@dataclass(frozen=True)
-class Normal(Distribution):
-    """Normally distributed, without what is beyond two ends."""
+def _even(lo: float, hi: float, share: float) -> float:
+    return lo + (hi - lo) * share
 
-    mean: float
-    deviation: float
 
-    def value(self, share: float) -> float:
-        """The value for a number drawn from 0 to below 1."""
-        normal = NormalDist(self.mean, self.deviation)
-        below, upto = normal.cdf(self.lo), normal.cdf(self.hi)
-        drawn = min(max(below + (upto - below) * share, 1e-12), 1.0 - 1e-12)
-        return min(max(normal.inv_cdf(drawn), self.lo), self.hi)
+def _whole(lo: float, hi: float, share: float) -> float:
+    return lo + int(share * (hi - lo + 1))
+
+
+def _by_ratio(lo: float, hi: float, share: float) -> float:
+    return float(lo * (hi / lo) ** share)
+
+
+def _chosen(values: Sequence[float], upto: Sequence[float], share: float) -> float:
+    return values[min(bisect.bisect_right(upto, share), len(values) - 1)]
+
+
+def _normal(normal: NormalDist, lo: float, hi: float, share: float) -> float:
+    below, upto = normal.cdf(lo), normal.cdf(hi)
+    drawn = min(max(below + (upto - below) * share, 1e-12), 1.0 - 1e-12)
+    return min(max(normal.inv_cdf(drawn), lo), hi)
+
+
+SPACINGS = {"even": _even, "ratio": _by_ratio, "whole": _whole}
 
 
 def read_distribution(entry: Any) -> Distribution:
@@ -105,44 +79,37 @@ def read_distribution(entry: Any) -> Distribution:
     Raises ParameterError where it is none of them.
     """
     if not isinstance(entry, Mapping):
-        value = number(entry)
-        return Uniform(value, value)
+        return constant(number(entry))
     table, names = Fields(entry), entry.keys()
     if "choose" in names and names <= {"choose", "weights"}:
         values = table.need("choose", numbers)
         even = shares_of([1.0] * len(values))
         upto = table.read("weights", _weights, even, len(values))
-        return Choice(min(values), max(values), tuple(values), upto)
+        is_whole = all(value == int(value) for value in values)
+        return Distribution(min(values), max(values), partial(_chosen, values, upto), is_whole)
     if names == set(NORMAL):
-        return _normal(*(table.need(name, number) for name in NORMAL))
+        mean, deviation, lo, hi = (table.need(name, number) for name in NORMAL)
+        if not (deviation > 0.0 and lo < hi):
+            raise ParameterError("deviation above 0, and from below to")
+        normal = NormalDist(mean, deviation)
+        if not normal.cdf(hi) > normal.cdf(lo):
+            raise ParameterError("nothing is drawn so far from the mean")
+        return Distribution(lo, hi, partial(_normal, normal, lo, hi), is_whole=False)
     if not {"from", "to"} <= names <= {"from", "to", "spacing"}:
         raise ParameterError(
             "expected a number, {from, to}, {from, to, spacing}, {choose}, "
             "{choose, weights} or {mean, deviation, from, to}"
         )
-    spacing = table.read("spacing", choice, "even", ("even", "ratio", "whole"))
-    return _between(table.need("from", number), table.need("to", number), spacing)
-
-
-NORMAL = ("mean", "deviation", "from", "to")
-
-
-def _normal(mean: float, deviation: float, lo: float, hi: float) -> Normal:
-    if not (deviation > 0.0 and lo < hi):
-        raise ParameterError("deviation above 0, and from below to")
-    if not NormalDist(mean, deviation).cdf(hi) > NormalDist(mean, deviation).cdf(lo):
-        raise ParameterError("nothing is drawn so far from the mean")
-    return Normal(lo, hi, mean, deviation)
-
-
-def _between(lo: float, hi: float, spacing: str) -> Uniform:
+    spacing = table.read("spacing", choice, "even", tuple(SPACINGS))
+    lo, hi = table.need("from", number), table.need("to", number)
     if lo > hi:
         raise ParameterError("from is above to")
     if spacing == "whole" and (lo != int(lo) or hi != int(hi)):
         raise ParameterError("from and to are whole numbers")
     if spacing == "ratio" and lo <= 0.0:
         raise ParameterError("by ratio, from is above 0")
-    return Uniform(lo, hi, spacing)
+    is_whole = spacing == "whole" or lo == hi == int(lo)
+    return Distribution(lo, hi, partial(SPACINGS[spacing], lo, hi), is_whole)
 
 
 def _weights(value: Any, count: int) -> tuple[float, ...]:

@@ -96,13 +96,10 @@ def judged(arrays: Mapping[str, Array], hertz: float, rate: float) -> dict[str, 
     found = asdict(judge(*signals, rate, hertz))
     found["last_regime"] = found.pop("regime")
     found["end_level_db"] = found.pop("level_db")
-    return {
-        name: value if isinstance(value, str) else _rounded(value) for name, value in found.items()
-    }
-
-
-def _rounded(value: float) -> float | None:
-    return float(f"{value:.6g}") if math.isfinite(value) else None
+    for name, value in found.items():
+        if not isinstance(value, str):
+            found[name] = float(f"{value:.6g}") if math.isfinite(value) else None
+    return found
 
 
 _calibrated: dict[str, tuple[Quantities, Calibration]] = {}  # of this process

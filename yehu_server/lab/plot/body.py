@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -65,7 +64,9 @@ def _draw(figure: Any, fit: Fit) -> None:
     measured = fit.measurement
     _draw_level(panels["admittance"], measured.admittance, hz, admittance)
     panels["admittance"].set(ylabel="admittance\ndB of 1 s/kg")
-    _mark_modes(panels["admittance"], fit)
+    for mode_hz in fit.body.frequency_hz:
+        if fit.band_hz[0] <= mode_hz <= fit.band_hz[1]:
+            panels["admittance"].axvline(mode_hz, color="0.85", lw=0.8, zorder=0)
     _draw_phase(panels["phase"], measured.admittance, hz, admittance)
     _draw_level(panels["radiation"], measured.radiation, hz, radiation)
     panels["radiation"].set(ylabel="radiation\ndB of 1 Pa/N")
@@ -76,8 +77,10 @@ def _draw(figure: Any, fit: Fit) -> None:
     panels["admittance"].set_title(_title(fit), loc="left", fontsize=10.5)
     _write_table(panels["table"], fit)
     if fit.warnings:
-        told = _told_warnings(fit.warnings)
-        figure.supxlabel(told, fontsize=9.0, color=FITTED, ha="left", x=0.01)
+        lines = [png.plain(line, WIDTH) for line in fit.warnings[:MOST_WARNINGS]]
+        if len(fit.warnings) > MOST_WARNINGS:
+            lines.append(f"and {len(fit.warnings) - MOST_WARNINGS} more")
+        figure.supxlabel("\n".join(lines), fontsize=9.0, color=FITTED, ha="left", x=0.01)
 
 
 def _draw_level(axes: Any, curve: Curve | None, hz: Any, fitted: Any) -> None:
@@ -109,12 +112,6 @@ def _draw_left(axes: Any, fit: Fit) -> None:
     axes.set(ylim=(-RESIDUAL_DB, RESIDUAL_DB), ylabel="fitted less\nmeasured, dB")
     if axes.lines:
         axes.legend(loc="upper left", ncols=2, frameon=False, fontsize=8.5)
-
-
-def _mark_modes(axes: Any, fit: Fit) -> None:
-    for hz in fit.body.frequency_hz:
-        if fit.band_hz[0] <= hz <= fit.band_hz[1]:
-            axes.axvline(hz, color="0.85", lw=0.8, zorder=0)
 
 
 def _scale(axes: Any, band_hz: tuple[float, float], *, is_last: bool) -> None:
@@ -152,9 +149,3 @@ def _title(fit: Fit) -> str:
         default=0,
     )
     return png.plain(names, NAMES) + (f": {taps} taps" if taps > 1 else "")
-
-
-def _told_warnings(warnings: Sequence[str]) -> str:
-    lines = [png.plain(line, WIDTH) for line in warnings[:MOST_WARNINGS]]
-    more = len(warnings) - MOST_WARNINGS
-    return "\n".join([*lines, *([f"and {more} more"] if more > 0 else [])])

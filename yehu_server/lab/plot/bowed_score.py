@@ -61,7 +61,9 @@ def strokes_of(part: Part, clock: WrittenClock) -> list[Stroke]:
     found: list[Stroke] = []
     last: Played | None = None
     for at, each in enumerate(bowed(part, actives, clock)):
-        wished = _wished(each)
+        told = {"up-bow": UP, "down-bow": DOWN}
+        wished = next((told[mark.name] for mark in each.note.marks if mark.name in told), None)
+        wished = each.direction if wished is None else wished
         if is_plucked(each.note, actives[at]):
             found.append(Stroke(at, at, 0.0))
         elif last is not None and _goes_on(last, each, wished, found[-1]):
@@ -71,12 +73,6 @@ def strokes_of(part: Part, clock: WrittenClock) -> list[Stroke]:
             found.append(Stroke(at, at, wished or usual))
         last = each
     return found
-
-
-def _wished(played: Played) -> float:
-    if played.note.marked("up-bow") or played.note.marked("down-bow"):
-        return UP if played.note.marked("up-bow") else DOWN
-    return played.direction
 
 
 def _goes_on(before: Played, played: Played, wished: float, stroke: Stroke) -> bool:

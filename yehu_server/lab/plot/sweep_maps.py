@@ -197,14 +197,13 @@ def place_of(sweep: Result, x: str, y: str, at: At | None = None) -> dict[str, i
             continue
         if len(values) > 1 and name not in asked:
             raise ParameterError(f"the sweep varies {name} too: at={{{name!r}: {values[0]!r}}}")
-        found[name] = _nearest(values, asked[name]) if len(values) > 1 else 0
+        is_word = values.dtype.kind == "U"
+        if len(values) == 1:
+            found[name] = 0
+        else:
+            off = values != asked[name] if is_word else np.abs(values - asked[name])
+            found[name] = int(off.argmin())
     return found
-
-
-def _nearest(values: Array, value: Any) -> int:
-    if values.dtype.kind == "U":
-        return int((values == value).argmax())
-    return int(np.abs(values - value).argmin())
 
 
 def map_of(sweep: Result, grid: Array, x: str, y: str, place: Mapping[str, int]) -> Array:

@@ -183,9 +183,7 @@ def perform(task: tuple[str, bytes], _tell: Any = None) -> bytes | str:
         return str(error)
 
 
-@lru_cache(maxsize=4)
-def _study(text: str) -> Study:
-    return study_from_text(text)
+_study = lru_cache(maxsize=4)(study_from_text)
 
 
 def warm_up() -> None:

@@ -80,7 +80,7 @@ class VoiceReader:
 
     def label(self) -> int:
         """The number of the bar that comes next, once what is open has ended."""
-        self._end_bar(0, "|")
+        self._end_bar()
         self._ending = frozenset()
         return len(self.bars)
 
@@ -132,7 +132,10 @@ class VoiceReader:
         elif kind == "rest":
             self._add([], _length(found["rest_length"]) * self.unit)
         elif kind == "bars":
-            self._bars_rest(int(found["bars_count"][:5] or 1))
+            self._end_bar()
+            for _ in range(min(int(found["bars_count"][:5] or 1), MOST_BARS_REST)):
+                self._at = self._metre or Fraction(4)
+                self._end_bar()
         elif kind == "tuplet":
             self._begin_tuplet(int(found["tuplet"]), found["ratio"].split(":")[1:])
         elif kind == "slur":
@@ -289,7 +292,7 @@ class VoiceReader:
             sign = ":|:"
         before = len(sign) - len(sign.lstrip(":"))
         after = len(sign) - len(sign.rstrip(":"))
-        self._end_bar(min(before + 1, MOST_TIMES) if before else 0, sign)
+        self._end_bar(min(before + 1, MOST_TIMES) if before else 0)
         if before or after or len(sign) > 1:
             self._ending = self._bar.lines.endings = frozenset()
         if after:
@@ -297,7 +300,7 @@ class VoiceReader:
         if number:
             self._begin_ending(number)
 
-    def _end_bar(self, times: int, _sign: str) -> None:
+    def _end_bar(self, times: int = 0) -> None:
         self._in_overlay = False
         bar = self._bar
         if self._at > 0 or bar.notes:
@@ -312,7 +315,7 @@ class VoiceReader:
 
     def _begin_ending(self, text: str) -> None:
         if self._at > 0:  # an ending that begins within a bar
-            self._end_bar(0, "|")
+            self._end_bar()
         numbers: set[int] = set()
         for each in text.split(","):
             first, _, last = each.partition("-")
@@ -322,15 +325,9 @@ class VoiceReader:
         self._ending = frozenset(numbers) or frozenset({1})
         self._bar.lines.endings, self._bar.lines.opens = self._ending, True
 
-    def _bars_rest(self, count: int) -> None:
-        self._end_bar(0, "|")
-        for _ in range(min(count, MOST_BARS_REST)):
-            self._at = self._metre or Fraction(4)
-            self._end_bar(0, "|")
-
     def end(self) -> None:
         """End the last bar."""
-        self._end_bar(0, "|")
+        self._end_bar()
         codas = [bar for bar in self.bars if "coda" in bar.lines.jumps]
         if len(codas) > 1 and not any("tocoda" in bar.lines.jumps for bar in self.bars):
             codas[0].lines.jumps -= {"coda"}

@@ -139,16 +139,12 @@ class _PartWriter:
             rest = MARK_WORDS.get(Mark(sign.name, sign.value))
             if word is not None:
                 found.append((sign.beat, 1, word))
-            elif rest and sign.name in notated.SIGNS and not self._sounds_at(sign.beat):
+            elif rest and sign.name in notated.SIGNS and not self._part.sounds_at(sign.beat):
                 found.append((sign.beat, 1, rest))
             else:
                 self._lost[sign.name] += 1
         # Of slurs that begin or end at one note the inner ones are nearer to it.
         return sorted(found, key=lambda each: each[:2])
-
-    def _sounds_at(self, beat: Fraction) -> bool:
-        at = bisect_right(self._begins, beat) - 1
-        return at >= 0 and beat < self._part.notes[at].end
 
     def _take_after(self, end: Fraction) -> Iterator[str]:
         """The words that belong to what ends at a beat."""

@@ -121,12 +121,9 @@ class BarReader:
                 semitones = number(child.findtext("chromatic"))
                 self._transposed = semitones + 12.0 * number(child.findtext("octave-change"))
         if attributes.find("key") is not None and self._bar.fifths is None:
-            self._bar.fifths = self._sounding_fifths()
-
-    def _sounding_fifths(self) -> int:
-        """The sharps of the key that sounds, which a transposing part does not write."""
-        fifths = self._fifths + 7 * int(self._transposed)
-        return (fifths + 5) % 12 - 5 if self._transposed else fifths
+            # Of the key that sounds, which a transposing part does not write.
+            fifths = self._fifths + 7 * int(self._transposed)
+            self._bar.fifths = (fifths + 5) % 12 - 5 if self._transposed else fifths
 
     def _time(self, time: Element) -> None:
         quarters = Fraction(0)

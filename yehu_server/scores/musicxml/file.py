@@ -97,7 +97,7 @@ def parse(data: bytes) -> ET.Element:
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end
     parser.CharacterDataHandler = builder.data
-    parser.EntityDeclHandler = _refuse_entity
+    parser.EntityDeclHandler = builder.refuse_entity
     # The document type stays outside: it is not fetched, and no score needs its entities.
     parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
     try:
@@ -108,10 +108,6 @@ def parse(data: bytes) -> ET.Element:
     except (ValueError, LookupError) as error:  # an encoding that is unknown, or has many bytes
         raise ScoreError(f"is no XML ({type(error).__name__})") from None
     return builder.root()
-
-
-def _refuse_entity(*_: Any) -> None:
-    raise ScoreError("defines XML entities, which no score needs")
 
 
 class _Builder:
@@ -142,6 +138,9 @@ class _Builder:
     def data(self, text: str) -> None:
         if self._is_text and not text.isspace():  # the rest is indentation
             self._tree.data(text)
+
+    def refuse_entity(self, *_: Any) -> None:
+        raise ScoreError("defines XML entities, which no score needs")
 
     def root(self) -> ET.Element:
         return self._tree.close()

@@ -216,6 +216,11 @@ class Part:
     spans: tuple[Span, ...] = ()
     signs: tuple[Sign, ...] = ()
 
+    def sounds_at(self, beat: Fraction) -> bool:
+        """Whether a note sounds at a beat."""
+        at = bisect_right(self.notes, beat, key=lambda note: note.beat) - 1
+        return at >= 0 and beat < self.notes[at].end
+
 
 @dataclass(frozen=True)
 class Tempo:

@@ -5,10 +5,9 @@ Each function draws into the matplotlib axes `ax`, by default the current ones, 
 It needs matplotlib: ``pip install yehu-server[plots]``.
 """
 
-from yehu_server.lab.plot.overview import signals, sweep
-from yehu_server.lab.plot.shapes import energy, strings
+from yehu_server.lab.plot.shapes import energy, signals, strings
 from yehu_server.lab.plot.sounds import level, pitch, spectrogram
-from yehu_server.lab.plot.sweep_maps import guettler, regimes, schelleng
+from yehu_server.lab.plot.sweep_maps import guettler, regimes, schelleng, sweep
 
 __all__ = [
     "energy",

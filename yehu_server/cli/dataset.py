@@ -108,7 +108,7 @@ def run(arguments: argparse.Namespace) -> int:
             ) from None
         finally:
             build_records.clear_work([folder])
-            making.write_lines(folder, lines)
+            build_records.write_manifest(folder, lines, order="number")
             write_card(folder, description, lines)
     return _report(arguments, lines, current)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import json
 import os
 import sys
 from collections.abc import Generator, Sequence
@@ -125,7 +126,7 @@ def _on_cores(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator
 def _tell_one(arguments: argparse.Namespace, line: Line, number: int, total: int) -> None:
     """Tell of a file: as JSON, or as a line where there is no progress bar."""
     if arguments.json:
-        print(line_of(line), flush=True)
+        print(json.dumps(line), flush=True)
     elif not arguments.quiet and not sys.stderr.isatty():
         what = "failed" if "error" in line else f"{line['duration_s']:.1f} s"
         print_result(f"{number} of {total}: {one_line(line['file'])}: {what}", flush=True)

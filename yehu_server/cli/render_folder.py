@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
 from collections.abc import Sequence
 from functools import cache, partial
@@ -59,7 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
         tasks, current = split_up_to_date(arguments, tree)
         lines += current
         for line in lines * arguments.json:
-            print(build_records.line_of(line))
+            print(json.dumps(line))
         try:
             if tasks:
                 render_all(arguments, tasks, len(tree.entries), lines, cluster)

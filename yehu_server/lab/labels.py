@@ -20,6 +20,11 @@ class Label(NamedTuple):
     unit: str
     what: str
 
+    @property
+    def attributes(self) -> dict[str, str]:
+        """The attributes of a variable, by the names of the CF conventions."""
+        return {"units": self.unit, "long_name": self.what}
+
 
 ACCELERATION = "bow_acceleration"
 OF_TIME, OF_FINGER = ("time",), ("time", "finger")
@@ -83,11 +88,6 @@ FINDINGS = {
     "computed": Label("1", "whether the point was computed"),
 }
 # fmt: on
-
-
-def attributes(label: Label) -> dict[str, str]:
-    """The attributes of a variable, by the names of the CF conventions."""
-    return {"units": label.unit, "long_name": label.what}
 
 
 def label_of(name: str) -> Label:

@@ -21,7 +21,7 @@ from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
 from yehu_server.core.physics.pluck import pluck_string
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import OutputError
-from yehu_server.lab.labels import as_data, as_json, attributes, dimensions, hash_of, label_of
+from yehu_server.lab.labels import as_data, as_json, dimensions, hash_of, label_of
 from yehu_server.lab.npz_file import read_npz
 from yehu_server.scores.gesture import CONTROLS, Gesture
 from yehu_server.util import __version__
@@ -83,7 +83,7 @@ class Simulation:
         import xarray
 
         found = {
-            name: (dimensions(name, values), values, attributes(label_of(name)))
+            name: (dimensions(name, values), values, label_of(name).attributes)
             for name, values in self.arrays.items()
         }
         coordinates = {name: each for name, each in found.items() if each[0] == (name,)}

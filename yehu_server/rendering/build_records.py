@@ -31,11 +31,6 @@ NAME = "manifest.jsonl"
 MOST_BYTES = 2**30
 
 
-def line_of(fields: Mapping[str, Any]) -> str:
-    """A line of the manifest, without its end."""
-    return json.dumps(fields)
-
-
 def checked_line(line: Any, **wanted: object) -> dict[str, Any]:
     """A line of a manifest that came from elsewhere.
 
@@ -56,7 +51,7 @@ def write_manifest(folder: Path, lines: Iterable[Mapping[str, Any]], order: str 
     Raises OutputError where it cannot be written.
     """
     ordered = sorted(lines, key=lambda line: line[order])
-    write_text(folder / NAME, "".join(f"{line_of(line)}\n" for line in ordered))
+    write_text(folder / NAME, "".join(f"{json.dumps(line)}\n" for line in ordered))
 
 
 def check_manifest(folder: Path) -> None:

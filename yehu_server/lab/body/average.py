@@ -56,7 +56,7 @@ def average_taps(taps: Sequence[Tap]) -> Averaged:
     if len(good) < ENOUGH_TAPS:
         count = "one tap" if len(good) == 1 else f"{len(good)} taps"
         warnings.append(f"{count} only: with {ENOUGH_TAPS} or more, noise and mistakes show")
-    warnings += _strings_that_ring(good) + _drift(good)
+    warnings += _doubts(good)
     length = min(len(tap.force) for tap in good)
     forces = np.array([np.fft.rfft(_hit_alone(tap.force)[:length]) for tap in good])
     frequency_hz = np.fft.rfftfreq(length, 1.0 / first.rate)
@@ -111,44 +111,38 @@ def hammer_reach(frequency_hz: Any, power: Floats) -> float:
     return float(frequency_hz[int(weak.argmax())]) if weak.any() else float(frequency_hz[-1])
 
 
-def _strings_that_ring(taps: Sequence[Tap]) -> list[str]:
-    """A warning where the response lasts longer than a body's, or was there before the hit."""
+def _doubts(taps: Sequence[Tap]) -> list[str]:
+    """Warnings of responses that swing before the hit or longer than a body does, or that drift.
+
+    The first tap of each kind is named.
+    """
+    swings = drifts = ""
     for tap in taps:
         first, _ = pulse(tap.force)
-        for what, values in tap.responses.items():
-            part = round(0.1 * tap.rate)
-            late = first + round(RINGS_FROM_S * tap.rate)
-            quiet = values[: max(0, first - round(1e-3 * tap.rate))]
-            if what == "pressure" or late + part > len(values) or len(quiet) < 50:
-                continue
-            now, then = (
-                float(np.std(_without_trend(values[start : start + part])))
-                for start in (late, first)
-            )
-            noise = float(np.std(quiet))
-            if as_db(noise / then) > LOUD_BEFORE_DB:
-                told = "it swings before the hit, too"
-                return [f"{tap.name}: {told}: noise, or hum of the mains"]
-            if now > 3.0 * noise and as_db(now / then) > RINGS_DB:
-                told = f"rings on {RINGS_FROM_S:g} s after the hit, as strings do"
-                return [f"{tap.name}: {told}: damp them with a strip of felt"]
-    return []
-
-
-def _drift(taps: Sequence[Tap]) -> list[str]:
-    """A warning where a sensor does not come back to where it was before the hit."""
-    for tap in taps:
-        first, _ = pulse(tap.force)
-        part = round(0.1 * tap.rate)
+        part, late = round(0.1 * tap.rate), first + round(RINGS_FROM_S * tap.rate)
         for what, values in tap.responses.items():
             quiet = values[: max(0, first - round(1e-3 * tap.rate))]
-            if what == "pressure" or len(quiet) < 50 or len(values) < first + 3 * part:
+            if what == "pressure" or len(quiet) < 50:
                 continue
-            drift = abs(values[-part:].mean() - quiet.mean()) / np.abs(values - quiet.mean()).max()
-            if drift > DRIFTED:
-                told = f"its {what} is {drift:.0%} of its peak off at the end"
-                return [f"{tap.name}: {told}: the sensor drifts; a high-pass filter mends it"]
-    return []
+            if not swings and late + part <= len(values):
+                now, then = (
+                    float(np.std(_without_trend(values[start : start + part])))
+                    for start in (late, first)
+                )
+                noise = float(np.std(quiet))
+                if as_db(noise / then) > LOUD_BEFORE_DB:
+                    told = "it swings before the hit, too"
+                    swings = f"{tap.name}: {told}: noise, or hum of the mains"
+                elif now > 3.0 * noise and as_db(now / then) > RINGS_DB:
+                    told = f"rings on {RINGS_FROM_S:g} s after the hit, as strings do"
+                    swings = f"{tap.name}: {told}: damp them with a strip of felt"
+            if not drifts and len(values) >= first + 3 * part:
+                rest = values - quiet.mean()
+                off = abs(rest[-part:].mean()) / np.abs(rest).max()
+                if off > DRIFTED:
+                    told = f"its {what} is {off:.0%} of its peak off at the end"
+                    drifts = f"{tap.name}: {told}: the sensor drifts; a high-pass filter mends it"
+    return [line for line in (swings, drifts) if line]
 
 
 def _without_trend(values: Floats) -> Floats:

@@ -14,7 +14,7 @@ from yehu_server.errors import OutputError, YehuError
 from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.sound import HOP_S, Sound
 from yehu_server.rendering import build_records
-from yehu_server.rendering.build_records import hash_of, write_manifest
+from yehu_server.rendering.build_records import hash_of
 from yehu_server.rendering.workers import Event, ProgressCallback
 from yehu_server.scores.gesture import CONTROLS
 from yehu_server.util.files import make_folder, replacing
@@ -226,11 +226,3 @@ def _checked(part: Part, told: Any) -> tuple[list[Line], dict[str, bytes]]:
     except (KeyError, TypeError, ValueError, RecursionError) as error:
         raise OutputError("a worker answered with what are no sounds") from error
     return lines, files
-
-
-def write_lines(folder: Path, lines: Iterable[Line]) -> None:
-    """Write the manifest, in the order of the numbers.
-
-    Raises OutputError where it cannot be written.
-    """
-    write_manifest(folder, lines, order="number")

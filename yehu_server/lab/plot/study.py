@@ -12,7 +12,15 @@ import numpy as np
 
 from yehu_server.lab.plot import png
 from yehu_server.lab.plot.cells import LABELS, draw_limits, limit_lines, regime_patches, set_scale
-from yehu_server.lab.plot.sweep_maps import ALONG, FORCE, PERIODS, draw_map, is_log_along, map_of
+from yehu_server.lab.plot.sweep_maps import (
+    ALONG,
+    FORCE,
+    PERIODS,
+    draw_map,
+    is_log_along,
+    map_of,
+    plane_of,
+)
 from yehu_server.lab.sweeps.result import Result
 from yehu_server.lab.sweeps.study import Study, limits_of
 from yehu_server.playing.pitch_and_level import note_name
@@ -21,8 +29,6 @@ Array = Any
 
 MOST_PANELS = 30
 LEAST_WIDTH = 8.0  # inches, for the legend
-# What is drawn along y, where a result has it: forces first.
-UPRIGHT = ("force", "bow_force", "press", "press_force", "tension")
 
 
 def write_picture(
@@ -76,24 +82,6 @@ def write_picture(
 
     size = (max(LEAST_WIDTH, 1.5 + 3.4 * across), 1.6 + 3.0 * down)
     png.write_picture(target, size, fill, overwrite=overwrite)
-
-
-def plane_of(axes: Mapping[str, int]) -> tuple[str, str | None]:
-    """Which axis to draw along x, and which along y, if there are two.
-
-    `axes` has the number of values by name, in order.
-    """
-    varied = [name for name, count in axes.items() if count > 1] or list(axes)[:1]
-    # The seed repeats a map, and a note names one, where others span a plane.
-    for name in ("seed", "string", "note"):
-        if name in varied and len(varied) > 2:
-            varied.remove(name)
-    upright = [name for name in UPRIGHT if name in varied]
-    y = upright[0] if upright and len(varied) > 1 else None
-    if y is None:
-        return varied[0], varied[1] if len(varied) > 1 else None
-    # The others make maps of their own, so those with few values.
-    return max((name for name in varied if name != y), key=lambda name: axes[name]), y
 
 
 def title_of(result: Result, at: Mapping[str, int]) -> str:

@@ -14,8 +14,8 @@ import numpy as np
 
 from yehu_server.errors import ParameterError
 from yehu_server.lab.plot.cells import COLOURS, LABELS
-from yehu_server.lab.plot.study import limits_along, plane_of
-from yehu_server.lab.plot.sweep_maps import MOST_PERIODS, is_log_along
+from yehu_server.lab.plot.study import limits_along
+from yehu_server.lab.plot.sweep_maps import MOST_PERIODS, is_log_along, plane_of
 from yehu_server.lab.sweeps.result import Result
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.util.files import read_text, write_text

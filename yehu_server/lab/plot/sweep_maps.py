@@ -35,6 +35,8 @@ ALONG = 24  # places at which limits are worked out
 MOST_PERIODS = 60.0  # that the colours of a time tell apart
 PERIODS = "periods from the first slip to Helmholtz motion"
 PERIOD_COLOURS: Any = {"cmap": "viridis_r", "vmin": 0.0, "vmax": MOST_PERIODS}
+# What is drawn along y, where a result has it: forces first.
+UPRIGHT = ("force", "bow_force", "press", "press_force", "tension")
 BESIDE: Any = {
     "loc": "upper left",
     "bbox_to_anchor": (1.0, 1.0),
@@ -164,6 +166,63 @@ def guettler(sweep: Result, *, at: At | None = None, ax: Axes | None = None) -> 
     image = draw_map(axes, sweep, x, y, cells, "helmholtz_s")
     axes.figure.colorbar(image, ax=axes, label=PERIODS, extend="max", pad=0.02)
     return axes
+
+
+def sweep(sweep: Result, *, at: At | None = None, ax: Axes | None = None) -> Axes:
+    """Draw the map of a sweep: Schelleng's or Guettler's diagram where it has their axes.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        Of two axes at least; any two make a map of the motion.
+    at, ax
+        As of `regimes`.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    ParameterError
+        Where it has one axis only, another is varied and not told, or matplotlib is missing.
+
+    Examples
+    --------
+    >>> import yehu_server as yehu
+    >>> gesture = {"duration": 0.2, "controls": {"bow_velocity": 0.2}}
+    >>> found = yehu.sweep(gesture, {"bow_position": [0.22, 0.26, 0.28], "bow_force": [0.2, 1.0]})
+    >>> yehu.plot.sweep(found).get_xlabel()
+    'bow position β'
+    """
+    has_force = any(name in sweep.axes for name in FORCE)
+    free = {name: len(values) for name, values in sweep.axes.items() if name not in (at or {})}
+    if has_force and any(name in free for name in PLACE):
+        return schelleng(sweep, at=at, ax=ax)
+    if has_force and any(name in free for name in ACCELERATION):
+        return guettler(sweep, at=at, ax=ax)
+    x, y = plane_of(free)
+    if y is None:
+        raise ParameterError("the sweep has one axis only: a map needs two")
+    return regimes(sweep, x, y, at=at, ax=ax)
+
+
+def plane_of(axes: Mapping[str, int]) -> tuple[str, str | None]:
+    """Which axis to draw along x, and which along y, if there are two.
+
+    `axes` has the number of values by name, in order.
+    """
+    varied = [name for name, count in axes.items() if count > 1] or list(axes)[:1]
+    # The seed repeats a map, and a note names one, where others span a plane.
+    for name in ("seed", "string", "note"):
+        if name in varied and len(varied) > 2:
+            varied.remove(name)
+    upright = [name for name in UPRIGHT if name in varied]
+    y = upright[0] if upright and len(varied) > 1 else None
+    if y is None:
+        return varied[0], varied[1] if len(varied) > 1 else None
+    # The others make maps of their own, so those with few values.
+    return max((name for name in varied if name != y), key=lambda name: axes[name]), y
 
 
 def spread_of(sweep: Result, name: str) -> str:

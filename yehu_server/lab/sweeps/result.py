@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from yehu_server.errors import ParameterError
-from yehu_server.lab.labels import as_data, as_json, attributes, hash_of, label_of
+from yehu_server.lab.labels import as_data, as_json, hash_of, label_of
 from yehu_server.lab.npz_file import read_npz
 from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ, REGIMES
 from yehu_server.lab.sweeps.refining import fill
@@ -149,10 +149,10 @@ class Result:
         computed.reshape(-1)[self.numbers] = True
         grids = {name: self.grid(name) for name in self.columns} | {"computed": computed}
         found: dict[str, Any] = {
-            name: (names, grid, attributes(label_of(name))) for name, grid in grids.items()
+            name: (names, grid, label_of(name).attributes) for name, grid in grids.items()
         }
         axes = {
-            name: (name, values, attributes(label_of(name))) for name, values in self.axes.items()
+            name: (name, values, label_of(name).attributes) for name, values in self.axes.items()
         }
         # As CF conventions have it: names of the numbers, without spaces.
         found["regime"][2]["flag_values"] = list(range(len(self.regimes)))

@@ -112,16 +112,9 @@ def with_axes(data: Mapping[str, Any], axes: Sequence[Axis]) -> dict[str, Any]:
     if axes and isinstance(vary, Mapping):
         vary = dict(vary)
         for axis in axes:
-            vary[axis.name] = as_entry(axis)
+            ends = {"from": axis.values[0], "to": axis.values[-1], "steps": len(axis.values)}
+            vary[axis.name] = ends | {"spread": axis.spread} if axis.spread else list(axis.values)
     return {**data, "vary": vary}
-
-
-def as_entry(axis: Axis) -> Any:
-    """An axis as a study has it."""
-    if not axis.spread:
-        return list(axis.values)
-    first, last = axis.values[0], axis.values[-1]
-    return {"from": first, "to": last, "steps": len(axis.values), "spread": axis.spread}
 
 
 def study_of(data: Any, folder: Path = Path()) -> Study:

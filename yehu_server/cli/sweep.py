@@ -70,8 +70,13 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.lab.sweeps.axes import axis_of
-    from yehu_server.lab.sweeps.running import check_free_result, sweep_to, warm_up
-    from yehu_server.lab.sweeps.signals import keep_signals, prepare_folder
+    from yehu_server.lab.sweeps.running import (
+        check_free_result,
+        keep_signals,
+        prepare_folder,
+        sweep_to,
+        warm_up,
+    )
     from yehu_server.lab.sweeps.study import read_study
 
     study = read_study(arguments.study, [axis_of(text) for text in arguments.vary])

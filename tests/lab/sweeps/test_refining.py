@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from yehu_server.lab.sweeps.refining import coarse_points, fill, finer_points
+from yehu_server.lab.sweeps.axes import coarse_points, fill, finer_points
 
 LEVELS = 3
 STEPS = 8

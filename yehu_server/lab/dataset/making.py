@@ -107,8 +107,7 @@ def perform(part: Part, report_progress: ProgressCallback) -> dict[str, Any]:
 
 
 def _made(part: Part, folder: Path, report_progress: ProgressCallback) -> list[Line]:
-    from yehu_server.lab.dataset.notes import melody
-    from yehu_server.lab.dataset.strokes import stroke
+    from yehu_server.lab.dataset.notes import melody, stroke
 
     make = stroke if part.description.kind == "strokes" else melody
     lines = []
@@ -130,8 +129,7 @@ def set_up(rate: float) -> None:
     """Compile what sounds need, once before all processes do, and load the calibration."""
     from yehu_server.core.engine.warming import warm_up
     from yehu_server.lab.dataset.description import description_of
-    from yehu_server.lab.dataset.notes import melody
-    from yehu_server.lab.dataset.strokes import stroke
+    from yehu_server.lab.dataset.notes import melody, stroke
 
     warm_up()
     strokes = {"duration": 0.1}

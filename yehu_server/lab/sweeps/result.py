@@ -17,7 +17,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.lab.labels import as_data, as_json, hash_of, label_of
 from yehu_server.lab.npz_file import read_npz
 from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ, REGIMES
-from yehu_server.lab.sweeps.refining import fill
+from yehu_server.lab.sweeps.axes import fill
 from yehu_server.lab.sweeps.study import Study, study_of
 from yehu_server.util import __version__
 from yehu_server.util.extras import need

@@ -12,8 +12,8 @@ from yehu_server.scores.abc import fields
 from yehu_server.scores.abc.fields import ALTERS, DECORATIONS, JUMPS, WEDGES
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MOST_NOTES, Mark
-from yehu_server.scores.written.raw import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.repeats import MOST_TIMES, BarLines
+from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.words import meaning_of
 
 MIDDLE_C = 60.0

@@ -7,8 +7,14 @@ from collections import Counter
 from collections.abc import Callable
 from fractions import Fraction
 
-from yehu_server.scores.jianpu.bars import Bars
-from yehu_server.scores.jianpu.form import JUMPS, MOST_UNFOLDED, MetreMark, RepeatStack, Sounding
+from yehu_server.scores.jianpu.form import (
+    JUMPS,
+    MOST_UNFOLDED,
+    Bars,
+    MetreMark,
+    RepeatStack,
+    Sounding,
+)
 from yehu_server.scores.jianpu.mark_words import AHEAD, SILENT, action_of
 from yehu_server.scores.jianpu.note_words import (
     Figure,

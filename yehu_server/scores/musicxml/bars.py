@@ -12,8 +12,8 @@ from yehu_server.scores.musicxml.directions import DirectionReader
 from yehu_server.scores.musicxml.marks import NoteMarks, neighbour, number, printable
 from yehu_server.scores.written.layout import SEMITONES
 from yehu_server.scores.written.notated import MOST_BEATS, MOST_NOTES
-from yehu_server.scores.written.raw import FINEST, RawBar, RawDirection, RawNote
 from yehu_server.scores.written.repeats import MOST_TIMES, BarLines
+from yehu_server.scores.written.voices import FINEST, RawBar, RawDirection, RawNote
 
 MOST_DIVISIONS = 1 << 20  # of a quarter note
 LOWEST, HIGHEST = 0.0, 127.0  # MIDI notes

@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 
 from yehu_server.scores.musicxml.marks import number, printable
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HIGHEST_TEMPO, LOWEST_TEMPO
-from yehu_server.scores.written.raw import RawDirection
+from yehu_server.scores.written.voices import RawDirection
 from yehu_server.scores.written.words import Meaning, meaning_of
 
 UNITS = {

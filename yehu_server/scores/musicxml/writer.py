@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from yehu_server.scores.musicxml.mark_writer import MarkWriter
+from yehu_server.scores.musicxml.marks import MarkWriter
 from yehu_server.scores.written import layout, notated
 from yehu_server.scores.written.layout import PageBar, Piece, Placed
 from yehu_server.scores.written.notated import Grace, Note, Part, Span, Tempo, Written

@@ -10,9 +10,8 @@ from yehu_server.errors import ScoreError
 from yehu_server.scores.score import COMMON_TIME, Metre
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Bar, KeySign, Part, Tempo, Written
-from yehu_server.scores.written.raw import FINEST, RawBar
 from yehu_server.scores.written.repeats import BarLines, left_out, order_of
-from yehu_server.scores.written.voices import parts_of
+from yehu_server.scores.written.voices import FINEST, RawBar, parts_of
 
 MOST_KINDS = 100  # of unknown marks that are named
 MOST_REPEATED, MOST_OFTEN = 10_000, 4  # notes, or times as many as written

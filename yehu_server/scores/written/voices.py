@@ -1,4 +1,8 @@
-"""The voices of a part as they are played: ties joined, spans closed, repeats unfolded."""
+"""Bars as they stand on the page, and the voices of a part as they are played.
+
+Readers of formats in bars, such as MusicXML and ABC, make these bars; `assembly` makes a `Written`
+of them. In voices ties are joined, spans closed and repeats unfolded.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,58 @@ from fractions import Fraction
 
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Grace, Mark, Note, OpenSpan, Part, Sign, Span
-from yehu_server.scores.written.raw import RANKS, RawBar, RawDirection, RawNote
+from yehu_server.scores.written.repeats import BarLines
+
+FINEST = 1 << 24  # the smallest part of a quarter note is this one
+
+
+@dataclass
+class RawNote:
+    """A note in its bar, before ties are joined; beats in quarters since the bar's beginning."""
+
+    at: Fraction
+    length: Fraction
+    pitch: float
+    voice: tuple[str, str]  # staff and voice
+    marks: list[Mark] = field(default_factory=list)
+    is_grace: bool = False
+    is_after: bool = False  # a grace note that belongs to the note before it
+    ties: set[str] = field(default_factory=set)  # start, stop
+    # Spans that begin or end here: their name, `start` or `stop`, and their number.
+    ends: list[tuple[str, str, str]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class RawDirection:
+    """What a direction says, at a beat of its bar."""
+
+    at: Fraction
+    # Sign, wedge, hairpin (words, until the next dynamic), dashes, change (of tempo), back (to
+    # the tempo before) or tempo.
+    kind: str
+    # Of the sign or span; of a wedge also `stop`; of a tempo where it is from, in RANKS.
+    name: str = ""
+    value: float | None = None
+    number: str = ""  # by which a wedge's end finds its beginning
+
+
+# Where a tempo is from: of several at one beat the highest counts. What a program plays goes over
+# what is printed, and figures over words.
+RANKS = {"words": 0, "figures": 1, "playback": 2}
+
+
+@dataclass
+class RawBar:
+    """A bar as written."""
+
+    number: str
+    lines: BarLines
+    notes: list[RawNote] = field(default_factory=list)
+    directions: list[RawDirection] = field(default_factory=list)
+    length: Fraction = Fraction(0)  # as filled
+    metre: Fraction | None = None  # quarters in a bar, where a time signature stands
+    fifths: int | None = None  # sharps of a key signature that stands here, below 0 flats
+
 
 SPANS = {"slur": "slur", "glissando": "glissando", "slide": "portamento"}
 MOST_VOICES = 16  # of a part; no music has more

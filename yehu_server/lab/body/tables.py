@@ -47,7 +47,12 @@ def read_table(
     What the columns after the time are, `channels`, and what a response is, `kind`, the headings
     say by default. Raises MeasurementError where it cannot be read, or what it holds is not told.
     """
-    headings, numbers = _parsed(path)
+    try:
+        headings, numbers = _numbers(path, _lines(path))
+    except OSError as error:
+        raise MeasurementError(f"{path}: {why(error)}") from error
+    except UnicodeDecodeError as error:
+        raise MeasurementError(f"{path}: not a table of text") from error
     first = headings[0].lower()
     if first.startswith("t"):
         return _taps(path, headings, numbers, channels)
@@ -56,16 +61,6 @@ def read_table(
     raise MeasurementError(
         f"{path}: its first column is {headings[0]!r}, neither time nor frequency"
     )
-
-
-def _parsed(path: Path) -> tuple[list[str], Floats]:
-    """The headings, and the numbers [shape=(lines, columns)]."""
-    try:
-        return _numbers(path, _lines(path))
-    except OSError as error:
-        raise MeasurementError(f"{path}: {why(error)}") from error
-    except UnicodeDecodeError as error:
-        raise MeasurementError(f"{path}: not a table of text") from error
 
 
 def _lines(path: Path) -> Iterator[str]:
@@ -79,6 +74,7 @@ def _lines(path: Path) -> Iterator[str]:
 
 
 def _numbers(path: Path, lines: Iterator[str]) -> tuple[list[str], Floats]:
+    """The headings, and the numbers [shape=(lines, columns)]."""
     first = next(lines, "")
     mark = next((mark for mark in ("\t", ";", ",") if mark in first), None)
     headings = [cell.strip().strip('"') for cell in first.split(mark)]

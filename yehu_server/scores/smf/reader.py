@@ -185,28 +185,18 @@ def _play_together(
         )
         for tick, message, at in messages
     )
-    names = {number: track.name for number, track in enumerate(tracks, start=first)}
     signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
     metres = (Metre(clock.beat(tick), quarters) for tick, quarters in signatures)
     tunings = sorted((each for track in tracks for each in track.tunings), key=itemgetter(0))
     tuned, remarks = retuned(events, [(clock.seconds(tick), body) for tick, body in tunings])
-    return Score(
-        tuned,
-        end_s,
-        metres=(COMMON_TIME, *metres),
-        parts=_parts(events, names),
-        remarks=remarks,
-    )
-
-
-def _parts(events: Sequence[ScoreEvent], names: dict[int, str]) -> tuple[ScorePart, ...]:
-    """The parts with notes: tracks, or the channels of a single one; percussion is none."""
     places = {
         (event.track, event.message.channel)
         for event in events
         if event.message.type == "note_on" and event.message.channel != PERCUSSION
     }
-    return _parts_of_tracks(places, names)
+    names = {number: track.name for number, track in enumerate(tracks, start=first)}
+    parts = _parts(places, names)
+    return Score(tuned, end_s, metres=(COMMON_TIME, *metres), parts=parts, remarks=remarks)
 
 
 def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> str:
@@ -217,29 +207,16 @@ def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> s
     return f" (most of it is the rest before byte {at})" if 2.0 * seconds > duration_s else ""
 
 
-def _parts_of_tracks(places: set[tuple[int, int]], names: dict[int, str]) -> tuple[ScorePart, ...]:
-    """Name the parts of a MIDI file: its tracks with notes, or the channels of a single one.
-
-    Parameters
-    ----------
-    places : set of (int, int)
-        Tracks and channels that have notes.
-    names : dict
-        Of tracks, as far as they have one.
-    """
-    if not places:
-        return ()
+def _parts(places: set[tuple[int, int]], names: dict[int, str]) -> tuple[ScorePart, ...]:
+    """The tracks that have notes, of the tracks and channels that do; of one track its channels."""
     tracks = sorted({track for track, _ in places})
+    channels = sorted({channel for _, channel in places})
     if len(tracks) > 1:
-        found = [
-            ScorePart(names.get(track) or _unnamed(track, places), track=track) for track in tracks
-        ]
+        named = [(names.get(track) or _unnamed(track, places), track) for track in tracks]
+        found = [ScorePart(name, track=track) for name, track in named]
     else:
-        channels = sorted({channel for _, channel in places})
         alone = names.get(tracks[0], "") if len(channels) == 1 else ""
-        found = [
-            ScorePart(alone or f"channel {channel + 1}", channel=channel) for channel in channels
-        ]
+        found = [ScorePart(alone or f"channel {each + 1}", channel=each) for each in channels]
     counts = Counter(part.name for part in found)
     return tuple(
         replace(part, name=f"{part.name} ({part.track})") if counts[part.name] > 1 else part

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from typing import TypeVar
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import COMMON_TIME, Metre
@@ -12,6 +13,8 @@ from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Bar, KeySign, Part, Tempo, Written
 from yehu_server.scores.written.repeats import BarLines, left_out, order_of
 from yehu_server.scores.written.voices import FINEST, RawBar, parts_of
+
+T = TypeVar("T")
 
 MOST_KINDS = 100  # of unknown marks that are named
 MOST_REPEATED, MOST_OFTEN = 10_000, 4  # notes, or times as many as written
@@ -83,10 +86,7 @@ def _told(missing: Sequence[int], bars: Sequence[RawBar]) -> str:
 
 
 def _keys(bars: Sequence[RawBar], played: Iterable[tuple[int, Fraction]]) -> Iterable[KeySign]:
-    holding: list[int | None] = []  # at each bar as written
-    for bar in bars:
-        holding.append(bar.fifths if bar.fifths is not None else (holding or [None])[-1])
-    last = None
+    holding, last = _holding(bar.fifths for bar in bars), None
     for number, begin in played:
         fifths = holding[number]
         if fifths is not None and fifths != last:
@@ -125,7 +125,7 @@ def _timed(
 ) -> tuple[list[tuple[int, Fraction]], Fraction]:
     """The beats at which bars begin, as the fullest part has them, and that of the end."""
     lengths: dict[int, Fraction] = {}
-    metres = _holding(max(parts_bars, key=len, default=[]))
+    metres = _holding(bar.metre for bar in max(parts_bars, key=len, default=[]))
     begin = Fraction(0)
     played = []
     for number in order:
@@ -150,18 +150,16 @@ def _length(bars: Sequence[RawBar], metre: Fraction | None) -> Fraction:
     return max([metre, *sounding])
 
 
-def _holding(bars: Sequence[RawBar]) -> list[Fraction | None]:
-    """The metre at each bar as written; None before the first."""
-    holding: list[Fraction | None] = []
-    for bar in bars:
-        holding.append(bar.metre or (holding[-1] if holding else None))
-    return holding
+def _holding(written: Iterable[T | None]) -> list[T | None]:
+    """What holds at each bar, such as the metre, of what is written there; None before it."""
+    held: T | None = None
+    return [held := held if own is None else own for own in written]
 
 
 def _metres(bars: list[RawBar], played: list[tuple[int, Fraction]]) -> list[Metre]:
     """The time signatures, in order; a short first bar counts back from the second."""
     metres = [COMMON_TIME]
-    holding = _holding(bars)
+    holding = _holding(bar.metre for bar in bars)
     for number, begin in played:
         quarters = holding[number] if number < len(holding) else None
         if quarters is not None and float(quarters) != metres[-1].quarters:

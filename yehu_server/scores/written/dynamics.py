@@ -59,7 +59,9 @@ class Loudness:
             after = bisect_left(starts, change.end)
             aim = level + (HAIRPIN if change.name == "crescendo" else -HAIRPIN)
             if after < len(signs) and signs[after].beat <= change.end + REACH:
-                aim = _aim(change.name, level, _level_of(signs[after]), aim)
+                # To the dynamic after it, unless that lies the other way.
+                written = _level_of(signs[after])
+                aim = written if (written > level) == (aim > level) and written != level else aim
             self._add(float(change.end), min(max(aim, SOFTEST), LOUDEST))
 
     def _add(self, beat: float, level: float) -> None:
@@ -115,12 +117,6 @@ def _level_of(sign: Sign) -> float:
     if sign.name == "velocity":
         return min(max(sign.value or USUAL, SOFTEST), LOUDEST)
     return float(LEVELS[sign.name])
-
-
-def _aim(name: str, level: float, written: float, usual: float) -> float:
-    """Where a hairpin leads: to the dynamic after it, unless that lies the other way."""
-    leads = written > level if name == "crescendo" else written < level
-    return written if leads else usual
 
 
 def _first_notes(part: Part, forced: list[Sign]) -> dict[Fraction, str]:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from yehu_server.scores.written.mark_settings import DOWN, UP, Active, is_plucked
 from yehu_server.scores.written.notated import Note, Part, Span
@@ -57,15 +56,15 @@ def has_bowing(part: Part) -> bool:
 def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Played]:
     """Return each note of a part as it is played; `actives` are the signs that hold at each."""
     notes = part.notes
-    slurs = _Over(part.spans, ("slur",))
-    slides = {name: _Over(part.spans, (name,)) for name in SLIDES}
-    trills = _Over(part.spans, ("trill",))
+    slurs, trills, *sliding = (_Over(part.spans, name) for name in ("slur", "trill", *SLIDES))
+    slides = dict(zip(SLIDES, sliding, strict=True))
     breaths = sorted(sign.beat for sign in part.signs if sign.name == "breath")
     silences = {sign.beat for sign in part.signs if sign.name == "caesura"}
     played = []
     for note, active in zip(notes, actives, strict=True):
-        end_s = _sounding_end(note, active, clock, slurs.holds(note))
-        if any(note.beat < beat <= note.end for beat in _near(breaths, note)):
+        end_s = _sounding_end(note, active, clock, slurs.over(note) is not None)
+        at = bisect_right(breaths, note.beat)
+        if at < len(breaths) and breaths[at] <= note.end:
             end_s = _breathe(clock.seconds(note.beat), end_s)
         if note.end in silences:
             end_s -= min(CAESURA_S, 0.9 * (end_s - clock.seconds(note.beat)))
@@ -127,11 +126,6 @@ def _breathe(begin_s: float, end_s: float) -> float:
     return end_s - min(BREATH_S, BREATH_SHARE * (end_s - begin_s))
 
 
-def _near(beats: Sequence[Fraction], note: Note) -> Iterator[Fraction]:
-    first = bisect_right(beats, note.beat)
-    return iter(beats[first : first + 1])
-
-
 def _slid_to(one: Played, other: Played, slide: str) -> Played:
     """The second of two notes, begun early so that the finger is there on the beat."""
     length_s = other.begin_s - one.begin_s
@@ -142,19 +136,18 @@ def _slid_to(one: Played, other: Played, slide: str) -> Played:
     return replace(other, begin_s=other.begin_s - BEFORE_BEAT * slide_s, slide_s=slide_s)
 
 
+def _farther(one: Span, other: Span) -> Span:
+    return other if other.end >= one.end else one
+
+
 class _Over:
     """Spans of one kind, found by the notes under them."""
 
-    def __init__(self, spans: Sequence[Span], names: tuple[str, ...]) -> None:
-        self._spans = sorted(
-            (span for span in spans if span.name in names), key=lambda span: span.begin
-        )
+    def __init__(self, spans: Sequence[Span], name: str) -> None:
+        own = sorted((span for span in spans if span.name == name), key=lambda span: span.begin)
+        self._begins = [span.begin for span in own]
         # The span that reaches farthest, of those up to each: enough to answer for any note.
-        self._begins = [span.begin for span in self._spans]
-        self._farthest: list[Span] = []
-        for span in self._spans:
-            before = self._farthest[-1] if self._farthest else span
-            self._farthest.append(span if span.end >= before.end else before)
+        self._farthest = list(accumulate(own, _farther))
 
     def joins(self, one: Note, other: Note) -> bool:
         """Whether a span is over both of two notes that follow each other."""
@@ -166,7 +159,3 @@ class _Over:
         at = bisect_left(self._begins, note.end) - 1
         found = self._farthest[at] if at >= 0 else None
         return found if found is not None and found.end >= note.beat else None
-
-    def holds(self, note: Note) -> bool:
-        """Whether a span is over a note."""
-        return self.over(note) is not None

@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from yehu_server.scores.written import notated
-from yehu_server.scores.written.notated import Note, Span, Tempo, Written
+from yehu_server.scores.written.notated import Span, Tempo, Written
 
 # By ear.
 HELD, LONGEST_HELD = 1.8, 10.0  # times as long under a fermata, and at most
@@ -92,20 +92,16 @@ class WrittenClock:
 def _stretches(written: Written) -> Iterator[Stretch]:
     for part in written.parts:
         for note in part.notes:
-            yield from _of_note(note)
+            fermata, caesura = note.marked("fermata"), note.marked("caesura")
+            if fermata or caesura:
+                factor = 1.0 if fermata is None else _held(fermata.value)
+                more_s = 0.0 if caesura is None else CAESURA_S
+                yield Stretch(note.beat, note.end, factor, more_s)
         for sign in part.signs:
             if sign.name == "fermata":
                 yield Stretch(sign.beat, sign.beat + WAIT, _held(sign.value))
             elif sign.name == "caesura" and sign.beat > 0:
                 yield Stretch(max(sign.beat - BRIEF, Fraction(0)), sign.beat, 1.0, CAESURA_S)
-
-
-def _of_note(note: Note) -> Iterator[Stretch]:
-    fermata, caesura = note.marked("fermata"), note.marked("caesura")
-    if fermata or caesura:
-        factor = 1.0 if fermata is None else _held(fermata.value)
-        more_s = 0.0 if caesura is None else CAESURA_S
-        yield Stretch(note.beat, note.end, factor, more_s)
 
 
 def _held(factor: float | None) -> float:

@@ -38,7 +38,7 @@ def lines_of(written: Written) -> Iterator[str]:
         yield f"{'bar':>5}  {'quarter':<8}  {'note':<7}  {'length':<7}  marks"
         yield from _notes(written, part)
     yield ""
-    yield from told_unknown(written)
+    yield from [*written.warnings, *written.not_understood] or ["all marks understood"]
 
 
 def _what(part: Part, *, is_played: bool) -> str:
@@ -62,11 +62,6 @@ def _metres(written: Written) -> list[tuple[Fraction, float]]:
         if not shown or shown[-1][1] != quarters:
             shown.append((beat, quarters))
     return shown
-
-
-def told_unknown(written: Written) -> Iterator[str]:
-    """What was not understood, and the warnings."""
-    yield from [*written.warnings, *written.not_understood] or ["all marks understood"]
 
 
 def _tempi(written: Written) -> list[Tempo]:

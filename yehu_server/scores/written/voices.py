@@ -6,7 +6,6 @@ of them. In voices ties are joined, spans closed and repeats unfolded.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -237,19 +236,13 @@ def parts_of(
                 voices[key].add_bar(notes, begin)
         directions.add_bar(bars[number].directions, begin)
     directions.end(end)
-    found = list(_named(name, voices, directions))
-    return found, directions.tempi
-
-
-def _named(
-    name: str, voices: dict[tuple[str, str], Voice], directions: Directions
-) -> Iterator[Part]:
-    staves = {staff for staff, _ in voices}
+    found, signs = [], tuple(directions.signs)
+    staves = [staff for staff, _ in voices]
     for number, ((staff, voice), each) in enumerate(sorted(voices.items())):
-        if not each.notes:
-            continue
-        more = f", staff {staff}" if len(staves) > 1 else ""
-        if sum(other == staff for other, _ in voices) > 1 and number:
+        more = f", staff {staff}" if len({*staves}) > 1 else ""
+        if staves.count(staff) > 1 and number:
             more += f", voice {voice}"
         spans = sorted((*each.spans, *directions.spans), key=lambda span: (span.begin, span.end))
-        yield Part(name + more, tuple(each.notes), tuple(spans), tuple(directions.signs))
+        if each.notes:
+            found.append(Part(name + more, tuple(each.notes), tuple(spans), signs))
+    return found, directions.tempi

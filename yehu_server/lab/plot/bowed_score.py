@@ -21,7 +21,7 @@ from yehu_server.scores.jianpu.figures import SIGN_OF, figure_of, signed_lengths
 from yehu_server.scores.written import layout
 from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.layout import PageBar, Piece
-from yehu_server.scores.written.mark_settings import DOWN, OUTER_OPEN, UP, Active, is_plucked
+from yehu_server.scores.written.mark_settings import DOWN, OUTER_OPEN, UP, actives_of, is_plucked
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, Note, Part, Span, Written
 from yehu_server.scores.written.part_bowing import Played, bowed
 from yehu_server.scores.written.tempo import WrittenClock
@@ -51,13 +51,7 @@ class Stroke:
 
 def strokes_of(part: Part, clock: WrittenClock) -> list[Stroke]:
     """Return the strokes of a part, as the player bows it: it turns the bow with each new one."""
-    actives, active, taken = [], Active(), 0
-    signs = sorted(part.signs, key=lambda sign: sign.beat)
-    for note in part.notes:
-        while taken < len(signs) and signs[taken].beat <= note.beat:
-            active.take(signs[taken])
-            taken += 1
-        actives.append(replace(active))
+    actives = actives_of(part)
     found: list[Stroke] = []
     last: Played | None = None
     for at, each in enumerate(bowed(part, actives, clock)):

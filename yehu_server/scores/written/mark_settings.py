@@ -6,12 +6,12 @@ docs/scores.md has the table. Values are by ear, where nothing else is said.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from yehu_server.params.articulations import NUMBER
 from yehu_server.params.table import find
-from yehu_server.scores.written.notated import FORCED, Note, Sign
+from yehu_server.scores.written.notated import FORCED, Note, Part, Sign
 
 Values = dict[str, float]
 
@@ -118,9 +118,16 @@ class Active:
             self.vibrato = VIBRATO_CENTS if sign.value is None else sign.value
         self.is_forced = self.is_forced or name in FORCED
 
-    def end_note(self) -> None:
-        """Let end what is written for one note alone."""
-        self.gesture, self.is_forced = 0.0, False
+
+def actives_of(part: Part) -> list[Active]:
+    """The signs that hold at each note of a part; some are written for one note alone."""
+    signs, now, found = sorted(part.signs, key=lambda sign: sign.beat)[::-1], Active(), []
+    for note in part.notes:
+        while signs and signs[-1].beat <= note.beat:
+            now.take(signs.pop())
+        found.append(now)
+        now = replace(now, gesture=0.0, is_forced=False)
+    return found
 
 
 def harmonic_of(note: Note) -> Node | None:

@@ -26,6 +26,7 @@ from yehu_server.scores.written.mark_settings import (
     SAME_PITCH,
     TOUCH_N,
     Active,
+    actives_of,
     harmonic_of,
     values_of,
 )
@@ -107,19 +108,11 @@ class _Performer:
 
     def events(self) -> list[Timed]:
         """All its events; not in order."""
-        beats = sorted(self._part.signs, key=lambda sign: sign.beat)
-        active, taken = Active(), 0
         if self._loudness.is_marked:  # so that no phrasing is laid over it
             self._control(0.0, 0.0, EXPRESSION, 127)
         if has_bowing(self._part):
             self._control(0.0, 0.0, LEGATO_PEDAL, 0)
-        actives = []
-        for note in self._part.notes:
-            while taken < len(beats) and beats[taken].beat <= note.beat:
-                active.take(beats[taken])
-                taken += 1
-            actives.append(replace(active))
-            active.end_note()
+        actives = actives_of(self._part)
         played = bowed(self._part, actives, self._clock)
         for each, state in zip(played, actives, strict=True):
             self._play(each, state)

@@ -85,10 +85,7 @@ def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Rec
 
 
 def recording_of_samples(samples: Array, rate: int, name: str = "the recording") -> Recording:
-    """An array [shape=(frames,) or (frames, channels)] as a recording.
-
-    Raises ScoreError where it is none.
-    """
+    """An array [shape=(frames,) or (frames, channels)] as a recording; raises ScoreError."""
     sound = np.asarray(samples)
     sound = sound[:, None] if sound.ndim == 1 else sound
     if sound.ndim != 2 or not 1 <= sound.shape[1] <= MOST_CHANNELS:

@@ -39,10 +39,7 @@ class Tracker(Protocol):
 
 
 class SwiftTracker:
-    """Estimates pitches from 47 to 2093 Hz by SwiftF0.
-
-    Raises ParameterError where its package is missing.
-    """
+    """Estimates pitches from 47 to 2093 Hz by SwiftF0; raises ParameterError without that."""
 
     def __init__(self) -> None:
         need_follow()
@@ -69,10 +66,7 @@ def need_follow(what: str = "to follow a recording") -> None:
 
 
 def at_times(estimates: Estimates, times_s: Array) -> tuple[Array, Array]:
-    """Pitch (Hz) and certainty at times; between estimates of one note the pitch is interpolated.
-
-    Returns: ndarrays [shape=(times,)].
-    """
+    """Pitch (Hz) and certainty [shape=(times,)] at times, interpolated within one note."""
     place = np.asarray(times_s) / PERIOD_S
     last = len(estimates.pitch_hz) - 1
     below = np.clip(np.floor(place).astype(np.int64), 0, last)

@@ -37,10 +37,7 @@ def read_npz(path: Path, build: Callable[[dict[str, Any]], T], what: str) -> T:
 
 
 def _check_sizes(file: BinaryIO) -> None:
-    """Refuse an archive that claims to hold much more than results in so many bytes do.
-
-    Raises ValueError, zipfile.BadZipFile.
-    """
+    """Refuse an archive that claims to hold much more than results in so many bytes do."""
     with zipfile.ZipFile(file) as archive:
         claimed = sum(entry.file_size for entry in archive.infolist())
     most = max(LEAST_CLAIM, MOST_RATIO * os.fstat(file.fileno()).st_size)

@@ -46,19 +46,13 @@ def checked_line(line: Any, **wanted: object) -> dict[str, Any]:
 
 
 def write_manifest(folder: Path, lines: Iterable[Mapping[str, Any]], order: str = "file") -> None:
-    """Write the manifest, in the order of the names, or of another entry.
-
-    Raises OutputError where it cannot be written.
-    """
+    """Write the manifest, in the order of the names or another entry; raises OutputError."""
     ordered = sorted(lines, key=lambda line: line[order])
     write_text(folder / NAME, "".join(f"{json.dumps(line)}\n" for line in ordered))
 
 
 def check_manifest(folder: Path) -> None:
-    """Check that the manifest may be written.
-
-    Raises OutputError where a file of its name is none.
-    """
+    """Check that the manifest may be written. Raises OutputError where the file is another's."""
     path = folder / NAME
     try:
         first = next(read_lines(path, MOST_BYTES), "")
@@ -197,10 +191,7 @@ LOCK = "lock"
 
 @contextlib.contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Keep other processes from writing results to a folder.
-
-    Raises OutputError where one does, or the folder cannot be written.
-    """
+    """Keep other processes from writing to a folder. Raises OutputError where one does."""
     path = folder / HIDDEN / LOCK
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -21,10 +21,7 @@ RESPONSE_S = 0.15  # after which the high-pass is 300 dB down
 
 
 def weighting(rate: float) -> Array:
-    """Return the impulse response of K weighting: a shelf for the head, then a high-pass.
-
-    Returns: ndarray [shape=(frames,)].
-    """
+    """The impulse response [shape=(frames,)] of K weighting: a shelf for the head, a high-pass."""
     k = math.tan(math.pi * 1681.974450955533 / rate)
     high, band, q = 10.0 ** (3.999843853973347 / 20.0), 0.4996667741545416, 0.7071752369554196
     mid = high**band * k / q

@@ -25,10 +25,7 @@ END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
 
 
 class PartPlayer:
-    """Plays a part on an instrument, or on those of a section.
-
-    Their wishes and MIDI are posted by `wishes` and `midi`.
-    """
+    """Plays a part on an instrument or those of a section, by `wishes` and `midi`."""
 
     def __init__(self, part: Part, instruments: Sequence[Instrument]) -> None:
         self.part, self.instruments = part, instruments

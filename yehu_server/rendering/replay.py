@@ -69,10 +69,7 @@ def replay(
     progress: Callable[[float, float], None] | None = None,
     may_replace: Callable[[Path], bool] = anything,
 ) -> Replayed:
-    """Render a capture to a sound file.
-
-    Raises YehuError where it fails; no partial file is left.
-    """
+    """Render a capture to a sound file. Raises YehuError; no partial file is left then."""
     hours = capture.frames / capture.rate / 3600.0
     if hours > max_duration_h:
         raise ScoreError(

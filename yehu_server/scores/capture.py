@@ -66,10 +66,7 @@ class Capture:
 
 
 def read_capture(path: Path) -> Capture:
-    """Read a capture, also one that a crash has cut short.
-
-    Raises ScoreError where it cannot be read or is no capture.
-    """
+    """Read a capture, also one that a crash has cut short. Raises ScoreError where it is none."""
     lines = read_lines(path, MOST_BYTES)
     try:
         capture = _header(path, next(lines, ""))

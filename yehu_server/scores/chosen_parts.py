@@ -89,10 +89,7 @@ def told_others(written: Written, plays: Sequence[int]) -> str:
 
 
 def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
-    """Return the parts of a score of MIDI that are asked for.
-
-    Raises ScoreError where one is not there.
-    """
+    """The parts of a score of MIDI that are asked for. Raises ScoreError where one is not there."""
     names = [part.name for part in score.parts]
     return _only(score, [score.parts[number] for number in numbers_of(names, asked)])
 

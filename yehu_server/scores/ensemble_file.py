@@ -53,10 +53,7 @@ class EnsembleFile:
 
 
 def read_ensemble(path: Path) -> EnsembleFile:
-    """Read an ensemble file.
-
-    Raises EnsembleError, naming file and line; its `more` are further errors.
-    """
+    """Read an ensemble file. Raises EnsembleError with file and line; its `more` are others."""
     document = Document(path, "an ensemble file", EnsembleError, most_errors=MOST_ERRORS)
     table = document.read(path).toml()
     table.read("about", str, "")

@@ -115,10 +115,7 @@ def read_gesture(path: Path) -> Gesture:
 
 
 def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
-    """Build a gesture from the data of a gesture file in `folder`.
-
-    Raises ParameterError where an entry is wrong.
-    """
+    """Build a gesture from the data of a file in `folder`; raises ParameterError."""
     table = Fields.of(data, "gesture")
     rate = table.read("sample_rate", sample_rate, 44100.0)
     duration = table.read("duration", number, 1.0, 1.0 / rate, MAX_DURATION_S, "s")

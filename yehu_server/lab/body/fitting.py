@@ -99,10 +99,7 @@ def fit(
 
 
 def fit_modes(curve: Curve, count: int | None = None) -> Modes:
-    """Fit bridge modes to an admittance (s/kg); `count` of them, or as many as it shows.
-
-    Raises MeasurementError where it shows none.
-    """
+    """Fit `count` modes, or as many as it shows, to an admittance; raises MeasurementError."""
     weight = 1.0 / np.hypot(curve.deviation, FLOOR * np.abs(curve.values))
     found = Search(Problem(curve.frequency_hz, curve.values, weight)).find(MAX_MODES, count)
     if not len(found.mass):

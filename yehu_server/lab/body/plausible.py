@@ -71,10 +71,7 @@ def _check_numbers(curve: Curve, what: str) -> None:
 
 
 def check_radiation(curve: Curve) -> list[str]:
-    """Check a radiation (Pa/N); return warnings.
-
-    Raises MeasurementError where it is in other units.
-    """
+    """Check a radiation (Pa/N); return warnings. Raises MeasurementError where units are others."""
     _check_numbers(curve, "radiation")
     peak = float(np.abs(curve.values).max())
     _check_size(peak, LOUDEST, "radiation", "Pa/N", "mPa, or of full scale")

@@ -29,10 +29,7 @@ AUDIO = {"strokes": Label("Pa", "radiated sound pressure"), "notes": Label("1", 
 
 
 def write_card(folder: Path, description: Description, lines: Sequence[Line]) -> None:
-    """Write the card and the facts of a data set, which are the same for the same sounds.
-
-    Raises OutputError where they cannot be written.
-    """
+    """Write card and facts, the same for the same sounds. Raises OutputError where it cannot be."""
     facts = facts_of(description, lines)
     write_text(folder / FACTS, json.dumps(facts, indent=1, ensure_ascii=False) + "\n")
     write_text(folder / CARD, card_of(facts))

@@ -116,10 +116,7 @@ def read_description(path: Path) -> Description:
 
 
 def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> Description:
-    """Check the data of a description, which is in a folder.
-
-    Raises ParameterError, naming the entry.
-    """
+    """Check the data of a description in a folder. Raises ParameterError, naming the entry."""
     table = Fields.of(data)
     kind = table.read("kind", choice, KINDS[0], KINDS)
     rate = table.read("sample_rate", played_rate, 44100.0)

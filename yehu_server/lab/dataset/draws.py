@@ -74,10 +74,7 @@ SPACINGS = {"even": _even, "ratio": _by_ratio, "whole": _whole}
 
 
 def read_distribution(entry: Any) -> Distribution:
-    """Read how a value is drawn: a number, or a table as docs/dataset.md describes.
-
-    Raises ParameterError where it is none of them.
-    """
+    """Read how a value is drawn, as docs/dataset.md describes; raises ParameterError."""
     if not isinstance(entry, Mapping):
         return constant(number(entry))
     table, names = Fields(entry), entry.keys()

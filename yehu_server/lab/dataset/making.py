@@ -30,10 +30,7 @@ def names_of(description: Description, number: int) -> tuple[str, str]:
 
 
 def write_sound(folder: Path, description: Description, number: int, sound: Sound) -> Line:
-    """Write a sound and its arrays; return its line of the manifest.
-
-    Raises OutputError where they cannot be written.
-    """
+    """Write a sound and its arrays; return its line of the manifest. Raises OutputError."""
     from yehu_server.util.sound_file import sound_file
 
     names = names_of(description, number)

@@ -89,10 +89,7 @@ SHORTEST_S = 0.02  # from one beginning to the next
 
 
 def melody(description: Description, number: int) -> Sound:
-    """Make a sound of a description of kind "notes".
-
-    Raises ParameterError where it would last too long.
-    """
+    """Make a sound of kind "notes". Raises ParameterError where it would last too long."""
     rate = description.rate
     drawn: dict[str, Any] = {
         name: value for name, value in description.drawn(number).items() if name not in OF_NOTES

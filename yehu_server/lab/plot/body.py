@@ -28,10 +28,7 @@ ROWS = ("admittance", "phase", "radiation", "left")
 
 
 def write_picture(fit: Fit, target: Path, *, overwrite: bool = False) -> None:
-    """Draw a fit, and write it to a PNG file.
-
-    Raises ParameterError where matplotlib is missing; OutputError where it cannot be written.
-    """
+    """Draw a fit, and write it to a PNG file. Raises ParameterError, OutputError."""
     png.check_picture(target, "a picture", overwrite=overwrite)
     png.write_picture(target, SIZE, lambda figure: _draw(figure, fit), overwrite=overwrite)
 

@@ -74,10 +74,7 @@ LIMITS = {"upper": ("k-", "Schelleng's upper limit"), "lower": ("k--", "Schellen
 
 
 def is_log(values: Array, spread: str = "") -> bool:
-    """Whether values are drawn by logarithms.
-
-    How they lie, "linear" or "log", is told by `spread` where that is known.
-    """
+    """Whether values are drawn by logarithms; `spread`, where that is known, tells how they lie."""
     if spread or values.dtype.kind == "U":
         return spread == "log"
     values = np.sort(values)

@@ -147,10 +147,7 @@ def draw_levels(axes: Any, heard: Heard, watch: PlotData) -> None:
 def write_followed(
     heard: Heard, semitones: float, watch: PlotData, target: Path, *, overwrite: bool = False
 ) -> None:
-    """Draw what was heard over what is played, and write it to a PNG file.
-
-    Raises OutputError where it cannot be written.
-    """
+    """Draw what was heard over what is played into a PNG file; raises OutputError."""
     moved = f", {semitones:+g} semitones" if semitones else ""
     write_picture(
         watch,

@@ -208,10 +208,7 @@ def judge(
 
 
 def check_length(frames: int, rate: float, frequency_hz: float) -> None:
-    """Refuse a stroke that is too short to be judged.
-
-    Raises ParameterError where it has less than LEAST_PERIODS of the note.
-    """
+    """Refuse a stroke of less than LEAST_PERIODS of its note; raises ParameterError."""
     if not frames * frequency_hz >= LEAST_PERIODS * rate:
         raise ParameterError(
             f"{frames / rate:g} s are too short to judge a note of {frequency_hz:.4g} Hz: "

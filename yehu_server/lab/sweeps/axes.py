@@ -32,10 +32,7 @@ class Axis:
     spread: str = ""
 
     def refined(self, levels: int) -> Axis:
-        """The axis with 2**levels steps where it has one.
-
-        Raises ParameterError where it is a list.
-        """
+        """The axis with 2**levels steps where it has one. Raises ParameterError for a list."""
         if levels == 0:
             return self
         if not self.spread:
@@ -50,10 +47,7 @@ class Axis:
 
 
 def spread_axis(name: str, first: float, last: float, steps: int, spread: str) -> Axis:
-    """An axis of values from `first` to `last`, both with.
-
-    Raises ParameterError where these are none.
-    """
+    """An axis of values from `first` to `last`, both with; raises ParameterError."""
     whole(steps, 2, MOST_VALUES)
     choice(spread, SPREADS)
     if not (math.isfinite(first) and math.isfinite(last)):
@@ -95,10 +89,7 @@ def _value(text: str) -> Value:
 
 
 def axis_from(name: str, entry: Any) -> Axis:
-    """Read an axis of a study: a list, or a table of ``from``, ``to``, ``steps``, ``spread``.
-
-    Raises ParameterError where it is none.
-    """
+    """Read an axis of a study: a list, or from, to, steps and spread; raises ParameterError."""
     if isinstance(entry, list):
         if not 1 <= len(entry) <= MOST_VALUES:
             raise ParameterError(f"expected 1 to {MOST_VALUES} values")

@@ -94,10 +94,7 @@ class Journal(Done):
             raise OutputError(f"{self.path}: cannot write: {why(error)}") from error
 
     def add(self, numbers: Array, findings: Array) -> None:
-        """Add points, safe against the end of this process.
-
-        Raises OutputError where they cannot be written.
-        """
+        """Add points, safe against the end of this process; raises OutputError."""
         payload = numbers.astype("<i8").tobytes() + findings.tobytes()
         try:
             self._file.write(HEAD.pack(len(numbers), zlib.crc32(payload)) + payload)

@@ -167,10 +167,7 @@ def _on_cluster(study: Study, chunks: list[Array], cluster: Any) -> Iterator[tup
 
 
 def _received(found: Any, count: int) -> Array:
-    """The findings that came back from a cluster; anybody who reaches it may have made them.
-
-    Raises YehuError where they are none.
-    """
+    """The findings that a cluster sent, whoever made them. Raises YehuError where they are none."""
     if type(found) is bytes and len(found) == count * FINDING.itemsize:
         findings = np.frombuffer(found, FINDING)
         if findings["regime"].max(initial=0) < len(REGIMES):

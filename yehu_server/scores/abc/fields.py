@@ -57,10 +57,7 @@ _FRACTION = re.compile(r"(\d+)/(\d+)")
 
 
 def key_of(text: str) -> tuple[int, dict[str, float], int] | None:
-    """Return the sharps of a key, the accidental of each letter, and octaves of its clef.
-
-    None where the text names no key.
-    """
+    """The sharps of a key, each letter's accidental, octaves of the clef; None without a key."""
     octave = _OCTAVE.search(text)
     shift = 0
     if octave:

@@ -46,10 +46,7 @@ TOKEN = re.compile(
 
 
 class VoiceReader:
-    """Reads the music of a voice, line by line.
-
-    `bars` are those read.
-    """
+    """Reads the music of a voice, line by line, into `bars`."""
 
     def __init__(self, unknown: Counter[str], warnings: Counter[str]) -> None:
         self.bars: list[RawBar] = []

@@ -86,10 +86,7 @@ def _text(text: str) -> str:
 
 
 def words_of(text: str) -> Iterator[Word | Header]:
-    """The words and headers of a text, in order; without comments and lyrics.
-
-    A block of LilyPond code is one word, ``LP:``.
-    """
+    """The words and headers of a text without comments and lyrics; LilyPond code is ``LP:``."""
     in_code = in_lyrics = False
     for number, written in enumerate(text.splitlines(), start=1):
         line = written.translate(_PLAIN)

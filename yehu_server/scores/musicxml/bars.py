@@ -51,10 +51,7 @@ class BarReader:
         self._bar = RawBar("", BarLines())
 
     def read(self, measure: Element) -> RawBar:
-        """Read one <measure>.
-
-        Raises ScoreError where it is longer, or has more notes, than any music.
-        """
+        """Read one <measure>. Raises ScoreError where it is longer, or fuller, than any music."""
         lines = BarLines(endings=self._ending)
         self._bar = bar = RawBar(measure.get("number", "")[:8], lines)
         self._bars += 1

@@ -86,10 +86,7 @@ def _member(archive: zipfile.ZipFile, name: str, most_bytes: int) -> bytes:
 
 
 def parse(data: bytes) -> ET.Element:
-    """Parse XML of bounded size and depth, without namespaces.
-
-    Raises ScoreError with the line, where there is one.
-    """
+    """Parse XML of bounded size and depth, without namespaces. Raises ScoreError with the line."""
     builder = _Builder()
     says_utf16 = _SAYS_UTF16.match(data) is not None  # in bytes that are none
     parser = expat.ParserCreate("utf-8" if says_utf16 else None)

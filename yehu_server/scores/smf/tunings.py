@@ -75,10 +75,7 @@ class _Tuned:
 def retuned(
     events: Sequence[ScoreEvent], tunings: Sequence[tuple[float, bytes]]
 ) -> tuple[tuple[ScoreEvent, ...], tuple[str, ...]]:
-    """Return events as tunings at their times (s) move them, and remarks.
-
-    `tunings` come in order, each of `is_tuning`.
-    """
+    """Return events as `tunings` (s, in order, of `is_tuning`) move them, and remarks."""
     if not tunings:
         return tuple(events), ()
     bent = {e.message.channel for e in events if e.message.type == "pitchwheel"}

@@ -55,10 +55,7 @@ OTHERS: tuple[tuple[int, bytes, str], ...] = (
 
 
 def unwrapped(data: bytes, faults: DamageReport) -> tuple[int, int]:
-    """Return where the MIDI file begins and where it ends.
-
-    Raises ScoreError where no header is found.
-    """
+    """Return where the MIDI file begins and ends. Raises ScoreError where no header is found."""
     start, end = _of_macintosh(data)
     if data[start : start + 4] == b"RIFF" and data[start + 8 : start + 12] == b"RMID":
         start, end = _of_riff(data, start, end)

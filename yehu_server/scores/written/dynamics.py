@@ -22,10 +22,7 @@ LEVELS = {**DYNAMICS, **{name: DYNAMICS[then] for name, (_, then) in FORCED.item
 
 
 class Loudness:
-    """The loudness of a part at each beat.
-
-    `is_marked` tells whether the part says anything of it.
-    """
+    """The loudness of a part at each beat; `is_marked` where the part says anything of it."""
 
     def __init__(self, part: Part) -> None:
         signs = [s for s in part.signs if s.name in LEVELS or s.name == "velocity"]

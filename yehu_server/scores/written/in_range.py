@@ -36,10 +36,7 @@ def moved_part(part: Part, higher: int = 0) -> tuple[Part, Octaves]:
 
 
 def moved(written: Written, plays: Sequence[int], higher: int = 0) -> tuple[Written, str]:
-    """Return a score whose parts of some numbers, from 0, are in range, and a line that tells it.
-
-    The line is empty where nothing is moved.
-    """
+    """A score whose parts of some numbers are in range, and a line that tells it, if any moved."""
     parts = list(written.parts)
     told = []
     for number in plays:

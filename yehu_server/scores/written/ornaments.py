@@ -126,10 +126,7 @@ Curve = list[tuple[float, float]]
 
 
 def curve_of(note: Note, begin_s: float, end_s: float) -> Curve:
-    """Return the semitones from a note's pitch, at seconds; empty where it stays.
-
-    The first point is at the note's beginning.
-    """
+    """The semitones from a note's pitch at seconds, from its beginning on; empty where it stays."""
     length_s = end_s - begin_s
     if length_s <= LAST_S:
         return []

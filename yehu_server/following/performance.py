@@ -50,11 +50,7 @@ class Style:
     attacks: float = 1.0
 
 
-STYLES = {
-    "exact": Style(1.0, 1.0),
-    "gentle": Style(0.6, 0.4),
-    "even": Style(0.0, 0.0),
-}
+STYLES = {"exact": Style(1.0, 1.0), "gentle": Style(0.6, 0.4), "even": Style(0.0, 0.0)}
 
 
 @dataclass(frozen=True)

@@ -135,12 +135,7 @@ class Simulation:
         """
         target = Path(path)
         with replacing(target) as partial, partial.open("wb") as file:
-            np.savez(
-                file,
-                allow_pickle=False,
-                meta=np.array(json.dumps(self.meta)),
-                **self.arrays,
-            )
+            np.savez(file, allow_pickle=False, meta=np.array(json.dumps(self.meta)), **self.arrays)
 
 
 def simulate(

@@ -146,11 +146,7 @@ def render_capture(
     performance = Performance(played, replace(options, jobs=1, is_mono=False), reports=True)
     wrong: list[str] = []
     capture = LiveCapture(
-        performance.ensemble,
-        target,
-        wrong.append,
-        has_room=not options.is_dry,
-        overwrite=overwrite,
+        performance.ensemble, target, wrong.append, has_room=not options.is_dry, overwrite=overwrite
     )
     total, frames = performance.score_frames / options.rate, 0
     try:

@@ -29,13 +29,7 @@ class CaptureWriter:
     OutputError where it cannot be written.
     """
 
-    def __init__(
-        self,
-        target: Path,
-        *,
-        beginning: SessionStart,
-        overwrite: bool = False,
-    ) -> None:
+    def __init__(self, target: Path, *, beginning: SessionStart, overwrite: bool = False) -> None:
         self._target = target
         self._file = create(target, overwrite=overwrite, room_bytes=ROOM_BYTES)
         self._whole_bytes = 0

@@ -79,10 +79,7 @@ def fit(
         fitted = fit_sections(within.radiation, sections, RATE)
         sections_of = tuple(tuple(row) for row in fitted.coefficients.tolist())
         body = replace(
-            body,
-            radiation_rate=fitted.rate,
-            sections=sections_of,
-            direct_gain=fitted.direct_gain,
+            body, radiation_rate=fitted.rate, sections=sections_of, direct_gain=fitted.direct_gain
         )
         # As if the microphone had been nearer.
         sooner = np.exp(2j * np.pi * within.radiation.frequency_hz * fitted.delay_s)

@@ -128,10 +128,7 @@ def _pressure_alone(tap: Tap) -> Tap:
 
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")  # they are refused later
 def average(
-    taps: Sequence[Tap],
-    responses: Sequence[Response] = (),
-    *,
-    sensor_mass: float | None = None,
+    taps: Sequence[Tap], responses: Sequence[Response] = (), *, sensor_mass: float | None = None
 ) -> Measurement:
     """Average taps and responses that are in memory, and check what they give; see `read`."""
     if sensor_mass is not None and not 0.0 <= sensor_mass <= MOST_SENSOR_KG:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import mido
 
 from yehu_server.scores.reading import channels_with_notes, part_of, tracks_with_notes
-from yehu_server.scores.score import Score, ScoreEvent, concatenate
+from yehu_server.scores.score import COMMON_TIME, Metre, Score, ScoreEvent, concatenate
 from yehu_server.scores.smf.reader import read_score
 
 
@@ -54,6 +54,13 @@ def test_events_of_a_file_know_their_track(tmp_path):
     assert [(event.message.channel, event.track) for event in score.events] == [(2, 2), (4, 3)]
     joined = concatenate([score, score])
     assert [event.track for event in joined.events] == [2, 3, 0, 2, 3]
+
+
+def test_joined_scores_of_one_metre_keep_it():
+    """Their beats begin anew with each, so their bars do."""
+    waltz, march = (Score((), 1.0, metres=(COMMON_TIME, Metre(0.0, n))) for n in (3.0, 2.0))
+    assert concatenate([waltz, waltz]).bar_at(4.0) == (0.0, 3.0)
+    assert concatenate([waltz, march]).bar_at(4.0) == (0.0, 4.0)
 
 
 def test_the_songs_of_format_2_are_tracks(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 from musicxml_text import note, score, words
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.reading import is_written, read_any, read_written
+from yehu_server.scores.reading import is_capture, is_written, read_any, read_written
 from yehu_server.scores.score import notes_of
 from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
@@ -55,6 +56,13 @@ def test_a_score_that_lasts_too_long_is_refused(tmp_path):
         read_any(path, max_duration_h=1e-4)
     with pytest.raises(ScoreError, match="1 song"):
         read_any(path, song=2)
+
+
+def test_a_long_capture_is_known_by_its_first_bytes(tmp_path):
+    path = tmp_path / "session.jsonl"
+    path.write_bytes(b"{")
+    os.truncate(path, 65 << 20)  # more than a text may have; the disk keeps one byte
+    assert is_capture(path)
 
 
 def test_a_score_without_notes_names_its_file(tmp_path):

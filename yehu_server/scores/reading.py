@@ -16,7 +16,7 @@ from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.written.in_range import moved, usual_parts
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.performed import performed
-from yehu_server.util.files import read_bytes
+from yehu_server.util.files import open_regular
 
 
 def channels_with_notes(scores: Iterable[Score]) -> list[int]:
@@ -232,7 +232,8 @@ def is_capture(path: Path) -> bool:
 
 def _beginning(path: Path) -> bytes:
     try:
-        return read_bytes(path)[:64]
+        with open_regular(path) as file:
+            return file.read(64)
     except (OSError, ValueError):  # the reader tells what is wrong
         return b""
 

@@ -153,7 +153,9 @@ def concatenate(scores: Sequence[Score]) -> Score:
     warnings = (f"{score.name}: {warning}" for score in scores for warning in score.warnings)
     remarks = (f"{score.name}: {remark}" for score in scores for remark in score.remarks)
     parts = scores[0].parts if scores else ()
-    return Score(tuple(events), start, names, tuple(warnings), parts=parts, remarks=tuple(remarks))
+    metres = {score.metres for score in scores}  # from the beginning of each score
+    metre = metres.pop() if len(metres) == 1 else (COMMON_TIME,)
+    return Score(tuple(events), start, names, tuple(warnings), metre, parts, tuple(remarks))
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,7 @@ class Bars:
 
 
 FINE, SEGNO, TO_CODA, DA_CAPO, DAL_SEGNO = JUMPS = ("Fine", "Segno", "ToCoda", "DC", "DS")
-BACK = (DA_CAPO, DAL_SEGNO)
+BACK, ENDS = (DA_CAPO, DAL_SEGNO), (FINE, TO_CODA)
 MOST_UNFOLDED = 50_000  # notes, rests and dashes of a part
 MOST_DEPTH = 8  # repeats within repeats
 MOST_TIMES = 100
@@ -129,46 +129,39 @@ class RepeatStack:
     """Collects elements, in the order of the page."""
 
     def __init__(self, bars: Bars) -> None:
-        self._all: list[object] = []
-        self._stack: list[_Open] = []
+        self._stack = [_Open([], Word("", 1, 1), Repeat(1), Fraction(0))]  # first the whole piece
         self._bars = bars
 
     def add(self, element: object) -> None:
         """Put an element where the page is."""
-        self._elements().append(element)
+        self._stack[-1].elements.append(element)
 
-    def _elements(self) -> list[object]:
-        return self._stack[-1].elements if self._stack else self._all
-
-    def open_repeat(self, times: str, word: Word) -> None:
+    def open_repeat(self, times: str, word: Word, *, signs: bool = False) -> None:
         """A repeat begins. Raises ScoreError beyond its bounds."""
         if len(times) > 4 or int(times) > MOST_TIMES:
             raise failure(word, f"more than {MOST_TIMES} times")
-        self._check_depth(word)
         repeat = Repeat(int(times))
-        self.add(repeat)
-        self._stack.append(_Open(repeat.body, word, repeat, self._bars.place))
+        self._open(_Open(repeat.body, word, repeat, self._bars.place, signs=signs))
+        self._stack[-2].elements.append(repeat)
 
-    def _check_depth(self, word: Word) -> None:
-        if len(self._stack) >= MOST_DEPTH:
-            raise failure(word, f"more than {MOST_DEPTH} repeats within each other")
+    def _open(self, opened: _Open) -> None:
+        if len(self._stack) > MOST_DEPTH:
+            raise failure(opened.word, f"more than {MOST_DEPTH} repeats within each other")
+        self._stack.append(opened)
 
     def open_endings(self, word: Word) -> None:
         """The endings of the repeat before begin. Raises ScoreError where there is none."""
-        elements = self._elements()
-        before = elements[-1] if elements else None
+        before = next(iter(self._stack[-1].elements[-1:]), None)
         if not isinstance(before, Repeat) or before.endings:
             raise failure(word, "A{ belongs after the } of a repeat")
-        self._check_depth(word)
         before.endings.append([])
         self._bars.undo_repeat()
-        opened = _Open(before.endings[0], word, before, self._bars.place, endings=True)
-        self._stack.append(opened)
+        self._open(_Open(before.endings[0], word, before, self._bars.place, endings=True))
 
     def bar_line(self, word: Word) -> None:
         """A bar line, or the end of one ending where endings are open."""
-        opened = self._stack[-1] if self._stack else None
-        if opened is None or not opened.endings:
+        opened = self._stack[-1]
+        if not opened.endings:
             self._bars.line(word)
             return
         if len(opened.repeat.endings) == MOST_TIMES:
@@ -180,18 +173,14 @@ class RepeatStack:
     def begin_by_sign(self, word: Word) -> None:
         """A bar line with points to its right, ``|:``; it ends one that has no end."""
         self._forget_sign()
-        self._check_depth(word)
-        repeat = Repeat(2)
-        self.add(repeat)
-        self._stack.append(_Open(repeat.body, word, repeat, self._bars.place, signs=True))
+        self.open_repeat("2", word, signs=True)
 
     def end_by_sign(self) -> None:
         """A bar line with points to its left, ``:|``: from its sign, or from the repeat before."""
-        opened = self._stack[-1] if self._stack else None
-        if opened is not None and opened.signs:
+        if self._stack[-1].signs:
             self._stack.pop()
             return
-        elements = self._elements()
+        elements = self._stack[-1].elements
         repeats = [at for at, each in enumerate(elements) if isinstance(each, Repeat)]
         begin = repeats[-1] + 1 if repeats else 0
         while begin < len(elements) and isinstance(elements[begin], (MetreMark, Meaning)):
@@ -200,13 +189,13 @@ class RepeatStack:
 
     def _forget_sign(self) -> None:
         """Play once what a sign began and none ended."""
-        if self._stack and self._stack[-1].signs:
+        if self._stack[-1].signs:
             self._stack.pop().repeat.times = 1
 
     def close(self, word: Word) -> None:
         """A repeat or its endings end. Raises ScoreError where none is open."""
         self._forget_sign()
-        if not self._stack:
+        if len(self._stack) == 1:
             raise failure(word, "} without a { before it")
         closed = self._stack.pop()
         if not closed.endings:
@@ -215,9 +204,9 @@ class RepeatStack:
     def all_closed(self) -> list[object]:
         """Return all elements. Raises ScoreError where a repeat has no end."""
         self._forget_sign()
-        if self._stack:
+        if len(self._stack) > 1:
             raise failure(self._stack[-1].word, "has no } that ends it")
-        return self._all
+        return self._stack[0].elements
 
 
 def unfolded(written: Sequence[object]) -> tuple[list[object], list[str]]:
@@ -241,17 +230,11 @@ def unfolded(written: Sequence[object]) -> tuple[list[object], list[str]]:
         if not signs:
             warnings.append("a DS without a Segno: played from the beginning")
         start = signs[-1] if signs else 0
-    played = once[:back] + _to_the_end(again, start, turn, once[back + 1 :])
-    _check(played)
+    # To Fine and on with what was not played yet, or by the coda, or to the end.
+    ends = (at for at in range(start, len(again)) if again[at] in ENDS[: 1 + (at < turn)])
+    played = once[:back] + again[start : next(ends, turn)] + once[back + 1 :]
+    _check(len(played))
     return _without_jumps(played), warnings
-
-
-def _to_the_end(again: list[object], start: int, turn: int, rest: list[object]) -> list[object]:
-    """From a place to Fine and on with what was not played yet, or by the coda, or to the end."""
-    for at in range(start, len(again)):
-        if again[at] == FINE or (again[at] == TO_CODA and at < turn):
-            return again[start:at] + rest
-    return again[start:turn] + rest
 
 
 def _without_jumps(elements: list[object]) -> list[object]:
@@ -271,20 +254,15 @@ def _flat(written: Sequence[object], *, repeated: bool) -> list[object]:
             played += body + (endings[-1] if endings else [])
             continue
         length = len(body) + max(map(len, endings), default=0)
-        if length * times > 2 * MOST_UNFOLDED:
-            raise _too_long()
+        _check(length * times / 2)
         for time in range(times):
             played += body
             if endings:  # with fewer endings than times, the first one comes more often
                 played += endings[max(0, time - (times - len(endings)))]
-        _check(played)
+        _check(len(played))
     return played
 
 
-def _check(played: list[object]) -> None:
-    if len(played) > MOST_UNFOLDED:
-        raise _too_long()
-
-
-def _too_long() -> ScoreError:
-    return ScoreError(f"with its repeats, has more than {MOST_UNFOLDED} notes")
+def _check(notes: float) -> None:
+    if notes > MOST_UNFOLDED:
+        raise ScoreError(f"with its repeats, has more than {MOST_UNFOLDED} notes")

@@ -222,17 +222,23 @@ class _PartWriter:
         while self._turns and self._turns[-1][0] < piece.end:
             _, is_end, span = self._turns.pop()
             kind = LINES[span.name]
-            open_ = self._lines.setdefault(kind, [None] * MOST_LINES)
-            sought = span if is_end else None
-            at = next((at for at, each in enumerate(open_) if each is sought), None)
-            if at is None:
+            number = self._line(kind, span, is_end=is_end)
+            if number is None:
                 self._lost[span.name] += not is_end
                 continue
-            open_[at] = None if is_end else span
-            words = {"type": "stop" if is_end else "start", "number": str(at + 1)}
             is_wavy = kind == "wavy-line"
             parent = SubElement(notations, "ornaments") if is_wavy else notations
-            SubElement(parent, kind, words)
+            SubElement(parent, kind, {"type": "stop" if is_end else "start", "number": number})
+
+    def _line(self, kind: str, span: Span, *, is_end: bool) -> str | None:
+        """Begin or end a line; return the number that it has among those open, if there is room."""
+        open_ = self._lines.setdefault(kind, [None] * MOST_LINES)
+        sought = span if is_end else None
+        at = next((at for at, each in enumerate(open_) if each is sought), None)
+        if at is None:
+            return None
+        open_[at] = None if is_end else span
+        return str(at + 1)
 
     def _grace(self, measure: Element, grace: Grace, *, is_after: bool) -> None:
         element = SubElement(measure, "note")
@@ -300,7 +306,9 @@ class _PartWriter:
             SubElement(metronome, "per-minute").text = f"{what.quarters_per_minute:.4g}"
             sound = {"tempo": repr(what.quarters_per_minute)}
         elif isinstance(what, Span) and what.name in WEDGES:
-            self._wedge(kind, what, is_end=each.is_end)
+            number = self._line("wedge", what, is_end=each.is_end) or "1"
+            form = "stop" if each.is_end else what.name
+            SubElement(kind, "wedge", {"type": form, "number": number})
         elif isinstance(what, Span):
             SubElement(kind, "words").text = WRITTEN_CHANGES[what.name]
         elif what.name == "velocity":
@@ -315,11 +323,3 @@ class _PartWriter:
             SubElement(element, "offset", sound="yes").text = str(offset)
         if sound:
             SubElement(element, "sound", sound)
-
-    def _wedge(self, kind: Element, span: Span, *, is_end: bool) -> None:
-        open_ = self._lines.setdefault("wedge", [None] * MOST_LINES)
-        sought = span if is_end else None
-        at = next((at for at, each in enumerate(open_) if each is sought), 0)
-        open_[at] = None if is_end else span
-        words = {"type": "stop" if is_end else span.name, "number": str(at + 1)}
-        SubElement(kind, "wedge", words)

@@ -15,14 +15,10 @@ Complexes = np.ndarray[Any, np.dtype[np.complex128]]
 KINDS = {"mobility": 0, "receptance": 1, "accelerance": -1}
 RADIATION = "radiation"
 OTHER_NAMES = {
-    "admittance": "mobility",
-    "compliance": "receptance",
-    "inertance": "accelerance",
-    "acceleration": "accelerance",
-    "velocity": "mobility",
-    "displacement": "receptance",
+    "admittance": "mobility", "velocity": "mobility", "compliance": "receptance",
+    "displacement": "receptance", "inertance": "accelerance", "acceleration": "accelerance",
     "pressure": RADIATION,
-}
+}  # fmt: skip
 GROUP = 1.0 / 250.0  # of the frequency: lines that are taken as one
 AROUND = 25  # lines to each side, over which scatter is measured
 

@@ -61,16 +61,9 @@ NOTES = {
     "tail": (0.3, 0.0, 10.0),  # s
 }
 SIGNALS = (
-    "bridge_force",
-    "bridge_force_1",
-    "bridge_force_2",
-    "bridge_velocity",
-    "pressure",
-    "friction_force",
-    "relative_velocity",
-    "finger_displacement",
-    "contact_force",
-)
+    "bridge_force", "bridge_force_1", "bridge_force_2", "bridge_velocity", "pressure",
+    "friction_force", "relative_velocity", "finger_displacement", "contact_force",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)

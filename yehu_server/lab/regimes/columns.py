@@ -19,15 +19,9 @@ from yehu_server.compile.memory import with_attributes
 (UNBOWED, SILENT, HELMHOLTZ, MULTIPLE_SLIP, OCTAVE, ANOMALOUS_LOW, RAUCOUS, APERIODIC) = range(8)
 
 REGIMES = (
-    "unbowed",
-    "silent",
-    "helmholtz",
-    "multiple slip",
-    "octave",
-    "anomalous low",
-    "raucous",
+    "unbowed", "silent", "helmholtz", "multiple slip", "octave", "anomalous low", "raucous",
     "aperiodic",
-)
+)  # fmt: skip
 
 FINDING = np.dtype(
     [

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import groupby, pairwise
 from pathlib import Path
+
+import numpy as np
 
 from yehu_server.core.player.rows import VELOCITY
 from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, STOP
@@ -126,41 +128,30 @@ def written_of_capture(
     players = len(capture.beginning.players)
     for player in range(players):
         own = capture.wishes[capture.players == player]
-        heard = sorted(_of_wishes(own, capture.rate, capture.frames), key=lambda each: each.begin)
+        until_end = [*own.tolist(), (capture.frames, STOP, 0, 0.0, 0.0)]
+        heard = _of_wishes(until_end, capture.rate)
         voices.append((f"player {player + 1}" if players > 1 else "", heard))
-        others = [int(each["kind"]) for each in own]
-        lost["moves of bow and fingers"] += sum(
-            kind not in (BEGIN, END, EXPRESS, STOP) for kind in others
-        )
+        notes = np.isin(own["kind"], (BEGIN, END, EXPRESS, STOP))
+        lost["moves of bow and fingers"] += int(np.sum(~notes))
     written, more = written_of_seconds(voices, tempo)
     return written, {**+lost, **more}
 
 
-def _of_wishes(wishes: Iterable[object], rate: float, frames: int) -> Iterator[Heard]:
+def _of_wishes(wishes: Sequence[tuple[int, int, int, float, float]], rate: float) -> list[Heard]:
+    heard: list[Heard] = []
     held: dict[tuple[int, float], tuple[float, float, int]] = {}
     velocity = 0
-
-    def ended(key: tuple[int, float], now: float) -> Iterator[Heard]:
-        begin, pitch, loud = held.pop(key)
-        if now > begin:
-            yield Heard(begin, now, pitch, loud)
-
-    for wish in wishes:
-        frame, kind, index, value, other = wish.item()  # type: ignore[attr-defined]
+    for frame, kind, index, value, other in wishes:
         now, key = frame / rate, (index, value)
         if kind == EXPRESS and index == VELOCITY:
             velocity = round(127.0 * value)
-        elif kind == BEGIN:
-            if key in held:
-                yield from ended(key, now)
+        for ended in list(held) if kind == STOP else [key] if kind in (BEGIN, END) else []:
+            begin, pitch, loud = held.pop(ended, (now, 0.0, 0))
+            if now > begin:
+                heard.append(Heard(begin, now, pitch, loud))
+        if kind == BEGIN:
             held[key] = now, other, velocity
-        elif kind == END and key in held:
-            yield from ended(key, now)
-        elif kind == STOP:
-            for each in list(held):
-                yield from ended(each, now)
-    for each in list(held):
-        yield from ended(each, frames / rate)
+    return sorted(heard, key=lambda each: each.begin)
 
 
 def written_of_seconds(

@@ -1,8 +1,7 @@
 """Whole strokes of the bow, each from rest to its finding, in one compiled call without the GIL.
 
 A stroke moves controls along curves that all strokes of a `ControlCurves` share: each stroke scales
-a
-curve's values, and moves and stretches its time. So many strokes are a few numbers each.
+a curve's values, and moves and stretches its time. So many strokes are a few numbers each.
 """
 
 from __future__ import annotations

@@ -79,9 +79,6 @@ class PartParser:
             self._as_graces,
             self._as_form,
             lambda word: self.scale.read_key(word.text),
-            self._as_tempo,
-            self._as_metre,
-            self._as_rest_of_bars,
             self._as_attached,
         )
 
@@ -243,22 +240,15 @@ class PartParser:
 
     # ------------------------------------------------------------ tempo, metre
 
-    def _as_tempo(self, word: Word) -> bool:
-        found = _TEMPO.fullmatch(word.text)
-        if found is None:
-            return False
+    def _tempo(self, found: re.Match[str], word: Word) -> None:
         unit = Fraction(4, int(found[1] or 4)) * (2 - Fraction(1, 2 ** len(found[2] or "")))
         tempo = float(unit) * int(found[3])
         if not LOWEST_TEMPO <= tempo <= HIGHEST_TEMPO:
             lowest, highest = f"{LOWEST_TEMPO:g}", f"{HIGHEST_TEMPO:g}"
             raise failure(word, f"a tempo of {tempo:g} is not within {lowest} to {highest}")
         self._braces.add(Meaning("tempo", value=tempo))
-        return True
 
-    def _as_metre(self, word: Word) -> bool:
-        found = _METRE.fullmatch(word.text)
-        if found is None:
-            return False
+    def _metre(self, found: re.Match[str], word: Word) -> None:
         bar = first = Fraction(4 * int(found[1]), int(found[2]))
         if found[3]:
             first = Fraction(4, int(found[3])) * (Fraction(3, 2) if found[4] else 1)
@@ -269,16 +259,11 @@ class PartParser:
         if not self._count:
             self.metre = mark
         self._bars.change(bar, first)
-        return True
 
-    def _as_rest_of_bars(self, word: Word) -> bool:
-        found = _BARS_REST.fullmatch(word.text)
-        if found is None:
-            return False
+    def _rest_of_bars(self, found: re.Match[str], word: Word) -> None:
         if len(found[1]) > 4 or int(found[1]) > MOST_BARS_REST:
             raise failure(word, f"a rest of more than {MOST_BARS_REST} bars")
         self._add(Sounding(Kind.REST, int(found[1]) * self._bars.length), word)
-        return True
 
     # ------------------------------------------------------------ form
 
@@ -298,6 +283,12 @@ class PartParser:
             self._begin_tuplet(int(found[1]), word)
         elif found := _REPEAT.fullmatch(text):
             self._braces.open_repeat(found[1] or "2", word)
+        elif found := _TEMPO.fullmatch(text):
+            self._tempo(found, word)
+        elif found := _METRE.fullmatch(text):
+            self._metre(found, word)
+        elif found := _BARS_REST.fullmatch(text):
+            self._rest_of_bars(found, word)
         else:
             return False
         return True

@@ -39,6 +39,7 @@ BACK, FLOOR_DB = 4, -70.0
 _WINDOW = np.hanning(SHORT + 2)[1:-1]
 _SCALE = 2.0 / (SHORT * np.square(_WINDOW).sum())
 _A_WEIGHTS = _SCALE * a_weighting(np.fft.rfftfreq(SHORT, 1.0 / RATE)) ** 2
+REACH = 40  # lags to either side, the most that is searched
 
 
 def _band_weights() -> Array:
@@ -137,9 +138,6 @@ def refined(alike: Array, row: Array, wanted_hz: Array) -> tuple[Array, Array]:
     periods = np.maximum(np.floor(most / near), 1.0)
     lag, _ = _peak(alike, row, periods * near, np.clip(0.02 * periods * near, 2.0, 0.3 * near))
     return 2.0 * RATE * periods / lag, like
-
-
-REACH = 40  # lags to either side, the most that is searched
 
 
 def _peak(alike: Array, row: Array, lag: Array, reach: Array) -> tuple[Array, Array]:

@@ -49,6 +49,10 @@ QUIET = 2.0  # cost of a pitch in a frame that is quieter than the gate
 GATE_DB, LOUD_SHARE = 45.0, 0.95  # below the level that this part of the frames does not reach
 LEAST_DB = -85.0
 NOT_VOICED = -1
+Progress = Callable[[float, float], None]
+# Of the loud frames, so many must have a pitch, and be so like themselves a period before.
+LEAST_VOICED, LEAST_LIKENESS, DOUBTFUL = 0.08, 0.55, 0.8
+LOUD_DB = 25.0  # below the loudest
 
 
 def gate_of(level_db: Array) -> float:
@@ -87,13 +91,6 @@ def decoded(frames: Frames) -> Array:
         path[at] = NOT_VOICED if state == CANDIDATES else state
         state = int(came[at, state])
     return path
-
-
-Progress = Callable[[float, float], None]
-
-# Of the loud frames, so many must have a pitch, and be so like themselves a period before.
-LEAST_VOICED, LEAST_LIKENESS, DOUBTFUL = 0.08, 0.55, 0.8
-LOUD_DB = 25.0  # below the loudest
 
 
 @dataclass(frozen=True)

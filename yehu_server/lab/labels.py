@@ -13,6 +13,9 @@ import numpy as np
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.scores.gesture import CONTROLS
 
+ACCELERATION = "bow_acceleration"
+OF_TIME, OF_FINGER = ("time",), ("time", "finger")
+
 
 class Label(NamedTuple):
     """The unit of a quantity, as UDUNITS writes it, and what it is."""
@@ -25,9 +28,6 @@ class Label(NamedTuple):
         """The attributes of a variable, by the names of the CF conventions."""
         return {"units": self.unit, "long_name": self.what}
 
-
-ACCELERATION = "bow_acceleration"
-OF_TIME, OF_FINGER = ("time",), ("time", "finger")
 
 # fmt: off
 SIGNALS = {

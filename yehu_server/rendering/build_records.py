@@ -29,6 +29,12 @@ from yehu_server.util.files import (
 
 NAME = "manifest.jsonl"
 MOST_BYTES = 2**30
+HIDDEN = ".yehu-server"
+MOST_RECORD_BYTES = 16 * 2**20
+LONGEST_NAME = 255  # bytes
+CHUNK = 1 << 20
+Record = dict[str, Any]
+LOCK = "lock"
 
 
 def checked_line(line: Any, **wanted: object) -> dict[str, Any]:
@@ -64,14 +70,6 @@ def check_manifest(folder: Path) -> None:
     except (OSError, ValueError, RecursionError, TypeError):
         pass
     raise OutputError(f"{path}: is no manifest of yehu-server; move it away")
-
-
-HIDDEN = ".yehu-server"
-MOST_RECORD_BYTES = 16 * 2**20
-LONGEST_NAME = 255  # bytes
-CHUNK = 1 << 20
-
-Record = dict[str, Any]
 
 
 def hash_of(path: Path) -> str:
@@ -184,9 +182,6 @@ def clear_work(folders: Iterable[Path]) -> None:
                 if file.suffix != ".json" and file.name != LOCK:
                     with contextlib.suppress(OSError):
                         file.unlink()
-
-
-LOCK = "lock"
 
 
 @contextlib.contextmanager

@@ -28,6 +28,11 @@ from yehu_server.util.files import read_text, why
 
 PORT = 8786  # Dask's own choice
 _ADDRESS = re.compile(r"(?:(tcp|tls|ucx|ws|wss)://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+)(?::(\d+))?/?")
+CONNECT_S = 10.0
+LOOK_EVERY_S = 2.0  # at how many workers there are
+JOBS_PER_THREAD = 4  # in flight, so that no worker waits for the next
+FEWEST_JOBS = 16
+BATCHES = 4  # in which they are sent off
 
 
 def scheduler_address(text: str) -> str:
@@ -56,13 +61,6 @@ def _in_file(path: Path) -> str:
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise YehuError(f"{path}: is not the file of a Dask scheduler") from error
     return scheduler_address(address.removesuffix(".json"))
-
-
-CONNECT_S = 10.0
-LOOK_EVERY_S = 2.0  # at how many workers there are
-JOBS_PER_THREAD = 4  # in flight, so that no worker waits for the next
-FEWEST_JOBS = 16
-BATCHES = 4  # in which they are sent off
 
 
 class Cluster:

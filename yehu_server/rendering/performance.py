@@ -22,6 +22,11 @@ from yehu_server.rendering.options import Options, Part
 from yehu_server.scores.score import Score, ScoreEvent, Setting, notes_of
 
 END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
+Samples = np.ndarray[Any, np.dtype[np.float32]]
+QUIET = 1e-4  # 80 dB below full scale
+QUIET_S = 0.2  # the tail ends after this time of quiet
+LONGEST_TAIL_S = 5.0
+LEAST_AHEAD = 2048  # frames of a block for which another thread costs less than it saves
 
 
 class PartPlayer:
@@ -76,14 +81,6 @@ class PartPlayer:
             default = find(setting.address).default
             value = self._sound.get(setting.address, default)
         self.midi.write(setting.address, value, frame=frame)
-
-
-Samples = np.ndarray[Any, np.dtype[np.float32]]
-
-QUIET = 1e-4  # 80 dB below full scale
-QUIET_S = 0.2  # the tail ends after this time of quiet
-LONGEST_TAIL_S = 5.0
-LEAST_AHEAD = 2048  # frames of a block for which another thread costs less than it saves
 
 
 class Performance:

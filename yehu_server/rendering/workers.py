@@ -24,6 +24,9 @@ from yehu_server.util.files import why
 
 ProgressCallback = Callable[[float, float], None]  # what is done, and of what
 Perform = Callable[[Any, ProgressCallback], Any]
+MOST_TRIES = 2  # of a job whose process dies
+GOODBYE_S = 10.0
+TOLD_EVERY_S = 0.2
 
 
 @dataclass(frozen=True)
@@ -41,11 +44,6 @@ class Event:
     def is_end(self) -> bool:
         """Whether the job is over."""
         return self.share >= 1.0
-
-
-MOST_TRIES = 2  # of a job whose process dies
-GOODBYE_S = 10.0
-TOLD_EVERY_S = 0.2
 
 
 class _Worker:

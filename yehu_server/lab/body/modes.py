@@ -17,6 +17,9 @@ import numpy as np
 
 from yehu_server.lab.body.curve import Complexes, Floats
 
+RIDGE = 1e-13  # of the diagonal: keeps the factor of two modes at one place finite
+LEAST_SHARE = 1e-9  # of the largest amount: less is none
+
 
 @dataclass(frozen=True)
 class Modes:
@@ -47,10 +50,6 @@ def mode_columns(frequency_hz: Floats, modes_hz: Floats, damping: Floats) -> Com
     omega = 2.0 * np.pi * frequency_hz[:, np.newaxis]
     omega_m = 2.0 * np.pi * modes_hz
     return np.asarray(1j * omega / (omega_m**2 - omega**2 + 2j * damping * omega_m * omega))
-
-
-RIDGE = 1e-13  # of the diagonal: keeps the factor of two modes at one place finite
-LEAST_SHARE = 1e-9  # of the largest amount: less is none
 
 
 @dataclass(frozen=True)

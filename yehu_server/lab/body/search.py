@@ -21,6 +21,14 @@ MOST_LINES = 4000  # of the even grid that the method needs
 LEAST_DAMPING, MOST_DAMPING = 5e-4, 0.3  # damping ratios
 BESIDE = 1.05  # how far outside the band a pole may lie
 SAME_HZ, SAME_DAMPING = 0.002, 0.15  # relative: poles of two orders that are one candidate
+HIGHEST_HZ = 9500.0  # the model's modes lie below 0.45 of the lowest sample rate, 22.05 kHz
+BELOW, ABOVE = 0.1, 3.0  # of the band's ends: how far outside modes may stand for those beyond
+OUTSIDE = (0.1, 0.3, 0.7), (1.3, 2.0, 3.0)  # of the ends: where such modes are tried first
+LATTICE = (0.002, 0.007, 0.025, 0.08)  # damping ratios
+TRIED, APART = 3, 0.05  # candidates that are refined before one is chosen, and their least ratio
+ROUGH, FINE = (8, 1e-2), (100, 1e-7)  # most steps of a refinement, and the least gain of one
+NEGLIGIBLE = 0.02  # of a weighted error of one, squared: what a further mode need not fit
+PATIENCE = 3  # modes that may be tried in vain before the search ends
 
 
 def starting_poles(frequency_hz: Floats, mobility: Complexes) -> tuple[Floats, Floats]:
@@ -60,16 +68,6 @@ def _once(frequency_hz: Floats, damping: Floats) -> tuple[Floats, Floats]:
             kept.append((float(hz), float(ratio)))
     table = np.array(kept).reshape(-1, 2)
     return table[:, 0], table[:, 1]
-
-
-HIGHEST_HZ = 9500.0  # the model's modes lie below 0.45 of the lowest sample rate, 22.05 kHz
-BELOW, ABOVE = 0.1, 3.0  # of the band's ends: how far outside modes may stand for those beyond
-OUTSIDE = (0.1, 0.3, 0.7), (1.3, 2.0, 3.0)  # of the ends: where such modes are tried first
-LATTICE = (0.002, 0.007, 0.025, 0.08)  # damping ratios
-TRIED, APART = 3, 0.05  # candidates that are refined before one is chosen, and their least ratio
-ROUGH, FINE = (8, 1e-2), (100, 1e-7)  # most steps of a refinement, and the least gain of one
-NEGLIGIBLE = 0.02  # of a weighted error of one, squared: what a further mode need not fit
-PATIENCE = 3  # modes that may be tried in vain before the search ends
 
 
 class Search:

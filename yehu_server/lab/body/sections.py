@@ -20,6 +20,14 @@ from yehu_server.errors import MeasurementError
 from yehu_server.lab.body.curve import Complexes, Curve, Floats, as_db, interpolated
 
 NARROWEST_HZ, LOWEST_HZ = 2.0, 20.0  # half a section's bandwidth, and its frequency, at least
+ROUNDS, FEW_ROUNDS = 20, 4
+EVENING = 8  # rounds in which weight goes to where the error is large
+ENOUGH, PATIENCE = 0.99, 3  # an error as much smaller is progress; rounds without that
+LATER, STEP = 4, 0.4  # onsets that are tried after the first; periods of the highest frequency
+START_DAMPING = 0.02
+FLOOR, NOISE = 0.02, 4.0  # errors that do not matter: relative, and in deviations
+OUTSIDE, OUTSIDE_LINES = 0.15, 60  # weight of silence outside the band, and at how many places
+MOST_DELAY_S = 0.02  # of sound on its way to the microphone: 7 m
 
 
 @dataclass(frozen=True)
@@ -110,16 +118,6 @@ def _least_squares(
     size = np.maximum(np.linalg.norm(real, axis=0), 1e-300)
     solution, *_ = np.linalg.lstsq(real / size, right, rcond=1e-13)
     return np.asarray(solution / size)
-
-
-ROUNDS, FEW_ROUNDS = 20, 4
-EVENING = 8  # rounds in which weight goes to where the error is large
-ENOUGH, PATIENCE = 0.99, 3  # an error as much smaller is progress; rounds without that
-LATER, STEP = 4, 0.4  # onsets that are tried after the first; periods of the highest frequency
-START_DAMPING = 0.02
-FLOOR, NOISE = 0.02, 4.0  # errors that do not matter: relative, and in deviations
-OUTSIDE, OUTSIDE_LINES = 0.15, 60  # weight of silence outside the band, and at how many places
-MOST_DELAY_S = 0.02  # of sound on its way to the microphone: 7 m
 
 
 @dataclass(frozen=True)

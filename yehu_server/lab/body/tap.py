@@ -22,6 +22,11 @@ BOUNCE = 0.1  # of the peak: a force after it has left is another hit,
 OVER_NOISE = 8.0  # where it stands out of the noise by so many deviations
 FLAT, EQUAL = 3, 1e-5  # samples of equal height that a clipped peak has, and how equal
 SHORTEST_S = 0.05  # after the hit: less tells nothing of a body
+LONGEST_FILE_S = 600.0
+MOST_SAMPLES = 2**24  # of all channels, in a file: three minutes of two channels at 48 kHz
+LOWEST_RATE, HIGHEST_RATE = 8000, 400_000
+SOUND_ENDINGS = (".wav", ".wave", ".flac", ".aif", ".aiff")
+SUBTYPE = "PCM_24"
 
 
 @dataclass(frozen=True)
@@ -126,12 +131,6 @@ def _bounced(force: Floats) -> bool:
     return bool(others.max(initial=0.0) > max(BOUNCE * size.max(), OVER_NOISE * noise))
 
 
-LONGEST_FILE_S = 600.0
-MOST_SAMPLES = 2**24  # of all channels, in a file: three minutes of two channels at 48 kHz
-LOWEST_RATE, HIGHEST_RATE = 8000, 400_000
-SOUND_ENDINGS = (".wav", ".wave", ".flac", ".aif", ".aiff")
-
-
 def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
     """Read the taps of a sound file.
 
@@ -163,9 +162,6 @@ def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
     except soundfile.LibsndfileError as error:
         raise MeasurementError(f"{path}: not a sound file ({error.error_string})") from error
     return cut(float(rate), by_quantity(channels, samples), path.name)
-
-
-SUBTYPE = "PCM_24"
 
 
 def write_taps(

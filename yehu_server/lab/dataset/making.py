@@ -21,6 +21,7 @@ from yehu_server.util.files import make_folder, replacing
 
 WIDTH = 8  # digits of a number in a name
 Line = dict[str, Any]
+TOGETHER = 16  # sounds that are made, and kept in the records, as one
 
 
 def names_of(description: Description, number: int) -> tuple[str, str]:
@@ -61,9 +62,6 @@ def _arrays(description: Description, sound: Sound) -> dict[str, Any]:
         f"signal_{name}": np.asarray(sound.arrays[name], np.float32) for name in description.signals
     }
     return kept | dict(sound.found) | {"regime_hop_s": np.array(HOP_S)}
-
-
-TOGETHER = 16  # sounds that are made, and kept in the records, as one
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,10 @@ from yehu_server.scores.gesture import Gesture
 
 OPEN_BELOW = 0.01  # semitones: no finger
 SIGN = {1: 1.0, 2: -1.0}  # of the bow's force, by the string
+Array = Any
+LONGEST_S = 600.0
+OF_NOTES = ("pitch", "velocity", "length", "gap")  # drawn for each
+SHORTEST_S = 0.02  # from one beginning to the next
 
 
 def stroke(description: Description, number: int) -> Sound:
@@ -79,13 +83,6 @@ def _begun(ends: Any, attack: float, duration: float) -> tuple[tuple[float, floa
     if attack >= duration:
         return ((0.0, 0.0), (attack, ends[0]))
     return ((0.0, 0.0), (attack, ends[0]), (duration, ends[1]))
-
-
-Array = Any
-
-LONGEST_S = 600.0
-OF_NOTES = ("pitch", "velocity", "length", "gap")  # drawn for each
-SHORTEST_S = 0.02  # from one beginning to the next
 
 
 def melody(description: Description, number: int) -> Sound:

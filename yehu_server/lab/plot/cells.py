@@ -42,6 +42,12 @@ LABELS = {
     "press_force": "finger force, N",
     "finger_position": "finger position, m from the loop",
 }
+Array = Any
+EQUAL = 1.2  # steps or ratios that differ by less are equal
+WIDE = 5.0  # from which ratio uneven values are drawn by logarithms
+NEVER = "0.85"  # the colour of what has no value
+OTHER = "0.7"  # of a regime without a colour
+LIMITS = {"upper": ("k-", "Schelleng's upper limit"), "lower": ("k--", "Schelleng's lower limit")}
 
 
 def axes_of(ax: Any) -> Axes:
@@ -62,15 +68,6 @@ def axes_of(ax: Any) -> Axes:
     if not isinstance(ax, Axes):
         raise ParameterError(f"ax: expected axes of matplotlib, not {type(ax).__name__}")
     return ax
-
-
-Array = Any
-
-EQUAL = 1.2  # steps or ratios that differ by less are equal
-WIDE = 5.0  # from which ratio uneven values are drawn by logarithms
-NEVER = "0.85"  # the colour of what has no value
-OTHER = "0.7"  # of a regime without a colour
-LIMITS = {"upper": ("k-", "Schelleng's upper limit"), "lower": ("k--", "Schelleng's lower limit")}
 
 
 def is_log(values: Array, spread: str = "") -> bool:

@@ -23,6 +23,10 @@ LEVEL, PEAK, HEARD, ASKED = "#1f5fa8", "#9db8d6", "#1f5fa8", "#e08a00"
 MANY = 16  # notes, of which not all names have room
 OVER_SPECTRUM = "#5ad1ff"
 GRID: Any = {"axis": "y", "color": "0.9", "lw": 0.6}
+SIZE = (14.0, 9.0)  # inches
+Draw = Callable[[Any], None]  # into axes
+MARGIN = 1.5  # semitones
+SPAN_DB = 50.0
 
 
 def draw_level(axes: Any, watch: PlotData) -> None:
@@ -87,10 +91,6 @@ def draw_spectrogram(axes: Any, watch: PlotData, *, has_pitch: bool = False) -> 
     axes.figure.colorbar(image, ax=axes, label="dB of a full sine", pad=0.01)
 
 
-SIZE = (14.0, 9.0)  # inches
-Draw = Callable[[Any], None]  # into axes
-
-
 def write_picture(
     watch: PlotData,
     target: Path,
@@ -115,10 +115,6 @@ def write_picture(
         panels[2].set(xlim=(0.0, max(watch.duration_s, 0.01)), xlabel="s")
 
     png.write_picture(target, SIZE, fill, overwrite=overwrite)
-
-
-MARGIN = 1.5  # semitones
-SPAN_DB = 50.0
 
 
 def draw_pitches(axes: Any, heard: Heard, semitones: float, watch: PlotData) -> None:

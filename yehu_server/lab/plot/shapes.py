@@ -16,14 +16,21 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 INNER, OUTER, FINGER, BOW = "#1f5fa8", "0.35", "#c03a2b", "#e08a00"
 LEAST_FORCE = 1e-3  # N; below, bow and fingers are lifted
 MM = 1e3
 USUAL = ("bridge_force", "relative_velocity", "friction_force", "pressure")
 WIDTH, HEIGHT = 9.0, 1.7  # inches, of each signal
+LOSSES = {
+    "loss_friction": ("friction of the hair", "#e08a00"),
+    "loss_strings": ("strings", "#1f5fa8"),
+    "loss_bridge": ("body", "#3f9b57"),
+    "loss_finger": ("finger", "#c03a2b"),
+    "loss_hair": ("hair", "#8a6bb1"),
+}
+LEFT_OUT = ("loss_bow_lift", "loss_contact_reset")  # as a bow or a finger leaves
+STORED = "0.8"
+MJ = 1e3
 
 
 def signals(
@@ -142,18 +149,6 @@ def strings(simulation: Any, time: float, *, ax: Axes | None = None) -> Axes:
     axes.text(0.02, 0.95, f"{times[row]:.4g} s", transform=axes.transAxes, va="top")
     axes.legend(**ABOVE, fontsize="small")
     return axes
-
-
-LOSSES = {
-    "loss_friction": ("friction of the hair", "#e08a00"),
-    "loss_strings": ("strings", "#1f5fa8"),
-    "loss_bridge": ("body", "#3f9b57"),
-    "loss_finger": ("finger", "#c03a2b"),
-    "loss_hair": ("hair", "#8a6bb1"),
-}
-LEFT_OUT = ("loss_bow_lift", "loss_contact_reset")  # as a bow or a finger leaves
-STORED = "0.8"
-MJ = 1e3
 
 
 def energy(simulation: Any, *, ax: Axes | None = None) -> Axes:

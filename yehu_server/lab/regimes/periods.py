@@ -11,6 +11,11 @@ from yehu_server.core.player.ear import SLIPPING, STICKING
 Array = Any
 
 NOWHERE = -1
+LASTING = 10  # slips, one a period, after which Helmholtz motion is said to have begun
+REGULAR = 0.08  # of a period, by which their distances may be off; [Guettler]
+LEAST_SLIP = 0.3  # of the bow's speed; in Helmholtz motion a slip is 1 / beta of it
+LEAST_SPEED = 0.02  # m/s; as the bow sets off the bristles bend, which is no slip
+FADING = 8.0  # periods after which a large slip no longer hides smaller ones
 
 
 @compiled_exactly
@@ -98,13 +103,6 @@ def vertex(alike: Array, lag: int) -> float:
     below, here, above = alike[lag - 1], alike[lag], alike[lag + 1]
     bend = below - 2.0 * here + above
     return lag if bend >= 0.0 else lag + 0.5 * (below - above) / bend
-
-
-LASTING = 10  # slips, one a period, after which Helmholtz motion is said to have begun
-REGULAR = 0.08  # of a period, by which their distances may be off; [Guettler]
-LEAST_SLIP = 0.3  # of the bow's speed; in Helmholtz motion a slip is 1 / beta of it
-LEAST_SPEED = 0.02  # m/s; as the bow sets off the bristles bend, which is no slip
-FADING = 8.0  # periods after which a large slip no longer hides smaller ones
 
 
 @compiled_exactly

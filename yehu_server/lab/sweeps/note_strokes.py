@@ -31,6 +31,22 @@ from yehu_server.util.documents import Fields
 from yehu_server.util.values import brief, number
 
 Array = Any
+# s: finger and hair are on the string before the bow moves.
+FINGER_DOWN, HAIR_ON, HAIR_DOWN, BOW_MOVES = 0.01, 0.01, 0.02, 0.03
+LONGEST = 60.0  # s
+A4 = 440.0
+SLACK = 1.5  # by which a note may be lowered
+UNTOUCHED = 0.012  # m: where a lifted finger waits
+HANDS = control_curves_of(
+    {
+        F_N: [(HAIR_ON, 0.0), (HAIR_DOWN, 1.0)],
+        V_B: [(0.0, 0.0), (1.0, 1.0)],
+        X_B: [(0.0, 1.0)],
+        TEXTURE: [(0.0, 1.0)],
+        FINGER_CONTROLS: [(0.0, 1.0)],
+        FINGER_CONTROLS + 1: [(0.0, 0.0), (FINGER_DOWN, 1.0)],
+    }
+)
 
 
 @dataclass(frozen=True)
@@ -57,22 +73,6 @@ ENTRIES = {
     "noise": Entry(0.0, 0.0, 1.0, ""),
     "seed": Entry(0, 0, 65535, "", whole=True),
 }
-# s: finger and hair are on the string before the bow moves.
-FINGER_DOWN, HAIR_ON, HAIR_DOWN, BOW_MOVES = 0.01, 0.01, 0.02, 0.03
-LONGEST = 60.0  # s
-A4 = 440.0
-SLACK = 1.5  # by which a note may be lowered
-UNTOUCHED = 0.012  # m: where a lifted finger waits
-HANDS = control_curves_of(
-    {
-        F_N: [(HAIR_ON, 0.0), (HAIR_DOWN, 1.0)],
-        V_B: [(0.0, 0.0), (1.0, 1.0)],
-        X_B: [(0.0, 1.0)],
-        TEXTURE: [(0.0, 1.0)],
-        FINGER_CONTROLS: [(0.0, 1.0)],
-        FINGER_CONTROLS + 1: [(0.0, 0.0), (FINGER_DOWN, 1.0)],
-    }
-)
 
 
 @dataclass(frozen=True)

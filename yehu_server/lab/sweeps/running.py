@@ -30,6 +30,9 @@ Array = Any
 Progress = Callable[[float, float], None]
 
 CHUNK = 64  # strokes that are one task
+_study = lru_cache(maxsize=4)(study_from_text)
+MOST_FILES = 10_000
+NAME = re.compile(r"[0-9]+\.npz")
 
 
 def sweep(
@@ -185,17 +188,10 @@ def perform(task: tuple[str, bytes], _tell: Any = None) -> bytes | str:
         return str(error)
 
 
-_study = lru_cache(maxsize=4)(study_from_text)
-
-
 def warm_up() -> None:
     """Compile what strokes need, before there are many."""
     study = study_from_text('{"vary": {"force": [0.5]}, "duration": 0.06}')
     findings_of(study, np.zeros(1, np.int64))
-
-
-MOST_FILES = 10_000
-NAME = re.compile(r"[0-9]+\.npz")
 
 
 def keep_signals(

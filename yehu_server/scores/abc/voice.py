@@ -43,6 +43,11 @@ TOKEN = re.compile(
 |(?P<other>.)""",
     re.VERBOSE,
 )
+KINDS = (
+    "bar", "ending", "text", "sign", "chord", "grace", "note", "rest", "bars", "tuplet", "slur",
+    "tie", "broken", "short", "over", "space", "other",
+)  # fmt: skip
+NOTE_AT = TOKEN.groupindex["note"]  # its own groups follow
 
 
 class VoiceReader:
@@ -329,13 +334,6 @@ class VoiceReader:
         if len(codas) > 1 and not any("tocoda" in bar.lines.jumps for bar in self.bars):
             codas[0].lines.jumps -= {"coda"}
             codas[0].lines.jumps.add("tocoda")
-
-
-KINDS = (
-    "bar", "ending", "text", "sign", "chord", "grace", "note", "rest", "bars", "tuplet", "slur",
-    "tie", "broken", "short", "over", "space", "other",
-)  # fmt: skip
-NOTE_AT = TOKEN.groupindex["note"]  # its own groups follow
 
 
 def _length(text: str) -> Fraction:

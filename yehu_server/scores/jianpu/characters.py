@@ -42,6 +42,7 @@ LIVING_SWINGS = (-0.45, 0.2, -0.3, 0.3)
 # By ear, of the heavy three in that mode, which turns widely: down, and back.
 TURNING_SWINGS = (-0.5, 0.25)
 MOST_POINTS = 64
+_HEAVY = frozenset({SAN, LIU})
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,6 @@ class Mode:
 
 
 USUAL_MODE = Mode()
-_HEAVY = frozenset({SAN, LIU})
 _MODES = {
     **dict.fromkeys(("轻六", "轻三六", "轻三轻六", "qingliu"), USUAL_MODE),
     **dict.fromkeys(("重六", "重三六", "重三重六", "zhongliu"), Mode(_HEAVY)),

@@ -14,6 +14,11 @@ from yehu_server.scores.written.notated import Grace
 from yehu_server.scores.written.words import Meaning
 
 UNFIT = "bar lines do not fit the metre"
+FINE, SEGNO, TO_CODA, DA_CAPO, DAL_SEGNO = JUMPS = ("Fine", "Segno", "ToCoda", "DC", "DS")
+BACK, ENDS = (DA_CAPO, DAL_SEGNO), (FINE, TO_CODA)
+MOST_UNFOLDED = 50_000  # notes, rests and dashes of a part
+MOST_DEPTH = 8  # repeats within repeats
+MOST_TIMES = 100
 
 
 class Bars:
@@ -73,13 +78,6 @@ class Bars:
     def _tell(self, what: str, word: Word) -> None:
         first = next((text for text in self._notices if text.startswith(what)), None)
         self._notices[first or f"{what} (first at line {word.line}, column {word.column})"] += 1
-
-
-FINE, SEGNO, TO_CODA, DA_CAPO, DAL_SEGNO = JUMPS = ("Fine", "Segno", "ToCoda", "DC", "DS")
-BACK, ENDS = (DA_CAPO, DAL_SEGNO), (FINE, TO_CODA)
-MOST_UNFOLDED = 50_000  # notes, rests and dashes of a part
-MOST_DEPTH = 8  # repeats within repeats
-MOST_TIMES = 100
 
 
 @dataclass(slots=True)

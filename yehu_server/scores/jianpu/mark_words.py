@@ -12,6 +12,22 @@ from yehu_server.scores.written.words import Meaning, meaning_of
 # these: a mark; a slur, a tie or a hairpin that begins or ends; a slide to the next note
 # (glissando), or there and back (contour).
 
+# As in -. and ->
+SHORT = {".": "staccato", "!": "staccatissimo", "_": "portato", ">": "accent", "^": "marcato"}
+NAMED = ("harmonic", "up", "down", "bend", "tilde", "staccato", "souyin")
+THERE_AND_BACK = ((0.0, 0.0), (0.4, 0.0), (0.6, -2.0), (0.8, 0.0))  # by ear
+SLURS_AND_TIES = {"(": Meaning("slur"), ")": Meaning("slur end"), "~": Meaning("tie")}
+# Understood, and nothing to hear.
+SILENT = frozenset({
+    "OnePage", "NoBarNums", "NoIndent", "RaggedLast", "SeparateTimesig", "angka", "Indonesian",
+    "WithStaff", "PartMidi", "ChordsRoman", "RepeatAccidentals", "NormalAccidentals",
+    "KeepOctave", "[(", ")]", "\\(", "\\)", "\\break", "\\noBreak", "\\pageBreak",
+})  # fmt: skip
+SILENT_HEADERS = frozenset({
+    "subtitle", "subsubtitle", "composer", "poet", "arranger", "copyright", "opus", "piece",
+    "meter", "tagline", "dedication", "frets", "chords",
+})  # fmt: skip
+
 
 def _marks(names: Mapping[str, str]) -> dict[str, Meaning]:
     return {word: Meaning("mark", name) for word, name in names.items()}
@@ -36,8 +52,6 @@ COMMANDS: Mapping[str, Meaning] = {
         "1": "inner-string", "2": "outer-string",
     }),
 }  # fmt: skip
-# As in -. and ->
-SHORT = {".": "staccato", "!": "staccatissimo", "_": "portato", ">": "accent", "^": "marcato"}
 
 # Of the erhu; with or without Fr= before them.
 FINGERING: Mapping[str, Meaning] = {
@@ -49,8 +63,6 @@ FINGERING: Mapping[str, Meaning] = {
     }),
     "bend": Meaning("contour"),
 }  # fmt: skip
-NAMED = ("harmonic", "up", "down", "bend", "tilde", "staccato", "souyin")
-THERE_AND_BACK = ((0.0, 0.0), (0.4, 0.0), (0.6, -2.0), (0.8, 0.0))  # by ear
 
 # Before the note that they belong to.
 AHEAD: Mapping[str, Meaning] = {
@@ -68,18 +80,6 @@ TEXTS: Mapping[str, Meaning] = {
         "下滑音": "slide-in-down", "揉": "vibrato",
     }),
 }  # fmt: skip
-SLURS_AND_TIES = {"(": Meaning("slur"), ")": Meaning("slur end"), "~": Meaning("tie")}
-
-# Understood, and nothing to hear.
-SILENT = frozenset({
-    "OnePage", "NoBarNums", "NoIndent", "RaggedLast", "SeparateTimesig", "angka", "Indonesian",
-    "WithStaff", "PartMidi", "ChordsRoman", "RepeatAccidentals", "NormalAccidentals",
-    "KeepOctave", "[(", ")]", "\\(", "\\)", "\\break", "\\noBreak", "\\pageBreak",
-})  # fmt: skip
-SILENT_HEADERS = frozenset({
-    "subtitle", "subsubtitle", "composer", "poet", "arranger", "copyright", "opus", "piece",
-    "meter", "tagline", "dedication", "frets", "chords",
-})  # fmt: skip
 
 
 @lru_cache(maxsize=1024)

@@ -46,14 +46,22 @@ SILENT = {
 }  # fmt: skip
 GROUPS = {"articulations", "ornaments", "technical"}
 STRINGS = {1.0: "outer-string", 2.0: "inner-string"}  # counted from the highest
+Count = Callable[[str], None]
+# Elements by marks: the first of those that are read alike, and the group that it is in.
+ELEMENTS = {mark: element for element, mark in reversed([*MARKS.items()])}
+GROUPED = {
+    "accent", "strong-accent", "staccato", "tenuto", "detached-legato", "staccatissimo",
+    "spiccato", "scoop", "plop", "doit", "falloff", "breath-mark", "caesura", "stress", "unstress",
+    "soft-accent",
+}  # fmt: skip
+NOTATIONS = {"fermata", "arpeggiate"}
+ORNAMENT_OF = {mark: (element, way) for element, (mark, way) in reversed([*ORNAMENTS.items()])}
+SIGNS = {alter: name for name, alter in reversed([*ACCIDENTALS.items()])}
 
 
 def plain(text: str | None) -> str:
     """Words of a mark as tables have them."""
     return " ".join((text or "").split()).lower()
-
-
-Count = Callable[[str], None]
 
 
 def number(text: str | None, default: float = 0.0) -> float:
@@ -144,18 +152,6 @@ def _accidental(ornaments: Element, way: int) -> float | None:
         if mark.get("placement", "above") == ("above" if way > 0 else "below"):
             found = ACCIDENTALS.get((mark.text or "").strip())
     return found
-
-
-# Elements by marks: the first of those that are read alike, and the group that it is in.
-ELEMENTS = {mark: element for element, mark in reversed([*MARKS.items()])}
-GROUPED = {
-    "accent", "strong-accent", "staccato", "tenuto", "detached-legato", "staccatissimo",
-    "spiccato", "scoop", "plop", "doit", "falloff", "breath-mark", "caesura", "stress", "unstress",
-    "soft-accent",
-}  # fmt: skip
-NOTATIONS = {"fermata", "arpeggiate"}
-ORNAMENT_OF = {mark: (element, way) for element, (mark, way) in reversed([*ORNAMENTS.items()])}
-SIGNS = {alter: name for name, alter in reversed([*ACCIDENTALS.items()])}
 
 
 class MarkWriter:

@@ -22,6 +22,11 @@ from yehu_server.scores.score import naming, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MOST_BYTES, MOST_PARTS, Written
 
+PROGRAMS = (
+    "mscore", "musescore", "mscore4portable", "mscore3", "musescore3", "MuseScore4", "MuseScore3",
+)  # fmt: skip
+LONGEST_S = 120.0
+
 
 def read_musicxml(path: str | os.PathLike[str]) -> Written:
     """Read a MusicXML file, plain or compressed.
@@ -80,12 +85,6 @@ def _title(root: Element) -> str:
         if title:
             return printable(title)
     return ""
-
-
-PROGRAMS = (
-    "mscore", "musescore", "mscore4portable", "mscore3", "musescore3", "MuseScore4", "MuseScore3",
-)  # fmt: skip
-LONGEST_S = 120.0
 
 
 def read_musescore(path: Path) -> Written:

@@ -40,6 +40,9 @@ from yehu_server.scores.smf.wrapper import unwrapped
 PERCUSSION = 9  # whose notes end by themselves
 # Controllers: all sound off, all notes off, and changes of mode, which end notes too.
 ENDS_ALL = {120, *range(123, 128)}
+MAX_BYTES = 64 * 2**20
+MAX_REST_S = 30  # between the last message and the end of a track
+_Song = tuple[list[Track], int, int]  # what sounds together, number of the first, the division
 
 
 def ended(messages: Sequence[Placed], faults: DamageReport) -> list[Placed]:
@@ -80,10 +83,6 @@ def _held(messages: Sequence[Placed]) -> list[Placed]:
             held[message.channel].clear()
     held.pop(PERCUSSION, None)
     return [placed for notes in held.values() for placed in notes.values()]
-
-
-MAX_BYTES = 64 * 2**20
-MAX_REST_S = 30  # between the last message and the end of a track
 
 
 def read_score(
@@ -130,9 +129,6 @@ def _parse(data: bytes, song: int | None, max_duration_h: float, faults: DamageR
     score = concatenate(scores)
     check_duration(score.duration_s, max_duration_h)
     return score
-
-
-_Song = tuple[list[Track], int, int]  # what sounds together, number of the first, the division
 
 
 def _songs(part: Part, faults: DamageReport) -> list[_Song]:

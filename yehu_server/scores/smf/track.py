@@ -21,6 +21,15 @@ USUAL_FRAME_TICKS = 40  # with 25 frames a second, milliseconds
 TRUE_FRAMES = {29: (30_000, 1001)}  # "29" frames a second are the 29.97 of drop-frame video
 FILM_FRAMES = (24, 25, 29, 30)
 SMPTE = 0x8000
+META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
+TRACK_NAME, END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE = 0x03, 0x2F, 0x51, 0x58
+LONGEST_NAME = 40  # characters
+STATUS = re.compile(rb"[\x80-\xff]")
+SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
+NUMBER_BYTES = 4  # of a variable-length number, as the format has it
+LONGEST_NUMBER_BYTES = 8  # as some writers have it, padded
+LARGEST_NUMBER = 0x0FFF_FFFF
+Placed = tuple[int, mido.Message, int]  # tick, message, byte in the file
 
 
 def checked_division(division: int, at: int, faults: DamageReport) -> int:
@@ -74,19 +83,6 @@ class Clock:
     def beat(self, tick: int) -> float:
         """The time of a tick in quarter notes; NaN where frames are counted."""
         return tick / self._per_beat
-
-
-META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
-TRACK_NAME, END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE = 0x03, 0x2F, 0x51, 0x58
-LONGEST_NAME = 40  # characters
-STATUS = re.compile(rb"[\x80-\xff]")
-SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
-
-NUMBER_BYTES = 4  # of a variable-length number, as the format has it
-LONGEST_NUMBER_BYTES = 8  # as some writers have it, padded
-LARGEST_NUMBER = 0x0FFF_FFFF
-
-Placed = tuple[int, mido.Message, int]  # tick, message, byte in the file
 
 
 @dataclass

@@ -114,6 +114,8 @@ SIGNS: Mapping[str, str] = {
     "caesura": "time stops for a moment before it",
     "breath": "the note before ends a little early",
 }
+DO_BY_FIFTHS = ("Gb", "Db", "Ab", "Eb", "Bb", "F", "C", "G", "D", "A", "E", "B", "F#")
+DO = ("C", "G", "D", "A", "E", "B", "F#", "C#", "Ab", "Eb", "Bb", "F")  # by fifths modulo 12
 
 
 def times(text: str, count: int) -> str:
@@ -241,10 +243,6 @@ class KeySign:
     def do(self) -> str:
         """The name of do in this key, such as F or Bb."""
         return DO[self.fifths % 12] if abs(self.fifths) > 6 else DO_BY_FIFTHS[self.fifths + 6]
-
-
-DO_BY_FIFTHS = ("Gb", "Db", "Ab", "Eb", "Bb", "F", "C", "G", "D", "A", "E", "B", "F#")
-DO = ("C", "G", "D", "A", "E", "B", "F#", "C#", "Ab", "Eb", "Bb", "F")  # by fifths modulo 12
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,14 @@ TRILL_LAST_S = 0.07  # of the plain note that ends it
 MOST_TAPS = 1000
 WHOLE, HALF = 2.0, 1.0  # usual intervals: of trills and mordents above, and below
 WIDEST = 12.0  # semitones, that a hand reaches
+# By ear: a slide takes so long, or so much of its note.
+SLIDE_S, SLIDE_SHARE = 0.13, 0.4
+USUAL_SLIDE = 2.0  # semitones
+STEP_S = 0.01  # between points; the finger takes 8 ms for each
+LAST_S = 0.002
+MOST_POINTS = 3000
+WIDEST_BEND = 24.0  # semitones
+Curve = list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -112,17 +120,6 @@ def _trill(held: Touch, step: float) -> list[Touch]:
         )
         for number in range(count)
     ]
-
-
-# By ear: a slide takes so long, or so much of its note.
-SLIDE_S, SLIDE_SHARE = 0.13, 0.4
-USUAL_SLIDE = 2.0  # semitones
-STEP_S = 0.01  # between points; the finger takes 8 ms for each
-LAST_S = 0.002
-MOST_POINTS = 3000
-WIDEST_BEND = 24.0  # semitones
-
-Curve = list[tuple[float, float]]
 
 
 def curve_of(note: Note, begin_s: float, end_s: float) -> Curve:

@@ -14,6 +14,13 @@ from yehu_server.scores.written.notated import Grace, Mark, Note, OpenSpan, Part
 from yehu_server.scores.written.repeats import BarLines
 
 FINEST = 1 << 24  # the smallest part of a quarter note is this one
+# Where a tempo is from: of several at one beat the highest counts. What a program plays goes over
+# what is printed, and figures over words.
+RANKS = {"words": 0, "figures": 1, "playback": 2}
+SPANS = {"slur": "slur", "glissando": "glissando", "slide": "portamento"}
+MOST_VOICES = 16  # of a part; no music has more
+WEDGES = ("crescendo", "diminuendo")
+LONGEST_HAIRPIN = Fraction(32)  # in words, where no sign ends it
 
 
 @dataclass
@@ -46,11 +53,6 @@ class RawDirection:
     number: str = ""  # by which a wedge's end finds its beginning
 
 
-# Where a tempo is from: of several at one beat the highest counts. What a program plays goes over
-# what is printed, and figures over words.
-RANKS = {"words": 0, "figures": 1, "playback": 2}
-
-
 @dataclass
 class RawBar:
     """A bar as written."""
@@ -62,12 +64,6 @@ class RawBar:
     length: Fraction = Fraction(0)  # as filled
     metre: Fraction | None = None  # quarters in a bar, where a time signature stands
     fifths: int | None = None  # sharps of a key signature that stands here, below 0 flats
-
-
-SPANS = {"slur": "slur", "glissando": "glissando", "slide": "portamento"}
-MOST_VOICES = 16  # of a part; no music has more
-WEDGES = ("crescendo", "diminuendo")
-LONGEST_HAIRPIN = Fraction(32)  # in words, where no sign ends it
 
 
 @dataclass

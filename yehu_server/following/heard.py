@@ -214,7 +214,6 @@ class Listener:
         )
 
     def _measure(self, end: int) -> None:
-        """Measure the frames up to a number."""
         while self._measured < end:
             count = min(end - self._measured, BATCH)
             times = (self._measured + np.arange(count)) * HOP_S

@@ -70,7 +70,6 @@ class Cores:
         return block
 
     def _sound(self, frames: int) -> Array:
-        """Compute frames whose events are taken in."""
         instruments = self._ensemble.instruments
         sounded = np.empty((len(instruments), -(-frames // CHUNK)), SOUNDED)
 

@@ -47,8 +47,6 @@ class _PipedWav(WavStream):
 
 
 class _Raw:
-    """Writes samples alone."""
-
     def __init__(self, file: io.FileIO, subtype: str, channels: int) -> None:
         self.frames = 0
         self._file, self._subtype, self._channels = file, subtype, channels

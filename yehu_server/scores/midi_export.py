@@ -94,7 +94,6 @@ def _title(name: str) -> mido.MetaMessage:
 
 
 def _conductor(written: Written, clock: WrittenClock) -> list[tuple[int, mido.MetaMessage]]:
-    """Title, tempi and time signatures."""
     messages = [(0, _title(written.title))]
     last = None
     for beat, quarter_s in clock.tempi:

@@ -292,13 +292,11 @@ def _loudness(notes: Sequence[Note], loud: Sequence[int]) -> tuple[list[Note], l
 
 
 def _stays_off(loud: Sequence[int], level: int) -> bool:
-    """Whether velocities are all softer, or all louder, than a dynamic."""
     steps = [velocity - level for velocity in loud]
     return min(steps) > STEP or max(steps) < -STEP
 
 
 def _tempi(score: Score) -> tuple[Tempo, ...]:
-    """The tempi of a MIDI file, from the times and beats of its events."""
     found: list[Tempo] = []
     for one, other in pairwise(score.events):
         if other.beat - one.beat > 1e-6 and other.time_s > one.time_s:

@@ -83,7 +83,6 @@ def cut(rate: float, channels: Mapping[str, Floats], name: str) -> list[Tap]:
 
 
 def _hits(force: Floats, rate: float) -> list[int]:
-    """The first sample of each hit."""
     size = np.abs(force)
     peak = size.max(initial=0.0)
     # A hit stands out of the rest, which is noise: by far, since it lasts for a millisecond.

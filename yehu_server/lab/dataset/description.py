@@ -140,7 +140,6 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
 
 
 def _line(value: Any) -> str:
-    """A line of text."""
     if not isinstance(value, str) or len(value) > LONGEST_LINE or not value.isprintable():
         raise ParameterError(f"expected a line of text, got {brief(value)}")
     return value

@@ -72,7 +72,6 @@ def stroke(description: Description, number: int) -> Sound:
 
 
 def _ends(drawn: dict[str, float], name: str) -> tuple[float, float]:
-    """A value at the beginning and at the end."""
     return drawn[name], drawn.get(f"{name}_end", drawn[name])
 
 

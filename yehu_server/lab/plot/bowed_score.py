@@ -115,8 +115,6 @@ def write_bowed_score(
 
 
 class _Page:
-    """Draws bars of a part."""
-
     def __init__(self, written: Written, part: Part, bars: Sequence[PageBar]) -> None:
         self._part, self._bars, self._written = part, bars, written
         self._pieces = layout.pieces_of(part, bars)

@@ -273,7 +273,6 @@ def map_of(sweep: Result, grid: Array, x: str, y: str, place: Mapping[str, int])
 
 
 def _axis_of(sweep: Result, names: tuple[str, ...]) -> str:
-    """Return which of the names the sweep has."""
     for name in names:
         if name in sweep.axes:
             return name

@@ -102,7 +102,6 @@ def read_study(path: Path, vary: Sequence[Axis] = ()) -> Study:
 
 
 def _gesture(name: str, folder: Path) -> Mapping[str, Any]:
-    """The data of the gesture file that a study names."""
     return Document(name, "a gesture file").read(folder / name, MOST_BYTES).json().data
 
 

@@ -74,8 +74,6 @@ def _tunes(text: str) -> tuple[list[str], list[list[str]]]:
 
 
 class _Tune:
-    """Reads the lines of one tune."""
-
     def __init__(self) -> None:
         self._unknown: Counter[str] = Counter()
         self._warnings: Counter[str] = Counter()

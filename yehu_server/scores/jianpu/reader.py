@@ -63,7 +63,6 @@ def parse_jianpu(data: bytes) -> Written:
 
 
 def _movements(text: str) -> list[list[Words]]:
-    """The words of each part of each movement."""
     movements: list[list[Words]] = [[[]]]
     for word in words_of(text):
         if isinstance(word, Word) and word.text in ("NextPart", "NextScore"):

@@ -60,8 +60,6 @@ def jianpu_of(written: Written) -> tuple[str, dict[str, int]]:
 
 
 class _PartWriter:
-    """Writes one part."""
-
     def __init__(
         self,
         written: Written,
@@ -93,7 +91,6 @@ class _PartWriter:
     # -- what stands beside notes ------------------------------------------------------------
 
     def _can_say(self, span: Span, written: Written) -> bool:
-        """Whether a span can be written; counts it otherwise."""
         if span.name in WRITTEN_CHANGES:
             ends = {tempo.beat for tempo in written.tempi}
             ends |= {each.begin for each in self._part.spans if each.name in WRITTEN_CHANGES}
@@ -119,7 +116,6 @@ class _PartWriter:
         return self._begins[at : at + 2] == [slide.begin, slide.end]
 
     def _words_after(self) -> list[tuple[Fraction, int, str]]:
-        """Words with the beats at which they stand, in order."""
         found: list[tuple[Fraction, int, str]] = []
         for span in self._spans:
             if span.name == "slur":

@@ -89,7 +89,6 @@ class BarReader:
         return bar
 
     def _offset(self, direction: Element) -> Fraction:
-        """Where a direction stands."""
         offset = Fraction(int(number(direction.findtext("offset")))) / self._divisions
         return max(self._at + offset, Fraction(0))
 

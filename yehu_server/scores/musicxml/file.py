@@ -108,8 +108,6 @@ def parse(data: bytes) -> ET.Element:
 
 
 class _Builder:
-    """Builds the tree, and counts."""
-
     def __init__(self) -> None:
         self._tree = ET.TreeBuilder()
         self._depth = 0

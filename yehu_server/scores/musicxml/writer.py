@@ -96,8 +96,6 @@ def _signed_lengths(length: Fraction, factor: Fraction) -> list[Fraction]:
 
 
 class _PartWriter:
-    """Writes one part."""
-
     def __init__(
         self,
         written: Written,

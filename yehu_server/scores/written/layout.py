@@ -171,7 +171,6 @@ def _lengths(piece: Piece) -> list[Fraction]:
 
 
 def _fits(length: Fraction, tuplet: int | None) -> bool:
-    """Whether a length can be written in a tuplet."""
     factor = Fraction(TUPLETS.get(tuplet or 1, 1), tuplet or 1)
     return FINEST % (length / factor).denominator == 0
 

@@ -89,8 +89,6 @@ def performed(written: Written, plays: Sequence[int] | None = None) -> Score:
 
 
 class _Performer:
-    """Plays one part."""
-
     def __init__(
         self, part: Part, channel: int, clock: WrittenClock, left: Counter[str], number: int
     ) -> None:

@@ -192,8 +192,6 @@ def _fill_passes(group: list[_Ending]) -> None:
 
 
 class _Player:
-    """Goes from bar to bar."""
-
     def __init__(self, bars: Sequence[BarLines], passages: list[_Passage]) -> None:
         self._bars = bars
         self._passages = passages

@@ -27,8 +27,7 @@ from musicxml_text import (
 
 from yehu_server.errors import ScoreError
 from yehu_server.params.articulations import NUMBER
-from yehu_server.scores.musicxml.file import DEEPEST, MOST_ELEMENTS, MOST_XML_BYTES
-from yehu_server.scores.musicxml.reader import read_musicxml
+from yehu_server.scores.musicxml.reader import DEEPEST, MOST_ELEMENTS, MOST_XML_BYTES, read_musicxml
 from yehu_server.scores.written.notated import MARKS, SPANS, Mark
 from yehu_server.scores.written.words import meaning_of
 

@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.jianpu.writer import jianpu_of
-from yehu_server.scores.musicxml.file import parse
-from yehu_server.scores.musicxml.reader import written_of
+from yehu_server.scores.musicxml.reader import parse, written_of
 from yehu_server.scores.musicxml.writer import musicxml_of
 from yehu_server.scores.reading import read_written
 from yehu_server.scores.score import COMMON_TIME, Metre

@@ -23,7 +23,6 @@ from yehu_server.cli.terminal import (
     warn_of_compiling,
 )
 from yehu_server.errors import one_line
-from yehu_server.rendering.build_records import line_of
 
 if TYPE_CHECKING:
     from yehu_server.rendering.cluster import Cluster

@@ -99,8 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.following.notes import strokes_of
     from yehu_server.following.performance import STYLES as ALL
     from yehu_server.following.performance import Wanted, performed
-    from yehu_server.following.recording import recording_of_file
-    from yehu_server.following.tracker import need_follow
+    from yehu_server.following.recording import need_follow, recording_of_file
 
     start = time.perf_counter()
     need_follow("follow")

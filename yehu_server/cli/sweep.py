@@ -151,8 +151,7 @@ def add_show(command: Parser) -> None:
 def show(arguments: argparse.Namespace) -> int:
     """Draw a result; return the exit code. Raises ParameterError where the call is wrong."""
     from yehu_server.lab.plot.png import check_picture
-    from yehu_server.lab.plot.study import write_picture
-    from yehu_server.lab.plot.study_page import write_page
+    from yehu_server.lab.plot.study import write_page, write_picture
     from yehu_server.lab.sweeps.result import Result
 
     output = arguments.output or arguments.result.with_suffix(".png")

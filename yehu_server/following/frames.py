@@ -2,12 +2,13 @@
 
 The candidates are the tracker's pitch, simple ratios of it, and the first pitch at which the sound
 is much like itself. Each is refined by the normalised square difference [McLeod], at the most
-periods that fit.
+periods that fit. The tracker is [SwiftF0], a small network whose weights come with its package;
+docs/follow.md compares it with others.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from yehu_server.playing.pitch_and_level import a_weighting
 
 Array = Any
 
+PERIOD_S = 0.016  # between two estimates of the tracker
 HOP = 80  # samples from one frame to the next
 HOP_S = HOP / RATE
 # Samples of a frame for high pitches and for low ones; the longest lag is a part of them.
@@ -158,3 +160,70 @@ def _peak(alike: Array, row: Array, lag: Array, reach: Array) -> tuple[Array, Ar
     safe = np.where(is_peak, bend, -1.0)
     vertex = here + np.where(is_peak, 0.5 * (left - right) / safe, 0.0)
     return np.where(is_peak, vertex, lag), middle
+
+
+class Listener:
+    """Listens to a sound that comes in blocks; what it keeps of each frame alone grows."""
+
+    def __init__(self) -> None:
+        from swift_f0 import SwiftF0
+
+        # One thread: more give the same, and a pool that spins takes the cores of the rendering.
+        self._tracker = SwiftF0(threads=1, spin=False).stream()
+        self._tracked = np.zeros((2, 0))  # pitches (Hz) and how sure they are, each PERIOD_S
+        self._sound = np.zeros(HALF, np.float32)  # half a frame before the first
+        self._samples = self._measured = 0
+        self._frames: list[Frames] = []
+
+    @property
+    def time_s(self) -> float:
+        """How much it has heard."""
+        return self._samples / RATE
+
+    def push(self, samples: Array) -> None:
+        """Take the next samples [shape=(samples,)] at RATE."""
+        if len(samples) == 0:
+            return
+        self._samples += len(samples)
+        self._sound = np.concatenate((self._sound, samples))
+        self._take(self._tracker.push(samples, RATE))
+        known = int((self._tracked.shape[1] - 1) * PERIOD_S / HOP_S)
+        self._measure(min(known, (self._samples - HALF) // HOP))
+
+    def finish(self) -> Frames:
+        """Return all frames."""
+        self._take(self._tracker.flush())
+        self._sound = np.concatenate((self._sound, np.zeros(LONG, np.float32)))
+        self._measure(self._samples // HOP)
+        names = [each.name for each in fields(Frames)]
+        return Frames(*(np.concatenate([getattr(each, n) for each in self._frames]) for n in names))
+
+    def _take(self, new: Any) -> None:
+        self._tracked = np.concatenate((self._tracked, (new.pitch_hz, new.confidence)), axis=1)
+
+    def _measure(self, end: int) -> None:
+        while self._measured < end:
+            count = min(end - self._measured, BATCH)
+            times = (self._measured + np.arange(count)) * HOP_S
+            self._frames.append(measured(self._sound, *at_times(self._tracked, times)))
+            self._sound = self._sound[count * HOP :]
+            self._measured += count
+
+
+def at_times(tracked: Array, times_s: Array) -> tuple[Array, Array]:
+    """Pitch (Hz) and certainty [shape=(times,)] at times, interpolated within one note.
+
+    Of the tracker's [shape=(2, estimates)], one each PERIOD_S.
+    """
+    pitch_hz, certainty = tracked
+    place = times_s / PERIOD_S
+    last = len(pitch_hz) - 1
+    below = np.clip(np.floor(place).astype(np.int64), 0, last)
+    above = np.minimum(below + 1, last)
+    part = np.clip(place - below, 0.0, 1.0)
+    low, high = np.log2(pitch_hz[below]), np.log2(pitch_hz[above])
+    is_one = np.abs(high - low) < 1.0 / 12.0
+    nearest = np.where(part < 0.5, low, high)
+    pitch = np.where(is_one, low + part * (high - low), nearest)
+    sure = certainty[below]
+    return 2.0**pitch, sure + part * (certainty[above] - sure)

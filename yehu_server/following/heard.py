@@ -8,7 +8,7 @@ how sure the tracker is of another; a leap costs, so that no octave is left for 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,26 +16,14 @@ import numpy as np
 from yehu_server.errors import ScoreError
 from yehu_server.following.frames import (
     BACK,
-    BATCH,
     CANDIDATES,
     FLOOR_DB,
-    HALF,
-    HOP,
     HOP_S,
-    LONG,
     SILENCE_DB,
     Frames,
-    measured,
+    Listener,
 )
-from yehu_server.following.recording import RATE, Recording, form_of, heard_blocks
-from yehu_server.following.tracker import (
-    PERIOD_S,
-    Estimates,
-    SwiftTracker,
-    Tracker,
-    at_times,
-    need_follow,
-)
+from yehu_server.following.recording import Recording, form_of, heard_blocks, need_follow
 
 Array = Any
 
@@ -121,18 +109,15 @@ class Heard:
         return np.isfinite(self.pitch_hz)
 
 
-def hear(
-    recording: Recording, tracker: Tracker | None = None, progress: Progress | None = None
-) -> Heard:
-    """Listen to a recording.
+def hear(recording: Recording, progress: Progress | None = None) -> Heard:
+    """Listen to a recording; `progress` is called with the seconds heard and those there are.
 
-    The tracker is SwiftF0 by default; `progress` is called with the seconds heard and those there
-    are. Raises ScoreError, one line: where it cannot be read, or no single voice is heard;
+    Raises ScoreError, one line: where it cannot be read, or no single voice is heard;
     ParameterError where the libraries of the extra are missing.
     """
     need_follow()
     form = form_of(recording)
-    listener = Listener(tracker or SwiftTracker())
+    listener = Listener()
     for block in heard_blocks(recording, form):
         listener.push(block)
         if progress is not None:
@@ -171,53 +156,3 @@ def _doubts(name: str, level_db: Array, likeness: Array) -> list[str]:
     if typical < DOUBTFUL:
         return ["several voices or much noise: what is heard is unsure"]
     return []
-
-
-class Listener:
-    """Listens to a sound that comes in blocks; what it keeps of each frame alone grows."""
-
-    def __init__(self, tracker: Tracker) -> None:
-        self._tracker = tracker
-        self._estimates = Estimates(np.zeros(0), np.zeros(0))
-        self._sound = np.zeros(HALF, np.float32)  # half a frame before the first
-        self._samples = self._measured = 0
-        self._frames: list[Frames] = []
-
-    @property
-    def time_s(self) -> float:
-        """How much it has heard."""
-        return self._samples / RATE
-
-    def push(self, samples: Array) -> None:
-        """Take the next samples [shape=(samples,)] at RATE."""
-        if len(samples) == 0:
-            return
-        self._samples += len(samples)
-        self._sound = np.concatenate((self._sound, samples))
-        self._take(self._tracker.push(samples))
-        known = int((len(self._estimates.pitch_hz) - 1) * PERIOD_S / HOP_S)
-        self._measure(min(known, (self._samples - HALF) // HOP))
-
-    def finish(self) -> Frames:
-        """Return all frames."""
-        self._take(self._tracker.finish())
-        self._sound = np.concatenate((self._sound, np.zeros(LONG, np.float32)))
-        self._measure(self._samples // HOP)
-        names = [each.name for each in fields(Frames)]
-        return Frames(*(np.concatenate([getattr(each, n) for each in self._frames]) for n in names))
-
-    def _take(self, new: Estimates) -> None:
-        old = self._estimates
-        self._estimates = Estimates(
-            np.concatenate((old.pitch_hz, new.pitch_hz)),
-            np.concatenate((old.certainty, new.certainty)),
-        )
-
-    def _measure(self, end: int) -> None:
-        while self._measured < end:
-            count = min(end - self._measured, BATCH)
-            times = (self._measured + np.arange(count)) * HOP_S
-            pitch, certainty = at_times(self._estimates, times)
-            self._frames.append(measured(self._sound, pitch, certainty))
-            self._sound = self._sound[count * HOP :]
-            self._measured += count

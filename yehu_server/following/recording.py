@@ -12,6 +12,7 @@ import numpy as np
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import MAX_DURATION_H, check_duration
+from yehu_server.util.extras import need
 from yehu_server.util.files import open_regular, why
 
 Array = Any
@@ -167,3 +168,9 @@ def heard_blocks(recording: Recording, form: Form) -> Iterator[Array]:
     for block in recording.blocks():
         yield resampler.resample_chunk(block @ weights - np.float32(form.offset))
     yield resampler.resample_chunk(np.zeros(0, np.float32), last=True)
+
+
+def need_follow(what: str = "to follow a recording") -> None:
+    """Check that the libraries of the extra are there; raises ParameterError."""
+    need("swift_f0", what, "follow")
+    need("soxr", what, "follow")

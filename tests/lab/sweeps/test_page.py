@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from yehu_server.lab.plot.cells import edges, is_log
-from yehu_server.lab.plot.study_page import facts_of, write_page
+from yehu_server.lab.plot.study import facts_of, write_page
 from yehu_server.lab.plot.sweep_maps import plane_of
 
 CHROMIUM = shutil.which("chromium")

@@ -12,11 +12,10 @@ import numpy as np
 from yehu_server.errors import MeasurementError
 from yehu_server.lab.body import universal
 from yehu_server.lab.body.average import KIND, Averaged, average_taps
-from yehu_server.lab.body.channels import parse_channels
 from yehu_server.lab.body.curve import KINDS, RADIATION, Curve, interpolated, to_mobility
 from yehu_server.lab.body.plausible import check_admittance, check_radiation
 from yehu_server.lab.body.tables import Response, read_table
-from yehu_server.lab.body.tap import SOUND_ENDINGS, Tap, read_recording
+from yehu_server.lab.body.tap import SOUND_ENDINGS, Tap, parse_channels, read_recording
 
 LOWEST_HZ, HIGHEST_HZ = 100.0, 8000.0  # of the band that is used, where nothing else is told
 LEAST_COHERENCE, LEAST_SHARE = 0.8, 0.9

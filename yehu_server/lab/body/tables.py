@@ -15,15 +15,16 @@ from typing import Any
 import numpy as np
 
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body.channels import (
+from yehu_server.lab.body.curve import KINDS, OTHER_NAMES, RADIATION, Curve, Floats
+from yehu_server.lab.body.tap import (
     SKIPPED,
     Channel,
+    Tap,
     by_quantity,
     check_channels,
+    cut,
     parse_heading,
 )
-from yehu_server.lab.body.curve import KINDS, OTHER_NAMES, RADIATION, Curve, Floats
-from yehu_server.lab.body.tap import Tap, cut
 from yehu_server.util.files import MAX_TEXT_BYTES, read_lines, why
 
 LEAST_LINES = 20

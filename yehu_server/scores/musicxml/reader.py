@@ -1,22 +1,31 @@
 """Read MusicXML: `.musicxml`, `.xml` and `.mxl`; and what MuseScore exports of its own files.
 
 docs/scores.md tells what is understood. Each voice becomes a part of its own, with one note at a
-time: the highest of a chord.
+time: the highest of a chord. Entities are refused: none of them belongs into a score, and they can
+make a small file endless. Nothing but the file itself is opened: neither its document type nor what
+an archive names.
 """
 
 from __future__ import annotations
 
+import io
 import os
+import re
 import shutil
 import subprocess
+import sys
 import tempfile
+import zipfile
+import zlib
 from collections import Counter
 from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
 from xml.etree.ElementTree import Element, SubElement
+from xml.parsers import expat
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.bars import BarReader
-from yehu_server.scores.musicxml.file import read_root
 from yehu_server.scores.musicxml.marks import printable
 from yehu_server.scores.score import naming, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
@@ -26,6 +35,21 @@ PROGRAMS = (
     "mscore", "musescore", "mscore4portable", "mscore3", "musescore3", "MuseScore4", "MuseScore3",
 )  # fmt: skip
 LONGEST_S = 120.0
+MOST_XML_BYTES = 32 << 20
+MOST_ELEMENTS = 1_000_000
+DEEPEST = 100
+MOST_ENTRIES = 1000  # of an archive
+MOST_CONTAINER_BYTES = 1 << 16
+ZIP = b"PK\x03\x04"
+CONTAINER = "META-INF/container.xml"
+_SAYS_UTF16 = re.compile(rb"(?:\xef\xbb\xbf)?\s*<\?xml[^>]*encoding=[\"']utf-?16", re.IGNORECASE)
+COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+ENTRY = b"PK\x01\x02"  # before each entry of an archive's directory
+# What zipfile raises for archives that are damaged or made to harm.
+DAMAGED = (
+    zipfile.BadZipFile, zlib.error, EOFError, KeyError, NotImplementedError, OSError, OverflowError,
+    RuntimeError, ValueError,
+)  # fmt: skip
 
 
 def read_musicxml(path: str | os.PathLike[str]) -> Written:
@@ -112,3 +136,107 @@ def read_musescore(path: Path) -> Written:
                 raise ScoreError(f"{program} cannot export it ({why}); export it there") from None
             except ScoreError as error:
                 raise ScoreError(str(error).removeprefix(f"{target}: ")) from None
+
+
+def read_root(path: str | os.PathLike[str]) -> ET.Element:
+    """Read the root element of a file. Raises ScoreError, one line, without the file's name."""
+    data = read_score_bytes(path, MOST_XML_BYTES)
+    return parse(unpacked(data) if data.startswith(ZIP) else data)
+
+
+def unpacked(data: bytes) -> bytes:
+    """Return the score in a compressed file, as its container names it.
+
+    Raises ScoreError where the archive is damaged, too large or holds no score.
+    """
+    if len(data) > MOST_BYTES:
+        raise ScoreError(f"is an archive larger than {MOST_BYTES >> 20} MiB")
+    if data.count(ENTRY) > MOST_ENTRIES:
+        raise ScoreError(f"is an archive of more than {MOST_ENTRIES} files")
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            name = _score_name(archive)
+            return _member(archive, name, MOST_XML_BYTES)
+    except DAMAGED as error:
+        raise ScoreError(f"is a damaged archive ({type(error).__name__})") from None
+
+
+def _score_name(archive: zipfile.ZipFile) -> str:
+    names = archive.namelist()
+    if CONTAINER in names:
+        container = parse(_member(archive, CONTAINER, MOST_CONTAINER_BYTES))
+        for file in container.iter("rootfile"):
+            kind = file.get("media-type", "application/vnd.recordare.musicxml+xml")
+            if "musicxml" in kind and file.get("full-path") in names:
+                return str(file.get("full-path"))
+    for name in names:  # a container that is missing or wrong
+        if name.lower().endswith((".musicxml", ".xml")) and not name.startswith("META-INF/"):
+            return name
+    raise ScoreError("is an archive without a score")
+
+
+def _member(archive: zipfile.ZipFile, name: str, most_bytes: int) -> bytes:
+    info = archive.getinfo(name)
+    if info.compress_type not in COMPRESSIONS:
+        raise ScoreError("is an archive compressed in a way that MusicXML does not have")
+    with archive.open(info) as file:
+        data = file.read(most_bytes + 1)
+    if len(data) > most_bytes:  # whatever its directory says
+        raise ScoreError(f"is an archive with a file larger than {most_bytes >> 10} KiB")
+    return data
+
+
+def parse(data: bytes) -> ET.Element:
+    """Parse XML of bounded size and depth, without namespaces. Raises ScoreError with the line."""
+    builder = _Builder()
+    says_utf16 = _SAYS_UTF16.match(data) is not None  # in bytes that are none
+    parser = expat.ParserCreate("utf-8" if says_utf16 else None)
+    parser.buffer_text = True
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.data
+    parser.EntityDeclHandler = builder.refuse_entity
+    # The document type stays outside: it is not fetched, and no score needs its entities.
+    parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code) if error.code else "not well-formed"
+        raise ScoreError(f"line {error.lineno}: is no XML ({reason})") from None
+    except (ValueError, LookupError) as error:  # an encoding that is unknown, or has many bytes
+        raise ScoreError(f"is no XML ({type(error).__name__})") from None
+    return builder.root()
+
+
+class _Builder:
+    def __init__(self) -> None:
+        self._tree = ET.TreeBuilder()
+        self._depth = 0
+        self._elements = 0
+        self._is_text = False
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        self._depth += 1
+        self._elements += 1
+        if self._depth > DEEPEST:
+            raise ScoreError(f"has elements deeper than {DEEPEST}")
+        if self._elements > MOST_ELEMENTS:
+            raise ScoreError(f"has more than {MOST_ELEMENTS} elements")
+        self._is_text = True
+        # Of a million elements each string counts.
+        self._tree.start(sys.intern(tag.rpartition(":")[2]), attributes)
+
+    def end(self, tag: str) -> None:
+        self._depth -= 1
+        self._is_text = False
+        self._tree.end(tag.rpartition(":")[2])
+
+    def data(self, text: str) -> None:
+        if self._is_text and not text.isspace():  # the rest is indentation
+            self._tree.data(text)
+
+    def refuse_entity(self, *_: Any) -> None:
+        raise ScoreError("defines XML entities, which no score needs")
+
+    def root(self) -> ET.Element:
+        return self._tree.close()

@@ -31,11 +31,10 @@ from yehu_server.scores.score import (
     naming,
     read_score_bytes,
 )
-from yehu_server.scores.smf.chunks import Part, read_parts
+from yehu_server.scores.smf.chunks import Part, read_parts, unwrapped
 from yehu_server.scores.smf.faults import DamageReport
 from yehu_server.scores.smf.track import Clock, Placed, Track, checked_division
 from yehu_server.scores.smf.tunings import retuned
-from yehu_server.scores.smf.wrapper import unwrapped
 
 PERCUSSION = 9  # whose notes end by themselves
 # Controllers: all sound off, all notes off, and changes of mode, which end notes too.

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -133,14 +133,6 @@ def set_up(rate: float) -> None:
         make(description_of({"kind": kind, "sample_rate": rate, "draw": draw}), 0)
 
 
-class PerformAll(Protocol):
-    """Does all parts, such as ``rendering.cluster.Cluster.perform_all``."""
-
-    def __call__(self, parts: Sequence[Part]) -> Iterable[Event]:
-        """Yield what becomes of them."""
-        ...
-
-
 def parts_of(description: Description, folder: Path, key: str) -> list[Part]:
     """All sounds of a data set, in parts."""
     starts = range(0, description.count, TOGETHER)
@@ -165,11 +157,11 @@ def split_up_to_date(parts: Iterable[Part]) -> tuple[list[Part], list[Line]]:
 
 
 def make_all(
-    parts: Sequence[Part], perform_all: PerformAll
+    parts: Sequence[Part], perform_all: Callable[[Sequence[Part]], Iterable[Event]]
 ) -> Generator[tuple[float, Sequence[Line]]]:
     """Make all parts; yield how many sounds are done, and the lines of those that just were.
 
-    Raises OutputError where what has travelled cannot be written.
+    `perform_all` does them, as ``rendering.cluster.Cluster.perform_all`` does. Raises OutputError where what has travelled cannot be written.
     """
     shares = [0.0] * len(parts)
     for event in perform_all(parts):

@@ -10,18 +10,16 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from yehu_server.core.physics.layout import F_N, FINGER_CONTROLS, V_B, X_B
 from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.lab.regimes.strokes import ControlCurves
 from yehu_server.lab.sweeps.axes import Axis, axis_from
 from yehu_server.lab.sweeps.gesture_strokes import GestureBow
 from yehu_server.lab.sweeps.note_strokes import NoteBow
-from yehu_server.scores.gesture import Gesture
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.values import choice, choices, whole
 
@@ -37,21 +35,6 @@ KNOWN = (
 )  # fmt: skip
 
 
-class Bow(Protocol):
-    """Makes strokes of values."""
-
-    def check(self, axes: Sequence[Axis]) -> None:
-        """Refuse axes that cannot be varied, or values that are out of bounds."""
-
-    def strokes(
-        self, axes: Sequence[Axis], index: Array
-    ) -> tuple[Array, Array, Array, ControlCurves]:
-        """Models, states at rest, strokes and curves: see `lab.regimes.strokes.find`."""
-
-    def gesture(self, axes: Sequence[Axis], place: Sequence[int]) -> Gesture:
-        """One of the strokes as a gesture, for `simulate`."""
-
-
 @dataclass(frozen=True)
 class Study:
     """A study."""
@@ -62,7 +45,7 @@ class Study:
     refine: tuple[int, ...]  # axes that are refined where regimes meet
     levels: int  # how often a step may be halved
     border: str  # one of BORDERS: between all regimes, or between Helmholtz motion and all others
-    bow: Bow  # makes the strokes
+    bow: GestureBow | NoteBow  # makes the strokes
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -128,8 +111,7 @@ def study_of(data: Any, folder: Path = Path()) -> Study:
     axes = tuple(Fields(_flat(vary.data), vary.document, "vary", vary.key).each(axis_from).values())
     if not axes:
         vary.wrong("", "nothing is varied: name it under [vary], or by --vary")
-    made_by: Any = GestureBow if "gesture" in table.data else NoteBow
-    bow: Bow = made_by.of(table, folder)
+    bow = (GestureBow if "gesture" in table.data else NoteBow).of(table, folder)
     refine, levels, border = _refinement(table.table("refine"), axes)
     with table.at("refine"):
         fine = tuple(axis.refined(levels) if i in refine else axis for i, axis in enumerate(axes))

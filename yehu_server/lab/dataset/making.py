@@ -161,7 +161,8 @@ def make_all(
 ) -> Generator[tuple[float, Sequence[Line]]]:
     """Make all parts; yield how many sounds are done, and the lines of those that just were.
 
-    `perform_all` does them, as ``rendering.cluster.Cluster.perform_all`` does. Raises OutputError where what has travelled cannot be written.
+    `perform_all` does them, as ``rendering.cluster.Cluster.perform_all`` does. Raises OutputError
+    where what has travelled cannot be written.
     """
     shares = [0.0] * len(parts)
     for event in perform_all(parts):

@@ -22,29 +22,21 @@ RESPONSE_S = 0.15  # after which the high-pass is 300 dB down
 
 def weighting(rate: float) -> Array:
     """The impulse response [shape=(frames,)] of K weighting: a shelf for the head, a high-pass."""
+    frames = round(RESPONSE_S * rate)
+    z = np.exp(2j * np.pi * np.fft.rfftfreq(2 * frames))
+
+    def second_order(b: tuple[float, float, float], k: float, q: float) -> Array:
+        a = (1.0 + k / q + k * k, 2.0 * (k * k - 1.0), 1.0 - k / q + k * k)
+        return np.polyval(b, z) / np.polyval(a, z)
+
     k = math.tan(math.pi * 1681.974450955533 / rate)
     high, band, q = 10.0 ** (3.999843853973347 / 20.0), 0.4996667741545416, 0.7071752369554196
     mid = high**band * k / q
-    shelf = (high + mid + k * k, 2.0 * (k * k - high), high - mid + k * k)
-    response = np.zeros(round(RESPONSE_S * rate))
-    response[0] = 1.0
-    response = _second_order(response, shelf, k, q)
+    shelf = second_order((high + mid + k * k, 2.0 * (k * k - high), high - mid + k * k), k, q)
     k, q = math.tan(math.pi * 38.13547087602444 / rate), 0.5003270373238773
     low = 1.0 + k / q + k * k
-    return _second_order(response, (low, -2.0 * low, low), k, q)
-
-
-def _second_order(x: Array, b: tuple[float, float, float], k: float, q: float) -> Array:
-    """Filter by b over the polynomial of poles (k, q)."""
-    a0 = 1.0 + k / q + k * k
-    a1, a2 = 2.0 * (k * k - 1.0) / a0, (1.0 - k / q + k * k) / a0
-    y = np.zeros(len(x))
-    x1 = x2 = y1 = y2 = 0.0
-    for n, x0 in enumerate(x.tolist()):
-        y0 = (b[0] * x0 + b[1] * x1 + b[2] * x2) / a0 - a1 * y1 - a2 * y2
-        x2, x1, y2, y1 = x1, x0, y1, y0
-        y[n] = y0
-    return y
+    high_pass = second_order((low, -2.0 * low, low), k, q)
+    return np.fft.irfft(shelf * high_pass, 2 * frames)[:frames]
 
 
 def loudness_lufs(blocks: Iterable[Array], rate: float) -> float:

@@ -11,8 +11,7 @@ from yehu_server.lab.body.body_file import Fit
 from yehu_server.lab.body.curve import Curve, as_db
 from yehu_server.lab.body.report import lines_of
 from yehu_server.lab.plot import png
-from yehu_server.lab.plot.cells import ABOVE
-from yehu_server.util.extras import need
+from yehu_server.lab.plot.cells import ABOVE, figure_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,11 +40,7 @@ def draw(fit: Fit, figure: Figure | None = None) -> Figure:
     ParameterError
         Where matplotlib is missing.
     """
-    need("matplotlib", "the picture of a body", "plots")
-    if figure is None:
-        import matplotlib.pyplot as plt
-
-        figure = plt.figure(figsize=SIZE, layout="constrained")
+    figure = figure_of(figure, *SIZE)
     _draw(figure, fit)
     return figure
 

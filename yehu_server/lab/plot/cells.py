@@ -12,6 +12,7 @@ from yehu_server.util.extras import need
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 # Told apart by eyes that confuse red and green, too.
 COLOURS = {
@@ -68,6 +69,19 @@ def axes_of(ax: Any) -> Axes:
     if not isinstance(ax, Axes):
         raise ParameterError(f"ax: expected axes of matplotlib, not {type(ax).__name__}")
     return ax
+
+
+def figure_of(figure: Figure | None, width: float, height: float) -> Figure:
+    """Return the figure to draw into: that given, or a new one of a size in inches.
+
+    Raises ParameterError where matplotlib is missing.
+    """
+    need("matplotlib", "yehu.plot", "plots")
+    if figure is not None:
+        return figure
+    import matplotlib.pyplot as plt
+
+    return plt.figure(figsize=(width, height), layout="constrained")
 
 
 def is_log(values: Array, spread: str = "") -> bool:

@@ -12,6 +12,7 @@ from yehu_server.util.extras import need
 from yehu_server.util.files import anything, check_free, check_target, open_regular, replacing, why
 
 SOFTWARE = "yehu-server"  # named in a picture, which may therefore be replaced
+DPI = 110
 BEGINNING = 4096  # bytes of a file in which it is named
 MOST_TEXT = 120  # characters
 
@@ -44,7 +45,6 @@ def write_picture(
     size: tuple[float, float],
     fill: Callable[[Any], None],
     *,
-    dpi: int = 110,
     overwrite: bool = False,
 ) -> None:
     """Draw a picture and write it to a PNG file. The same picture has the same bytes.
@@ -52,29 +52,23 @@ def write_picture(
     `fill` draws into a matplotlib Figure of a size in inches. Raises OutputError where it cannot be
     written.
     """
-    data = drawn(size, fill, dpi)
-    with replacing(target, anything if overwrite else is_ours) as partial:
-        try:
-            partial.write_bytes(data)
-        except OSError as error:
-            raise OutputError(f"{target}: cannot write: {why(error)}") from error
-
-
-def drawn(size: tuple[float, float], fill: Callable[[Any], None], dpi: int) -> bytes:
-    """Draw a picture; return the bytes of its PNG file."""
     import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     settings: Any = {"font.size": 10.0, "text.parse_math": False}
+    data = io.BytesIO()
     # Not as the user has set matplotlib up, which would change the picture.
     with mpl.rc_context(mpl.rcParamsDefault), mpl.rc_context(settings):
-        figure = Figure(figsize=size, dpi=dpi, layout="constrained")
+        figure = Figure(figsize=size, dpi=DPI, layout="constrained")
         FigureCanvasAgg(figure)
         fill(figure)
-        file = io.BytesIO()
-        figure.savefig(file, format="png", metadata={"Software": SOFTWARE})
-    return file.getvalue()
+        figure.savefig(data, format="png", metadata={"Software": SOFTWARE})
+    with replacing(target, anything if overwrite else is_ours) as partial:
+        try:
+            partial.write_bytes(data.getvalue())
+        except OSError as error:
+            raise OutputError(f"{target}: cannot write: {why(error)}") from error
 
 
 def plain(text: str, most: int = MOST_TEXT) -> str:

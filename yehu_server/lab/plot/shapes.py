@@ -9,8 +9,7 @@ import numpy as np
 
 from yehu_server.errors import ParameterError
 from yehu_server.lab.labels import label_of
-from yehu_server.lab.plot.cells import ABOVE, axes_of
-from yehu_server.util.extras import need
+from yehu_server.lab.plot.cells import ABOVE, axes_of, figure_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -77,11 +76,7 @@ def signals(
     for name in shown:
         if name not in known:
             raise ParameterError(f"there is no signal {name!r} (there are: {', '.join(known)})")
-    need("matplotlib", "yehu.plot", "plots")
-    if figure is None:
-        import matplotlib.pyplot as plt
-
-        figure = plt.figure(figsize=(WIDTH, HEIGHT * len(shown) + 0.5), layout="constrained")
+    figure = figure_of(figure, WIDTH, HEIGHT * len(shown) + 0.5)
     time = arrays["time"]
     part = (time >= start) & (time <= (time[-1] if end is None else end))
     panels = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]

@@ -1,6 +1,7 @@
 """``yehu-server body``: taps, fit, show, and the render that plays it."""
 
 import builtins
+import importlib
 import json
 
 import numpy as np
@@ -133,17 +134,17 @@ def test_a_missing_library_is_one_line_that_names_its_extra(
     (tmp_path / "y.csv").write_bytes(response.read_bytes())
     (tmp_path / "y.uff").write_text("    -1\n    58\n")
     monkeypatch.chdir(tmp_path)
-    usual = builtins.__import__
 
-    def without(name, *rest):
-        if name.split(".")[0] == missing:
-            raise ImportError(name)
-        return usual(name, *rest)
+    def without(load):
+        def loaded(name, *rest):
+            if name.split(".")[0] == missing:
+                raise ImportError(name)
+            return load(name, *rest)
 
-    import importlib
+        return loaded
 
-    monkeypatch.setattr(builtins, "__import__", without)
-    monkeypatch.setattr(importlib, "import_module", without)
+    monkeypatch.setattr(builtins, "__import__", without(builtins.__import__))
+    monkeypatch.setattr(importlib, "import_module", without(importlib.import_module))
     assert f"yehu-server[{extra}]" in refused("body", *words)
     monkeypatch.undo()
 

@@ -132,17 +132,27 @@ class Parser(argparse.ArgumentParser):
 
 def add_command(
     commands: Any,
-    name: str,
+    usage: str,
+    about: str | None,
     run: Callable[[argparse.Namespace], int] | None = None,
-    **words: str,
 ) -> Any:
-    """Add a command, or an action of one, with the texts that argparse takes; return its parser.
+    """Add a command, or an action of one; return its parser.
 
-    Pages named in the epilog, such as docs/osc.md, are shown with their full path.
+    `usage`: its name and what it does, such as ``devices: list the inputs``.
+    `about`: its description and, from the first example on, what stands at the end of its help: the
+    docstring of its module. Pages named there, such as docs/osc.md, get their full path.
     """
-    if "epilog" in words:
-        words["epilog"] = words["epilog"].replace("docs/", f"{shipped_folder('docs')}/")
-    parser = commands.add_parser(name, formatter_class=HelpFormatter, allow_abbrev=False, **words)
+    name, _, text = usage.partition(": ")
+    description, example, more = (about or "").partition("\n\n  yehu-server ")
+    epilog = f"examples:{example[1:]}{more}" if example else ""
+    parser = commands.add_parser(
+        name,
+        help=text,
+        description=" ".join(description.split()),
+        epilog=epilog.replace("docs/", f"{shipped_folder('docs')}/"),
+        formatter_class=HelpFormatter,
+        allow_abbrev=False,
+    )
     if run is not None:
         parser.set_defaults(run=run)
     return parser
@@ -155,7 +165,7 @@ def add_actions(parser: argparse.ArgumentParser) -> Any:
 
 def add_action(actions: Any, name: str, run: Callable[[argparse.Namespace], int], text: str) -> Any:
     """Add an action of a command, with its help as the description; return its parser."""
-    return add_command(actions, name, run, help=text, description=f"{text.capitalize()}.")
+    return add_command(actions, f"{name}: {text}", f"{text.capitalize()}.", run)
 
 
 def add_instrument(parser: argparse.ArgumentParser) -> None:

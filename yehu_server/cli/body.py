@@ -1,4 +1,13 @@
-"""``yehu-server body``: from taps on a fiddle to a body that the model plays."""
+"""Fit a body to measurements of a fiddle, and look at it.
+
+  yehu-server body taps -o taps
+  yehu-server body fit taps/*.wav --channels force=32,velocity=0.5,pressure=4 -o mine.toml
+  yehu-server body fit admittance.csv --kind mobility --radiation sound.csv -o mine.toml
+  yehu-server body show mine.toml -o mine.png
+  yehu-server render tune.mid -o tune.wav --instrument mine.toml
+
+docs/body.md tells how to measure, and what the files hold.
+"""
 
 from __future__ import annotations
 
@@ -23,26 +32,11 @@ from yehu_server.util.files import check_distinct
 if TYPE_CHECKING:
     from yehu_server.lab.body import Fit
 
-EXAMPLES = """\
-examples:
-  yehu-server body taps -o taps
-  yehu-server body fit taps/*.wav --channels force=32,velocity=0.5,pressure=4 -o mine.toml
-  yehu-server body fit admittance.csv --kind mobility --radiation sound.csv -o mine.toml
-  yehu-server body show mine.toml -o mine.png
-  yehu-server render tune.mid -o tune.wav --instrument mine.toml
-
-docs/body.md tells how to measure, and what the files hold.
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
-        commands,
-        "body",
-        help="put the body of your own fiddle into the model, from measurements",
-        description="Fit a body to measurements of a fiddle, and look at it.",
-        epilog=EXAMPLES,
+        commands, "body: put the body of your own fiddle into the model, from measurements", __doc__
     )
     actions = add_actions(parser)
     _add_fit(actions)

@@ -1,4 +1,15 @@
-"""``yehu-server build``."""
+"""Compile the instrument ahead of time, so that it plays without Python.
+
+It takes a minute. For a page it needs LLVM's wasm-ld, for a library a C compiler.
+
+  yehu-server build wasm -o page
+  yehu-server build library -o lib --rate 48000 96000 --cpu native
+  yehu-server build plugin -o plug-ins
+  yehu-server build tables --mapping wind --tuning chaozhou-seven-equal -o wind.tables
+
+build plugin makes a plug-in for music programs (docs/plugin.md). build tables writes a mapping, a
+tuning and presets for pages and C programs, as numbers; docs/ahead.md tells how they use them.
+"""
 
 from __future__ import annotations
 
@@ -14,28 +25,14 @@ from yehu_server.errors import ParameterError
 from yehu_server.plugin.targets import ALL, NAMES, usual
 from yehu_server.util.files import write_bytes
 
-EXAMPLES = """\
-examples:
-  yehu-server build wasm -o page
-  yehu-server build library -o lib --rate 48000 96000 --cpu native
-  yehu-server build plugin -o plug-ins
-  yehu-server build tables --mapping wind --tuning chaozhou-seven-equal -o wind.tables
-
-build plugin makes a plug-in for music programs (docs/plugin.md). build tables writes a mapping, a
-tuning and presets for pages and C programs, as numbers; docs/ahead.md tells how they use them.
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "build",
-        run=run,
-        help="compile the instrument for web pages, or as a library for C programs",
-        description="Compile the instrument ahead of time, so that it plays without Python. "
-        "It takes a minute. For a page it needs LLVM's wasm-ld, for a library a C compiler.",
-        epilog=EXAMPLES,
+        "build: compile the instrument for web pages, or as a library for C programs",
+        __doc__,
+        run,
     )
     parser.add_argument(
         "what",

@@ -1,4 +1,12 @@
-"""``yehu-server dataset``: labelled sounds for learners."""
+"""Make labelled sounds for learners, drawn by chance as a description tells.
+
+They come with the forces, positions and velocities behind them, and the regime of the string.
+
+  yehu-server dataset examples/dataset.toml -o strokes
+  yehu-server dataset examples/dataset.toml -o strokes --count 100000 --dask tcp://10.0.0.1:8786
+
+The format of descriptions, and what is written, is described in docs/dataset.md.
+"""
 
 from __future__ import annotations
 
@@ -34,25 +42,14 @@ if TYPE_CHECKING:
 
 SOUNDING = ("playing", "lab/dataset")  # folders of code, beside what is compiled
 
-EXAMPLES = """\
-examples:
-  yehu-server dataset examples/dataset.toml -o strokes
-  yehu-server dataset examples/dataset.toml -o strokes --count 100000 --dask tcp://10.0.0.1:8786
-
-The format of descriptions, and what is written, is described in docs/dataset.md.
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "dataset",
-        run=run,
-        help="make labelled sounds for learners, with all hidden forces, from a description",
-        description="Make labelled sounds for learners, drawn by chance as a description tells: "
-        "with the forces, positions and velocities behind them, and the regime of the string.",
-        epilog=EXAMPLES,
+        "dataset: make labelled sounds for learners, with all hidden forces, from a description",
+        __doc__,
+        run,
     )
     add_options(parser, "description DESCRIPTION.toml: what is drawn, and how", description=Path)
     add_folder(parser)

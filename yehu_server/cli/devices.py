@@ -1,4 +1,10 @@
-"""``yehu-server devices``."""
+"""List the audio outputs, audio inputs and MIDI inputs that serve can use.
+
+  yehu-server devices
+  yehu-server serve --audio-device "system, JACK" --midi-in keystep
+
+A device may be named by any words that no other device has.
+"""
 
 from __future__ import annotations
 
@@ -13,24 +19,11 @@ from yehu_server.errors import DeviceError, one_line
 if TYPE_CHECKING:
     from yehu_server.live.audio.devices import AudioDevice
 
-EXAMPLES = """\
-examples:
-  yehu-server devices
-  yehu-server serve --audio-device "system, JACK" --midi-in keystep
-
-A device may be named by any words that no other device has.
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
-        commands,
-        "devices",
-        run=run,
-        help="list audio outputs, audio inputs and MIDI inputs",
-        description="List the audio outputs, audio inputs and MIDI inputs that serve can use.",
-        epilog=EXAMPLES,
+        commands, "devices: list audio outputs, audio inputs and MIDI inputs", __doc__, run
     )
     add_options(parser, "--json: print one JSON object")
 

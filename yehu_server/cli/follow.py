@@ -1,4 +1,13 @@
-"""``yehu-server follow``."""
+"""Listen to a voice or one instrument in a sound file, and play what is heard.
+
+  yehu-server follow hum.wav -o played.wav
+  yehu-server follow hum.wav -o played.wav --preset flautando --correct 1 --keep-vibrato
+  yehu-server follow hum.wav -o hum.mid
+  yehu-server follow hum.wav -o hum.jsonl
+  yehu-server follow hum.wav -o played.flac --plot played.png
+
+It needs yehu-server[follow]. What it hears, and how well, is told in docs/follow.md.
+"""
 
 from __future__ import annotations
 
@@ -37,16 +46,6 @@ if TYPE_CHECKING:
     from yehu_server.following.performance import Performed
     from yehu_server.rendering.options import Options
 
-EXAMPLES = """\
-examples:
-  yehu-server follow hum.wav -o played.wav
-  yehu-server follow hum.wav -o played.wav --preset flautando --correct 1 --keep-vibrato
-  yehu-server follow hum.wav -o hum.mid
-  yehu-server follow hum.wav -o hum.jsonl
-  yehu-server follow hum.wav -o played.flac --plot played.png
-
-It needs yehu-server[follow]. What it hears, and how well, is told in docs/follow.md.
-"""
 STYLES = ("exact", "gentle", "even")
 MIDI, CAPTURE = (".mid", ".midi"), (".jsonl",)
 
@@ -55,11 +54,9 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "follow",
-        run=run,
-        help="play what a voice hums, or another instrument plays, from a sound file",
-        description="Listen to a voice or one instrument in a sound file, and play what is heard.",
-        epilog=EXAMPLES,
+        "follow: play what a voice hums, or another instrument plays, from a sound file",
+        __doc__,
+        run,
     )
     add_options(
         parser, "recording IN: a sound file of one voice, such as WAV or FLAC", recording=Path

@@ -1,4 +1,13 @@
-"""``yehu-server learn``."""
+"""Bind the control that you move next to a parameter of a running server.
+
+  yehu-server learn /playing/vibrato
+  yehu-server learn --soft /playing/pressure /playing/bow_position
+  yehu-server learn
+  yehu-server learn --forget /playing/vibrato
+  yehu-server learn --part 2 /playing/vibrato
+
+Start `yehu-server serve` first. Binds are saved at once, in a mapping file of your own.
+"""
 
 from __future__ import annotations
 
@@ -17,16 +26,6 @@ from yehu_server.params.table import TABLE
 if TYPE_CHECKING:
     from yehu_server.live.osc.command_client import OscClient
 
-EXAMPLES = """\
-examples:
-  yehu-server learn /playing/vibrato
-  yehu-server learn --soft /playing/pressure /playing/bow_position
-  yehu-server learn
-  yehu-server learn --forget /playing/vibrato
-  yehu-server learn --part 2 /playing/vibrato
-
-Start `yehu-server serve` first. Binds are saved at once, in a mapping file of your own.
-"""
 LONGEST_S = 60.0
 
 
@@ -34,11 +33,9 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "learn",
-        run=run,
-        help="bind a knob, pedal or OSC address to a parameter of a running server",
-        description="Bind the control that you move next to a parameter of a running server.",
-        epilog=EXAMPLES,
+        "learn: bind a knob, pedal or OSC address to a parameter of a running server",
+        __doc__,
+        run,
     )
     add_options(
         parser,

@@ -1,4 +1,13 @@
-"""``yehu-server mappings``."""
+"""List and show mappings; check or convert files of your own.
+
+  yehu-server mappings list
+  yehu-server mappings show wind
+  yehu-server mappings show --live
+  yehu-server mappings check my-pedals.toml
+  yehu-server mappings convert wind -o my-wind.toml
+
+What can be moved is listed in docs/parameters.md.
+"""
 
 from __future__ import annotations
 
@@ -28,14 +37,6 @@ if TYPE_CHECKING:
     from yehu_server.playing.bind import Bind
     from yehu_server.playing.mapping import Mapping
 
-EXAMPLES = """\
-examples:
-  yehu-server mappings list
-  yehu-server mappings show wind
-  yehu-server mappings show --live
-  yehu-server mappings check my-pedals.toml
-  yehu-server mappings convert wind -o my-wind.toml
-"""
 
 REFRESHES_PER_SECOND = 5
 # The values of a /binding message; `place` is negative where the source was never moved.
@@ -45,11 +46,7 @@ BINDING = ("source", "target", "from", "to", "curve", "terms", "place", "value")
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
-        commands,
-        "mappings",
-        help="list, show, check and convert mappings: what controllers move",
-        description="List and show mappings; check or convert files of your own.",
-        epilog=EXAMPLES,
+        commands, "mappings: list, show, check and convert mappings: what controllers move", __doc__
     )
     actions = add_actions(parser)
     add_action(actions, "list", _list, "list the shipped mappings and your own")

@@ -1,7 +1,11 @@
-"""``yehu-server page``, and its address as a QR code.
+"""Show the instrument as a web page to this machine, until Ctrl-C, or write the page.
 
-Half a character is one module of the code, black on white whatever the terminal's colours: most
-cameras do not read the inverse.
+What is written are static files, which may be put on any web server.
+
+  yehu-server page --open
+  yehu-server page -o public/yehu
+
+docs/page.md tells what the page does.
 """
 
 from __future__ import annotations
@@ -34,7 +38,10 @@ def show(text: str, stream: TextIO) -> None:
 
 
 def drawn(text: str) -> list[str]:
-    """The lines of a QR code of a text, with their colours."""
+    """The lines of a QR code of a text: half a character is one module of it.
+
+    It is black on white whatever the terminal's colours: most cameras do not read the inverse.
+    """
     import segno
 
     rows = [bytes(row) for row in segno.make_qr(text).matrix_iter(border=QUIET)]
@@ -44,26 +51,13 @@ def drawn(text: str) -> list[str]:
     return [f"{BLACK_ON_WHITE}{line}{PLAIN}" for line in halves]
 
 
-EXAMPLES = """\
-examples:
-  yehu-server page --open
-  yehu-server page -o public/yehu
-
-docs/page.md tells what the page does.
-"""
 PORT = 8010
 
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
-        commands,
-        "page",
-        run=run,
-        help="the instrument in a web page, which sounds without a server",
-        description="Show the instrument as a web page to this machine, until Ctrl-C; or write the "
-        "page as static files, which may be put on any web server.",
-        epilog=EXAMPLES,
+        commands, "page: the instrument in a web page, which sounds without a server", __doc__, run
     )
     wish = "write the page here and end; the folder is created if missing"
     add_folder(parser, required=False, text=wish)

@@ -1,4 +1,17 @@
-"""``yehu-server practise``."""
+"""Find how each note of an instrument is best bowed.
+
+It is played after others, at several places, speeds and pressures of the bow, until it speaks as
+well as can be found; what was learnt is written, for --practice.
+
+  yehu-server practise -o mine.json
+  yehu-server practise --instrument heavy_bridge.toml --rate 48000 -o heavy.json
+  yehu-server practise --preset sul-ponticello -o near.json
+  yehu-server practise --tuning chaozhou-seven-equal -o chaozhou.json
+  yehu-server render tune.mid -o tune.wav --practice mine.json
+
+Begins with what comes with this version, and takes a quarter of an hour or more on two cores. The
+usual instrument comes practised.
+"""
 
 from __future__ import annotations
 
@@ -20,29 +33,11 @@ from yehu_server.util.files import check_distinct, check_target
 
 A4 = 440.0  # Hz
 
-EXAMPLES = """\
-examples:
-  yehu-server practise -o mine.json
-  yehu-server practise --instrument heavy_bridge.toml --rate 48000 -o heavy.json
-  yehu-server practise --preset sul-ponticello -o near.json
-  yehu-server practise --tuning chaozhou-seven-equal -o chaozhou.json
-  yehu-server render tune.mid -o tune.wav --practice mine.json
-
-Begins with what comes with this version, and takes a quarter of an hour or more on two cores. The
-usual instrument comes practised.
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
-        commands,
-        "practise",
-        run=run,
-        help="find how each note of an instrument is best bowed",
-        description="Play each note after others, at several places, speeds and pressures of the "
-        "bow, until it speaks as well as can be found; write what was learnt, for --practice.",
-        epilog=EXAMPLES,
+        commands, "practise: find how each note of an instrument is best bowed", __doc__, run
     )
     add_options(
         parser,

@@ -1,4 +1,11 @@
-"""``yehu-server presets``."""
+"""List and show presets; check files of your own.
+
+  yehu-server presets list
+  yehu-server presets show flautando
+  yehu-server presets check my-sound.toml
+
+What the values mean is told in docs/parameters.md.
+"""
 
 from __future__ import annotations
 
@@ -14,23 +21,10 @@ from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import PresetError
 from yehu_server.params.table import find
 
-EXAMPLES = """\
-examples:
-  yehu-server presets list
-  yehu-server presets show flautando
-  yehu-server presets check my-sound.toml
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "presets",
-        help="list, show and check presets",
-        description="List and show presets; check files of your own.",
-        epilog=EXAMPLES,
-    )
+    parser = add_command(commands, "presets: list, show and check presets", __doc__)
     actions = add_actions(parser)
     listed = add_action(actions, "list", _list, "list the presets")
     show = add_action(actions, "show", _show, "show the values of a preset")

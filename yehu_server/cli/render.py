@@ -1,4 +1,19 @@
-"""``yehu-server render``."""
+"""Render MIDI files, one after another, to a sound file; or those of a folder, each to its own.
+
+  yehu-server render tune.mid -o tune.wav
+  yehu-server render tune.mid -o tune.flac --rate 48000 --normalize
+  yehu-server render suite-1.mid suite-2.mid -o suite.wav --channel 1
+  yehu-server render tune.mid -o close.wav --set /playing/bow_position=0.08 --gain-db 6
+  yehu-server render quartet.mid --ensemble -o quartet.wav --stems stems
+  yehu-server render songs -o sounds --format flac
+  yehu-server render songs -o sounds --dask tcp://10.0.0.1:8786
+  yehu-server render - -o - --format raw < tune.mid > tune.f32
+
+A folder is rendered on all cores, and only what is not up to date: docs/folders.md tells more, and
+docs/cluster.md of clusters.
+Ensemble files are described in docs/ensemble.md.
+What becomes of damaged MIDI files is described in docs/midi_files.md.
+"""
 
 from __future__ import annotations
 
@@ -38,34 +53,14 @@ from yehu_server.cli.sound_options import add_sound, add_stage
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.scores.score import MAX_DURATION_H
 
-EXAMPLES = """\
-examples:
-  yehu-server render tune.mid -o tune.wav
-  yehu-server render tune.mid -o tune.flac --rate 48000 --normalize
-  yehu-server render suite-1.mid suite-2.mid -o suite.wav --channel 1
-  yehu-server render tune.mid -o close.wav --set /playing/bow_position=0.08 --gain-db 6
-  yehu-server render quartet.mid --ensemble -o quartet.wav --stems stems
-  yehu-server render songs -o sounds --format flac
-  yehu-server render songs -o sounds --dask tcp://10.0.0.1:8786
-  yehu-server render - -o - --format raw < tune.mid > tune.f32
-
-A folder is rendered on all cores, and only what is not up to date: docs/folders.md tells more, and
-docs/cluster.md of clusters.
-Ensemble files are described in docs/ensemble.md.
-What becomes of damaged MIDI files is described in docs/midi_files.md.
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "render",
-        run=run,
-        help="render MIDI files to a sound file, or a folder of them to a folder",
-        description="Render MIDI files, one after another, to a sound file; or all of a folder, "
-        "each to a file of its own.",
-        epilog=EXAMPLES,
+        "render: render MIDI files to a sound file, or a folder of them to a folder",
+        __doc__,
+        run,
     )
     add_options(
         parser,

@@ -1,4 +1,10 @@
-"""``yehu-server replay``."""
+"""Render a capture of serve: the same samples, on the same build.
+
+  yehu-server serve --capture session.jsonl --record session.wav
+  yehu-server replay session.jsonl -o again.wav
+
+The capture file is described in docs/capture.md.
+"""
 
 from __future__ import annotations
 
@@ -18,24 +24,12 @@ from yehu_server.cli.terminal import compile_all, print_report, progress_bar, wa
 from yehu_server.util.files import check_distinct
 
 MAX_DURATION_H = 12.0
-EXAMPLES = """\
-examples:
-  yehu-server serve --capture session.jsonl --record session.wav
-  yehu-server replay session.jsonl -o again.wav
-
-The capture file is described in docs/capture.md.
-"""
 
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
-        commands,
-        "replay",
-        run=run,
-        help="render a captured session to a sound file",
-        description="Render a capture of serve: the same samples, on the same build.",
-        epilog=EXAMPLES,
+        commands, "replay: render a captured session to a sound file", __doc__, run
     )
     add_options(parser, "capture CAPTURE: a file of serve --capture", capture=Path)
     add_output(parser)

@@ -1,4 +1,14 @@
-"""``yehu-server score``."""
+"""Show what is understood of a score and what will be played, or write it.
+
+  yehu-server score show tune.musicxml
+  yehu-server score show tune.jianpu --json
+  yehu-server score show tune.mxl --export-midi tune.mid
+  yehu-server score show tune.jianpu --plot tune.png
+  yehu-server score write tune.mid -o tune.musicxml
+  yehu-server score write session.jsonl -o tune.jianpu --tempo 72
+
+The marks that are understood are listed in docs/scores.md.
+"""
 
 from __future__ import annotations
 
@@ -27,27 +37,13 @@ if TYPE_CHECKING:
 MUSICXML, JIANPU = (".musicxml", ".xml"), (".jianpu", ".txt")
 LOWEST_TEMPO, HIGHEST_TEMPO = 5.0, 1000.0
 
-EXAMPLES = """\
-examples:
-  yehu-server score show tune.musicxml
-  yehu-server score show tune.jianpu --json
-  yehu-server score show tune.mxl --export-midi tune.mid
-  yehu-server score show tune.jianpu --plot tune.png
-  yehu-server score write tune.mid -o tune.musicxml
-  yehu-server score write session.jsonl -o tune.jianpu --tempo 72
-
-The marks that are understood are listed in docs/scores.md.
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "score",
-        help="show what is understood of a score, or write it as MusicXML or jianpu",
-        description="Show what is understood of a score and what will be played, or write it.",
-        epilog=EXAMPLES,
+        "score: show what is understood of a score, or write it as MusicXML or jianpu",
+        __doc__,
     )
     actions = add_actions(parser)
     show = add_action(actions, "show", _show, "show the notes of a score, and its marks")

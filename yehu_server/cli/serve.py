@@ -1,4 +1,16 @@
-"""``yehu-server serve``."""
+"""Play the instrument live, by MIDI and OSC.
+
+  yehu-server serve
+  yehu-server serve --midi-in keystep --audio-device "hifi, ALSA" --latency 0.01
+  yehu-server serve --lan --open
+  yehu-server serve --osc 192.168.1.5:9000 --osc-allow 192.168.1.0/24
+  yehu-server serve --http 192.168.1.5:9001 --http-allow 192.168.1.0/24
+  yehu-server serve --record take.wav --capture take.jsonl
+  yehu-server serve --parts 2 --part 1=keystep --part 2=seaboard --part-mapping 2=mpe
+
+The OSC messages are described in docs/osc.md,
+OSCQuery in docs/oscquery.md. Ctrl-C ends it.
+"""
 
 from __future__ import annotations
 
@@ -52,34 +64,13 @@ def allow_files(needed: int) -> None:
         )
 
 
-EXAMPLES = """\
-examples:
-  yehu-server serve
-  yehu-server serve --midi-in keystep --audio-device "hifi, ALSA" --latency 0.01
-  yehu-server serve --lan --open
-  yehu-server serve --osc 192.168.1.5:9000 --osc-allow 192.168.1.0/24
-  yehu-server serve --http 192.168.1.5:9001 --http-allow 192.168.1.0/24
-  yehu-server serve --record take.wav --capture take.jsonl
-  yehu-server serve --parts 2 --part 1=keystep --part 2=seaboard --part-mapping 2=mpe
-
-The OSC messages are described in docs/osc.md,
-OSCQuery in docs/oscquery.md. Ctrl-C ends it.
-"""
-
 FILES_NEEDED = 44  # open files: 34 of the server, and some for clients
 REFRESHES_PER_SECOND = 10
 
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "serve",
-        run=run,
-        help="play live, by MIDI and OSC",
-        description="Play the instrument live, by MIDI and OSC.",
-        epilog=EXAMPLES,
-    )
+    parser = add_command(commands, "serve: play live, by MIDI and OSC", __doc__, run)
     add_arguments(parser)
 
 

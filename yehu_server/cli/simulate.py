@@ -1,4 +1,10 @@
-"""``yehu-server simulate``."""
+"""Run the physical model with a gesture file and keep every signal.
+
+  yehu-server simulate gesture.json -o run.npz --energy
+  yehu-server simulate gesture.json -o run.npz --strings 100
+
+The gesture file is described in docs/simulate.md.
+"""
 
 from __future__ import annotations
 
@@ -13,24 +19,14 @@ from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compili
 from yehu_server.errors import OutputError
 from yehu_server.util.files import check_distinct, check_target
 
-EXAMPLES = """\
-examples:
-  yehu-server simulate gesture.json -o run.npz --energy
-  yehu-server simulate gesture.json -o run.npz --strings 100
-
-The gesture file is described in docs/simulate.md.
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "simulate",
-        run=run,
-        help="run a gesture in physical units, and keep all signals as arrays",
-        description="Run the physical model with a gesture file and keep every signal.",
-        epilog=EXAMPLES,
+        "simulate: run a gesture in physical units, and keep all signals as arrays",
+        __doc__,
+        run,
     )
     add_options(
         parser,

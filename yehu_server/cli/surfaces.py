@@ -1,4 +1,12 @@
-"""``yehu-server surfaces``."""
+"""Write control surfaces and a page of the parameters, replacing older files.
+
+  yehu-server surfaces -o panels
+  yehu-server surfaces -o panels --server 192.168.1.5:9000 --only yehu.pd
+  yehu-server surfaces -o panels --part 2
+  yehu-server surfaces -o mappings --check
+
+docs/surfaces.md describes how to open each.
+"""
 
 from __future__ import annotations
 
@@ -12,26 +20,14 @@ from yehu_server.errors import ParameterError
 from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
 from yehu_server.util.files import make_folder
 
-EXAMPLES = """\
-examples:
-  yehu-server surfaces -o panels
-  yehu-server surfaces -o panels --server 192.168.1.5:9000 --only yehu.pd
-  yehu-server surfaces -o panels --part 2
-  yehu-server surfaces -o mappings --check
-
-docs/surfaces.md describes how to open each.
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "surfaces",
-        run=run,
-        help="write control surfaces for TouchOSC, Max, Pure Data, Open Stage Control",
-        description="Write control surfaces and a page of the parameters, replacing older files.",
-        epilog=EXAMPLES,
+        "surfaces: write control surfaces for TouchOSC, Max, Pure Data, Open Stage Control",
+        __doc__,
+        run,
     )
     add_folder(parser)
     add_options(

@@ -1,4 +1,16 @@
-"""``yehu-server sweep``."""
+"""Bow the strokes of a study, or vary a gesture, on all cores, and name the regime of each.
+
+When it began, pitch, level and brightness come with it, in one file. An interrupted sweep goes on
+with the same command. `sweep show FILE` draws the result.
+
+  yehu-server sweep examples/studies/schelleng.toml -o schelleng.npz
+  yehu-server sweep show schelleng.npz -o schelleng.png
+  yehu-server sweep show schelleng.npz -o schelleng.html
+  yehu-server sweep gesture.json -o runs.npz --vary bow_force=0.1:2:20:log
+  yehu-server sweep gesture.json -o runs.npz --vary instrument.bow.epsilon_0=2e4,3e4 --signals runs
+
+Studies are described in docs/sweep.md, gestures in docs/simulate.md
+"""
 
 from __future__ import annotations
 
@@ -20,29 +32,14 @@ from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compili
 from yehu_server.errors import ParameterError
 from yehu_server.util.files import anything, check_free, check_target, nothing
 
-EXAMPLES = """\
-examples:
-  yehu-server sweep examples/studies/schelleng.toml -o schelleng.npz
-  yehu-server sweep show schelleng.npz -o schelleng.png
-  yehu-server sweep show schelleng.npz -o schelleng.html
-  yehu-server sweep gesture.json -o runs.npz --vary bow_force=0.1:2:20:log
-  yehu-server sweep gesture.json -o runs.npz --vary instrument.bow.epsilon_0=2e4,3e4 --signals runs
-
-Studies are described in docs/sweep.md, gestures in docs/simulate.md
-"""
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "sweep",
-        run=run,
-        help="bow many strokes and name the regime of each, on all cores; draw the maps",
-        description="Bow the strokes of a study, or vary a gesture, on all cores: the regime of "
-        "each, when it began, pitch, level and brightness, in one file. An interrupted sweep goes "
-        "on with the same command. `sweep show FILE` draws the result.",
-        epilog=EXAMPLES,
+        "sweep: bow many strokes and name the regime of each, on all cores; draw the maps",
+        __doc__,
+        run,
     )
     add_options(
         parser,

@@ -154,6 +154,18 @@ def test_marks_voices_parts_and_jumps_are_understood(read):
     assert [note.pitch for note in jump.parts[0].notes] == [60.0, 62.0, 64.0, 60.0, 62.0]
 
 
+def test_a_field_gives_a_letter_another_meaning_within_the_music_too(read):
+    head, music = "X:1\nK:C\n", "TC [U:T=!upbow!]TC\nU:T=!downbow!\nTC|"
+    marks = [note.marks[0].name for note in read(head + music).parts[0].notes]
+    assert marks == ["trill", "up-bow", "down-bow"]
+
+
+def test_a_line_may_begin_with_the_last_note_of_a_repeat(read):
+    for music in ("M:C\nL:1/1\nK:C\n|:C|\nD:|\nE|", "M:C\nL:1/1\nK:C\n|:C|\nD::\nE:|"):
+        pitches = [note.pitch for note in read(f"X:1\n{music}\n").parts[0].notes]
+        assert pitches[:5] == [60.0, 62.0, 60.0, 62.0, 64.0], music
+
+
 def test_a_file_of_several_tunes_gives_the_one_that_is_asked_for(tmp_path):
     path = tmp_path / "tunes.abc"
     path.write_text("X:1\nK:C\nC\n\nsome text\n\nX:2\nK:C\nD\n", encoding="utf-8")

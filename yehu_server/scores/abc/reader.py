@@ -14,7 +14,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.abc.fields import metre_of, order_of_parts
+from yehu_server.scores.abc.fields import SHORTCUTS, metre_of, order_of_parts
 from yehu_server.scores.abc.voice import VoiceReader
 from yehu_server.scores.score import naming, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
@@ -22,7 +22,7 @@ from yehu_server.scores.written.notated import MOST_PARTS, Written
 
 MOST_BYTES = 4 << 20
 MUSIC_FIELDS = "KLMQ"
-_FIELD = re.compile(r"([A-Za-z+]):\s*(.*)")
+_FIELD = re.compile(r"([A-Za-z+]):(?![|:])\s*(.*)")  # C:| is a note at the end of a repeat
 _NAME = re.compile(r'(?:name|nm)="([^"]*)"')
 
 
@@ -85,7 +85,7 @@ class _Tune:
         self._title = ""
         self._in_music = False
         self._now: VoiceReader | None = None
-        self._shortcuts: dict[str, str] = {}
+        self._shortcuts = dict(SHORTCUTS)
 
     def read(self, lines: Sequence[str]) -> Written:
         for written in lines:
@@ -116,7 +116,7 @@ class _Tune:
         if name not in self._voices:
             if len(self._voices) >= MOST_PARTS:
                 raise ScoreError(f"has more than {MOST_PARTS} voices")
-            voice = VoiceReader(self._unknown, self._warnings)
+            voice = VoiceReader(self._unknown, self._warnings, self._shortcuts)
             metre = next((metre_of(text) for key, text in self._defaults[::-1] if key == "M"), None)
             if metre is not None and metre < 3:
                 voice.unit = Fraction(1, 4)
@@ -124,7 +124,6 @@ class _Tune:
                 for letter, text in self._defaults:
                     if letter == key and (key != "Q" or not self._voices):
                         voice.field(letter, text)
-            voice.shortcuts |= self._shortcuts
             self._voices[name] = voice
         self._now = self._voices[name]
         return self._now

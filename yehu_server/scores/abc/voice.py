@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from yehu_server.errors import ScoreError, one_line
@@ -51,13 +51,17 @@ NOTE_AT = TOKEN.groupindex["note"]  # its own groups follow
 
 
 class VoiceReader:
-    """Reads the music of a voice, line by line, into `bars`."""
+    """Reads the music of a voice, line by line, into `bars`.
 
-    def __init__(self, unknown: Counter[str], warnings: Counter[str]) -> None:
+    `shortcuts` are letters that stand for decorations; a field of the tune may change them.
+    """
+
+    def __init__(
+        self, unknown: Counter[str], warnings: Counter[str], shortcuts: Mapping[str, str]
+    ) -> None:
         self.bars: list[RawBar] = []
         self.unit = Fraction(1, 2)
-        self.shortcuts = dict(fields.SHORTCUTS)
-        self._unknown, self._warnings = unknown, warnings
+        self._unknown, self._warnings, self._shortcuts = unknown, warnings, shortcuts
         self._alters = dict.fromkeys(LETTERS, 0.0)
         self._fifths: int | None = 0
         self._octave = 0
@@ -153,7 +157,7 @@ class VoiceReader:
         elif kind == "sign":
             self._sign(found["sign"][1:-1])
         elif kind == "short":
-            self._sign(self.shortcuts.get(found["short"], found["short"]))
+            self._sign(self._shortcuts.get(found["short"], found["short"]))
         elif kind == "over":
             self._warnings["second voices over a bar (&) are not played"] += 1
             self._in_overlay = True

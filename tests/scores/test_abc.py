@@ -160,6 +160,18 @@ def test_a_field_gives_a_letter_another_meaning_within_the_music_too(read):
     assert marks == ["trill", "up-bow", "down-bow"]
 
 
+def test_a_key_may_name_accidentals(read):
+    for key, pitches in (
+        ("D exp _b ^f", [66.0, 70.0, 72.0]),
+        ("D Phr ^f", [66.0, 70.0, 72.0]),
+        ("D =c", [66.0, 71.0, 72.0]),
+        ("exp ^c", [65.0, 71.0, 73.0]),
+        ("F clef=bass middle=b", [65.0, 70.0, 72.0]),  # which are no accidentals
+    ):
+        notes = read(f"X:1\nL:1/4\nK:{key}\nFBc|").parts[0].notes
+        assert [note.pitch for note in notes] == pitches, key
+
+
 def test_a_line_may_begin_with_the_last_note_of_a_repeat(read):
     for music in ("M:C\nL:1/1\nK:C\n|:C|\nD:|\nE|", "M:C\nL:1/1\nK:C\n|:C|\nD::\nE:|"):
         pitches = [note.pitch for note in read(f"X:1\n{music}\n").parts[0].notes]

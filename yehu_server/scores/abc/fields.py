@@ -52,6 +52,7 @@ SILENT = frozenset({"thumb", "shortphrase", "mediumphrase", "longphrase", "5", "
 
 _KEY = re.compile(r"([A-G])([#b]?)\s*([A-Za-z]*)")
 _ACCIDENTAL = re.compile(r"(\^\^|\^|__|_|=)([A-Ga-g])")
+_CLEF = re.compile(r"\b(?:clef|middle|m|octave|transpose)=\S*")
 _OCTAVE = re.compile(r"octave=(-?\d)|(?:treble|bass|alto|tenor|soprano|clef=\S*?)([+-])8")
 _FRACTION = re.compile(r"(\d+)/(\d+)")
 
@@ -66,17 +67,19 @@ def key_of(text: str) -> tuple[int, dict[str, float], int] | None:
     word = text.split(maxsplit=1)[0] if text.split() else "none"
     if word in ("HP", "Hp"):
         fifths = 2
-    elif found is None:
-        if word not in ("none", "exp"):
-            return None
+    elif word == "none" or "exp" in text.split():  # of which the accidentals say all
         fifths = 0
+    elif found is None:
+        return None
     else:
         mode = found[3].lower()
         mode = "m" if mode == "m" else mode[:3]
         fifths = SHARPS.index(found[1]) - 1 + 7 * {"#": 1, "b": -1, "": 0}[found[2]]
         fifths += MODES.get(mode, 0)
     alters = {letter: float(key_alter(at, fifths)) for at, letter in enumerate(LETTERS)}
-    alters |= {letter.upper(): ALTERS[sign] for sign, letter in _ACCIDENTAL.findall(text)}
+    alters |= {
+        letter.upper(): ALTERS[sign] for sign, letter in _ACCIDENTAL.findall(_CLEF.sub("", text))
+    }
     return max(min(fifths, 7), -7), alters, shift
 
 

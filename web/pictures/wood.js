@@ -13,7 +13,7 @@ const MOST_NECK = 30; // px
 const APART = 0.55; // of the neck's half width: each string from the middle
 const LABELS = 66; // px at the soft side, with the names of notes
 const GRAINS = 5;
-const LEAST_FOR_SOFT = 260; // px across: else a button is there
+const LEAST_FOR_SOFT = 340; // px across: else a button is there
 const KEY = 22; // px, the side of a printed key
 
 /** Half the width of the neck, px. @param {Surface} surface */

@@ -94,6 +94,14 @@ def test_a_hand_that_is_late_by_a_thirtieth_is_written_in_quavers():
     assert alone.tempi[0].quarters_per_minute == 80.0
 
 
+def test_steady_notes_are_written_as_beats_or_halves_of_them():
+    for step in (0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.8, 1.0, 1.2):
+        heard = [Heard(step * at, step * (at + 1), 60.0, 80) for at in range(12)]
+        written, _ = written_of_seconds([("", heard)])
+        lengths = {note.length for note in written.parts[0].notes}
+        assert lengths <= {Fraction(1, 2), Fraction(1), Fraction(2)}, (step, lengths)
+
+
 def test_loudness_overlaps_and_keys_become_dynamics_slurs_and_signatures(tmp_path):
     loud = [50] * 4 + [96, 96, 112, 96] + [50, 52, 48, 50]
     notes = [(at, at + 1.02 - 0.1 * (at % 2), 69 + at % 3, loud[at]) for at in range(12)]

@@ -48,6 +48,8 @@ SHARE = 0.65  # of the time to the next note, from which a note is written up to
 OVERLAP = 0.002  # quarters that notes sound together, from which they are slurred
 STEP, ACCENT = 10.0, 12.0  # of velocity: to another dynamic, and of a single note
 TEMPI = range(60, 181)  # quarters a minute, among which that of a capture is sought
+# Costs of a tempo (semiquavers): of a quaver off the beat, half that of others; and of an octave.
+OFF_BEAT, UNUSUAL = 0.03, 0.02
 SAME_TEMPO = 0.01  # share
 LEFT_OUT = {"pitchwheel": "pitch bends", "aftertouch": "pressure", "polytouch": "pressure"}
 SELECTING = {0, 6, 32, 38, *range(96, 102), *range(120, 128)}  # of banks, parameters, modes
@@ -173,12 +175,18 @@ def written_of_seconds(
 
 
 def _tempo_of(begins: Sequence[float]) -> float:
-    """The tempo at which onsets lie nearest to semiquavers, of those alike the most usual."""
+    """The tempo at which onsets lie nearest to semiquavers.
+
+    Of those alike, that at which more of them are beats and quavers, and the most usual.
+    """
 
     def cost(tempo: int) -> float:
         places = [(begin - begins[0]) * tempo / 15.0 for begin in begins]
-        off = sum(abs(place - round(place)) for place in places) / len(places)
-        return off + 0.02 * abs(math.log2(tempo / notated.USUAL_TEMPO))
+        near = [round(place) for place in places]
+        off = sum(abs(place - at) for place, at in zip(places, near, strict=True))
+        odd = sum((at % 2 > 0) + (at % 4 > 0) for at in near)
+        usual = abs(math.log2(tempo / notated.USUAL_TEMPO))
+        return (off + OFF_BEAT * odd) / len(places) + UNUSUAL * usual
 
     return float(min(TEMPI, key=cost))
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import IN_PORT, MIDI, prepare_midi
@@ -22,6 +23,7 @@ class Leader:
     """The side of ``engine.instrument.Instrument`` that interprets what is posted."""
 
     rate = 48000.0
+    spec = InstrumentSpec(rate)
     seed = 0
     address = 0
     is_live = True

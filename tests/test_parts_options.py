@@ -11,6 +11,8 @@ from yehu_server.cli.serve_options import options_of
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.errors import YehuError
 from yehu_server.live.midi.routes import Route
+from yehu_server.playing.stringing import notes_of
+from yehu_server.util.files import shipped_folder
 
 
 def served(*words: str):
@@ -43,6 +45,16 @@ def test_each_part_has_its_own_mapping_preset_and_settings():
     volume = ("/playing/volume", 0.5)
     assert first.settings == second.settings == (volume,)
     assert third.settings == (volume, ("/room/pan", -0.25))
+
+
+def test_each_part_has_its_own_instrument():
+    erhu, ideal = (
+        str(shipped_folder("examples") / f"{name}.toml") for name in ("erhu", "ideal_string")
+    )
+    parts = served("--parts", "3", "--instrument", erhu, "--part-instrument", "2=" + ideal).parts
+    notes = [notes_of(part.quantities).ends for part in parts]
+    assert notes == [(62, 93), (65, 89), (62, 93)]
+    assert [str(part.files[-1]) for part in parts] == [erhu, ideal, erhu]
 
 
 def test_inputs_are_given_to_parts():
@@ -82,6 +94,7 @@ def test_mpe_is_of_the_parts_without_a_mapping_of_their_own():
         (["--parts", "2", "--part", "1=keys", "--part", "2=keys"], "named twice (1=keys)"),
         (["--parts", "2", "--part-mapping", "3=wind"], "--part-mapping 3=wind: no part 3"),
         (["--parts", "2", "--part-preset", "3=x"], "--part-preset 3=x: no part 3"),
+        (["--parts", "2", "--part-instrument", "2=none.toml"], "none.toml: "),
         (["--parts", "2", "--part-set", "3=/room/pan=0"], "no part 3"),
         (["--parts", "2", "--part-mapping", "2=nothing"], "part 2: no mapping 'nothing'"),
         (["--parts", "2", "--part-preset", "2=nothing"], "part 2: no preset 'nothing'"),

@@ -21,6 +21,7 @@ from yehu_server.util import __version__
 
 if TYPE_CHECKING:
     from yehu_server import body, plot
+    from yehu_server.api.compared import Comparison, compare
     from yehu_server.api.followed import Followed, follow
     from yehu_server.api.instrument import Instrument
     from yehu_server.api.notes import Note
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AudioWidget",
+    "Comparison",
     "Followed",
     "Instrument",
     "Note",
@@ -40,6 +42,7 @@ __all__ = [
     "YehuError",
     "__version__",
     "body",
+    "compare",
     "follow",
     "play",
     "plot",
@@ -50,6 +53,7 @@ __all__ = [
 
 _MODULES = {
     "AudioWidget": "api.playback",
+    "Comparison": "api.compared",
     "Followed": "api.followed",
     "Instrument": "api.instrument",
     "Note": "api.notes",
@@ -59,6 +63,7 @@ _MODULES = {
     "Sweep": "api.simulated",
     "YehuError": "errors",
     "body": "body",
+    "compare": "api.compared",
     "follow": "api.followed",
     "play": "api.playback",
     "plot": "plot",

@@ -20,7 +20,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from maps import KINDS, NEVER, Maps, bands, median, read
 from matplotlib.ticker import FormatStrFormatter
-from tables import STRINGS, named, write_tables
+from tables import STRINGS, Errors, named, write_tables
 
 from yehu_server.core.physics.quantities import measured_body
 from yehu_server.lab.plot.cells import (
@@ -69,7 +69,7 @@ def of_all_notes(strings: list[Maps], x: str, draw: Callable[[Any, Maps, int], A
     return figure, panels, image
 
 
-def regimes(strings: list[Maps], target: Path) -> None:
+def regimes(strings: list[Maps], target: Path, errors: str) -> None:
     """Draw Schelleng's diagram of every note on both strings."""
     names = strings[0].facts["regimes"]
     figure, *_ = of_all_notes(
@@ -80,10 +80,11 @@ def regimes(strings: list[Maps], target: Path) -> None:
     occurring = np.concatenate([np.unique(maps.regime) for maps in strings])
     handles = [*regime_patches(names, occurring), *limit_lines()]
     figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
+    figure.suptitle(errors, fontsize=9)
     save(figure, target / "playability_schelleng.png")
 
 
-def onsets(strings: list[Maps], target: Path) -> None:
+def onsets(strings: list[Maps], target: Path, errors: str) -> None:
     """Draw Guettler's diagram of every note on both strings."""
 
     def draw(axes: Any, maps: Maps, i: int) -> Any:
@@ -92,6 +93,7 @@ def onsets(strings: list[Maps], target: Path) -> None:
 
     figure, panels, image = of_all_notes(strings, "acceleration", draw)
     figure.colorbar(image, ax=panels, label=f"{PERIODS}; grey: never", aspect=50, pad=0.01)
+    figure.suptitle(errors, fontsize=9)
     save(figure, target / "playability_guettler.png")
 
 
@@ -121,7 +123,7 @@ def forces(strings: list[Maps], target: Path) -> None:
     save(figure, target / "playability_forces.png")
 
 
-def repeats(both: list[Maps], target: Path) -> None:
+def repeats(both: list[Maps], target: Path, errors: str) -> None:
     """Draw how many of the bows make Helmholtz motion, and on how many cells they agree."""
     figure, panels = plt.subplots(
         1, len(both), figsize=(11, 4.6), layout="constrained", squeeze=False
@@ -133,6 +135,7 @@ def repeats(both: list[Maps], target: Path) -> None:
         title = maps.facts["about"].rpartition(", ")[2]
         axes.set(title=title, xlabel=LABELS["position"], ylabel=LABELS["force"])
     figure.colorbar(image, ax=panels, label="share of sixteen bows in Helmholtz motion")
+    figure.suptitle(errors, fontsize=9)
     save(figure, target / "playability_repeats.png")
 
 
@@ -145,14 +148,15 @@ def save(figure: Any, path: Path) -> None:
 def main() -> None:
     """Draw all figures, and write all tables."""
     target = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "figures"
-    found = {
+    found: dict[str, list[Maps]] = {
         kind: [maps for maps in (read(f"{kind}_{i}") for i in (1, 2)) if maps is not None]
         for kind in KINDS
     }
-    regimes(found["schelleng"], target)
-    onsets(found["guettler"], target)
+    errors = Errors.of(found["repeats"]).text
+    regimes(found["schelleng"], target, errors)
+    onsets(found["guettler"], target, errors)
     forces(found["schelleng"], target)
-    repeats(found["repeats"], target)
+    repeats(found["repeats"], target, errors)
     if len(sys.argv) == 1:
         write_tables(found)
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,17 +20,64 @@ SOON, PERFECT = 20, 5  # periods
 FAST = 3.0  # m/s^2
 BETA, NEAR = 0.13, 4  # where forces are compared, and cells about it
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "playability.md"
+VALIDATION = Path(__file__).resolve().parents[1] / "validation" / "results.json"
 MARK = "<!-- table {name} -->"
 
 
 def write_tables(found: Mapping[str, Sequence[Maps]]) -> None:
     """Write all tables that come of the maps."""
+    errors = Errors.of(found["repeats"])
     write_table("strokes", strokes(found))
-    write_table("schelleng", schelleng(found["schelleng"]))
-    write_table("notes", notes(found["schelleng"], found["guettler"]))
-    write_table("guettler", guettler(found["guettler"]))
+    write_table("schelleng", [*schelleng(found["schelleng"]), *errors.rows(1, 3)])
+    write_table("notes", [*notes(found["schelleng"], found["guettler"]), *errors.rows(1, 9)])
+    write_table("guettler", [*guettler(found["guettler"]), *errors.rows(1, 3)])
     write_table("repeats", repeats(found["repeats"]))
-    write_table("speeds", speeds(found["speeds"]))
+    write_table("speeds", [*speeds(found["speeds"]), *errors.rows(1, 4)])
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Error bars of a map's share of Helmholtz motion (points), and of its cells (share).
+
+    Those of the sample rate are of the four notes of docs/validation.md, 352.8 kHz in place of
+    44.1; that of the hair is the larger deviation of the maps made again with other bows.
+    """
+
+    by_rate: float
+    by_rate_at_most: float
+    by_hair: float
+    cells: float
+
+    @classmethod
+    def of(cls, repeated: Sequence[Maps]) -> Errors:
+        """The errors, by the measurements that are kept."""
+        notes = json.loads(VALIDATION.read_text("utf-8"))["convergence"].values()
+        maps = [{row["map"]: row for row in rows} for rows in notes]
+        shares = [
+            100.0 * abs(found["rate 44100"]["helmholtz"] - found["rate 352800"]["helmholtz"])
+            for found in maps
+        ]
+        hair = max(100.0 * each.helmholtz.mean(axis=(1, 2)).std(ddof=1) for each in repeated)
+        cells = 1.0 - np.mean([found["rate 44100"]["same"] for found in maps])
+        return cls(float(np.mean(shares)), max(shares), float(hair), float(cells))
+
+    @property
+    def text(self) -> str:
+        """The errors in a line."""
+        return (
+            f"error of a share of Helmholtz motion: ± {self.by_rate:.1f} points by the sample rate "
+            f"(at most {self.by_rate_at_most:.1f}), ± {self.by_hair:.1f} by other hair; at another "
+            f"rate {self.cells:.0%} of cells are of another regime"
+        )
+
+    def rows(self, at: int, columns: int) -> list[str]:
+        """Rows for the end of a table whose shares are in the columns from `at` on."""
+        told = (
+            ("error of a share, by the sample rate", f"± {self.by_rate:.1f} points"),
+            ("error of a share, by other hair", f"± {self.by_hair:.1f} points"),
+        )
+        rows = [[name, *[""] * (at - 1), bar, *[""] * (columns - at - 1)] for name, bar in told]
+        return table([], rows)[2:]
 
 
 def write_table(name: str, rows: Sequence[str]) -> None:

@@ -55,7 +55,7 @@ def test_a_body_of_files_is_fitted_drawn_kept_and_played(tmp_path):
         (lambda: yehu.body.fit("tap1.wav"), "measurement"),
         (lambda: yehu.body.read("tap1.wav"), "list of paths"),
         (lambda: yehu.body.fit(yehu.body.load().measurement), "nothing was measured"),
-        (lambda: yehu.body.fit(yehu.body.load().measurement, modes=17), "modes"),
+        (lambda: yehu.body.fit(yehu.body.load().measurement, modes=65), "modes"),
         (lambda: yehu.body.fit(yehu.body.load().measurement, band_hz=(1.0, np.nan)), "band_hz"),
     ],
 )

@@ -50,6 +50,8 @@ def test_the_public_names_are_these():
             "YehuError",
             "__version__",
             "body",
+            "Comparison",
+            "compare",
             "follow",
             "play",
             "plot",

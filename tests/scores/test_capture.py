@@ -749,14 +749,15 @@ def bowing_with(value: object) -> list:
 
 BODY = {item.name: getattr(USUAL, item.name) for item in fields(USUAL)}
 NO_BODIES = [
-    *({name: value} for name in BODY if name != "radiation_rate" for value in (None, [], "x", NAN)),
+    *({name: value} for name in BODY if name != "radiation_rate" for value in (None, "x", NAN)),
+    *({name: []} for name in ("frequency_hz", "mass", "damping")),
     {"mass": [*USUAL.mass, 0.1]},
     {"mass": [-1.0, *USUAL.mass[1:]]},
     {"frequency_hz": [0.0, *USUAL.frequency_hz[1:]]},
     {"damping": [-1e-9, *USUAL.damping[1:]]},
     {"sections": [[1.0, 1.0, 0.0, 1.1], *USUAL.sections[1:]]},
     {"sections": [[1.0, 1.0, 1.9, 0.1], *USUAL.sections[1:]]},
-    {"sections": USUAL.sections[1:]},
+    {"sections": [*USUAL.sections] * 3},
 ]
 
 

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from pitch import cents, pitch_of
 
+from yehu_server.core.player.note_range import YEHU
 from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
-from yehu_server.scores.written.mark_settings import HARMONICS
+from yehu_server.scores.written.mark_settings import harmonics_of
 from yehu_server.scores.written.notated import Mark, Note, Part, Sign, Tempo, Written
 from yehu_server.scores.written.performed import performed
 
@@ -29,7 +30,7 @@ def sound(*notes, signs=()) -> tuple[np.ndarray, Performance]:
     return np.concatenate(list(performance.blocks())), performance
 
 
-@pytest.mark.parametrize("pitch", HARMONICS, ids=NAMES.get)
+@pytest.mark.parametrize("pitch", harmonics_of(YEHU), ids=NAMES.get)
 def test_a_harmonic_speaks_within_10_cents_of_its_pitch(pitch):
     samples, _ = sound((pitch, "harmonic"))
     heard = pitch_of(samples[int(0.5 * RATE) : int(0.9 * RATE)], RATE)

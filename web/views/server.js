@@ -5,6 +5,7 @@
 
 import facts from "../facts.js";
 import { find, make, makeChoice, section, words } from "../elements.js";
+import { nameOf } from "../hands/scale.js";
 import { TABLE } from "../playing/table.js";
 import { remember, settings } from "../settings.js";
 import { ServerConnection } from "../sound/server_connection.js";
@@ -14,6 +15,9 @@ import { onLanguage, translate } from "../i18n.js";
 
 /** @type {Way[]} */
 const WAYS = ["here", "there", "listen"];
+const { LOWEST_NOTE, HIGHEST_NOTE } = facts.notes;
+/** Whether this page, which is a yehu where it sounds by itself, has the notes of the server. */
+const IS_ALIKE = facts.notesHere[0] === LOWEST_NOTE && facts.notesHere[1] === HIGHEST_NOTE;
 const LOOKED_MS = 1000; // a server that is away is not waited for any longer
 
 /** The choice, and the state of the server. @param {Instrument} instrument */
@@ -59,10 +63,12 @@ export function showServer(instrument) {
     return sound;
   }
 
+  const canBeHere = () => IS_ALIKE && line.status.sounds === "ready";
+
   function tell() {
     const { device, pages, sounds, parts } = line.status;
     choice.show(chosen ?? "");
-    choice.buttons[WAYS.indexOf("here")].disabled = sounds !== "ready";
+    choice.buttons[WAYS.indexOf("here")].disabled = !canBeHere();
     document.documentElement.dataset.role = line.status.role; // hides what the owner alone may do
     about.textContent = chosen ? translate(`way.${chosen}.about`) : "";
     if (line.status.role !== "own") {
@@ -77,16 +83,18 @@ export function showServer(instrument) {
     const told = [
       device ? translate("server.device", { device }) : translate("server.silent"),
       translate("server.pages", { count: pages }),
-      own[sounds],
+      IS_ALIKE
+        ? own[sounds]
+        : translate("server.other", { low: nameOf(LOWEST_NOTE), high: nameOf(HIGHEST_NOTE) }),
     ];
     state.textContent = line.isOpen ? told.filter(Boolean).join(" ") : translate("server.gone");
   }
 
   line.addEventListener("status", () => {
-    const { device, sounds } = line.status;
+    const { device } = line.status;
     if (chosen === null) {
       const first = WAYS.find((way) => way === settings.way) ?? (device ? "there" : "listen");
-      choose(first === "here" && sounds !== "ready" ? "there" : first);
+      choose(first === "here" && !canBeHere() ? "there" : first);
     } else if (chosen === "listen" && rate !== line.status.rate) {
       choose(chosen); // another server, at another rate
       instrument.start();

@@ -61,6 +61,8 @@ FIELDS = {
     "usual": (ANY, -MOST, MOST),
     "pitch": (ANY_OR_NONE, -MOST, MOST),
     "policy": (WHOLE, 0, SKIP),
+    "lowest": (ANY, -MOST, MOST),
+    "highest": (ANY, -MOST, MOST),
     "received": (WHOLE, -1, (1 << IN_PORT) - 1),
     "has_program": (WHOLE, 0, 1),
     "program_row": (WHOLE_OR_NONE, 0, ROWS - 1),

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 from yehu_server.api.checks import PathLike, number, path_of, whole
-from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS
+from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS, USUAL_SECTIONS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 from yehu_server.lab.body.body_file import Fit, bare_fit, read_fit
@@ -102,7 +102,7 @@ def fit(
     *,
     band_hz: tuple[float, float] | None = None,
     modes: int | None = None,
-    sections: int = MAX_SECTIONS,
+    sections: int = USUAL_SECTIONS,
 ) -> Body:
     """Fit a body: bridge modes to the admittance, sections to the radiation.
 
@@ -116,9 +116,9 @@ def fit(
         Lowest and highest frequency to be met; by default from 100 Hz to where the hammer stops
         to excite, at most 8 kHz.
     modes : int, optional
-        Number of bridge modes; by default as many as the measurement shows, at most 16.
+        Number of bridge modes; by default as many as the measurement shows, at most 64.
     sections : int
-        Number of sections of the radiation, at most 32.
+        Number of sections of the radiation, at most 64; by default at most 32.
 
     Raises
     ------

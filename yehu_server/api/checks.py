@@ -20,7 +20,7 @@ from yehu_server.lab.body.body_file import Fit
 from yehu_server.params.table import find
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.practice_files import read_practice
+from yehu_server.playing.practice_files import practice_beside
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 
@@ -165,8 +165,8 @@ def playing_setup_of(
         tuning=EQUAL if tuning is None else read_tuning(path_of(tuning, "tuning")),
         policy=RangePolicy(out_of_range),
         seed=whole(seed, "seed", 0, most),
-        bowing=None if practice is None else read_practice(path_of(practice, "practice")),
-        practice=None if practice is None else path_of(practice, "practice"),
     )
     quantities = quantities_of(instrument)
-    return PlayingSetup(rate, quantities, playing.for_instrument(quantities))
+    beside = Path(instrument) if isinstance(instrument, str | os.PathLike) else None
+    own = practice_beside(beside) if practice is None else path_of(practice, "practice")
+    return PlayingSetup(rate, quantities, playing.practised(own))

@@ -171,8 +171,7 @@ class Instrument:
     @property
     def pitch(self) -> float | None:
         """The pitch that is played (fractional MIDI note); None in silence."""
-        pitch = self._wishes.pitch
-        return None if pitch is None else pitch + self._playing.higher
+        return self._wishes.pitch
 
     # -- notes ---------------------------------------------------------------------------------
 
@@ -195,7 +194,7 @@ class Instrument:
         ParameterError
             Where one is out of range, or the time is over.
         """
-        pitch = playable(note, self._playing.higher)
+        pitch = playable(note, self._wishes.notes)
         struck = number(velocity, "velocity", 0.0, 127.0) / 127.0
         values = {"/playing/velocity": struck}
         self._wishes.note_on(Key(CHANNEL, pitch), values, frame=self._frame(at))
@@ -217,8 +216,7 @@ class Instrument:
 
     def slide(self, note: str | float, *, at: float | None = None) -> None:
         """Slide the finger to a pitch: that of the sounding note, or of a bow drawn by hand."""
-        higher = self._playing.higher
-        self._wishes.slide(playable(note, higher) - higher, frame=self._frame(at))
+        self._wishes.slide(playable(note, self._wishes.notes), frame=self._frame(at))
         self._check()
 
     def bend(self, semitones: float, *, at: float | None = None) -> None:

@@ -12,7 +12,8 @@ import mido
 import numpy as np
 
 from yehu_server.api.checks import number
-from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
+from yehu_server.core.player.fingering import OPEN_WITHIN
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.playing.stringing import range_text
 from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, Setting
@@ -52,17 +53,15 @@ def pitch_of(note: str | float) -> float:
     return pitch
 
 
-def playable(note: str | float, higher: int = 0) -> float:
-    """Return the pitch of a note of the instrument; see `pitch_of`.
+def playable(note: str | float, notes: NoteRange = YEHU) -> float:
+    """Return the pitch of a note of an instrument that has some notes; see `pitch_of`.
 
     Raises ParameterError where it is out of the instrument's range.
-
-    `higher`: semitones by which its strings are tuned higher than a yehu's.
     """
     pitch = pitch_of(note)
-    lowest, highest = LOWEST_NOTE + higher, HIGHEST_NOTE + higher
+    lowest, highest = notes.ends
     if not lowest - OPEN_WITHIN < pitch < highest + OPEN_WITHIN:
-        ends = f"{range_text(higher)} ({lowest} to {highest})"
+        ends = f"{range_text(notes)} ({lowest} to {highest})"
         raise ParameterError(f"{note}: the instrument plays {ends}")
     return pitch
 

@@ -25,6 +25,7 @@ from yehu_server.api.playback import AudioWidget, Subtype, write_sound
 from yehu_server.errors import ParameterError
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT
+from yehu_server.playing.stringing import notes_of
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
@@ -221,7 +222,7 @@ def render(
         all_parts=channels is not None,
         in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
         is_mpe=playing.mapping.mpe,
-        higher=playing.higher,
+        within=notes_of(make.quantities),
     )
     if isinstance(score, Score):
         read = score

@@ -172,7 +172,8 @@ def add_instrument(parser: argparse.ArgumentParser) -> None:
     """Add the option that names an instrument file."""
     add_options(
         parser,
-        "--instrument FILE: a TOML or JSON file of physical quantities to change",
+        "--instrument FILE: a TOML or JSON file of any two-stringed fiddle: what it has other than "
+        "a yehu, such as strings (docs/physics.md)",
         instrument=Path,
     )
 

@@ -49,6 +49,7 @@ def players_of(
     """
     from yehu_server.core.physics.quantities import read_quantities
     from yehu_server.playing.parts import seated
+    from yehu_server.playing.practice_files import practice_beside
     from yehu_server.scores.reading import percussion_notes
 
     room: Values = ()
@@ -71,11 +72,14 @@ def players_of(
                 room = room_of(ensemble.room_name, playing.presets)
         files.append(ensemble.path)
     per_part = seated([_options_of(entry, playing, room) for entry in entries])
-    for entry, own in zip(entries, per_part, strict=True):
-        instrument = quantities
+    for entry, usual in zip(entries, per_part, strict=True):
+        instrument, own = quantities, usual
         if entry.instrument is not None:
             with _at(entry.where):
                 instrument = read_quantities(entry.instrument)
+            if arguments.practice is None:
+                own = replace(own, bowing=None, practice=None)
+                own = own.practised(practice_beside(entry.instrument))
             files.append(entry.instrument)
         files += own.files
         part = _part(entry, scores, instrument, phrasing, arguments)

@@ -97,6 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.following.performance import STYLES as ALL
     from yehu_server.following.performance import Wanted, performed
     from yehu_server.following.recording import need_follow, recording_of_file
+    from yehu_server.playing.stringing import notes_of, range_text
 
     start = time.perf_counter()
     need_follow("follow")
@@ -111,6 +112,7 @@ def run(arguments: argparse.Namespace) -> int:
         style=ALL[arguments.style],
         tuning=options.playing.tuning,
         a4=options.playing.a4,
+        within=notes_of(options.quantities),
     )
     found = performed(heard, strokes_of(heard), wanted)
     for warning in heard.warnings:
@@ -123,6 +125,7 @@ def run(arguments: argparse.Namespace) -> int:
         "strokes": found.strokes,
         "transposed": found.semitones,
         "notes_moved": found.notes_moved,
+        "range": range_text(wanted.within),
         "warnings": list(heard.warnings),
         "elapsed_s": time.perf_counter() - start,
     }

@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import copy
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_options
+from yehu_server.cli.arguments import add_instrument, add_options, instrument_of
 from yehu_server.cli.converters import whole_within
 from yehu_server.cli.playing_options import mapping_of, playing_options_of
 from yehu_server.cli.terminal import warn
@@ -27,6 +28,7 @@ MOST = 16  # engine.rig.MOST_PARTS, which takes a second to import
 
 def add_parts(group: Any) -> None:
     """Add the options to a group of a parser."""
+    add_instrument(group)
     add_options(
         group,
         f"""
@@ -35,6 +37,8 @@ def add_parts(group: Any) -> None:
             one channel of them; may be repeated (default: the first input plays part 1, the second
             part 2, ...)
         --part-mapping N=FILE ...: mapping of part N (default: that of --mapping); may be repeated
+        --part-instrument N=FILE ...: instrument of part N (default: that of --instrument); may be
+            repeated
         --part-preset N=NAME ...: sound that part N starts with (default: that of --preset); may be
             repeated
         --part-set N=ADDRESS=VALUE ...: hold a parameter of part N, such as 2=/room/pan=-0.5; may be
@@ -44,6 +48,7 @@ def add_parts(group: Any) -> None:
         parts={"type": whole_within(1, MOST, f"parts: a stage has 1 to {MOST}"), "default": 1},
         part=_numbered,
         part_mapping=_numbered,
+        part_instrument=_numbered,
         part_preset=_numbered,
         part_set=_numbered,
     )
@@ -54,18 +59,20 @@ def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
     from yehu_server.live.options import PartOptions
     from yehu_server.playing.parts import number_of_instruments
 
-    for option in ("part_mapping", "part_preset", "part_set"):
+    for option in ("part_mapping", "part_instrument", "part_preset", "part_set"):
         for number, text in getattr(arguments, option):
             if not 1 <= number <= arguments.parts:
                 name = f"--{option.replace('_', '-')} {number}={text}"
                 raise ParameterError(f"{name}: {no_part(number, arguments.parts)}")
     usual = playing_options_of(arguments, is_live=True)
+    usual_instrument = instrument_of(arguments)
     options = []
     for number in range(1, arguments.parts + 1):
         own = _own(arguments, number)
         playing = usual if own is None else _options_of(own, number)
         reread = partial(mapping_of, own or arguments, is_live=True) if arguments.watch else None
-        options.append(PartOptions(playing, reread))
+        strung = usual_instrument if own is None else instrument_of(own)
+        options.append(PartOptions(playing, strung, (own or arguments).instrument, reread))
     number_of_instruments([part.playing for part in options])
     return options
 
@@ -88,18 +95,25 @@ def routes_of(arguments: argparse.Namespace, parts: Sequence[PartOptions]) -> li
 
 def _own(arguments: argparse.Namespace, number: int) -> argparse.Namespace | None:
     """The arguments of a part; None where it has none of its own."""
-    mapping, preset, settings = (
+    mapping, instrument, preset, settings = (
         [text for part, text in given if part == number]
-        for given in (arguments.part_mapping, arguments.part_preset, arguments.part_set)
+        for given in (
+            arguments.part_mapping,
+            arguments.part_instrument,
+            arguments.part_preset,
+            arguments.part_set,
+        )
     )
-    if not (mapping or preset or settings):
+    if not (mapping or instrument or preset or settings):
         return None
     own = copy.copy(arguments)
-    for option, given in (("mapping", mapping), ("preset", preset)):
+    for option, given in (("mapping", mapping), ("instrument", instrument), ("preset", preset)):
         if len(given) > 1:
             raise ParameterError(f"--part-{option}: part {number} has two, {', '.join(given)}")
     if mapping:
         own.mapping, own.mpe = mapping[0], False
+    if instrument:
+        own.instrument = Path(instrument[0])
     if preset:
         own.preset = preset[0]
     own.set = [*arguments.set, *settings]

@@ -25,11 +25,12 @@ def add_playing(group: Any) -> None:
     add_options(
         group,
         """
-        --practice FILE: how notes are bowed: what yehu-server practise wrote (default: as shipped)
+        --practice FILE: how notes are bowed: what yehu-server practise wrote (default:
+            NAME.practice.json beside an instrument file NAME.toml, or as shipped)
         --set ADDRESS=VALUE ...: hold a parameter at a value, such as /playing/bow_position=0.1; may
             be repeated
-        --open-strings: when C5 is played on the open outer string, not on the inner one (default:
-            always)
+        --open-strings: when the note of the open outer string, C5 of a yehu, is played on that, not
+            on the inner one (default: always)
         --seed N: seed of the random variation between notes, 0 to 65535 (default: 0)
         """,
         practice=Path,
@@ -61,7 +62,8 @@ def add_tables(group: Any) -> None:
     add_tuning(group)
     add_options(
         group,
-        "--range: what happens to notes outside F4 to F6 (default: transpose, by octaves)",
+        "--range: what happens to notes outside those of the instrument, F4 to F6 of a yehu "
+        "(default: transpose, by octaves)",
         range={"choices": ("transpose", "clamp", "skip"), "default": "transpose"},
     )
 
@@ -111,16 +113,15 @@ def add_presets_folder(group: Any) -> None:
 def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
     """What the options of `add_playing` ask for, as `table_options_of`; raises YehuError."""
     from yehu_server.core.player.fingering import OpenStrings
-    from yehu_server.playing.practice_files import read_practice
+    from yehu_server.playing.practice_files import practice_beside
 
-    return replace(
+    playing = replace(
         table_options_of(arguments, is_live=is_live),
         settings=tuple(assignment(text) for text in arguments.set),
         open_strings=OpenStrings(arguments.open_strings),
         seed=arguments.seed,
-        bowing=None if arguments.practice is None else read_practice(arguments.practice),
-        practice=arguments.practice,
     )
+    return playing.practised(arguments.practice or practice_beside(arguments.instrument))
 
 
 def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:

@@ -185,6 +185,8 @@ def _scores(arguments: argparse.Namespace, playing: PlayingOptions) -> list[Scor
     Raises DamagedError where --strict refuses one; ScoreError where one cannot be read, or they
     last too long together.
     """
+    from yehu_server.cli.arguments import instrument_of
+    from yehu_server.playing.stringing import notes_of
     from yehu_server.playing.tuning import RangePolicy
     from yehu_server.scores.reading import How, read_any
 
@@ -194,7 +196,7 @@ def _scores(arguments: argparse.Namespace, playing: PlayingOptions) -> list[Scor
         all_parts=arguments.ensemble is not None or arguments.channel is not None,
         in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
         is_mpe=playing.mapping.mpe,
-        higher=playing.higher,
+        within=notes_of(instrument_of(arguments)),
     )
     read = partial(read_any, song=arguments.song, strict=arguments.strict, max_duration_h=longest)
     scores = []

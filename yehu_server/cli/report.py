@@ -115,7 +115,8 @@ def follow_report(target: Path, fields: Mapping[str, Any]) -> str:
         )
         line += f", {by} {way}"
     if fields["notes_moved"]:
-        line += f"\n{counted(fields['notes_moved'], 'note')} outside F4 to F6, moved by octaves"
+        moved = counted(fields["notes_moved"], "note")
+        line += f"\n{moved} outside {fields['range']}, moved by octaves"
     return line
 
 

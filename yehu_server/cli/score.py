@@ -22,7 +22,9 @@ from yehu_server.cli.arguments import (
     add_action,
     add_actions,
     add_command,
+    add_instrument,
     add_options,
+    instrument_of,
     picture_output,
 )
 from yehu_server.cli.converters import number_within, positive, target
@@ -63,6 +65,7 @@ def add_to(commands: Any) -> None:
         plot=target,
         export_midi=target,
     )
+    add_instrument(show)
     write = add_action(actions, "write", _write, "write a score as MusicXML or jianpu")
     add_options(
         write,
@@ -101,6 +104,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
 def _plot(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.lab.plot.bowed_score import write_bowed_score
+    from yehu_server.playing.stringing import notes_of
     from yehu_server.scores.chosen_parts import numbers_of
     from yehu_server.scores.written.in_range import usual_parts
 
@@ -110,7 +114,8 @@ def _plot(arguments: argparse.Namespace, written: Written) -> None:
         numbers = numbers_of(written.names, asked) if asked else usual_parts(written)
         if not numbers or not written.parts[numbers[0]].notes:
             raise ScoreError("has no note to draw")
-    write_bowed_score(written, numbers[0], arguments.plot, overwrite=arguments.overwrite)
+    within = notes_of(instrument_of(arguments))
+    write_bowed_score(written, numbers[0], arguments.plot, within, overwrite=arguments.overwrite)
 
 
 def _write(arguments: argparse.Namespace) -> int:
@@ -146,13 +151,14 @@ def _write(arguments: argparse.Namespace) -> int:
 
 
 def _export(arguments: argparse.Namespace, written: Written) -> None:
+    from yehu_server.playing.stringing import notes_of
     from yehu_server.scores.midi_export import midi_file
     from yehu_server.scores.written.performed import performed
 
     output = arguments.export_midi
     check_distinct({"--export-midi": output}, [arguments.score])
     with naming(arguments.score):
-        score = performed(written)
+        score = performed(written, within=notes_of(instrument_of(arguments)))
     data, lost = midi_file(written, score)
     write_bytes(output, data, overwrite=arguments.overwrite)
     warn_of_lost(output, lost)

@@ -13,7 +13,12 @@ import time
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, add_options, add_reporting
+from yehu_server.cli.arguments import (
+    add_command,
+    add_instrument,
+    add_options,
+    add_reporting,
+)
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
 from yehu_server.errors import OutputError
@@ -40,6 +45,7 @@ def add_to(commands: Any) -> None:
         strings={"type": positive, "default": 0},
         output={"required": True, "type": target},
     )
+    add_instrument(parser)
     add_reporting(parser)
 
 
@@ -49,9 +55,10 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.lab.simulation import simulate
     from yehu_server.scores.gesture import read_gesture
 
-    gesture = read_gesture(arguments.gesture)
+    gesture = read_gesture(arguments.gesture, arguments.instrument)
     check_target(arguments.output)
-    check_distinct({"-o": arguments.output}, [arguments.gesture])
+    own = [] if arguments.instrument is None else [arguments.instrument]
+    check_distinct({"-o": arguments.output}, [arguments.gesture, *own])
     if arguments.output.suffix.lower() not in ("", ".npz"):
         raise OutputError(
             f"{arguments.output}: simulate writes arrays, not sound; name an .npz file"

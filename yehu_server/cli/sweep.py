@@ -23,6 +23,7 @@ from yehu_server.cli.arguments import (
     Parser,
     add_cluster,
     add_command,
+    add_instrument,
     add_options,
     add_reporting,
     cluster_of,
@@ -58,6 +59,7 @@ def add_to(commands: Any) -> None:
         strings={"type": positive, "default": 0},
         workers=positive,
     )
+    add_instrument(parser)
     add_cluster(parser)
     add_options(parser, "--overwrite: replace an earlier result, or begin anew")
     add_reporting(parser)
@@ -76,7 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
     )
     from yehu_server.lab.sweeps.study import read_study
 
-    study = read_study(arguments.study, [axis_of(text) for text in arguments.vary])
+    axes = [axis_of(text) for text in arguments.vary]
+    study = read_study(arguments.study, axes, arguments.instrument)
     check_free_result(arguments.output, overwrite=arguments.overwrite)
     if arguments.signals is not None:
         prepare_folder(study, arguments.signals, overwrite=arguments.overwrite)

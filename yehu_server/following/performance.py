@@ -13,7 +13,8 @@ from typing import Any
 import mido
 import numpy as np
 
-from yehu_server.core.player import fingering
+from yehu_server.core.player.fingering import OPEN_WITHIN
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.voice.deciding import dynamics_of
 from yehu_server.errors import ScoreError
 from yehu_server.following.frames import HOP_S
@@ -28,8 +29,8 @@ Array = Any
 BEND, DYNAMICS = "/playing/bend", "/playing/dynamics"
 ATTACK, STRING = "/playing/attack", "/playing/string"
 INNER = 1.0
-# A note about C5 that is not within so many semitones for most of its time is not played on the
-# open string.
+# A note about the open outer string that is not within so many semitones for most of its time is
+# not played on it.
 STILL, MOSTLY = 0.12, 0.8
 QUARTER_S = 0.5  # of the beats that the score counts
 VELOCITY = 80  # neutral: loudness is in the dynamics
@@ -64,6 +65,7 @@ class Wanted:
     style: Style = field(default_factory=Style)
     tuning: Tuning = EQUAL
     a4: float = STANDARD_A4  # Hz
+    within: NoteRange = YEHU  # the notes of the instrument
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ def performed(heard: Heard, strokes: list[Stroke], wanted: Wanted) -> Performed:
     sharper = 12.0 * math.log2(A4_HZ / wanted.a4)
     semitones = wanted.transpose
     if semitones is None:
-        semitones = _octaves(notes, sharper)
+        semitones = _octaves(notes, sharper, wanted.within)
     maker = _Maker(heard, wanted, sharper + semitones)
     for address, value in STILL_HANDS.items():
         maker.set(0, address, value)
@@ -98,17 +100,17 @@ def performed(heard: Heard, strokes: list[Stroke], wanted: Wanted) -> Performed:
     return Performed(score, semitones, len(notes), len(strokes), maker.moved)
 
 
-def _octaves(notes: list[HeardNote], sharper: float) -> float:
+def _octaves(notes: list[HeardNote], sharper: float, within: NoteRange) -> float:
     """The octaves (semitones) by which most of the notes come into range, as few as can be."""
     pitches = np.array([note.pitch for note in notes]) + sharper
     lengths = np.array([note.end - note.start for note in notes], np.float64)
     choices = sorted(range(-60, 61, 12), key=abs)
-    share = [lengths[_is_in_range(pitches + shift)].sum() for shift in choices]
+    share = [lengths[_is_in_range(pitches + shift, within)].sum() for shift in choices]
     return float(choices[int(np.argmax(share))])
 
 
-def _is_in_range(pitches: Array) -> Array:
-    return (pitches > fingering.LOWEST_NOTE - 0.5) & (pitches < fingering.HIGHEST_NOTE + 0.5)
+def _is_in_range(pitches: Array, within: NoteRange) -> Array:
+    return (pitches > within.lowest - 0.5) & (pitches < within.highest + 0.5)
 
 
 class _Maker:
@@ -164,9 +166,10 @@ class _Maker:
 
     def _choose_string(self, frame: int, pitch: Array) -> None:
         """Ask for the inner string where the open outer one would not follow a pitch."""
-        off = np.abs(pitch - fingering.SECOND_OPEN)
-        is_about = off.min() < fingering.OPEN_WITHIN and pitch.max() <= fingering.HIGHEST_ON_F
-        wanted = bool(is_about and np.quantile(off[off < fingering.OPEN_WITHIN], MOSTLY) > STILL)
+        within = self._wanted.within
+        off = np.abs(pitch - within.open_notes[1])
+        is_about = off.min() < OPEN_WITHIN and pitch.max() <= within.highest_notes[0]
+        wanted = bool(is_about and np.quantile(off[off < OPEN_WITHIN], MOSTLY) > STILL)
         if wanted != self._is_inner:
             self.set(frame, STRING, INNER if wanted else None)
             self._is_inner = wanted
@@ -187,14 +190,14 @@ class _Maker:
             moves.append(correct * (wanted - note.pitch - self._shift))
             pitch[part] += octaves
         pitch += np.interp(np.arange(len(pitch)), middles, moves)
-        return np.clip(pitch, fingering.LOWEST_NOTE, fingering.HIGHEST_NOTE)
+        return np.clip(pitch, *self._wanted.within.ends)
 
     def _fit(self, pitch: float) -> float:
         """The octaves (semitones) that bring a note into range."""
-        octaves = 0.0
-        while pitch + octaves <= fingering.LOWEST_NOTE - 0.5:
+        octaves, (lowest, highest) = 0.0, self._wanted.within.ends
+        while pitch + octaves <= lowest - 0.5:
             octaves += 12.0
-        while pitch + octaves >= fingering.HIGHEST_NOTE + 0.5:
+        while pitch + octaves >= highest + 0.5:
             octaves -= 12.0
         self.moved += octaves != 0.0
         return octaves

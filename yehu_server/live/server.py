@@ -8,7 +8,7 @@ import logging
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -16,6 +16,8 @@ from functools import partial
 from yehu_server.compile.jit import IS_PLAIN
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.warming import warm_up
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.calibration import Calibration
 from yehu_server.errors import YehuError
 from yehu_server.live.announce import Announcer, announced
 from yehu_server.live.audio.output import Output
@@ -23,7 +25,7 @@ from yehu_server.live.audio.recordings import Recordings
 from yehu_server.live.audio.voice_input import VoiceInput
 from yehu_server.live.housekeeper import Housekeeper, MappingFollower
 from yehu_server.live.midi.ports import MidiPorts
-from yehu_server.live.options import ServeOptions
+from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.osc.all_calls import more_calls
 from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.context import CallContext
@@ -81,10 +83,10 @@ class Server:
             undo.callback(self.output.end)
             warm_up()  # meanwhile the device is looked for
             rate = self.output.find()
-            calibration = calibration_for(rate, a4=per_part[0].a4, progress=progress)
+            tuned = _tuned(options.parts, rate, progress)
             memory = self.output.memory.buffer
             self.ensemble, instruments = assemble(
-                per_part, rate, calibration, memory=memory, has_room=options.has_room
+                per_part, rate, tuned, memory=memory, has_room=options.has_room
             )
             self.delay = Delay(self.instrument, options.output.blocksize, options.jitter_ms)
             delay_ms = 1e3 * self.delay.frames / rate
@@ -313,6 +315,17 @@ class Server:
         state = self.output.state
         delay_ms = 1e3 * self.player.delay / self.ensemble.rate
         return {"device": state.device, "latencyMs": state.latency_ms + delay_ms}
+
+
+def _tuned(
+    parts: Sequence[PartOptions], rate: float, progress: Progress | None
+) -> list[tuple[Calibration, Quantities]]:
+    """The calibration of each part's instrument, and what it is before it is tuned."""
+    calibrations = {
+        kind: calibration_for(rate, kind, a4=parts[0].playing.a4, progress=progress)
+        for kind in dict.fromkeys(part.quantities for part in parts)
+    }
+    return [(calibrations[part.quantities], part.quantities) for part in parts]
 
 
 def _sources(part: Part) -> PartSources:

@@ -45,6 +45,7 @@ from yehu_server.core.player.calibration import (
 from yehu_server.params.table import find
 from yehu_server.playing.pitch_and_level import SILENCE_DB, a_weighted_db, cents, pitch_hz
 from yehu_server.playing.practice_files import shipped_practice
+from yehu_server.playing.stringing import notes_of
 from yehu_server.util import PACKAGE
 from yehu_server.util.source_key import key_of
 
@@ -67,10 +68,15 @@ class _Setup:
     quantities: Quantities
     a4: float
     bowing: Array  # ndarray [shape=(STRINGS, NOTES, RECIPE)], at DEFAULT_PLACE
+    open_notes: tuple[int, int]
+
+    def above(self, string: int) -> int:
+        """Semitones by which a string is tuned higher than a yehu's, for which tables are."""
+        return self.open_notes[string] - OPEN_NOTES[string]
 
     def recipe_value(self, string: int, pitch: float, column: int) -> float:
         """One value of how a pitch is bowed on a string."""
-        return at_pitch(self.bowing[string], float(pitch), column)
+        return at_pitch(self.bowing[string], float(pitch - self.above(string)), column)
 
 
 def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
@@ -103,10 +109,18 @@ def calibrate(
     `bowing` (ndarray, optional): how notes are bowed; by default as practised for the nearest of
     the usual rates.
     `progress`: called with the number of notes done and of all notes.
+
+    Raises ParameterError where the strings are no two that a fiddle has.
     """
-    jobs = [(string, pitch) for string, pitches in enumerate(PITCHES) for pitch in pitches]
     bowing = shipped_practice(rate) if bowing is None else bowing
-    untuned = _Setup(rate, quantities, a4, bowing[:, PLACES.index(DEFAULT_PLACE)])
+    open_notes = notes_of(quantities).open_notes
+    usual = bowing[:, PLACES.index(DEFAULT_PLACE)]
+    untuned = _Setup(rate, quantities, a4, usual, open_notes)
+    jobs = [
+        (string, pitch + untuned.above(string))
+        for string, pitches in enumerate(PITCHES)
+        for pitch in pitches
+    ]
     rows: list[Any] = []
     with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
         first, second = workers.map(lambda i: _tension(untuned, i), (0, 1))
@@ -117,12 +131,12 @@ def calibrate(
             if progress is not None:
                 progress(done, len(jobs))
     sharpening, levels = [], []
-    for string, note in enumerate(OPEN_NOTES):
+    for string, note in enumerate(open_notes):
         own = np.array([row for (on, _), row in zip(jobs, rows, strict=True) if on == string])
         open_levels = [_bow(tuned, string, note, speed, None)[1] for speed in SPEEDS]
         sharpening.append(_completed(own[:, :, 0], USUAL_CENTS[string]))
         levels.append(_completed(np.vstack([open_levels, own[:, :, 1]]), SILENCE_DB))
-    return Calibration(a4, (first, second), tuple(sharpening), tuple(levels))
+    return Calibration(a4, (first, second), tuple(sharpening), tuple(levels), open_notes)
 
 
 def _bow(
@@ -164,7 +178,7 @@ def starting_tension(quantities: Quantities, a4: float, string: int) -> float:
 
 def _tension(setup: _Setup, string: int) -> float:
     """Tension (N) at which an open string is in tune."""
-    note = OPEN_NOTES[string]
+    note = setup.open_notes[string]
     target = frequency_hz(note, setup.a4)
     tension = starting_tension(setup.quantities, setup.a4, string)
     for _ in range(ROUNDS):

@@ -18,7 +18,7 @@ import numpy as np
 
 from yehu_server.compile.cache_folder import data_folder
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration, Tables
+from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration, Tables
 from yehu_server.errors import ParameterError
 from yehu_server.playing.calibration import (
     PLAUSIBLE_CENTS,
@@ -30,7 +30,6 @@ from yehu_server.playing.calibration import (
     starting_tension,
 )
 from yehu_server.playing.pitch_and_level import cents
-from yehu_server.playing.stringing import as_for_a_yehu, players_a4
 from yehu_server.util.files import read_text, why
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
@@ -41,6 +40,8 @@ SHIPPED = Path(__file__).parent / "calibrations.json"
 MOST_CENTS = ROUNDS * PLAUSIBLE_CENTS
 MOST_SHARPENING_CENTS = max(USUAL_CENTS) + len(SPEEDS) * MOST_CENTS
 MOST_LEVEL_DB = 200.0
+LEAST_N, MOST_N = 1.0, 500.0
+HIGHEST_KEY = 127
 
 
 def calibration_for(
@@ -53,8 +54,7 @@ def calibration_for(
     """Find the calibration of an instrument, or measure it, in some seconds.
 
     `rate`: sample rate (Hz).
-    `a4`: reference pitch (Hz) of the music; that of the player's tables is another where the
-    strings are tuned elsewhere than a yehu's (`stringing`).
+    `a4`: reference pitch (Hz).
     `progress`: called with the number of notes done and of all notes, where it is measured.
     """
     quantities = quantities or Quantities()
@@ -64,8 +64,7 @@ def calibration_for(
     path = data_folder() / f"calibration-{key}.json"
     found = _kept(path, quantities, a4)
     if found is None:
-        strung, own_a4 = as_for_a_yehu(quantities), players_a4(quantities, a4)
-        found = calibrate(rate, strung, a4=own_a4, progress=progress)
+        found = calibrate(rate, quantities, a4=a4, progress=progress)
         try:
             write_sealed(path, json.dumps(asdict(found)).encode())
         except OSError as error:
@@ -79,22 +78,35 @@ def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibratio
     Raises ParameterError where they are none, are for another pitch, or beyond what can be
     measured.
     """
-    try:
-        first, second = map(float, data["tensions"])
-        found = float(data["a4"])
-        sharpening = _tables(data["sharpening"], 0, -MOST_SHARPENING_CENTS, MOST_SHARPENING_CENTS)
-        levels = _tables(data["levels"], 1, -MOST_LEVEL_DB, MOST_LEVEL_DB)
-    except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise ParameterError("is not a calibration") from error
-    own_a4 = players_a4(quantities, a4)
-    if found != own_a4:
-        raise ParameterError(f"is for another A4, {found:g} Hz")
-    for i, tension in enumerate((first, second)):
+    found = read_measured(data)
+    if found.a4 != a4:
+        raise ParameterError(f"is for another A4, {found.a4:g} Hz")
+    for i, tension in enumerate(found.tensions):
         usual = starting_tension(quantities, a4, i)
         off = cents(tension, usual) / 2.0 if tension > 0.0 else math.inf
         if not abs(off) <= MOST_CENTS:
             raise ParameterError(f"has a tension of {tension:g} N where {usual:.3g} is usual")
-    return Calibration(own_a4, (first, second), sharpening, levels)
+    return found
+
+
+def read_measured(data: Any) -> Calibration:
+    """Read the JSON values of a calibration, of whatever instrument.
+
+    Raises ParameterError where they are none, or beyond what can be measured.
+    """
+    try:
+        first, second = map(float, data["tensions"])
+        inner, outer = map(int, data.get("open_notes", OPEN_NOTES))
+        a4 = float(data["a4"])
+        sharpening = _tables(data["sharpening"], 0, -MOST_SHARPENING_CENTS, MOST_SHARPENING_CENTS)
+        levels = _tables(data["levels"], 1, -MOST_LEVEL_DB, MOST_LEVEL_DB)
+    except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
+        raise ParameterError("is not a calibration") from error
+    if not LEAST_N <= min(first, second) <= max(first, second) <= MOST_N:  # also refuses NaN
+        raise ParameterError(f"has tensions of {first:g} and {second:g} N")
+    if not 0 <= inner < outer <= HIGHEST_KEY:
+        raise ParameterError(f"open strings of {inner} and {outer}: expected MIDI notes")
+    return Calibration(a4, (first, second), sharpening, levels, (inner, outer))
 
 
 def _tables(data: Any, more_rows: int, lo: float, hi: float) -> Tables:

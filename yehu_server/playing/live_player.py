@@ -15,6 +15,7 @@ import mido
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.midi.events import LEAVE
+from yehu_server.core.player.note_range import NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.bind import Bind
@@ -219,6 +220,11 @@ class LivePlayer:
         """Number of keys that are held."""
         with self._lock:
             return int(self._wishes.record["held"])
+
+    @property
+    def notes(self) -> NoteRange:
+        """The notes that the instrument has."""
+        return self._wishes.notes
 
     @property
     def pitch(self) -> float | None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.core.midi.tables import MOST_BINDS
-from yehu_server.core.player.fingering import LOWEST_NOTE
+from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.errors import MappingError, ParameterError
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.spec import Curve, Param

@@ -16,9 +16,8 @@ from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.velocity import NEUTRAL
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.midi_poster import MidiPoster
-from yehu_server.playing.practice_files import shipped_practice
+from yehu_server.playing.practice_files import read_practice, shipped_practice
 from yehu_server.playing.preset_folders import Presets
-from yehu_server.playing.stringing import higher_of
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning
 from yehu_server.playing.wishes import WishPoster
@@ -36,7 +35,6 @@ class PlayingOptions:
     `settings` (tuple of (address, value)): held parameters.
     `start` (tuple of (address, value)): the values of the preset.
     `preset`: the file of the preset.
-    `higher`: semitones by which the instrument is tuned higher than a yehu; the tuning counts them.
     """
 
     mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
@@ -52,13 +50,18 @@ class PlayingOptions:
     preset: Path | None = None
     bowing: Any = field(default=None, compare=False)  # how notes are bowed; None: as shipped
     practice: Path | None = None  # the file of `bowing`
-    higher: int = 0
 
-    def for_instrument(self, quantities: Quantities) -> PlayingOptions:
-        """The same options for an instrument, whose strings may be tuned elsewhere."""
-        more = higher_of(quantities) - self.higher
-        moved = self.tuning.moved(-more)
-        return replace(self, tuning=moved, higher=self.higher + more) if more else self
+    def practised(self, path: Path | None) -> PlayingOptions:
+        """The same options with notes bowed as a practice file says, unless another is asked for.
+
+        Raises
+        ------
+        YehuError
+            Where it cannot be read.
+        """
+        if path is None or self.bowing is not None:
+            return self
+        return replace(self, bowing=read_practice(path), practice=path)
 
     @property
     def files(self) -> tuple[Path, ...]:

@@ -28,24 +28,20 @@ from yehu_server.core.player.bowing import (
     DISTANCE_FACTOR,
     FIRST,
     FLAUTANDO,
+    LAST,
     LEAST_PRESS,
     PLACES,
     TOP_SPEED,
     default_recipes,
 )
 from yehu_server.core.player.calibration import OPEN_NOTES, Calibration
-from yehu_server.core.player.fingering import HIGHEST_NOTE, HIGHEST_ON_F, LOWEST_NOTE
+from yehu_server.core.player.note_range import LOWEST_NOTE, YEHU, NoteRange
 from yehu_server.params.table import find
 from yehu_server.playing.wishes import Key, WishPoster
 
 Array = Any
 Progress = Callable[[float, float], None]
 
-# The notes practised on each string; what is bent above the first's goes to the other.
-STOPS = (
-    *((0, note) for note in range(LOWEST_NOTE, math.ceil(HIGHEST_ON_F) + 1)),
-    *((1, note) for note in range(OPEN_NOTES[1], HIGHEST_NOTE + 1)),
-)
 DEFAULT = PLACES.index(find("/playing/bow_position").default)  # practised first
 SPEEDS, PRESSURES = (0.12, 0.16, 0.2, 0.25), (0.2, 0.3, 0.42, 0.55)
 QUICK = (0.2, 0.24)  # speeds (m/s) for which a light bow is practised
@@ -90,7 +86,8 @@ class Passage:
 class Search:
     """A note on a string, at one of PLACES, and the recipes that a search starts from.
 
-    `moved` is that of the default place, with the bow moved to here.
+    `note` is its name on a yehu, `notes` are those of the instrument; `moved` is that of the
+    default place, with the bow moved to here.
     """
 
     string: int
@@ -98,6 +95,17 @@ class Search:
     place: int
     start: Array
     moved: Array | None = None
+    notes: NoteRange = YEHU
+
+    @property
+    def above(self) -> int:
+        """Semitones by which it sounds higher than on a yehu."""
+        return self.notes.open_notes[self.string] - OPEN_NOTES[self.string]
+
+    @property
+    def sounds(self) -> int:
+        """The note that it is."""
+        return self.note + self.above
 
     @property
     def is_open(self) -> bool:
@@ -105,9 +113,9 @@ class Search:
         return self.note == OPEN_NOTES[self.string]
 
     @property
-    def is_high_on_f(self) -> bool:
-        """Whether it is played on the F string only where that is wished for, or near."""
-        return self.string == 0 and self.note >= OPEN_NOTES[1]
+    def is_high_on_inner(self) -> bool:
+        """Whether it is played on the inner string only where that is wished for, or near."""
+        return self.string == 0 and self.sounds >= self.notes.open_notes[1]
 
     def varied(
         self, recipe: Array, positions: Iterable[float], shares: Iterable[float]
@@ -144,7 +152,8 @@ class Practice:
         tuning: Callable[[float], float | None] = float,
     ) -> None:
         values = values or {}
-        self._pitches = pitches_near_notes(tuning)
+        self._notes = NoteRange.of(quantities, calibration)
+        self._pitches = pitches_near_notes(tuning, self._notes)
         self._rate = rate
         self._speeds: tuple[float, ...] = SPEEDS
         self._pressures: tuple[float, ...] = PRESSURES
@@ -176,15 +185,18 @@ class Practice:
         table = default_recipes() if table is None else table.copy()
         asked = [place for place in places if place in self._places]
         with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
-            for done, (string, note) in enumerate(STOPS, start=1):
+            stops = stops_of(self._notes)
+            for done, (string, note) in enumerate(stops, start=1):
                 for place in sorted(asked, key=lambda place: place != DEFAULT):
                     start = table[string, place, note - FIRST].copy()
                     moved = None if place == DEFAULT else _moved(table, string, note, place)
-                    found = self._best(Search(string, note, place, start, moved), workers)
+                    found = self._best(
+                        Search(string, note, place, start, moved, self._notes), workers
+                    )
                     self.notes_changed += int(np.any(found != start))
                     table[string, place, note - FIRST] = found
                 if progress is not None:
-                    progress(done, len(STOPS))
+                    progress(done, len(stops))
         table[0, :, : LOWEST_NOTE - FIRST] = table[0, :, LOWEST_NOTE - FIRST, None]
         return table
 
@@ -257,8 +269,8 @@ class Practice:
     def score(self, search: Search, recipe: Array, passages: Iterable[Passage]) -> float:
         """How well a note speaks in some passages: at best 1."""
         table = default_recipes()
-        pitch = self._pitches[search.note]
-        for row in {math.floor(pitch), math.ceil(pitch)}:
+        stopped = self._pitches[search.sounds] - search.above
+        for row in {math.floor(stopped), math.ceil(stopped)}:
             table[search.string, :, row - FIRST] = recipe
         spec = InstrumentSpec(self._rate, self._tuned, calibration=self._calibration, bowing=table)
         instrument = Instrument(spec)
@@ -268,7 +280,7 @@ class Practice:
         wishes.write("/playing/bow_length", 0.0)
         instrument.write("/bow/noise", 0.0, ramp_ms=0.0)
         wishes.write("/playing/bow_position", PLACES[search.place])
-        if search.is_high_on_f:
+        if search.is_high_on_inner:
             wishes.write("/playing/string", 1.0)
         speaks, off, count = 0.0, 0.0, 0
         for passage in passages:
@@ -288,7 +300,7 @@ class Practice:
             frames = start + instrument.frames(1e3 * seconds) - instrument.frame
             instrument.process(np.zeros(frames, np.float32))
 
-        before, note = passage.before, search.note
+        before, note = passage.before, search.sounds
         at = start + instrument.frames(1e3 * BEFORE_S)
         rest = instrument.frames(1e3 * passage.rest_s)
         wishes.write("/playing/speed", passage.speed, frame=start)
@@ -310,12 +322,26 @@ class Practice:
         return early, late, error
 
 
-def pitches_near_notes(tuning: Callable[[float], float | None]) -> dict[int, float]:
+def stops_of(notes: NoteRange) -> list[tuple[int, int]]:
+    """The notes practised on each string, by the names that they have on a yehu.
+
+    What is bent above the first's goes to the other.
+    """
+    return [
+        (string, note)
+        for string, (first, reach) in enumerate(zip(OPEN_NOTES, notes.reaches, strict=True))
+        for note in range(first, min(first + math.ceil(reach), LAST) + 1)
+    ]
+
+
+def pitches_near_notes(
+    tuning: Callable[[float], float | None], notes: NoteRange = YEHU
+) -> dict[int, float]:
     """The pitch of a tuning that is nearest to each note, within a quarter tone; else the note."""
     keys = (tuning(float(key)) for key in range(128))
     pitches = [pitch for pitch in keys if pitch is not None]
     found = {}
-    for note in range(LOWEST_NOTE, HIGHEST_NOTE + 1):
+    for note in range(notes.lowest, notes.highest + 1):
         nearest = min(pitches, key=lambda pitch: abs(pitch - note), default=float(note))
         found[note] = nearest if abs(nearest - note) <= HALF else float(note)
     return found
@@ -336,10 +362,11 @@ def _passages(
     pressures: tuple[float, ...],
 ) -> list[Passage]:
     chance = np.random.default_rng(seed)
-    highest = math.floor(HIGHEST_ON_F) if search.is_high_on_f else HIGHEST_NOTE
+    notes = search.notes
+    highest = math.floor(notes.highest_notes[0]) if search.is_high_on_inner else notes.highest
     # In turn, so that a few passages have them all.
     bows = chance.permutation([(speed, pressure) for speed in speeds for pressure in pressures])
-    befores = [note for note in range(LOWEST_NOTE, highest + 1) if note != search.note]
+    befores = [note for note in range(notes.lowest, highest + 1) if note != search.sounds]
     return [
         Passage(
             before=int(chance.choice(befores)),

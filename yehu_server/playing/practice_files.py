@@ -100,6 +100,12 @@ def read_practice(path: Path) -> Array:
         raise ParameterError(f"{path}: is not a practice ({error})") from error
 
 
+def practice_beside(instrument: Path | None) -> Path | None:
+    """The practice of an instrument file: beside it, of the same name and ``.practice.json``."""
+    path = None if instrument is None else instrument.with_suffix(".practice.json")
+    return path if path is not None and path.is_file() else None
+
+
 def write_practice(path: Path, table: Array, rate: float) -> None:
     """Write a practice file; raises OutputError where it cannot be written."""
     write_bytes(path, as_text(as_data(table, rate)).encode())

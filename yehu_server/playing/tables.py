@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.midi import tables
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.rows import ROW
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.spec import Curve
@@ -48,6 +49,7 @@ def make_tables(
     tuning: Tuning,
     a4: float,
     policy: RangePolicy,
+    notes: NoteRange = YEHU,
     received: Iterable[int] | None = None,
     programs: Mapping[int, Preset] | None = None,
 ) -> Array:
@@ -56,6 +58,7 @@ def make_tables(
     `mapping`: with no more binds and points than there is room for, as ``playing.mapping`` reads
     it.
     `start` (iterable of (address, value)): start values of parameters, over those of the mapping.
+    `notes`: those of the instrument.
     `received`: channels to receive, counted from 0; by default all but percussion.
     `programs`: the presets of MIDI programs, from 1. Without it program changes are ignored.
 
@@ -78,6 +81,7 @@ def make_tables(
     pitches = (tuning.pitch(float(key), a4) for key in KEYS)
     t["pitch"] = [math.nan if pitch is None else pitch for pitch in pitches]
     t["policy"] = policy.code
+    t["lowest"], t["highest"] = notes.ends
     t["received"] = -1 if received is None else sum(1 << channel for channel in set(received))
     _write_programs(t, programs)
     return made

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
 
 from yehu_server.compile.jit import uncompiled
 from yehu_server.core.midi import tables
 from yehu_server.core.midi.notes import fitted, pitch_of_key
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, shipped_folder, why
 
@@ -31,9 +32,9 @@ class RangePolicy(Enum):
         """What it is called in ``midi.tables``."""
         return int(getattr(tables, self.name))
 
-    def fit(self, note: float) -> float | None:
-        """Return the note to play for `note`, or None for none."""
-        playable = uncompiled(fitted)(self.code, note)
+    def fit(self, note: float, notes: NoteRange = YEHU) -> float | None:
+        """Return the note to play for `note` on an instrument with some notes, or None for none."""
+        playable = uncompiled(fitted)(self.code, *notes.ends, note)
         return None if math.isnan(playable) else playable
 
 
@@ -76,12 +77,6 @@ class Tuning:
         keys = self.keys or ()
         pairs = zip(keys, keys[12:], strict=False)
         return all(abs(b - a - 12.0) < 0.01 for a, b in pairs if a is not None and b is not None)
-
-    def moved(self, semitones: float) -> Tuning:
-        """The tuning whose keys all sound so many semitones higher."""
-        keys = self.keys or tuple(map(float, KEYS))
-        pitches = tuple(None if pitch is None else pitch + semitones for pitch in keys)
-        return replace(self, keys=pitches) if semitones else self
 
     def pitch(self, note: float, a4: float) -> float | None:
         """Return the pitch of a key as a fractional MIDI note relative to `a4` (Hz).

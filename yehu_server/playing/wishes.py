@@ -16,6 +16,7 @@ from yehu_server.core.midi.events import NOTE_ON, RELEASE_ALL, SET
 from yehu_server.core.midi.record import NONE, SECTION
 from yehu_server.core.midi.tables import plain_tables
 from yehu_server.core.player import wishes
+from yehu_server.core.player.note_range import NoteRange
 from yehu_server.core.player.rows import ROW
 from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, find
@@ -78,8 +79,13 @@ class WishPoster:
 
     def tables(self, mapping: Binds, **more: Any) -> Any:
         """Tables of a mapping with this part's tuning and range; `more` as of `make_tables`."""
-        tuning, a4, policy = self._tuning, self._a4, self.policy
-        return make_tables(mapping, self.controls, tuning=tuning, a4=a4, policy=policy, **more)
+        more |= {"tuning": self._tuning, "a4": self._a4, "policy": self.policy}
+        return make_tables(mapping, self.controls, notes=self.notes, **more)
+
+    @property
+    def notes(self) -> NoteRange:
+        """The notes that the instrument has."""
+        return self._instrument.spec.notes
 
     @property
     def instrument(self) -> Instrument:
@@ -236,7 +242,7 @@ class WishPoster:
     def has(self, key: Key) -> bool:
         """Whether the instrument has a note for a key."""
         tuned = self._tuning.pitch(key.note, self._a4)
-        return tuned is not None and self.policy.fit(tuned) is not None
+        return tuned is not None and self.policy.fit(tuned, self.notes) is not None
 
     def note_on(
         self,
@@ -291,7 +297,7 @@ class WishPoster:
 
         The sounding note slides; in silence, the finger waits there for the bow.
         """
-        pitch = RangePolicy.CLAMP.fit(pitch) or pitch
+        pitch = RangePolicy.CLAMP.fit(pitch, self.notes) or pitch
         self.post(wishes.SLIDE, frame, value=pitch)
         return pitch
 

@@ -28,9 +28,6 @@ class Part:
     calibration: Calibration | None = None  # by default looked up or measured
     gain_db: float | None = None  # by default that of the preset
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "playing", self.playing.for_instrument(self.quantities))
-
 
 @dataclass(frozen=True)
 class Options:
@@ -54,9 +51,6 @@ class Options:
     is_dry: bool = False  # without a room, and with a body that sounds alike to both sides
     is_mono: bool = False
     jobs: int | None = None  # number of cores; None: all
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "playing", self.playing.for_instrument(self.quantities))
 
     @property
     def sound_channels(self) -> int:

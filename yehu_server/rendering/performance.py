@@ -191,13 +191,10 @@ class Performance:
         return out.reshape(-1) if is_mono else out
 
     def _pitches(self) -> list[float | None]:
-        return [
-            _target_pitch(player.instruments[0], player.part.playing.higher)
-            for player in self.players
-        ]
+        return [_target_pitch(player.instruments[0]) for player in self.players]
 
 
-def _target_pitch(instrument: Instrument, higher: int) -> float | None:
+def _target_pitch(instrument: Instrument) -> float | None:
     """Return the pitch of the sounding key with its bend (fractional MIDI note), if one sounds.
 
     Meters tell it too, but only those of an instrument that the callback plays.
@@ -206,4 +203,4 @@ def _target_pitch(instrument: Instrument, higher: int) -> float | None:
     sounding = int(player["sounding"])
     if sounding < 0:
         return None
-    return float(player["held_pitch"][sounding] + player["value"][BEND]) + higher
+    return float(player["held_pitch"][sounding] + player["value"][BEND])

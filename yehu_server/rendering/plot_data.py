@@ -25,12 +25,21 @@ class PlotData:
 
     Rate and A4 are in Hz; the pitch of a sound is looked for where there is one voice. Between two
     columns there are `step` frames.
+    `step_s` sets their distance; by default it is such that there are not too many.
     """
 
-    def __init__(self, rate: float, duration_s: float, voices: int, a4: float = 440.0) -> None:
+    def __init__(
+        self,
+        rate: float,
+        duration_s: float,
+        voices: int,
+        a4: float = 440.0,
+        step_s: float | None = None,
+    ) -> None:
         self.rate, self.a4, self.voices = rate, a4, voices
         self.window = round(WINDOW_S * rate)
-        self.step = max(round(STEP_S * rate), math.ceil(duration_s * rate / COLUMNS))
+        usual = max(round(STEP_S * rate), math.ceil(duration_s * rate / COLUMNS))
+        self.step = usual if step_s is None else round(step_s * rate)
         self.rows = min(math.ceil(TOP_HZ * self.window / rate), self.window // 2)
         self._shape = np.hanning(self.window)
         self._kept = np.zeros(self.window // 2)  # half a window before the first column

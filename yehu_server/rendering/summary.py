@@ -77,7 +77,7 @@ def summary_of(
         rms=rms,
         notes_played=sum(part.notes_played for part in parts),
         notes_out_of_range=sum(part.notes_out_of_range for part in parts),
-        range=range_text(players[0].part.playing.higher),
+        range=range_text(players[0].wishes.notes),
         policy=players[0].part.playing.policy,
         unconverged_solves=sum(each.unconverged_solves for each in instruments),
         lost_states=performance.ensemble.lost_states,

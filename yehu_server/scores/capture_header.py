@@ -12,7 +12,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.layout import STRINGS
+from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS, STRINGS
 from yehu_server.core.physics.quantities import (
     Body,
     Quantities,
@@ -20,18 +20,20 @@ from yehu_server.core.physics.quantities import (
     measured_body,
     override,
 )
-from yehu_server.core.player.bowing import default_recipes
+from yehu_server.core.player.bowing import NOTES, default_recipes
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
-from yehu_server.playing.calibration_store import read_calibration
+from yehu_server.playing.calibration_store import read_measured
 from yehu_server.scores.capture_format import FORMAT, MOST_FRAMES, VERSION, build
 from yehu_server.scores.gesture import sample_rate
 from yehu_server.util.documents import Fields
 from yehu_server.util.values import brief, choice, flag, number, whole
 
 LOWEST_A4, HIGHEST_A4 = 1.0, 20000.0  # Hz
+
+FORMER_NOTES = 28  # in the tables of bowing of captures made when fiddles had fewer high notes
 
 
 @dataclass(frozen=True)
@@ -127,7 +129,7 @@ def read_header(table: Fields, version: int) -> SessionStart:
 
 
 def _tuned(tensions: Any) -> Quantities:
-    first, second = _floats(tensions, 2)
+    first, second = _floats(tensions, [2])
     return override(Quantities(), {"string_1": {"T": first}, "string_2": {"T": second}})
 
 
@@ -154,8 +156,8 @@ def _calibration(data: Any, before: Sequence[InstrumentSpec]) -> Calibration | N
         return None
     if type(data) is int:
         return before[whole(data, 1, len(before)) - 1].calibration
-    a4 = Fields(data).need("a4", number, LOWEST_A4, HIGHEST_A4)
-    return read_calibration(data, Quantities(), a4)
+    Fields(data).need("a4", number, LOWEST_A4, HIGHEST_A4)
+    return read_measured(data)
 
 
 def _bowing(data: Any, before: Sequence[InstrumentSpec]) -> Any:
@@ -167,6 +169,9 @@ def _bowing(data: Any, before: Sequence[InstrumentSpec]) -> Any:
         raise ParameterError(f"expected numbers, got {brief(data)}") from None
     if bowing.ndim == 3:  # of captures made when both strings were bowed by one table
         bowing = np.stack([bowing] * STRINGS)
+    if bowing.ndim == 4 and bowing.shape[2] == FORMER_NOTES:
+        highest = np.repeat(bowing[:, :, -1:], NOTES - FORMER_NOTES, axis=2)
+        bowing = np.concatenate([bowing, highest], axis=2)
     if bowing.shape != default_recipes().shape or not np.all(np.isfinite(bowing)):
         raise ParameterError("expected finite numbers for each string, place and note")
     return bowing
@@ -189,28 +194,29 @@ def _quantities(data: Any) -> Quantities:
 
 
 def _body(table: Fields) -> Body:
-    """A body with as many modes as the measured one, which is passive and stable."""
-    usual = measured_body()
+    """A body that is passive and stable."""
+    frequency_hz = table.need("frequency_hz", _floats, range(1, MAX_MODES + 1))
+    modes = [len(frequency_hz)]
     body = Body(
-        frequency_hz=table.need("frequency_hz", _floats, len(usual.frequency_hz)),
-        mass=table.need("mass", _floats, len(usual.mass)),
-        damping=table.need("damping", _floats, len(usual.damping)),
-        radiation_rate=usual.radiation_rate,
-        sections=table.need("sections", _sections, len(usual.sections)),
+        frequency_hz=frequency_hz,
+        mass=table.need("mass", _floats, modes),
+        damping=table.need("damping", _floats, modes),
+        radiation_rate=table.read("radiation_rate", number, measured_body().radiation_rate),
+        sections=table.need("sections", _sections),
         direct_gain=table.need("direct_gain", number),
     )
     check_body(body)
     return body
 
 
-def _sections(data: Any, count: int) -> tuple[tuple[float, float, float, float], ...]:
-    if not isinstance(data, list) or len(data) < count:
-        raise ParameterError(f"expected {count} lists of [b0, b1, a1, a2], got {brief(data)}")
-    rows = (_floats(row, 4) for row in data[:count])
-    return tuple((b0, b1, a1, a2) for b0, b1, a1, a2 in rows)
+def _sections(data: Any) -> tuple[tuple[float, float, float, float], ...]:
+    if not isinstance(data, list) or len(data) > MAX_SECTIONS:
+        raise ParameterError(f"expected lists of [b0, b1, a1, a2], got {brief(data)}")
+    return tuple((b0, b1, a1, a2) for b0, b1, a1, a2 in (_floats(row, [4]) for row in data))
 
 
-def _floats(data: Any, count: int) -> tuple[float, ...]:
-    if not isinstance(data, list) or len(data) != count:
-        raise ParameterError(f"expected {count} numbers, got {brief(data)}")
+def _floats(data: Any, counts: Sequence[int]) -> tuple[float, ...]:
+    if not isinstance(data, list) or len(data) not in counts:
+        number_of = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+        raise ParameterError(f"expected {number_of} numbers, got {brief(data)}")
     return tuple(map(number, data))

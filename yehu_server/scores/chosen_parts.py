@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
 from yehu_server.scores.octaves import Sounding, octaves_of
 from yehu_server.scores.phrasing import REST_S
@@ -108,11 +109,11 @@ def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
     return replace(score, events=tuple(events), parts=tuple(kept))
 
 
-def midi_in_range(score: Score, *, is_mpe: bool, higher: int = 0) -> Score:
+def midi_in_range(score: Score, *, is_mpe: bool, within: NoteRange = YEHU) -> Score:
     """Return a score of MIDI with each part moved by octaves into range, and a remark of that.
 
-    With `is_mpe` the notes of a part are on channels of their own, and all are one part. `higher`
-    counts semitones by which the instrument is tuned higher than a yehu.
+    With `is_mpe` the notes of a part are on channels of their own, and all are one part. The range
+    is that of `within`.
     """
     notes = notes_of(score)
     transposed = transposed_keys(score)
@@ -131,7 +132,7 @@ def midi_in_range(score: Score, *, is_mpe: bool, higher: int = 0) -> Score:
                 for note in own
             ],
             REST_S,
-            higher,
+            within,
         )
         if octaves.told:
             told.append((name, octaves.told))
@@ -151,7 +152,7 @@ def midi_in_range(score: Score, *, is_mpe: bool, higher: int = 0) -> Score:
             events.append(replace(event, message=message))
         else:
             events.append(event)
-    line = line_of([("" if len(by_part) == 1 else name, how) for name, how in told], higher)
+    line = line_of([("" if len(by_part) == 1 else name, how) for name, how in told], within)
     remarks = (*score.remarks, *filter(None, (line.replace(":  ", ": "),)))
     return replace(score, events=tuple(events), remarks=remarks)
 

@@ -104,14 +104,23 @@ class Gesture:
         return rows
 
 
-def read_gesture(path: Path) -> Gesture:
-    """Read a gesture file.
+def read_gesture(path: Path, instrument: Path | None = None) -> Gesture:
+    """Read a gesture file, for an instrument file where one is given.
 
     Raises ScoreError where it cannot be read or is not JSON; ParameterError where an entry is
     wrong.
     """
     document = Document(path, "a gesture file", unreadable=ScoreError).read(path, MOST_BYTES)
-    return gesture_from(document.json(), path.parent)
+    table = document.json()
+    return gesture_from(Fields(on_instrument(table.data, instrument), document), path.parent)
+
+
+def on_instrument(data: Mapping[str, Any], path: Path | None) -> Mapping[str, Any]:
+    """The data of a gesture or study, whose `instrument` is changed from that of a file."""
+    own = data.get("instrument", {})
+    if path is None or not isinstance(own, Mapping):
+        return data
+    return {**data, "instrument": {**own, "base": str(path.absolute())}}
 
 
 def gesture_from(data: Any, folder: Path = Path()) -> Gesture:

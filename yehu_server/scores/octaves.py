@@ -8,9 +8,10 @@ who moves each note by itself, as in live playing.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
+from yehu_server.core.player.fingering import OPEN_WITHIN
+from yehu_server.core.player.note_range import YEHU, NoteRange
 
 FARTHEST = 5  # octaves
 NUMBERS = ("", "an octave", "two octaves", "three octaves", "four octaves", "five octaves")
@@ -50,41 +51,37 @@ class Octaves:
         return ", ".join(words)
 
 
-def octaves_of(notes: Sequence[Sounding], rest: float, higher: int = 0) -> Octaves:
+def octaves_of(notes: Sequence[Sounding], rest: float, within: NoteRange = YEHU) -> Octaves:
     """Return by how many octaves each of some notes is moved.
 
     Notes come in the order of their beginnings. A silence of `rest`, in their unit, parts phrases;
-    the instrument is tuned `higher` than a yehu by so many semitones.
+    the instrument has the notes `within`.
     """
-    if higher:
-        notes = [
-            replace(note, pitches=tuple(pitch - higher for pitch in note.pitches)) for note in notes
-        ]
-    whole = _best(notes, 0)
+    whole = _best(notes, 0, within)
     phrases = _phrases(notes, rest)
     of_notes: list[int] = []
     others = outside = 0
     for phrase in phrases:
-        own = _best(phrase, whole) if _outside(phrase, whole) else whole
+        own = _best(phrase, whole, within) if _outside(phrase, whole, within) else whole
         others += own != whole
-        outside += _outside(phrase, own)
+        outside += _outside(phrase, own, within)
         of_notes += [own] * len(phrase)
     return Octaves(tuple(of_notes), whole, len(phrases), others, outside)
 
 
-def _best(notes: Sequence[Sounding], usual: int) -> int:
+def _best(notes: Sequence[Sounding], usual: int, within: NoteRange) -> int:
     """The octaves that leave the fewest notes outside, and of these the nearest to the usual."""
 
     def cost(octaves: int) -> tuple[int, int, int]:
-        return _outside(notes, octaves), abs(octaves - usual), -octaves
+        return _outside(notes, octaves, within), abs(octaves - usual), -octaves
 
     return min(range(-FARTHEST, FARTHEST + 1), key=cost)
 
 
-def _outside(notes: Sequence[Sounding], octaves: int) -> int:
+def _outside(notes: Sequence[Sounding], octaves: int, within: NoteRange) -> int:
     """How many notes are outside the range, moved by so many octaves."""
-    lowest = LOWEST_NOTE - OPEN_WITHIN - 12.0 * octaves
-    highest = HIGHEST_NOTE + OPEN_WITHIN - 12.0 * octaves
+    lowest = within.lowest - OPEN_WITHIN - 12.0 * octaves
+    highest = within.highest + OPEN_WITHIN - 12.0 * octaves
     return sum(not all(lowest < pitch < highest for pitch in note.pitches) for note in notes)
 
 

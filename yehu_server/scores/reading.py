@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.scores import chosen_parts
 from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, naming
@@ -110,7 +111,7 @@ class How:
     all_parts: bool = False
     in_range: bool = True  # whether parts are moved by octaves as a whole, to fit the instrument
     is_mpe: bool = False  # whether the channels of a MIDI file are notes, and not parts
-    higher: int = 0  # semitones by which the instrument is tuned higher than a yehu
+    within: NoteRange = YEHU  # the notes of the instrument
 
 
 USUAL = How()
@@ -158,10 +159,10 @@ def performed_part(written: Written, how: How = USUAL) -> Score:
         plays = usual_parts(written)
     remarks = [*written.remarks, chosen_parts.told_others(written, plays)]
     if how.in_range:
-        written, line = moved(written, plays, how.higher)
+        written, line = moved(written, plays, how.within)
         remarks.append(line)
     remarks = [*filter(None, remarks)]
-    return performed(replace(written, remarks=tuple(remarks)), plays)
+    return performed(replace(written, remarks=tuple(remarks)), plays, how.within)
 
 
 def _midi_played(score: Score, how: How) -> Score:
@@ -174,7 +175,7 @@ def _midi_played(score: Score, how: How) -> Score:
         return replace(score, remarks=(*score.remarks, line))
     if not how.in_range:
         return score
-    return chosen_parts.midi_in_range(score, is_mpe=how.is_mpe, higher=how.higher)
+    return chosen_parts.midi_in_range(score, is_mpe=how.is_mpe, within=how.within)
 
 
 def read_written(path: Path, song: int | None = None) -> Written:

@@ -8,7 +8,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.core.player.note_range import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.part_addresses import group as group_of_part
 from yehu_server.params.spec import Param

@@ -3,10 +3,16 @@
 The instrument and its limits are those of scripts/validation, of which docs/validation.md tells.
 """
 
+import math
 from pathlib import Path
 
 import pytest
 
+from yehu_server import simulate
+from yehu_server.core.physics.quantities import read_quantities
+from yehu_server.util.files import shipped_folder
+
+EXAMPLE = shipped_folder("examples") / "ideal_string.toml"
 SCRIPTS = Path(__file__).parents[3] / "scripts"
 
 
@@ -38,6 +44,26 @@ def test_the_least_force_on_a_dashpot_goes_as_beta_to_the_power_of_minus_2(ideal
     power = ideal.exponent(betas, [row["limit"] for row in found])
     assert power == pytest.approx(-2.0, abs=0.45)
     assert [row["reached"] for row in found] == pytest.approx([1.02, 1.02], abs=0.03)  # mu_S
+
+
+def test_a_pluck_of_the_shipped_ideal_string_decays_by_what_its_bridge_takes():
+    """A reflection from a dashpot R leaves (R - Z) / (R + Z) of a wave, once a period."""
+    string = read_quantities(EXAMPLE).string_1
+    run = simulate(
+        {
+            "duration": 0.22,
+            "instrument": {"base": str(EXAMPLE)},
+            "controls": {"press_force": 0.0},
+            "pluck": {"string": 1, "position": 0.1, "amplitude": 1e-3},
+        },
+        energy=True,
+    )
+    energy = run.arrays["energy"]
+    periods = 0.2 * math.sqrt(string.T / string.rho_A) / (2.0 * 0.3)
+    wave = math.sqrt(string.T * string.rho_A)
+    left = ((25.0 - wave) / (25.0 + wave)) ** (2.0 * periods)
+    found = energy[round(0.22 * 44100) - 1] / energy[round(0.02 * 44100)]
+    assert 10.0 * math.log10(found) == pytest.approx(10.0 * math.log10(left), rel=0.06)
 
 
 def test_the_page_has_what_was_measured(ideal):

@@ -126,7 +126,7 @@ def test_every_section_stays_stable_at_every_rate(heard):
 
 def test_a_body_with_too_many_sections_is_refused():
     body = Quantities().body
-    sections = body.sections * 2
+    sections = body.sections * 3
     crowded = Body(**{**body.__dict__, "sections": sections})
     with pytest.raises(ParameterError, match="radiation sections"):
         prepare_radiation(kernel.prepare(Quantities(), MEASURED_RATE)[0], crowded)

@@ -9,7 +9,7 @@ import pytest
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.core.player.note_range import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.core.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, KINDS, SLIDE, WRITE
 from yehu_server.params.table import SLOT, TABLE, find
 

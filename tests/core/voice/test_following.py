@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from yehu_server.core.engine.voice_callback import OF_WISH, follow_voice, voice_prepare
-from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.core.player.note_range import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.core.player.rows import DYNAMICS
 from yehu_server.core.player.wishes import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.voice.deciding import FOLLOWER

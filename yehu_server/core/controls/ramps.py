@@ -11,7 +11,6 @@ from yehu_server.compile.jit import compiled
 from yehu_server.core.controls.slots import (
     BALANCE,
     GAIN,
-    HIGHEST,
     LEVEL,
     LOSS,
     LOWEST,
@@ -65,7 +64,7 @@ def take(c: Any, index: int, target: float, ramp: int) -> None:
         return
     if index < 0 or index >= SLOTS or math.isnan(target):
         return
-    target = min(max(target, LOWEST[index]), HIGHEST[index])
+    target = min(max(target, LOWEST[index]), c.highest[index])
     c.target[index] = target
     if ramp <= 0:
         c.value[index] = target

@@ -12,6 +12,7 @@ from yehu_server.core.controls.ramps import DECIBELS, pole_of_time
 from yehu_server.core.controls.slots import (
     FINGER_POSITION,
     FINGER_PRESS,
+    HIGHEST,
     LOSS,
     PLUCK,
     SLOTS,
@@ -71,6 +72,7 @@ CONTROLS = np.dtype(
         ("follow", np.float64),
         ("park_after", np.int64),
         ("bridge_x", np.float64),
+        ("highest", np.float64, SLOTS),  # values of parameters on this instrument
         # 2 Z / (mu_S - mu_C) of each string; times v_b / beta it is Schelleng's upper limit.
         ("schelleng", np.float64, STRINGS),
         ("let_go", np.int64),  # frames
@@ -105,6 +107,9 @@ def prepare_controls(quantities: Quantities, rate: float, values: Mapping[str, f
     controls["let_go"] = max(1, round(LET_GO_S * rate))
     steady(controls)
     controls["bridge_x"] = quantities.bridge_x
+    controls["highest"] = HIGHEST
+    # Fingers reach as far up longer strings as up those of the yehu, for which the bound is.
+    controls["highest"][:, FINGER_POSITION] *= quantities.bridge_x / Quantities().bridge_x
     grip = quantities.bow.mu_S - quantities.bow.mu_C
     for i, string in enumerate(quantities.strings):
         impedance = math.sqrt(string.T * string.rho_A)

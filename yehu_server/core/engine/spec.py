@@ -10,6 +10,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import default_recipes
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
+from yehu_server.core.player.note_range import NoteRange
 from yehu_server.params.table import TABLE, find
 
 SEED = "/engine/seed"
@@ -50,6 +51,11 @@ class InstrumentSpec:
     start_values: Mapping[str, float] = field(default_factory=dict)
     body: int = 0
     person: int = 0
+
+    @property
+    def notes(self) -> NoteRange:
+        """The notes that it has."""
+        return NoteRange.of(self.quantities, self.calibration)
 
     @property
     def values(self) -> dict[str, float]:

@@ -22,7 +22,7 @@ from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE, Midi
 from yehu_server.core.midi.tables import CLAMP, KEYS, NOTE, SKIP, VELOCITY, Tables
 from yehu_server.core.midi.values import keep_targets_of
-from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
+from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.rows import ARTICULATION
 from yehu_server.params.articulations import ARTICULATIONS
 
@@ -50,19 +50,19 @@ def pitch_of_key(pitches: Any, key: float) -> float:
 
 
 @compiled_exactly
-def fitted(policy: int, note: float) -> float:
-    """The note to play for a note out of range; NaN for none.
+def fitted(policy: int, lowest: float, highest: float, note: float) -> float:
+    """The note to play for a note out of the range of an instrument; NaN for none.
 
     One that a tuning puts less than a quarter tone out of range is moved to its end.
     """
-    is_near = LOWEST_NOTE - OPEN_WITHIN < note < HIGHEST_NOTE + OPEN_WITHIN
+    is_near = lowest - OPEN_WITHIN < note < highest + OPEN_WITHIN
     if is_near or policy == CLAMP:
-        return float(min(max(note, LOWEST_NOTE), HIGHEST_NOTE))
+        return float(min(max(note, lowest), highest))
     if policy == SKIP or math.isnan(note):
         return math.nan
-    if note < LOWEST_NOTE:
-        return note + 12.0 * math.ceil((LOWEST_NOTE - note) / 12.0)
-    return note - 12.0 * math.ceil((note - HIGHEST_NOTE) / 12.0)
+    if note < lowest:
+        return note + 12.0 * math.ceil((lowest - note) / 12.0)
+    return note - 12.0 * math.ceil((note - highest) / 12.0)
 
 
 # -- keys ------------------------------------------------------------------------------------------
@@ -101,7 +101,7 @@ def note_on(
         wanted = key if t.is_equal != 0.0 else pitch_of_key(t.pitch, key)
         if is_midi(channel):
             wanted += m.coarse_tuning[channel] + m.fine_tuning[channel]
-    playable = fitted(int(t.policy), wanted)
+    playable = fitted(int(t.policy), t.lowest, t.highest, wanted)
     keep_targets_of(m, t, VELOCITY)
     keep_targets_of(m, t, NOTE)
     is_in_range = abs(playable - wanted) <= OPEN_WITHIN  # not where either is NaN

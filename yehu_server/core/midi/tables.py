@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from yehu_server.core.player.note_range import YEHU
 from yehu_server.core.player.rows import ROWS
 from yehu_server.params.table import TABLE
 
@@ -59,7 +60,10 @@ TABLES = np.dtype(
         # The tuning: pitches of keys, NaN for none; 1: each sounds its own number.
         ("is_equal", np.float64),
         ("pitch", np.float64, KEYS),
+        # What happens to notes that the instrument does not have, and its lowest and highest.
         ("policy", np.float64),
+        ("lowest", np.float64),
+        ("highest", np.float64),
         # A bit for each channel that is received; -1: all, but for percussion.
         ("received", np.float64),
         # Values of presets by program, in order: rows, and NaN for the end.
@@ -77,5 +81,6 @@ def plain_tables() -> Any:
     made = np.zeros(1, TABLES)
     made["usual"] = [param.default for param in TABLE]
     made["is_equal"], made["received"] = 1.0, -1.0
+    made["lowest"], made["highest"] = YEHU.ends
     made["program_row"] = made["first_switch"] = np.nan
     return made

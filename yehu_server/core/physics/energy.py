@@ -16,9 +16,9 @@ from yehu_server.core.physics.layout import (
     F_N,
     GHOST,
     LEVELS,
-    MAX_MODES,
     STRINGS,
     V_B,
+    whole_vectors,
 )
 from yehu_server.core.physics.pluck import pluck_power
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion, Work
@@ -84,7 +84,7 @@ def stored_energy(model: Model, s: Motion, next_: int, now: int) -> float:
         zeta_mean = 0.5 * (s.zeta[next_, i] + s.zeta[now, i])
         total += 0.5 * model.M_h * zeta_velocity**2 + 0.5 * model.K_h * zeta_mean**2
         total += 0.5 * model.epsilon_0 * s.z[i] ** 2
-    for m in range(MAX_MODES):
+    for m in range(whole_vectors(model.modes)):
         velocity = (s.q[next_, m] - s.q[now, m]) / k
         mean = 0.5 * (s.q[next_, m] + s.q[now, m])
         total += 0.5 * model.M_m[m] * velocity**2 + 0.5 * model.K_m[m] * mean**2
@@ -110,7 +110,7 @@ def book(model: Model, s: Motion, c: Contacts, w: Work, control: Array, row: Arr
         strings += string_loss(model, i, s.u[next_, i], s.u[prev, i])
         hair += model.R_h * ((s.zeta[next_, i] - s.zeta[prev, i]) / (2.0 * k)) ** 2
     bridge_velocity, Q = 0.0, 0.0
-    for m in range(MAX_MODES):
+    for m in range(whole_vectors(model.modes)):
         velocity = (s.q[next_, m] - s.q[prev, m]) / (2.0 * k)
         bridge += model.R_m[m] * velocity**2
         bridge_velocity += velocity

@@ -27,8 +27,8 @@ GHOST = 1  # points before l = 0, so that the stencil of D4 needs no special cas
 VECTOR = 8  # numbers worked on at once: two vectors of AVX2, one of AVX-512
 POINTS = MAX_INTERVALS + 2 * VECTOR
 LEVELS = 3  # u[n+1], u[n], u[n-1], taking turns
-MAX_MODES = 16
-MAX_SECTIONS = 32
+MAX_MODES = 64
+MAX_SECTIONS, USUAL_SECTIONS = 64, 32  # most bodies need no more than the usual
 MAX_TAPS = 12
 MAX_FINGERS = 4
 STENCIL = 4  # nodes that one contact touches (cubic interpolation)
@@ -138,6 +138,7 @@ MODEL = lined_up(
         ("K_lift", np.float64),
         ("R_lift", np.float64),
         # radiation
+        ("sections", np.uint8),
         ("b_0", np.float64, MAX_SECTIONS),
         ("b_1", np.float64, MAX_SECTIONS),
         ("a_1", np.float64, MAX_SECTIONS),

@@ -1,4 +1,4 @@
-"""From bridge force to radiated sound: 25 parallel second-order sections.
+"""From bridge force to radiated sound: parallel second-order sections, 25 of the measured body.
 
 [Yehu] section 4.3. The filter was measured at one sample rate; at others its poles are
 moved to the same frequencies and its numerators fitted to the same response.
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.layout import MAX_SECTIONS, MAX_TAPS
+from yehu_server.core.physics.layout import MAX_SECTIONS, MAX_TAPS, USUAL_SECTIONS
 from yehu_server.core.physics.quantities import Body
 from yehu_server.core.physics.records import Model, Motion
 from yehu_server.errors import ParameterError
@@ -40,7 +40,7 @@ def prepare_radiation(model: np.void, body: Body) -> None:
         taps = np.array([body.direct_gain])
     else:
         sections, taps = refit(body, rate)
-    n = len(sections)
+    n = model["sections"] = len(sections)
     model["b_0"][:n], model["b_1"][:n] = sections[:, 0], sections[:, 1]
     model["a_1"][:n], model["a_2"][:n] = sections[:, 2], sections[:, 3]
     model["taps"][: len(taps)] = taps
@@ -123,7 +123,12 @@ def radiate(model: Model, s: Motion, bridge_force: float) -> float:
     Real time: safe; the sections are independent, so they vectorise.
     """
     pressure = 0.0
-    for j in range(MAX_SECTIONS):
+    for j in range(USUAL_SECTIONS):  # a count known beforehand: the loop over it is straight code
+        y = model.b_0[j] * bridge_force + s.s_1[j]
+        s.s_1[j] = model.b_1[j] * bridge_force - model.a_1[j] * y + s.s_2[j]
+        s.s_2[j] = -model.a_2[j] * y
+        pressure += y
+    for j in range(USUAL_SECTIONS, model.sections):
         y = model.b_0[j] * bridge_force + s.s_1[j]
         s.s_1[j] = model.b_1[j] * bridge_force - model.a_1[j] * y + s.s_2[j]
         s.s_2[j] = -model.a_2[j] * y

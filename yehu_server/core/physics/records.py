@@ -85,6 +85,7 @@ class Model(Protocol):
     rest_height: float
     K_lift: float
     R_lift: float
+    sections: int
     b_0: Array
     b_1: Array
     a_1: Array

@@ -30,7 +30,9 @@ EDGES = np.array((1.3, 4.0))
 TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, LEAST_PRESS = range(6)
 RECIPE = 6
 DEFAULT_RECIPE = (0.6, FLAUTANDO, LIGHT, FIRM, 1.0, 0.0)
-FIRST, LAST = 64, 91  # the notes of the table; beyond them all are bowed as these
+# The notes of the table, as a yehu's strings have them, up to two octaves above the outer one.
+# Beyond them all are bowed as these.
+FIRST, LAST = 64, 96
 # The bow positions of the table; beyond them all notes are bowed as at these.
 PLACES = (0.06, 0.08, 0.1, 0.13, 0.165, 0.2, 0.25)
 LOG_PLACES = np.array([math.log(place) for place in PLACES])

@@ -34,7 +34,7 @@ def begin_pressure_correction(p: Any, pitch: float) -> None:
     p.pressure_factor, p.fault, p.faults = 1.0, SPEAKS, 0
     p.spoken, p.eased_from = 0, 0.0
     if may_correct_pressure(p):
-        row, place, pace = learning_bin(p, pitch)
+        row, place, pace = learning_bin(p, p.string, pitch)
         known = p.learnt_pressure_factor[p.string, row, place, pace]
         p.pressure_factor = min(known, heaviest(p)) if known > 0.0 else 1.0
         p.eased_from = p.pressure_factor if known > 0.0 else 0.0
@@ -109,5 +109,5 @@ def ease_or_learn(p: Any, c: Any, pitch: float) -> None:
         p.spoken = 0
         set_bow_pressure(p, c, pitch, True)
         return
-    row, place, pace = learning_bin(p, pitch)
+    row, place, pace = learning_bin(p, p.string, pitch)
     p.learnt_pressure_factor[p.string, row, place, pace] = p.pressure_factor

@@ -9,7 +9,7 @@ from yehu_server.core.physics.quantities import Quantities
 
 Tables = tuple[tuple[tuple[float, ...], ...], ...]  # of strings, notes, speeds
 
-OPEN_NOTES = (65, 72)  # F4 and C5
+OPEN_NOTES = (65, 72)  # F4 and C5, of a yehu
 SPEEDS = (0.12, 0.16, 0.2, 0.26)  # m/s
 # The stopped pitches measured on each string: semitones, and quarter tones where the body's mode
 # at 439 Hz bends pitches most, and at 850 Hz, where the body radiates 9 dB more than beside it.
@@ -32,12 +32,16 @@ class Calibration:
         a row for each of PITCHES, with a value for each of SPEEDS.
     levels : tuple
         Level of each note (dB, A-weighted), in the same form, the open string first.
+    open_notes : tuple of int
+        What the strings are tuned to (MIDI notes). Where that is not as on a yehu, a row is of the
+        stop that has its pitch there.
     """
 
     a4: float
     tensions: tuple[float, float]
     sharpening: Tables
     levels: Tables = ()
+    open_notes: tuple[int, int] = OPEN_NOTES
 
     def tuned(self, quantities: Quantities) -> Quantities:
         """The quantities with the tensions of this calibration."""

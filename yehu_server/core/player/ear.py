@@ -16,14 +16,13 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled, compiled_exactly
 from yehu_server.core.controls.record import CHUNK
-from yehu_server.core.player.calibration import OPEN_NOTES
 from yehu_server.core.player.rows import LISTENING, POSITION, SPEED
 
 
 @compiled_exactly
-def learning_bin(p: Any, pitch: float) -> tuple[int, int, int]:
+def learning_bin(p: Any, string: int, pitch: float) -> tuple[int, int, int]:
     """Where what is learnt of a pitch is kept: numbers of pitch, bow position and bow speed."""
-    row = int(np.rint(2.0 * (pitch - OPEN_NOTES[0])))
+    row = int(np.rint(2.0 * (pitch - p.open_note[string]))) + 2  # a bent one may be below the open
     place = int(np.rint(4.0 * math.log2(p.value[POSITION] / 0.05)))
     pace = int(np.rint(2.0 * math.log2(p.value[SPEED] / 0.03)))
     return (
@@ -36,7 +35,7 @@ def learning_bin(p: Any, pitch: float) -> tuple[int, int, int]:
 @compiled_exactly
 def learnt_cents(p: Any, string: int, pitch: float) -> float:
     """What was learnt of a pitch on a string (cents of sharpening)."""
-    row, place, pace = learning_bin(p, pitch)
+    row, place, pace = learning_bin(p, string, pitch)
     return float(p.learnt[string, row, place, pace]) if p.value[LISTENING] > 0.0 else 0.0
 
 

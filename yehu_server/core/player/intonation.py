@@ -14,9 +14,16 @@ from yehu_server.core.player.rows import CALIBRATION
 
 Array = Any
 
+OPEN_OF_TABLES = np.array(OPEN_NOTES, np.float64)
 STOPPED = np.array(PITCHES)
 ALL = np.array([(float(note), *row) for note, row in zip(OPEN_NOTES, PITCHES, strict=True)])
 LOG_SPEEDS = np.array([math.log(speed) for speed in SPEEDS])
+
+
+@compiled_exactly
+def in_tables(p: Any, string: int, pitch: float) -> float:
+    """The pitch of a yehu's string, for which tables are, that is stopped where this one is."""
+    return float(pitch - (p.open_note[string] - OPEN_OF_TABLES[string]))
 
 
 @compiled_exactly
@@ -27,8 +34,9 @@ def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float)
     that are bowed more slowly were measured so. `sharper` (cents) is what the ear adds to the
     measured sharpening.
     """
+    stopped = in_tables(p, string, pitch)
     sharp = sharper + p.value[CALIBRATION] * read(
-        p.sharpening[string], STOPPED[string], pitch, speed
+        p.sharpening[string], STOPPED[string], stopped, speed
     )
     frequency = p.a4 * math.exp2((pitch - sharp / 100.0 - 69.0) / 12.0)
     return float(p.bridge_x - p.wave_speed[string] / (2.0 * frequency))
@@ -44,7 +52,7 @@ def balance_db(p: Any, string: int, pitch: float, speed: float) -> float:
     for on in range(STRINGS):
         for row in range(len(p.levels[on])):
             total += at_speed(p.levels[on, row], speed)
-    own = read(p.levels[string], ALL[string], pitch, speed)
+    own = read(p.levels[string], ALL[string], in_tables(p, string, pitch), speed)
     return float(total / (STRINGS * len(p.levels[0])) - own)
 
 

@@ -14,7 +14,7 @@ from yehu_server.core.controls.slots import SILENCE, SPEED
 from yehu_server.core.player import brilliance, left_hand, right_hand, velocity
 from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
-from yehu_server.core.player.fingering import FIRST_OPEN, choose, stay, stay_for_slide
+from yehu_server.core.player.fingering import choose, stay, stay_for_slide
 from yehu_server.core.player.gestures import (
     IS_PLUCKED,
     SHAPES,
@@ -24,6 +24,7 @@ from yehu_server.core.player.gestures import (
     tremolo_of,
 )
 from yehu_server.core.player.held_keys import NOT_HELD, add_key, find_key, remove_key
+from yehu_server.core.player.intonation import in_tables
 from yehu_server.core.player.left_hand import LIFTING_MS, side_of
 from yehu_server.core.player.ownership import (
     USUAL_MS,
@@ -122,7 +123,7 @@ def stop_sound(p: Any, c: Any, is_panic: bool) -> None:
     take_back(p, BOW_SIDE)
     right_hand.lift(p, c, LIFTING_MS)
     left_hand.lift_all(p, c)
-    p.finger_pitch = FIRST_OPEN
+    p.finger_pitch = p.open_note[0]
     take(c, SILENCE, 0.0, 0)
 
 
@@ -175,7 +176,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
 def begin_from_last(p: Any, slide_ms: float) -> tuple[int, float]:
     """Begin a slide where the finger is, to the pitch of the note; the fingering there.
 
-    A slide between C5 and HIGHEST_ON_F at one end and the F string at the other stays on that.
+    A slide from a note that both strings have to one of the inner string alone stays on that.
     """
     wished = note_pitch(p)
     begin_slide(p, p.finger_pitch - wished, p.gesture.bend, 0.0, 1e-3 * slide_ms)
@@ -321,7 +322,8 @@ def least_press(p: Any, string: int) -> float:
     """The finger force (N) that the sounding note needs on a string."""
     if p.sounding < 0:
         return 0.0
-    return recipe_value(p.bowing, string, p.value[POSITION], note_pitch(p), LEAST_PRESS)
+    stopped = in_tables(p, string, note_pitch(p))
+    return recipe_value(p.bowing, string, p.value[POSITION], stopped, LEAST_PRESS)
 
 
 @compiled_exactly

@@ -11,11 +11,12 @@ from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import DEFAULT_RECIPE, PLACES, RECIPE, default_recipes
 from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
-from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration, wave_speed
+from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration, wave_speed
 from yehu_server.core.player.drift import DRIFT_STATE
 from yehu_server.core.player.ear import EAR, prepare_ear, reset_ear
 from yehu_server.core.player.fingering import OPEN, OpenStrings
 from yehu_server.core.player.gestures import GESTURE, RESTING
+from yehu_server.core.player.note_range import NoteRange
 from yehu_server.core.player.rows import (
     BOW_SIDE,
     BOW_SPEED,
@@ -105,6 +106,8 @@ PLAYER = np.dtype(
         ("bridge_x", np.float64),  # m
         ("a4", np.float64),  # Hz
         ("wave_speed", np.float64, STRINGS),  # m/s
+        ("open_note", np.float64, STRINGS),  # MIDI notes
+        ("highest", np.float64, STRINGS),  # fractional MIDI notes
         ("sharpening", np.float64, (STRINGS, NOTES, len(SPEEDS))),  # cents
         ("levels", np.float64, (STRINGS, NOTES + 1, len(SPEEDS))),  # dB
         ("bowing", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, RECIPE)),
@@ -157,7 +160,9 @@ def prepare_player(
     p["value"] = [values[param.address] for param in TABLE]
     p["sent"] = np.nan
     p["sounding"], p["began"] = SILENT, -1
-    p["finger_pitch"] = OPEN_NOTES[0]
+    notes = NoteRange.of(quantities, calibration)
+    p["open_note"], p["highest"] = notes.open_notes, notes.highest_notes
+    p["finger_pitch"] = notes.lowest
     p["finger"] = FINGER_COUNT - 1  # so that the first finger comes first
     p["string"], p["position"] = -1, OPEN
     p["direction"] = UP

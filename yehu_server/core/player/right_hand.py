@@ -16,6 +16,7 @@ from yehu_server.core.player.bowing import (
     share,
 )
 from yehu_server.core.player.gestures import attack_ms, tremolo_depth_of, tremolo_of
+from yehu_server.core.player.intonation import in_tables
 from yehu_server.core.player.ownership import USUAL_MS, forget, move
 from yehu_server.core.player.rows import (
     BOW_POSITION,
@@ -56,7 +57,9 @@ def wished_speed(p: Any) -> float:
 @compiled_exactly
 def recipe_of(p: Any, pitch: float, column: int) -> float:
     """One value of how a pitch is bowed on the string of the fingering; see `recipe_value`."""
-    return recipe_value(p.bowing, max(p.string, 0), p.value[POSITION], pitch, column)
+    string = max(p.string, 0)
+    stopped = in_tables(p, string, pitch)
+    return recipe_value(p.bowing, string, p.value[POSITION], stopped, column)
 
 
 @compiled_exactly

@@ -50,7 +50,7 @@ def tune(p: Any, c: Any, pitch: float) -> None:
         return
     if p.value[PRESS] != p.first_press:  # a finger that presses harder is to be heard
         return
-    row, place, pace = learning_bin(p, pitch)
+    row, place, pace = learning_bin(p, p.string, pitch)
     if math.isnan(p.first_error):
         p.first_error, p.first_sharper = ear.error, p.sharper
     if abs(p.sharper - p.first_sharper) > ASTRAY * abs(p.first_error) + ASTRAY_CENTS:

@@ -12,7 +12,7 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SIDE
 from yehu_server.core.player.ear import HOP_S
-from yehu_server.core.player.fingering import FIRST_OPEN, OPEN, SECOND_OPEN
+from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.intonation import balance_db
 from yehu_server.core.player.ownership import move
 from yehu_server.core.player.rows import EVENNESS, OUTPUT_BALANCE, VELOCITY
@@ -29,7 +29,7 @@ def even_out(p: Any, c: Any, pitch: float, speed: float) -> None:
     string = max(p.string, 0)  # before the first note the inner string is open
     sounding_pitch = pitch
     if p.position == OPEN:
-        sounding_pitch = SECOND_OPEN if string == 1 else FIRST_OPEN
+        sounding_pitch = p.open_note[string]
     balance = balance_db(p, string, sounding_pitch, speed) * p.value[EVENNESS]
     balance += 0.0 if p.by_hand != 0 else struck_db(p) + p.gesture.gain_db
     is_off = c.value[SIDE] == 0.0 and p.by_hand == 0

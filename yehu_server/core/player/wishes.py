@@ -26,7 +26,6 @@ from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.record import Controls
 from yehu_server.core.player import left_hand, notes
-from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.core.player.ownership import USUAL_MS, forget, ramp_to, release, write_directly
 from yehu_server.core.player.phrasing import begin_sequence
 from yehu_server.core.player.record import Player
@@ -93,11 +92,11 @@ def fulfil(
     if kind == RAMP:
         take(c, index, value, int(bounded(other, 0.0, LONGEST)))
     elif kind == BEGIN:
-        notes.begin(p, c, frame, index, value, bounded(other, LOWEST_NOTE, HIGHEST_NOTE))
+        notes.begin(p, c, frame, index, value, playable(p, other))
     elif kind == END:
         notes.end(p, c, index, value, other != 0.0)
     elif kind == SLIDE:
-        notes.slide(p, c, bounded(value, LOWEST_NOTE, HIGHEST_NOTE))
+        notes.slide(p, c, playable(p, value))
     elif kind == DRAW:
         notes.draw_by_hand(p, c, in_range(BOW_SPEED, value), in_range(BOW_FORCE, other))
     elif kind == LIFT:
@@ -119,6 +118,12 @@ def fulfil(
 def bounded(value: float, lo: float, hi: float) -> float:
     """The value nearest to one that lies within bounds."""
     return float(min(max(value, lo), hi))
+
+
+@compiled_exactly
+def playable(p: Any, pitch: float) -> float:
+    """The pitch of the instrument that is nearest to one."""
+    return bounded(pitch, p.open_note[0], p.highest[1])
 
 
 @compiled_exactly

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.player.fingering import HIGHEST_NOTE, HIGHEST_ON_F, LOWEST_NOTE
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.notes import DYNAMICS_EXPONENT
 from yehu_server.core.player.right_hand import SOFTEST
 from yehu_server.core.player.rows import DYNAMICS, STRING
@@ -40,9 +40,11 @@ LEAST_DYNAMICS = 0.03  # at which a note still speaks
 FALL_DB, RISE_DB, SWELL_DB, PEAK_DB = 3.0, 5.0, 90.0 * HOP_S, 40.0 * HOP_S
 STROKE = 12  # hearings that a stroke lasts at least
 # -- pitch
-START = LOWEST_NOTE + 6.0  # where the first note comes near to: tunes tend to rise from it
+START = 6.0  # above the lowest: where the first note comes near to, from which tunes tend to rise
 FELT = 0.01  # semitones: pitches less apart are the same
-ON_INNER, ON_OUTER = 74.5, HIGHEST_ON_F - 0.3  # up to, and from: the string asked for
+# Up to so far over the open outer string, and from so far below the end of the inner: the string
+# asked for.
+ON_INNER, ON_OUTER = 2.5, 0.3
 INNER, EITHER = 1.0, 0.0
 VOICE = -2  # the channel of its notes
 KEYS = (0.0, 1.0)  # which it has in turn: of two that are slurred, both are held for a moment
@@ -63,6 +65,12 @@ FOLLOWER = np.dtype(
     [
         ("rig", np.int64),  # address of the instrument that plays, where the input posts to it
         ("hearing", HEARING),
+        # Of the instrument: its lowest and highest note, and up to which pitch the inner string is
+        # asked for, where it was not and where it was.
+        ("lowest", np.float64),
+        ("highest", np.float64),
+        ("on_inner", np.float64),
+        ("on_outer", np.float64),
         ("transpose", np.float64),  # semitones; NaN: by octaves, as the first note wants
         ("is_open", np.int64),  # whether a note sounds
         ("agreed", np.int64),  # hearings
@@ -91,10 +99,21 @@ FOLLOWER = np.dtype(
 )
 
 
+def ends_of(notes: NoteRange) -> tuple[float, ...]:
+    """The fields ENDS of a follower for the notes of an instrument."""
+    inner = notes.open_notes[1] + ON_INNER, notes.highest_notes[0] - ON_OUTER
+    return (*map(float, notes.ends), *inner)
+
+
+ENDS = ("lowest", "highest", "on_inner", "on_outer")
+OF_YEHU = ends_of(YEHU)
+
+
 @compiled_exactly
 def prepare_follower(f: Any, rate: float, transpose: float) -> None:
     """Set up a record that is all 0 for a sound's rate (Hz); see its fields."""
     prepare_hearing(f.hearing, rate)
+    f.lowest, f.highest, f.on_inner, f.on_outer = OF_YEHU
     f.transpose = transpose
     f.noise_db, f.full_db = LEAST_DB, QUIETEST_FULL_DB
     f.dynamics_db = f.string = math.nan
@@ -153,12 +172,12 @@ def await_note(f: Any, h: Any) -> None:
 def begin(f: Any, pitch: float) -> None:
     """Begin a note of a pitch, in range."""
     if math.isnan(f.transpose):
-        f.transpose = 12.0 * np.rint((START - pitch) / 12.0)
+        f.transpose = 12.0 * np.rint((f.lowest + START - pitch) / 12.0)
     played = pitch + f.transpose
     f.octaves = 0.0
-    while played + f.octaves < LOWEST_NOTE - 0.5:
+    while played + f.octaves < f.lowest - 0.5:
         f.octaves += 12.0
-    while played + f.octaves > HIGHEST_NOTE + 0.5:
+    while played + f.octaves > f.highest + 0.5:
         f.octaves -= 12.0
     f.heard, f.agreed, f.note_age = pitch, 0, 0
     f.key, f.played = KEYS[1] - f.key, playable(f, pitch)
@@ -169,13 +188,13 @@ def begin(f: Any, pitch: float) -> None:
 @compiled_exactly
 def playable(f: Any, pitch: float) -> float:
     """The pitch that is played for one that is heard."""
-    return float(min(max(pitch + f.transpose + f.octaves, LOWEST_NOTE), HIGHEST_NOTE))
+    return float(min(max(pitch + f.transpose + f.octaves, f.lowest), f.highest))
 
 
 @compiled_exactly
 def choose_string(f: Any) -> None:
     """Ask for the inner string where the open outer one would not follow a pitch."""
-    string = INNER if f.played < (ON_OUTER if f.string == INNER else ON_INNER) else EITHER
+    string = INNER if f.played < (f.on_outer if f.string == INNER else f.on_inner) else EITHER
     if string != f.string:
         f.string = string
         send(f, WRITE, STRING, string, 0.0)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS
+from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS, USUAL_SECTIONS
 from yehu_server.core.physics.quantities import check_body, measured_body
 from yehu_server.errors import MeasurementError
 from yehu_server.lab.body.body_file import Differences, Fit
@@ -29,7 +29,7 @@ def fit(
     *,
     band_hz: tuple[float, float] | None = None,
     modes: int | None = None,
-    sections: int = MAX_SECTIONS,
+    sections: int = USUAL_SECTIONS,
 ) -> Fit:
     """Fit a body: bridge modes to the admittance, sections to the radiation.
 
@@ -41,9 +41,9 @@ def fit(
         Lowest and highest frequency to be met; by default from 100 Hz to where the hammer stops
         to excite, at most 8 kHz.
     modes : int, optional
-        Number of bridge modes; by default as many as the measurement shows, at most 16.
+        Number of bridge modes; by default as many as the measurement shows, at most 64.
     sections : int
-        Number of sections of the radiation, at most 32.
+        Number of sections of the radiation, at most 64; by default at most 32.
 
     Raises
     ------
@@ -73,6 +73,11 @@ def fit(
         )
         admittance_db = differences(within.admittance, found.admittance)
         warnings += _doubts(found, admittance_db, band)
+        if modes is None and len(found.mass) == MAX_MODES:
+            warnings.append(
+                f"admittance: it shows more than {MAX_MODES} modes, the most that a body has; the "
+                f"strongest are fitted, {admittance_db.most:.1f} dB off at most"
+            )
     else:
         warnings.append("no admittance was measured: the bridge is the shipped yehu's")
     if within.radiation is not None:

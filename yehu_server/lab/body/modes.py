@@ -12,6 +12,7 @@ needs are inner products of a few columns, which are taken once a step.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -50,6 +51,9 @@ def mode_columns(frequency_hz: Floats, modes_hz: Floats, damping: Floats) -> Com
     omega = 2.0 * np.pi * frequency_hz[:, np.newaxis]
     omega_m = 2.0 * np.pi * modes_hz
     return np.asarray(1j * omega / (omega_m**2 - omega**2 + 2j * damping * omega_m * omega))
+
+
+Numbers = np.ndarray[Any, np.dtype[np.int64]]
 
 
 @dataclass(frozen=True)
@@ -101,24 +105,26 @@ class Step:
     points: Floats
     amounts: Floats  # of the columns of length one, not below zero
     error: float  # sum of squares that remains
-    gradient: Floats  # of half of it, by the logarithms [shape=(2 modes,)]
+    gradient: Floats  # of half of it, by the logarithms of those that move [shape=(2 moving,)]
     curvature: Floats  # Gauss-Newton's, of the same
 
 
-def look(problem: Problem, points: Floats, wanted: Floats) -> Step:
+def look(problem: Problem, points: Floats, wanted: Floats, moving: Numbers | None = None) -> Step:
     """Solve for the amounts at `points`, and find how the error changes with them.
 
-    The curvature is Kaufman's approximation: derivatives are taken beside the columns in use.
+    `moving` has the numbers of the modes that may move; by default all. The curvature is Kaufman's
+    approximation: derivatives are taken beside the columns in use.
     """
     columns, lengths = problem.columns(points)
-    moved = problem.derivatives(points, lengths)
+    m = len(points)
+    moving = np.arange(m) if moving is None else moving
+    moved = problem.derivatives(points[moving], lengths[moving])
     together = np.concatenate([columns, moved, wanted[:, np.newaxis]], axis=1)
     products = together.T @ together
-    m = len(points)
     own, towards = products[:m, :m], products[:m, -1]
     amounts = amounts_of(own, towards)
     error = float(products[-1, -1] - 2.0 * towards @ amounts + amounts @ own @ amounts)
-    twice = np.tile(amounts, 2)
+    twice = np.tile(amounts[moving], 2)
     left = products[m:-1, -1] - products[m:-1, :m] @ amounts
     curvature = products[m:-1, m:-1]
     used = amounts > 0.0

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.lab.body.curve import Complexes, Floats, interpolated
-from yehu_server.lab.body.modes import Modes, Problem, Step, look
+from yehu_server.lab.body.modes import Modes, Numbers, Problem, Step, look
 from yehu_server.util.extras import need
 
 HIGHEST_ORDER = 40  # of the polynomials; each order gives candidates
@@ -28,6 +28,7 @@ LATTICE = (0.002, 0.007, 0.025, 0.08)  # damping ratios
 TRIED, APART = 3, 0.05  # candidates that are refined before one is chosen, and their least ratio
 ROUGH, FINE = (8, 1e-2), (100, 1e-7)  # most steps of a refinement, and the least gain of one
 NEGLIGIBLE = 0.02  # of a weighted error of one, squared: what a further mode need not fit
+NEARBY = 16  # modes that make room for another, or for the lack of one; others hardly notice
 PATIENCE = 3  # modes that may be tried in vain before the search ends
 
 
@@ -128,36 +129,44 @@ class Search:
         tried: list[Step] = []
         while len(tried) < TRIED and gain.max() > 0.0:
             new = self.candidates[int(gain.argmax())]
-            tried.append(self._refined(np.vstack([step.points, new]), ROUGH))
+            points = np.vstack([step.points, new])
+            tried.append(self._refined(points, ROUGH, _nearest(points, new)))
             gain = np.where(np.abs(self.candidates[:, 0] - new[0]) < APART, 0.0, gain)
         return min(tried, key=lambda found: found.error, default=None)
 
     def _pruned(self, step: Step) -> Step:
         """Leave out modes that do not pay."""
         while len(step.points) > 1:
-            fewer = [
-                self._refined(np.delete(step.points, i, axis=0), ROUGH)
-                for i in range(len(step.points))
-            ]
+            fewer = []
+            for i, gone in enumerate(step.points):
+                points = np.delete(step.points, i, axis=0)
+                fewer.append(self._refined(points, ROUGH, _nearest(points, gone)))
             least = min(fewer, key=lambda found: found.error)
             if self._score(least) > self._score(step):
                 break
             step = self._refined(least.points, FINE)
         return step
 
-    def _refined(self, points: Floats, effort: tuple[int, float]) -> Step:
-        """Move frequencies and dampings to where the error is least, by Levenberg and Marquardt."""
-        m = len(points)
-        if not m:
-            return look(self.problem, points, self.wanted)
-        now = look(self.problem, points, self.wanted)
+    def _refined(
+        self, points: Floats, effort: tuple[int, float], moving: Numbers | None = None
+    ) -> Step:
+        """Move frequencies and dampings to where the error is least, by Levenberg and Marquardt.
+
+        `moving` has the numbers of the modes that move; by default all.
+        """
+        moving = np.arange(len(points)) if moving is None else moving
+        now = look(self.problem, points, self.wanted, moving)
+        if not len(points):
+            return now
         firmness = 1e-3
         steps, least_gain = effort
         for _ in range(steps):
             scale = np.diag(now.curvature).clip(1e-12 * now.curvature.diagonal().max() + 1e-300)
             move = np.linalg.solve(now.curvature + firmness * np.diag(scale), -now.gradient)
-            moved = now.points + move.reshape(2, m).T.clip(-0.5, 0.5)
-            then = look(self.problem, moved.clip(self.lowest, self.highest), self.wanted)
+            moved = now.points.copy()
+            moved[moving] += move.reshape(2, -1).T.clip(-0.5, 0.5)
+            bounded = moved.clip(self.lowest, self.highest)
+            then = look(self.problem, bounded, self.wanted, moving)
             if then.error >= now.error:
                 firmness *= 10.0
                 if firmness > 1e8:
@@ -182,3 +191,8 @@ class Search:
         order = order[inverse_mass[order] > 0.0]
         frequency_hz, damping = np.exp(step.points.T)
         return Modes(frequency_hz[order], damping[order], inverse_mass[order])
+
+
+def _nearest(points: Floats, point: Floats) -> Numbers:
+    """The numbers of the modes that are nearest to a point in frequency."""
+    return np.sort(np.abs(points[:, 0] - point[0]).argsort(kind="stable")[:NEARBY])

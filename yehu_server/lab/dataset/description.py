@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.player.note_range import YEHU
 from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.lab.dataset.draws import (
     Distribution,
@@ -20,7 +21,7 @@ from yehu_server.lab.dataset.draws import (
 )
 from yehu_server.params.table import find
 from yehu_server.playing.calibration import calibration_key
-from yehu_server.playing.stringing import higher_of
+from yehu_server.playing.stringing import notes_of
 from yehu_server.scores.gesture import CONTROLS, played_rate
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import PLAIN_NAME
@@ -54,7 +55,7 @@ STROKES = {
 }
 NOTES = {
     "notes": (1.0, 1.0, float(MOST_NOTES)),
-    "pitch": (69.0, 65.0, 89.0),  # fractional MIDI notes
+    "pitch": (69.0, *YEHU.ends),  # fractional MIDI notes; of a yehu
     "velocity": (80.0, 1.0, 127.0),
     "length": (0.5, 0.05, LONGEST_S),  # s
     "gap": (0.05, -1.0, 10.0),  # s; below 0 the next note is slurred
@@ -124,7 +125,7 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
         count=table.read("count", whole, 100, 1, MOST_SOUNDS),
         seed=table.read("seed", whole, 0, 0, 2**63 - 1),
         rate=rate,
-        draws=_draws(table.table("draw"), kind, higher_of(quantities)),
+        draws=_draws(table.table("draw"), kind, quantities),
         splits=_splits(table.table("split")),
         every=keep.read("every", whole, 64, 1, 1 << 20),
         signals=tuple(keep.read("signals", choices, [], SIGNALS)),
@@ -145,10 +146,10 @@ def _line(value: Any) -> str:
     return value
 
 
-def _draws(table: Fields, kind: str, higher: int) -> dict[str, Distribution]:
-    usual, lowest, highest = NOTES["pitch"]
-    pitch = usual + higher, lowest + higher, highest + higher  # of a fiddle that is tuned higher
-    known = STROKES if kind == "strokes" else NOTES | {"pitch": pitch}
+def _draws(table: Fields, kind: str, quantities: Quantities) -> dict[str, Distribution]:
+    lowest, highest = map(float, notes_of(quantities).ends)
+    usual = NOTES["pitch"][0] + lowest - YEHU.lowest
+    known = STROKES if kind == "strokes" else NOTES | {"pitch": (usual, lowest, highest)}
     draws: dict[str, Distribution] = {
         name: constant(default) for name, (default, _, _) in known.items() if default is not None
     }

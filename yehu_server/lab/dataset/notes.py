@@ -10,13 +10,12 @@ from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.layout import MAX_FINGERS, control_columns, probe_columns
-from yehu_server.core.player.calibration import OPEN_NOTES, frequency_hz, wave_speed
+from yehu_server.core.player.calibration import frequency_hz, wave_speed
 from yehu_server.errors import ParameterError
 from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.sound import Sound, calibrated, judged, regimes
 from yehu_server.lab.simulation import signals, simulate
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.stringing import higher_of
 from yehu_server.playing.wishes import Key
 from yehu_server.scores.gesture import Gesture
 
@@ -38,7 +37,7 @@ def stroke(description: Description, number: int) -> Sound:
     places = _ends(drawn, "bow_position")
     lengths, hertz = [], []
     for stop in pairs["stop"]:
-        f = frequency_hz(OPEN_NOTES[string - 1] + stop, calibration.a4)
+        f = frequency_hz(calibration.open_notes[string - 1] + stop, calibration.a4)
         hertz.append(f)
         lengths.append(min(wave_speed(quantities, string - 1) / (2.0 * f), quantities.bridge_x))
     is_open = max(pairs["stop"]) < OPEN_BELOW
@@ -104,8 +103,7 @@ def melody(description: Description, number: int) -> Sound:
         begin, end = (instrument.frames(1e3 * note[name]) for name in ("begin", "end"))
         wishes.write("/playing/note_length", note["length"], frame=begin)
         struck = {"/playing/velocity": note["velocity"] / 127.0}
-        played = note["pitch"] - higher_of(description.quantities)
-        wishes.note_on(key, struck, frame=begin, tuned=played)
+        wishes.note_on(key, struck, frame=begin, tuned=note["pitch"])
         wishes.note_off(key, frame=end)
         end_s = max(end_s, note["end"])
     frames = instrument.frames(1e3 * (end_s + drawn["tail"]))

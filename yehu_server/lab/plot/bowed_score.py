@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.core.player.fingering import OPEN_WITHIN
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.lab.plot import png
 from yehu_server.playing.pitch_and_level import note_name
@@ -21,7 +22,7 @@ from yehu_server.scores.jianpu.figures import SIGN_OF, figure_of, signed_lengths
 from yehu_server.scores.written import layout
 from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.layout import PageBar, Piece
-from yehu_server.scores.written.mark_settings import DOWN, OUTER_OPEN, UP, actives_of, is_plucked
+from yehu_server.scores.written.mark_settings import DOWN, UP, actives_of, is_plucked
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, Note, Part, Span, Written
 from yehu_server.scores.written.part_bowing import Played, bowed
 from yehu_server.scores.written.tempo import WrittenClock
@@ -76,31 +77,41 @@ def _goes_on(before: Played, played: Played, wished: float, stroke: Stroke) -> b
     return bool(played.direction) and before.direction == played.direction == stroke.direction
 
 
-def string_of(note: Note) -> str:
-    """How a note is reached where it does not follow another on the same string: F, C, or open."""
+def string_of(note: Note, within: NoteRange = YEHU) -> str:
+    """How a note is reached where it does not follow another on the same string.
+
+    The name of a string, such as F or C, and "open".
+    """
+    first, second = within.open_notes
+    inner, outer = (note_name(open_note)[:-1] for open_note in within.open_notes)
     if note.marked("inner-string"):
-        return "F"
-    if abs(note.pitch - OUTER_OPEN) < OPEN_WITHIN and not note.marked("finger"):
-        return "C open"
-    if note.pitch < 65.0 + OPEN_WITHIN:
-        return "F open"
-    return "C" if note.pitch > OUTER_OPEN or note.marked("outer-string") else "F"
+        return inner
+    if abs(note.pitch - second) < OPEN_WITHIN and not note.marked("finger"):
+        return f"{outer} open"
+    if note.pitch < first + OPEN_WITHIN:
+        return f"{inner} open"
+    return outer if note.pitch > second or note.marked("outer-string") else inner
 
 
 def write_bowed_score(
-    written: Written, number: int, target: Path, *, overwrite: bool = False
+    written: Written,
+    number: int,
+    target: Path,
+    within: NoteRange = YEHU,
+    *,
+    overwrite: bool = False,
 ) -> None:
     """Draw a part, counted from 0, moved into range as it is played, and write it to a PNG file.
 
     Raises ParameterError where it has no note; OutputError where it cannot be written.
     """
-    part, octaves = moved_part(written.parts[number])
+    part, octaves = moved_part(written.parts[number], within)
     if not part.notes:
         raise ParameterError("the score has no note to draw")
     bars = layout.page_bars(written)
     rows = [range(at, min(at + BARS_A_LINE, len(bars))) for at in range(0, len(bars), BARS_A_LINE)]
     rows = [row for row in rows if bars[row.start].begin < part.notes[-1].end][:MOST_LINES]
-    page = _Page(written, part, bars)
+    page = _Page(written, part, bars, within)
 
     def fill(figure: Any) -> None:
         panels = figure.subplots(len(rows), 1, squeeze=False)[:, 0]
@@ -115,7 +126,10 @@ def write_bowed_score(
 
 
 class _Page:
-    def __init__(self, written: Written, part: Part, bars: Sequence[PageBar]) -> None:
+    def __init__(
+        self, written: Written, part: Part, bars: Sequence[PageBar], within: NoteRange
+    ) -> None:
+        self._within = within
         self._part, self._bars, self._written = part, bars, written
         self._pieces = layout.pieces_of(part, bars)
         self._strokes = strokes_of(part, WrittenClock(written))
@@ -194,7 +208,8 @@ class _Page:
         if stroke is not None:
             sign = BOWS.get(stroke.direction, "")
             axes.text(x, 2.0, sign, fontsize=11, color=BOW, ha="center", va="center")
-        own, before = string_of(note), string_of(self._part.notes[at - 1]) if at else ""
+        own = string_of(note, self._within)
+        before = string_of(self._part.notes[at - 1], self._within) if at else ""
         finger = note.marked("finger")
         told = [f"{finger.value:g}" if finger is not None and finger.value else ""]
         told.append(own if own != before else "")

@@ -168,13 +168,18 @@ def is_pressure(sound: Any) -> bool:
     return hasattr(sound, "arrays") and "sound" not in sound.arrays
 
 
-def plot_data_of(sound: Any, sample_rate: float | None = None, a4: float | None = None) -> PlotData:
+def plot_data_of(
+    sound: Any,
+    sample_rate: float | None = None,
+    a4: float | None = None,
+    step_s: float | None = None,
+) -> PlotData:
     """Gather what pictures show of a sound; see `sound_of`."""
     samples, rate = sound_of(sound, sample_rate)
     if is_pressure(sound):
         samples = samples / max(float(np.abs(samples).max(initial=0.0)), LEAST_PRESSURE)
     a4 = float(getattr(sound, "a4", 440.0) if a4 is None else a4)
-    watch = PlotData(rate, len(samples) / rate, 1, a4)
+    watch = PlotData(rate, len(samples) / rate, 1, a4, step_s)
     times, pitches = getattr(sound, "asked", (np.zeros(0), np.zeros(0)))
     begin = 0
     for end, pitch_asked in zip((rate * times).round().astype(int), pitches, strict=True):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +19,14 @@ from yehu_server.core.player.calibration import (
     SPEEDS,
     Calibration,
     frequency_hz,
-    wave_speed,
+    ideal_position,
 )
 from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.lab.regimes.judge import check_length
 from yehu_server.lab.regimes.strokes import STROKE, ControlCurves, control_curves_of, prepared
 from yehu_server.lab.sweeps.axes import Axis
 from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.stringing import notes_of
 from yehu_server.scores.gesture import CONTROLS, Gesture, played_rate
 from yehu_server.util.documents import Fields
 from yehu_server.util.values import brief, number
@@ -62,7 +63,7 @@ class Entry:
 
 ENTRIES = {
     "string": Entry(1, 1, 2, "", whole=True),
-    "note": Entry(70, 65, 96, "MIDI note"),
+    "note": Entry(70, 0, 127, "MIDI note"),
     "force": Entry(0.5, 1e-3, 50.0, "N"),
     "position": Entry(0.13, 0.01, 0.9, "of the sounding length"),
     "speed": Entry(0.2, 1e-3, 5.0, "m/s"),
@@ -73,6 +74,38 @@ ENTRIES = {
     "noise": Entry(0.0, 0.0, 1.0, ""),
     "seed": Entry(0, 0, 65535, "", whole=True),
 }
+
+
+@dataclass(frozen=True, eq=False)
+class Tuned:
+    """An instrument that is tuned.
+
+    Attributes
+    ----------
+    calibration : Calibration
+        By which fingers are placed.
+    quantities : Quantities
+        As it is bowed.
+    measured : Quantities
+        The instrument that was calibrated, before it was tuned.
+    """
+
+    calibration: Calibration
+    quantities: Quantities
+    measured: Quantities
+
+    @cache  # noqa: B019 - a study has one for as long as it lives
+    def fingering(self, string: int, note: float, speed: float) -> tuple[float, float]:
+        """Where a finger stops a note (m), as the player's tables say; its frequency (Hz)."""
+        tuned = self.calibration
+        frequency = frequency_hz(note, A4)
+        rows = np.array(tuned.sharpening[string])
+        logarithm = math.log(speed)
+        at_speed = [float(np.interp(logarithm, np.log(SPEEDS), row)) for row in rows]
+        in_tables = note - (tuned.open_notes[string] - OPEN_NOTES[string])
+        sharp = float(np.interp(in_tables, PITCHES[string], at_speed))
+        ideal = frequency * 2.0 ** (-sharp / 1200.0)
+        return ideal_position(tuned.tuned(self.measured), string, ideal), frequency
 
 
 @dataclass(frozen=True)
@@ -108,7 +141,7 @@ class NoteBow:
                 Fields({axis.name: value}).each(_checked)
             values[axis.name] = axis.values
         for string in values["string"]:
-            lowest = OPEN_NOTES[int(string) - 1]
+            lowest = self._tuned.calibration.open_notes[int(string) - 1]
             for note in values["note"]:
                 if not lowest <= note <= lowest + 24:
                     raise ParameterError(
@@ -185,9 +218,32 @@ class NoteBow:
         changed = replace(quantities, bow=bow)
         return Gesture(self.rate, self.duration, changed, controls, source=source)
 
+    @cached_property
+    def _tuned(self) -> Tuned:
+        """The instrument as it is tuned.
+
+        What a study changes of a yehu leaves its player's tables as they are. A fiddle whose
+        strings are for other notes is calibrated itself.
+        """
+        own = override(Quantities(), self.instrument, self.folder)
+        try:
+            is_yehu = notes_of(own).open_notes == OPEN_NOTES
+        except ParameterError:  # strings that no fiddle has
+            is_yehu = True
+        if not is_yehu:
+            found = calibration_for(self.rate, own)
+            return Tuned(found, found.tuned(own), own)
+        usual = calibration_for(self.rate)
+        tensions = {
+            f"string_{i + 1}": {"T": tension}
+            for i, tension in enumerate(usual.tensions)
+            if own.strings[i].T == Quantities().strings[i].T
+        }
+        return Tuned(usual, override(own, tensions), Quantities())
+
     def _quantities(self, varied: Mapping[str, Any], string: int = 1) -> Quantities:
         """The tuned instrument, with what the study changes, and some values of its axes."""
-        changed = override(calibration(self.rate).tuned(Quantities()), self.instrument, self.folder)
+        changed = self._tuned.quantities
         tension = float(varied.get("tension", self.fixed["tension"]))
         for name, value in varied.items():
             if name.startswith("instrument."):
@@ -208,10 +264,10 @@ class NoteBow:
         place, press, frequency = np.empty(count), np.empty(count), np.empty(count)
         for i, quantities in enumerate(instruments):
             string, note = int(value["string"][i]) - 1, float(value["note"][i])
-            x, sounding = fingering(self.rate, string, note, float(value["speed"][i]))
-            tuned = calibration(self.rate).tensions[string]
+            x, sounding = self._tuned.fingering(string, note, float(value["speed"][i]))
+            tuned = self._tuned.calibration.tensions[string]
             quicker = math.sqrt(quantities.strings[string].T / tuned)
-            if note == OPEN_NOTES[string]:
+            if note == self._tuned.calibration.open_notes[string]:
                 place[i], press[i], frequency[i] = UNTOUCHED, 0.0, sounding * quicker
                 continue
             shift = 2.0 ** (float(value["place"][i]) / 1200.0)
@@ -219,26 +275,6 @@ class NoteBow:
             place[i], press[i] = bridge - (bridge - x) / shift, value["press"][i]
             frequency[i] = sounding * shift * quicker
         return place, press, frequency
-
-
-@cache
-def calibration(rate: float) -> Calibration:
-    """The calibration of the instrument as it is shipped."""
-    return calibration_for(rate)
-
-
-@cache
-def fingering(rate: float, string: int, note: float, speed: float) -> tuple[float, float]:
-    """Where a finger stops a note (m), as the player's tables have it, and its frequency (Hz)."""
-    tuned = calibration(rate)
-    frequency = frequency_hz(note, A4)
-    rows = np.array(tuned.sharpening[string])
-    logarithm = math.log(speed)
-    at_speed = [float(np.interp(logarithm, np.log(SPEEDS), row)) for row in rows]
-    sharp = float(np.interp(note, PITCHES[string], at_speed))
-    quantities = tuned.tuned(Quantities())
-    ideal = frequency * 2.0 ** (-sharp / 1200.0)
-    return quantities.bridge_x - wave_speed(quantities, string) / (2.0 * ideal), frequency
 
 
 def _is_of_model(name: str) -> bool:

@@ -20,6 +20,7 @@ from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.lab.sweeps.axes import Axis, axis_from
 from yehu_server.lab.sweeps.gesture_strokes import GestureBow
 from yehu_server.lab.sweeps.note_strokes import NoteBow
+from yehu_server.scores.gesture import on_instrument
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.values import choice, choices, whole
 
@@ -66,21 +67,24 @@ class Study:
         return json.dumps(self.data)  # in order, which is that of the axes
 
 
-def read_study(path: Path, vary: Sequence[Axis] = ()) -> Study:
+def read_study(path: Path, vary: Sequence[Axis] = (), instrument: Path | None = None) -> Study:
     """Read a study (TOML), or a gesture (JSON) that is to be varied.
 
-    `vary` are axes beside those of the file; they replace axes of the same name. Raises ScoreError
-    where the file cannot be read; ParameterError where it is wrong.
+    `vary` are axes beside those of the file; they replace axes of the same name. What the study has
+    of an instrument changes that of the file `instrument`. Raises ScoreError where the file cannot
+    be read; ParameterError where it is wrong.
     """
     document = Document(path, "a study", unreadable=ScoreError).read(path, MOST_BYTES)
     if path.suffix == ".json":
-        data: Mapping[str, Any] = {"gesture": document.json().data}
+        data: Mapping[str, Any] = {"gesture": on_instrument(document.json().data, instrument)}
     else:
         table = document.toml()
         data = table.data
         if isinstance(data.get("gesture"), str):
             gesture = table.read("gesture", _gesture, None, path.parent)
-            data = {**data, "gesture": gesture}
+            data = {**data, "gesture": on_instrument(gesture or {}, instrument)}
+        elif "gesture" not in data:
+            data = on_instrument(data, instrument)
     return study_of(Fields(with_axes(data, vary), document), path.parent)
 
 

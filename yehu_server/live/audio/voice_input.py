@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from yehu_server.core.voice.deciding import KEYS, VOICE
+from yehu_server.core.voice.deciding import KEYS, VOICE, ends_of
 from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.output import OutputOptions, SharedMemory
 from yehu_server.playing.live_player import LivePlayer
@@ -77,6 +77,7 @@ class VoiceInput(Supervisor):
                 latency=self._output.latency,
                 channels=1,
                 transpose=math.nan if options.transpose is None else options.transpose,
+                ends=ends_of(self._player.notes),
             )
         elif kind == "ready":
             child.send("start")

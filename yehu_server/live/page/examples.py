@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.ahead.build import RATES
-from yehu_server.core.player.fingering import LOWEST_NOTE
+from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, MPE
 from yehu_server.playing.options import PlayingOptions

@@ -17,7 +17,7 @@ from yehu_server.core.midi import registered_parameters, tables
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.midi.tables import MOST_BINDS, TABLES
 from yehu_server.core.player import fingering
-from yehu_server.core.player.calibration import OPEN_NOTES
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import KINDS
 from yehu_server.errors import ParameterError
@@ -118,8 +118,11 @@ def tuning(one: Tuning) -> dict[str, Any]:
 HEAD = "// Written by `python -m yehu_server.live.page`; changes are lost.\n"
 
 
-def facts() -> dict[str, Any]:
-    """All facts, of JSON's types; the same for the same sources."""
+def facts(notes: NoteRange = YEHU) -> dict[str, Any]:
+    """All facts, of JSON's types; the same for the same sources.
+
+    `notes` are those of the server's instrument, if there is one.
+    """
     shipped = map(read_preset, sorted(shipped_folder("presets").glob("*.toml")))
     return {
         "kinds": {name.upper(): number for number, name in enumerate(KINDS)},
@@ -127,13 +130,14 @@ def facts() -> dict[str, Any]:
         "parameters": [parameter(param) for param in TABLE],
         "notes": {
             "NAMES": list(NOTE_NAMES),
-            "OPEN": list(map(float, OPEN_NOTES)),
-            "LOWEST_NOTE": fingering.LOWEST_NOTE,
-            "HIGHEST_NOTE": fingering.HIGHEST_NOTE,
+            "OPEN": list(map(float, notes.open_notes)),
+            "LOWEST_NOTE": notes.lowest,
+            "HIGHEST_NOTE": notes.highest,
             "OPEN_WITHIN": fingering.OPEN_WITHIN,
             "KEYS": KEYS[-1] + 1,
             "ELSEWHERE": ELSEWHERE,
         },
+        "notesHere": list(YEHU.ends),
         "sources": {
             "BEND": sources.BEND,
             "OF_ONE_NOTE": sorted(sources.OF_ONE_NOTE),

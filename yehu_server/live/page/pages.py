@@ -88,6 +88,8 @@ class Pages(Supervisor):
             socket=listening,
             allowed=allowed,
             guests=None if guests is None else asdict(guests),
+            open_notes=self._players[0].notes.open_notes,
+            reaches=self._players[0].notes.reaches,
         )
         sent: Any = None
         while not gone.wait(STATUS_S):

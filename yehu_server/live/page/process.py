@@ -17,6 +17,7 @@ from typing import Any
 
 from aiohttp import web
 
+from yehu_server.core.player.note_range import NoteRange
 from yehu_server.live.network import Allowed
 from yehu_server.live.page.guests import Admission, Guests
 from yehu_server.live.page.shared_view import SharedView
@@ -40,7 +41,7 @@ class Pages:
         self._admission = Admission(None if guests is None else Guests(**guests))
         self._names = own_names()
         self._connections = Connections()
-        self._site = Site()
+        self._site = Site(NoteRange(tuple(order["open_notes"]), tuple(order["reaches"])))
         self._sounds = PREPARING  # whether pages can sound themselves
         self._status: dict[str, Any] = {}
         view = SharedView(order["memory"])

@@ -16,6 +16,7 @@ from typing import Any
 from aiohttp import web
 
 from yehu_server.ahead.build import SHIPPED, page_module, shipped_version
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.live.page.examples import examples, write_capture_headers
 from yehu_server.live.page.facts import facts, module, write
@@ -63,9 +64,9 @@ class CachedFile:
 
 
 class Site:
-    """The files of the page, by their names in the address."""
+    """The files of the page, by their names in the address, for an instrument with some notes."""
 
-    def __init__(self) -> None:
+    def __init__(self, notes: NoteRange = YEHU) -> None:
         self._files: dict[str, CachedFile] = {}
         self._lacks: str | None = None
         folder = page_folder()
@@ -73,7 +74,7 @@ class Site:
             self._store(name, (folder / name).read_bytes())
         index = (folder / INDEX).read_text("utf-8").replace(*MARK, 1)
         self._store(INDEX, index.encode())
-        self._store(FACTS, module(facts()).encode())
+        self._store(FACTS, module(facts(notes)).encode())
         self._store("examples.js", module(examples()).encode())
 
     def add_module(self, data: bytes) -> None:

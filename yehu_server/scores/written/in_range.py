@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.playing.stringing import range_text
 from yehu_server.scores.octaves import Octaves, Sounding, octaves_of
 from yehu_server.scores.tune_part import melodic_part
@@ -21,12 +22,9 @@ def usual_parts(written: Written) -> list[int]:
     return [] if tune is None else [tune]
 
 
-def moved_part(part: Part, higher: int = 0) -> tuple[Part, Octaves]:
-    """Return a part in range, and by how many octaves its notes were moved.
-
-    `higher` counts semitones by which the instrument is tuned higher than a yehu.
-    """
-    octaves = octaves_of([sounding(note) for note in part.notes], REST, higher)
+def moved_part(part: Part, within: NoteRange = YEHU) -> tuple[Part, Octaves]:
+    """Return a part in the range of an instrument, and by how many octaves its notes were moved."""
+    octaves = octaves_of([sounding(note, within) for note in part.notes], REST, within)
     if not any(octaves.of_notes):
         return part, octaves
     notes = tuple(
@@ -35,30 +33,30 @@ def moved_part(part: Part, higher: int = 0) -> tuple[Part, Octaves]:
     return replace(part, notes=notes), octaves
 
 
-def moved(written: Written, plays: Sequence[int], higher: int = 0) -> tuple[Written, str]:
+def moved(written: Written, plays: Sequence[int], within: NoteRange = YEHU) -> tuple[Written, str]:
     """A score whose parts of some numbers are in range, and a line that tells it, if any moved."""
     parts = list(written.parts)
     told = []
     for number in plays:
-        parts[number], octaves = moved_part(parts[number], higher)
+        parts[number], octaves = moved_part(parts[number], within)
         if octaves.told:
             told.append((written.names[number], octaves.told))
-    return replace(written, parts=tuple(parts)), line_of(told, higher)
+    return replace(written, parts=tuple(parts)), line_of(told, within)
 
 
-def line_of(told: Sequence[tuple[str, str]], higher: int = 0) -> str:
+def line_of(told: Sequence[tuple[str, str]], within: NoteRange = YEHU) -> str:
     """A line that tells which parts were moved, and how."""
     if not told:
         return ""
     moves = "; ".join(f"{name} {how}" for name, how in told)
-    return f"moved to fit {range_text(higher)}: {moves}"
+    return f"moved to fit {range_text(within)}: {moves}"
 
 
-def sounding(note: Note) -> Sounding:
+def sounding(note: Note, within: NoteRange = YEHU) -> Sounding:
     """When a note sounds (quarters), and its pitches."""
     # A harmonic is as high as it is written: its finger touches an open string.
     graces = [grace.pitch for grace in (*note.before, *note.after)]
-    own = [] if harmonic_of(note) is not None else [note.pitch]
+    own = [] if harmonic_of(note, within) is not None else [note.pitch]
     return Sounding(float(note.beat), float(note.end), tuple(own + graces))
 
 

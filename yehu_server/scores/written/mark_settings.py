@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import NamedTuple
 
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.params.articulations import NUMBER
 from yehu_server.params.table import find
 from yehu_server.scores.written.notated import FORCED, Note, Part, Sign
@@ -25,7 +27,6 @@ GAIN = "/body/gain"
 FINGER_POSITION, FINGER_PRESS = "/finger/4/position", "/finger/4/press"
 
 DOWN, UP, INNER, OUTER = 1.0, -1.0, 1.0, 2.0
-INNER_OPEN, OUTER_OPEN = 65.0, 72.0  # F4 and C5
 SAME_PITCH = 0.3  # semitones
 QUICK_TREMOLO = 13.0  # strokes a second, unmeasured
 DEEP = 0.6  # of such a tremolo
@@ -61,15 +62,24 @@ class Node(NamedTuple):
     place: float
 
 
-# Those that speak: a finger of 20 mN at a node of the open string, the bow near the bridge. Of the
-# third and fourth of the F string and the fourth of the C string others come. Measured
-# (tests/scores/test_harmonics.py); G6 is above the range of stopped notes.
+# Those that speak, of a yehu: a finger of 20 mN at a node of the open string, the bow near the
+# bridge. Of the third and fourth of the inner string and the fourth of the outer others come.
+# Measured (tests/scores/test_harmonics.py); the last is above the range of stopped notes.
 SOUNDING_LENGTH = 0.2986  # m
-HARMONICS: Mapping[float, Node] = {
-    77.0: Node(INNER_OPEN, INNER, SOUNDING_LENGTH / 2.0),
-    84.0: Node(OUTER_OPEN, OUTER, SOUNDING_LENGTH / 2.0),
-    91.0: Node(OUTER_OPEN, OUTER, SOUNDING_LENGTH / 3.0),
-}
+SPEAKING = ((INNER, 12.0, 2.0), (OUTER, 12.0, 2.0), (OUTER, 19.0, 3.0))
+
+
+@lru_cache(maxsize=16)
+def harmonics_of(within: NoteRange) -> Mapping[float, Node]:
+    """The harmonics of an instrument, by pitch (MIDI note)."""
+    length = SOUNDING_LENGTH * within.bridge_x / YEHU.bridge_x
+    opens = dict(zip((INNER, OUTER), map(float, within.open_notes), strict=True))
+    return {
+        opens[string] + above: Node(opens[string], string, length / parts)
+        for string, above, parts in SPEAKING
+    }
+
+
 TOUCH_N = 0.02
 HARMONIC_BOW: Values = {BOW_POSITION: 0.05, SPEED: 0.2, PRESSURE: 0.3, LISTENING: 0.0}
 OUTER_DB = 10.0  # its harmonics are some 14 dB softer than the open string
@@ -130,12 +140,13 @@ def actives_of(part: Part) -> list[Active]:
     return found
 
 
-def harmonic_of(note: Note) -> Node | None:
+def harmonic_of(note: Note, within: NoteRange = YEHU) -> Node | None:
     """Where a note's harmonic is touched; None where it is none, or none that speaks."""
     if note.marked("harmonic") is None:
         return None
-    near = min(HARMONICS, key=lambda pitch: abs(pitch - note.pitch))
-    return HARMONICS[near] if abs(near - note.pitch) <= SAME_PITCH else None
+    known = harmonics_of(within)
+    near = min(known, key=lambda pitch: abs(pitch - note.pitch))
+    return known[near] if abs(near - note.pitch) <= SAME_PITCH else None
 
 
 def is_plucked(note: Note, active: Active) -> bool:
@@ -143,7 +154,7 @@ def is_plucked(note: Note, active: Active) -> bool:
     return active.plucked or bool(note.marked("pizzicato") or note.marked("snap-pizzicato"))
 
 
-def values_of(note: Note, active: Active, quarter_s: float) -> Values:
+def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = YEHU) -> Values:
     """Return the parameters that a note's marks and the signs before it set, by address."""
     values = _held(active)
     if number := articulation_of(note, active, quarter_s):
@@ -156,7 +167,7 @@ def values_of(note: Note, active: Active, quarter_s: float) -> Values:
         elif name in ("inner-string", "outer-string"):
             values[STRING] = INNER if name == "inner-string" else OUTER
         elif name in ("open-string", "finger"):
-            values |= _fingered(note, 0.0 if name == "open-string" else value)
+            values |= _fingered(note, 0.0 if name == "open-string" else value, within)
         elif name == "tremolo":
             values |= _trembled(_strokes(value, quarter_s))
         elif name == "vibrato":
@@ -167,7 +178,7 @@ def values_of(note: Note, active: Active, quarter_s: float) -> Values:
         values |= {PIZZICATO: 1.0, GAIN: PLUCKED_DB}
         for address in (TREMOLO, TREMOLO_DEPTH, ARTICULATION):
             values.pop(address, None)
-    node = harmonic_of(note)
+    node = harmonic_of(note, within)
     if node is not None:
         values |= {**HARMONIC_BOW, STRING: node.string}
         if node.string == OUTER:
@@ -221,8 +232,8 @@ def _vibrato(cents: float | None) -> Values:
     return {VIBRATO: cents} if cents > 0.0 else {VIBRATO: 0.0, PHRASING: 0.0}
 
 
-def _fingered(note: Note, finger: float | None) -> Values:
-    """The string that a finger number implies, at the pitch of the open C string."""
-    if finger is None or abs(note.pitch - OUTER_OPEN) > SAME_PITCH:
+def _fingered(note: Note, finger: float | None, within: NoteRange) -> Values:
+    """The string that a finger number implies, at the pitch of the open outer string."""
+    if finger is None or abs(note.pitch - within.open_notes[1]) > SAME_PITCH:
         return {}
     return {STRING: OUTER if finger == 0.0 else INNER}

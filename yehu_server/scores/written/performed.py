@@ -14,6 +14,7 @@ from functools import lru_cache
 
 import mido
 
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import Score, ScoreEvent, ScorePart, Setting
 from yehu_server.scores.written.dynamics import Loudness
@@ -22,7 +23,6 @@ from yehu_server.scores.written.mark_settings import (
     DIRECTION,
     FINGER_POSITION,
     FINGER_PRESS,
-    OUTER_OPEN,
     SAME_PITCH,
     TOUCH_N,
     Active,
@@ -51,11 +51,14 @@ OFF, SET, ON, AFTER = range(4)
 Timed = tuple[float, int, int, ScoreEvent]  # time, order, number, event
 
 
-def performed(written: Written, plays: Sequence[int] | None = None) -> Score:
+def performed(
+    written: Written, plays: Sequence[int] | None = None, within: NoteRange = YEHU
+) -> Score:
     """Return a written score as it is played.
 
     `plays` are the numbers of the parts to play, from 0; by default all. Tempo and waits are of
-    all. Raises ScoreError where there is no note, or it lasts longer than a day.
+    all. Open strings and harmonics are those of `within`. Raises ScoreError where there
+    is no note, or it lasts longer than a day.
     """
     clock = WrittenClock(written)
     warnings = [*written.warnings, *written.not_understood]
@@ -71,7 +74,7 @@ def performed(written: Written, plays: Sequence[int] | None = None) -> Score:
     end = Fraction(0)
     for channel, number in zip(CHANNELS, numbers, strict=False):
         part = written.parts[number]
-        timed += _Performer(part, channel, clock, left, len(timed)).events()
+        timed += _Performer(part, channel, clock, left, len(timed), within).events()
         parts.append(ScorePart(written.names[number], channel, channel + 1))
         end = max(end, part.notes[-1].end)
     warnings += [times(mark, count) for mark, count in left.items()]
@@ -90,9 +93,16 @@ def performed(written: Written, plays: Sequence[int] | None = None) -> Score:
 
 class _Performer:
     def __init__(
-        self, part: Part, channel: int, clock: WrittenClock, left: Counter[str], number: int
+        self,
+        part: Part,
+        channel: int,
+        clock: WrittenClock,
+        left: Counter[str],
+        number: int,
+        within: NoteRange,
     ) -> None:
         self._part = part
+        self._within = within
         self._channel = channel
         self._clock = clock
         self._left = left  # marks that are left out, and how often
@@ -123,12 +133,12 @@ class _Performer:
     def _play(self, played: Played, active: Active) -> None:
         note, begin_s = played.note, played.begin_s
         self._count_left(note)
-        values = values_of(note, active, self._clock.quarter_s(note.beat))
+        values = values_of(note, active, self._clock.quarter_s(note.beat), self._within)
         if played.direction:
             values[DIRECTION] = played.direction
         if played.slide_s > 0.0:
             values |= {PORTAMENTO: 1.0, PORTAMENTO_TIME: 1e3 * played.slide_s}
-        node = harmonic_of(note)
+        node = harmonic_of(note, self._within)
         pitch = note.pitch if node is None else node.open_note
         key = _key_of(pitch)
         curve = curve_of(note, begin_s, played.end_s) if node is None else []
@@ -218,9 +228,10 @@ class _Performer:
 
     def _count_left(self, note: Note) -> None:
         """Count marks that cannot be played as written."""
-        if note.marked("harmonic") and harmonic_of(note) is None:
+        if note.marked("harmonic") and harmonic_of(note, self._within) is None:
             self._left["a harmonic that does not speak is played as a light stopped note"] += 1
-        is_open = note.pitch < OUTER_OPEN - 6.5 or abs(note.pitch - OUTER_OPEN) <= SAME_PITCH
+        inner, outer = self._within.open_notes
+        is_open = note.pitch < inner + 0.5 or abs(note.pitch - outer) <= SAME_PITCH
         if note.marked("open-string") and not is_open:
             self._left["an open string is marked on a note that no open string has"] += 1
         if note.marked("arpeggio"):

@@ -6,7 +6,9 @@ Each part of a step waits for the one before, so the time of a part by itself sa
 The first table is of the whole kernel with ever more to do: nanoseconds (the fastest of many short
 runs), and instructions, counted by single steps (Linux on x86-64). The second tells how much faster
 the loop becomes when one part is replaced by next to nothing, each in its own process. The model
-still sounds there, more or less; a part that others wait for counts with their waiting.
+still sounds there, more or less; a part that others wait for counts with their waiting. The third
+is of torsion and wide hair, whose kernel is another: by the fastest of many short runs of it and of
+the plain one, in turn.
 """
 
 from __future__ import annotations
@@ -23,10 +25,11 @@ import numpy as np
 import report
 
 from yehu_server.compile import cache_folder, jit
-from yehu_server.core.physics import finger, kernel, layout
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics import finger, kernel, layout, refined
+from yehu_server.core.physics.quantities import Quantities, override
 
 FRAMES, RUNS, STEPPED = 4410, 300, 100
+SHORT = 441  # frames of kernels in turn, which another program seldom interrupts
 SETTLED_S = 0.5
 VIBRATO_HZ, VIBRATO_M = 6.0, 1e-3
 SPEED, BOW_X, FINGER_X, PRESS = 0.2, 0.26, 0.1, 1.5  # m/s, m, m, N
@@ -39,6 +42,12 @@ CASES = {
     "and a finger": (1, 1, 0.5),
     "and three fingers up": (4, 1, 0.5),
     "four fingers down": (4, 4, 0.5),
+}
+REFINED: dict[str, dict[str, Any]] = {
+    "torsion": {"torsion": "on"},
+    "hair 8 mm wide, 2 points": {"bow": {"width": 0.008}},
+    "and torsion": {"torsion": "on", "bow": {"width": 0.008}},
+    "4 points and torsion": {"torsion": "on", "bow": {"width": 0.008, "points": 4}},
 }
 
 
@@ -53,6 +62,8 @@ class Kernel:
         Of the bow (N).
     vibrato : bool
         Whether the fingers move.
+    changes : dict
+        Of the instrument.
     """
 
     def __init__(
@@ -64,9 +75,12 @@ class Kernel:
         vibrato: bool = False,
         rate: float = 44100.0,
         is_idle: bool = False,
+        changes: dict[str, Any] | None = None,
     ) -> None:
         self.rate, self.playing = rate, (fingers, down, force, vibrato, is_idle)
-        self.model = kernel.prepare(Quantities(), rate, fingers)
+        quantities = override(Quantities(), changes or {})
+        self.model = kernel.prepare(quantities, rate, fingers)
+        self.refined = refined.prepare(quantities, rate)
         self.state = kernel.at_rest(self.model)
         self.advance(*self.rows(round(SETTLED_S * rate)))
 
@@ -92,7 +106,10 @@ class Kernel:
     def advance(self, rows: Any, probes: Any) -> float:
         """Advance over rows of controls; return the seconds it took."""
         start = time.perf_counter()
-        kernel.advance(self.model, self.state, rows, probes, None)
+        if self.refined is None:
+            kernel.advance(self.model, self.state, rows, probes, None)
+        else:
+            refined.advance(self.model, self.state, self.refined, rows, probes, None)
         return time.perf_counter() - start
 
     def fastest_ns(self) -> tuple[float, float]:
@@ -188,6 +205,23 @@ def leave_out(name: str) -> None:
     vars(kernel)["advance_fingers"] = vars(finger)["advance_fingers"]
 
 
+def in_turn() -> dict[str, dict[str, float]]:
+    """Nanoseconds a sample of the kernels of `REFINED`, and those beyond the plain kernel."""
+    plain = Kernel(*CASES["and a finger"])
+    rows, probes = plain.rows(SHORT)
+    found: dict[str, dict[str, float]] = {}
+    for name, changes in REFINED.items():
+        other = Kernel(*CASES["and a finger"], changes=changes)
+        runs = [(plain.advance(rows, probes), other.advance(rows, probes)) for _ in range(RUNS)]
+        least, most = np.min(runs, axis=0) / SHORT * 1e9
+        found[name] = {
+            "ns": float(most),
+            "more": float(most - least),
+            "evaluations": float(probes[:, layout.ITERATIONS].mean()),
+        }
+    return found
+
+
 def main() -> None:
     """Measure and print."""
     if len(sys.argv) == 2:
@@ -213,6 +247,7 @@ def main() -> None:
         faster = rows["and a finger"]["ns"] - float(run.stdout)
         without[name] = {"ns": faster, "is": part.__doc__}
     report.show(without, "With a finger, what it is faster by without")
+    report.show(in_turn(), "With a finger, and beyond the plain kernel")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import time
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +24,7 @@ from yehu_server.core.physics.quantities import Quantities
 SOURCE = Path(__file__).with_name("yardstick.cpp")
 FLAGS = ["-O3", "-march=native", "-ffast-math", "-std=c++17"]
 RATE, FORCE = 44100.0, 0.5  # Hz, N
+STRING = ("L", "rho", "r", "T", "E", "sigma_0", "sigma_1")
 
 
 def values(quantities: Quantities) -> Iterable[float]:
@@ -32,7 +33,7 @@ def values(quantities: Quantities) -> Iterable[float]:
     yield from (FORCE, SPEED, BOW_X, FINGER_X, PRESS)
     yield from (q.tension_headroom, q.bridge_x)
     for string in q.strings:
-        yield from (getattr(string, each.name) for each in fields(string))
+        yield from (getattr(string, name) for name in STRING)
     yield from (bow.epsilon_0, bow.epsilon_1, bow.v_s, bow.mu_C, bow.mu_S, bow.xi[0])
     yield from (bow.M_h, bow.K_h, bow.R_h)
     yield from (finger.M_f, finger.K_f, finger.alpha, finger.beta, finger.rest_height)

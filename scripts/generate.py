@@ -285,10 +285,12 @@ KINDS = {
     "Contacts": (layout.CONTACTS, "Where bow and fingers touch the strings."),
     "Work": (layout.WORK, "Intermediate results of one step."),
     "State": (layout.STATE, "All that a step changes."),
+    "Refined": (layout.REFINED, "What an instrument with torsion, or with wide hair, has besides."),
 }
 HEAD = '''"""Types of the model's records; written by scripts/generate.py from layout.py.
 
-A record of an array of layout.MODEL or layout.STATE has these attributes in compiled code.
+In compiled code a record of an array of layout.MODEL, layout.STATE or layout.REFINED has these
+attributes.
 docs/notation.md has their symbols and units.
 """
 

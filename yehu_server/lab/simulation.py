@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics import kernel, layout, refined
 from yehu_server.core.physics.bow import friction_bound
 from yehu_server.core.physics.energy import stored_energy
 from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
@@ -164,6 +164,7 @@ def simulate(
         Where the arrays would take more than MAX_BYTES.
     """
     model = kernel.prepare(gesture.quantities, gesture.sample_rate)
+    more = refined.prepare(gesture.quantities, gesture.sample_rate)
     m = model[0]
     frames = gesture.frames
     columns = layout.probe_columns(1) + layout.control_columns(1) + len(LEDGER) * energy
@@ -182,14 +183,18 @@ def simulate(
     controls = gesture.control_rows()
     probes = np.zeros((frames, layout.probe_columns(1)))
     ledger = np.zeros((frames if energy else 0, len(LEDGER)))
-    kept: list[list[Floats]] = [[], []]
+    shaped: list[list[Floats]] = [[], []]
     hop = strings_every or CHUNK
     for start in range(0, frames, hop):
         if strings_every:
             for i in range(STRINGS):
-                kept[i].append(shape_of(m, state["motion"][0], i))
+                shaped[i].append(shape_of(m, state["motion"][0], i))
         part = slice(start, min(start + hop, frames))
-        kernel.advance(model, state, controls[part], probes[part], ledger[part] if energy else None)
+        kept = ledger[part] if energy else None
+        if more is None:
+            kernel.advance(model, state, controls[part], probes[part], kept)
+        else:
+            refined.advance(model, state, more, controls[part], probes[part], kept)
         if progress is not None:
             progress(part.stop / gesture.sample_rate, gesture.duration)
 
@@ -199,11 +204,12 @@ def simulate(
     if strings_every:
         arrays["strings_time"] = arrays["time"][::strings_every]
         for i in range(STRINGS):
-            arrays[f"string_{i + 1}"] = np.array(kept[i])
+            arrays[f"string_{i + 1}"] = np.array(shaped[i])
             length = gesture.quantities.strings[i].L
             arrays[f"x_{i + 1}"] = np.linspace(0.0, length, int(m["N"][i]) + 1)
     told = {"gesture": dict(gesture.source), "seed": int(gesture.quantities.bow.hair)}
-    return Simulation(arrays, told | about(m, state[0], frames, gesture.quantities))
+    own = None if more is None else more[0]
+    return Simulation(arrays, told | about(m, state[0], frames, gesture.quantities, own))
 
 
 def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, Floats]:
@@ -238,8 +244,10 @@ def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, F
     return arrays
 
 
-def about(m: Any, state: Any, frames: int, quantities: Quantities) -> dict[str, Any]:
-    """What a run's metadata tell of the model (MODEL) and its state (STATE) at the end."""
+def about(
+    m: Any, state: Any, frames: int, quantities: Quantities, more: Any = None
+) -> dict[str, Any]:
+    """What a run's metadata tell of the model (MODEL, REFINED) and its state (STATE) at the end."""
     return {
         "version": __version__,
         "instrument": as_data(quantities),
@@ -248,7 +256,7 @@ def about(m: Any, state: Any, frames: int, quantities: Quantities) -> dict[str, 
         "grid_intervals": [int(N) for N in m["N"]],
         "grid_spacing_m": [float(h) for h in m["h"]],
         "bridge_x_m": float(m["bridge_x"]),
-        "friction_bound": friction_bound(m),
+        "friction_bound": friction_bound(m, more),
         "unconverged_solves": int(state["unconverged"]),
         "lost_states": int(state["lost"]),
     }

@@ -20,6 +20,7 @@ from yehu_server.core.engine import native
 from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine.ensemble import TAPE_FRAMES, Ensemble
 from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.refining import advance_refined
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.warming import all_functions
 from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
@@ -28,7 +29,7 @@ from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
 
 RATE = 22050
-CALLS = {call.function.__name__: call for call in all_functions()}
+CALLS = {call.function.__name__: call for call in (*all_functions(), advance_refined)}
 
 # Everything that the audio thread may call: none of these waits or allocates.
 REAL_TIME_SAFE = {
@@ -144,7 +145,7 @@ WORDS = ["POSTED", "DRAINED", "REPORTED", "READ", "VERSION", "TAPED"]
 def test_what_a_function_calls_that_is_compiled_apart_is_read_of_its_code():
     for name, apart in APART.items():
         assert {call.function.__name__ for call in CALLS[name].calls} == apart, name
-    assert len(CALLS) == len(all_functions())  # each has a name of its own
+    assert len(CALLS) == len(all_functions()) + 1  # each has a name of its own
     assert interface.frame.calls == []  # `frame` in its code is an attribute
     assert interface.process.calls == [CALLS["callback"]]
 
@@ -190,9 +191,12 @@ def test_no_call_raises_anything():
 
 def test_no_call_calls_anybody_by_address_or_waits_for_anybody():
     by_address = re.compile(r"\b(call|invoke)\b[^@(\n]*%[\w.]+\(|\b(cmpxchg|atomicrmw)\b")
+    # The kernel of an instrument with torsion or wide hair, which is one of CALLS here.
+    refined = re.compile(r"call void %[\w.]+\(ptr [^(),]+, i64 [^(),]+, i64 [^(),]+\)")
     for name in CALLS:
         for part, code in reached(name).items():
-            assert not by_address.search(code), (name, part)
+            others = refined.sub("", code, count=1) if part == body("sound") else code
+            assert not by_address.search(others), (name, part)
 
 
 def names(listing: str, name: str) -> set[str]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics import kernel, layout, refined
 from yehu_server.core.physics.energy import stored_energy
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.string import set_Delta_u
@@ -42,6 +42,7 @@ class Run:
     rate: float
     model: Any
     state: Any
+    refined: Any
     controls: Any
     probes: Any
     ledger: Any
@@ -88,7 +89,9 @@ def play(
     ledger: bool = True,
 ) -> Run:
     """Run the kernel over curves, given as functions of time (s) or as constants."""
-    model = kernel.prepare(quantities or Quantities(), rate, fingers)
+    quantities = quantities or Quantities()
+    model = kernel.prepare(quantities, rate, fingers)
+    more = refined.prepare(quantities, rate)
     state = kernel.at_rest(model) if state is None else state
     frames = round(seconds * rate)
     if callable(curves):
@@ -100,8 +103,12 @@ def play(
     state["motion"]["stored"] = stored_energy(
         model[0], state[0]["motion"], level, (level + 2) % layout.LEVELS
     )
-    kernel.advance(model, state, controls, probes, book if ledger else None)
-    return Run(rate, model, state, controls, probes, book)
+    kept = book if ledger else None
+    if more is None:
+        kernel.advance(model, state, controls, probes, kept)
+    else:
+        refined.advance(model, state, more, controls, probes, kept)
+    return Run(rate, model, state, more, controls, probes, book)
 
 
 def shaped(model: Any, string: int, shape: Callable[[Any], Any]) -> Any:

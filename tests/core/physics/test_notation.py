@@ -25,6 +25,7 @@ def listed(heading: str) -> list[str]:
         ("STATE: motion", layout.MOTION),
         ("STATE: contacts", layout.CONTACTS),
         ("STATE: work", layout.WORK),
+        ("REFINED", layout.REFINED),
     ],
 )
 def test_each_field_stands_in_the_notation_once(heading, record):

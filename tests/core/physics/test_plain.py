@@ -6,16 +6,17 @@ import sys
 
 import numpy as np
 
-from yehu_server.core.physics import kernel, layout
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics import kernel, layout, refined
+from yehu_server.core.physics.quantities import Quantities, override
 
 RATE = 44100.0
 FRAMES = 40
+REFINED = override(Quantities(), {"torsion": "on", "bow": {"width": 0.008}})
 
 
-def step_through() -> np.ndarray:
+def step_through(quantities: Quantities) -> np.ndarray:
     """Probes and ledger of some steps: two fingers that share nodes, a third, and a bow."""
-    model = kernel.prepare(Quantities(), RATE, 3)
+    model, more = kernel.prepare(quantities, RATE, 3), refined.prepare(quantities, RATE)
     state = kernel.at_rest(model)
     state["motion"]["U"] = -1e-6
     controls = np.zeros((FRAMES, layout.control_columns(3)))
@@ -26,15 +27,28 @@ def step_through() -> np.ndarray:
     controls[20:, layout.FINGER_CONTROLS] = 0.25  # under the bow: contacts are solved jointly
     probes = np.zeros((FRAMES, layout.probe_columns(3)))
     ledger = np.zeros((FRAMES, len(layout.LEDGER)))
-    kernel.advance(model, state, controls, probes, ledger)
+    if more is None:
+        kernel.advance(model, state, controls, probes, ledger)
+    else:
+        refined.advance(model, state, more, controls, probes, ledger)
     return np.hstack([probes, ledger])
+
+
+def all_steps() -> np.ndarray:
+    """Those of the plain kernel, and of the one with torsion and wide hair."""
+    return np.stack([step_through(Quantities()), step_through(REFINED)])
 
 
 def test_uncompiled_steps_are_those_of_the_compiled_model(tmp_path):
     target = tmp_path / "plain.npy"
     command = [sys.executable, __file__, str(target)]
     subprocess.run(command, env={**os.environ, "NUMBA_DISABLE_JIT": "1"}, check=True)
-    compiled, plain = step_through(), np.load(target)
+    for compiled, plain in zip(all_steps(), np.load(target), strict=True):
+        check(compiled, plain)
+
+
+def check(compiled: np.ndarray, plain: np.ndarray) -> None:
+    """Compare the steps of one kernel."""
     size = np.abs(compiled).max(axis=0)
     assert (size > 0.0).sum() > 20
     error = np.abs(plain - compiled).max(axis=0)
@@ -45,4 +59,4 @@ def test_uncompiled_steps_are_those_of_the_compiled_model(tmp_path):
 
 
 if __name__ == "__main__":
-    np.save(sys.argv[1], step_through())
+    np.save(sys.argv[1], all_steps())

@@ -36,11 +36,11 @@ def findings():
 
 
 def test_strokes_find_the_same_in_any_order_and_number_to_the_bit(findings):
-    _, _, (models, rests, strokes, hands) = batch()
+    _, _, (instruments, strokes, hands) = batch()
     order = np.random.default_rng(1).permutation(len(strokes))
     again = np.zeros_like(findings)
     for part in np.array_split(order, 3):
-        again[part] = find(models, rests, strokes[part], hands)
+        again[part] = find(instruments, strokes[part], hands)
     for name in FINDING.names:  # by bytes, in which NaN is the same as NaN
         assert again[name].tobytes() == findings[name].tobytes()
 
@@ -95,9 +95,9 @@ def test_nothing_slips_before_the_bow_sets_off(findings):
 
 @pytest.mark.parametrize(("unconverged", "lost", "faults"), [(3, 2, 5), (200, 100, 255)])
 def test_faults_of_the_model_are_counted(unconverged, lost, faults):
-    models, rests, strokes, hands = batch()[2]
-    rests["unconverged"], rests["lost"] = unconverged, lost
-    assert (find(models, rests, strokes[:2], hands)["faults"] == faults).all()
+    instruments, strokes, hands = batch()[2]
+    instruments.rests["unconverged"], instruments.rests["lost"] = unconverged, lost
+    assert (find(instruments, strokes[:2], hands)["faults"] == faults).all()
 
 
 def test_a_lifted_bow_is_told():

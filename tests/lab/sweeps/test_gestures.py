@@ -56,7 +56,7 @@ def test_a_stroke_is_the_gesture_that_simulate_runs(vary):
     varied = study(**vary)
     result = sweep(varied, workers=2)
     assert len(result) == np.prod(varied.shape)
-    models, rests, strokes, _ = varied.bow.strokes(varied.axes, result.index)
+    instruments, strokes, _ = varied.bow.strokes(varied.axes, result.index)
     for at in range(len(result)):
         gesture = varied.bow.gesture(varied.axes, result.index[at].tolist())
         run = simulate(gesture).arrays
@@ -67,12 +67,12 @@ def test_a_stroke_is_the_gesture_that_simulate_runs(vary):
         assert result.columns["first_slip_s"][at] == pytest.approx(
             finding.first_slip_s, abs=2.5 / gesture.sample_rate
         )
-    assert len(models) == len(rests)
+    assert len(instruments.models) == len(instruments.rests)
 
 
 def test_the_note_of_a_gesture_is_that_of_its_string_and_finger():
     varied = study(bow_force=[0.5, -0.5], finger_position=[0.1, 0.15])
-    strokes = varied.bow.strokes(varied.axes, np.array([[0, 0], [0, 1], [1, 0], [1, 1]]))[2]
+    strokes = varied.bow.strokes(varied.axes, np.array([[0, 0], [0, 1], [1, 0], [1, 1]]))[1]
     # c / 2 (x_c - x_f) of each string, without stiffness; [Yehu] table 1.
     speeds = [
         (50.61 / (1250 * np.pi * 0.55e-3**2)) ** 0.5,
@@ -85,7 +85,7 @@ def test_the_note_of_a_gesture_is_that_of_its_string_and_finger():
 def test_an_open_string_has_no_finger():
     open_string = {"gesture": {"duration": 0.1, "controls": {"bow_velocity": 0.2}}}
     varied = study_of(open_string | {"vary": {"bow_force": [0.5]}})
-    strokes = varied.bow.strokes(varied.axes, np.array([[0]]))[2]
+    strokes = varied.bow.strokes(varied.axes, np.array([[0]]))[1]
     assert strokes["frequency_hz"][0] == pytest.approx(345, rel=0.02)
 
 

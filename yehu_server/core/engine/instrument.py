@@ -13,12 +13,13 @@ from yehu_server.core.engine import native
 from yehu_server.core.engine.intake import interpret_events
 from yehu_server.core.engine.mailbox import LIVE_BUDGET, RING, SERVER, repair
 from yehu_server.core.engine.output import prepare_output, rest_output
+from yehu_server.core.engine.refining import refine
 from yehu_server.core.engine.rig import RIG, RIG_BYTES, memory_bytes
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.midi.record import IN_PORT, clear_held, prepare_midi
 from yehu_server.core.midi.tables import plain_tables
-from yehu_server.core.physics import kernel
+from yehu_server.core.physics import kernel, refined
 from yehu_server.core.physics.bow import friction_bound
 from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.physics.layout import MAX_FINGERS, new_record
@@ -89,6 +90,10 @@ class Instrument:
         """
         rig, spec, values = self._rig, self.spec, self.spec.values
         rig["state"] = kernel.at_rest(rig["model"])
+        made = refined.prepare(spec.quantities, self.rate)
+        if made is not None and self.is_live:  # the audio process has code at other addresses
+            raise ParameterError("torsion and the width of the hair are not played live")
+        refine(rig, made)
         rig["controls"] = prepare_controls(spec.quantities, self.rate, values)
         rig["player"] = prepare_player(
             spec.quantities,
@@ -179,7 +184,7 @@ class Instrument:
     @property
     def friction_bound(self) -> float:
         """See ``physics.bow.friction_bound``."""
-        return friction_bound(self._rig["model"][0])
+        return friction_bound(self._rig["model"][0], self._rig["refined"][0])
 
     @property
     def unconverged_solves(self) -> int:
@@ -297,6 +302,7 @@ class Instrument:
         """
         rig = self._rig
         kernel.come_to_rest(rig["model"][0], rig["state"][0])
+        refined.come_to_rest(rig["refined"][0])
         settle(rig["controls"][0])
         rest_output(rig["output"])
         rest_seat(rig["seat"][0])

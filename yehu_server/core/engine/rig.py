@@ -18,7 +18,7 @@ from yehu_server.core.engine.output import OUTPUT
 from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.midi.record import MIDI
 from yehu_server.core.midi.tables import SLOTS, TABLES
-from yehu_server.core.physics.layout import MODEL, STATE, lined_up
+from yehu_server.core.physics.layout import MODEL, REFINED, STATE, lined_up
 from yehu_server.core.player.ear import EAR_SAMPLES
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.wishes import WISH
@@ -53,6 +53,8 @@ RIG = lined_up(
         ("heap", WAITING, HEAP),  # wishes to come
         ("reports", WISH, RING),
         ("seat", SEAT),
+        ("kernel", np.int64, LINE),  # the address of the kernel, 0 for the plain one (refining.py)
+        ("refined", REFINED),
     ]
 )
 RIG_BYTES = RIG.itemsize
@@ -81,6 +83,7 @@ RING_SIZES = np.array([RING, SMALL_RING, SMALL_RING, SMALL_RING])
 EVENTS_AT, MIDI_AT, TABLES_AT = _offset("events"), _offset("midi"), _offset("tables")
 HEAP_AT, REPORTS_AT = _offset("heap"), _offset("reports")
 SEAT_AT = _offset("seat")
+KERNEL_AT, REFINED_AT = _offset("kernel"), _offset("refined")
 POSTED_AT, DRAINED_AT = _offset("mail", "posted"), _offset("mail", "drained")
 CURSOR_BYTES = 8 * LINE  # from one writer's to the next
 REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")

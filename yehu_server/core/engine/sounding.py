@@ -47,23 +47,26 @@ from yehu_server.core.engine.output import (
     output_sample,
 )
 from yehu_server.core.engine.processor import flush_denormals, restore_denormals
+from yehu_server.core.engine.refining import advance_at
 from yehu_server.core.engine.rig import (
     CONTROLS_AT,
     EAR_BUFFER_AT,
     HEAP_AT,
+    KERNEL_AT,
     MAIL_AT,
     METERS_AT,
     MODEL_AT,
     OUTPUT_AT,
     PLAYER_AT,
     READ_AT,
+    REFINED_AT,
     REPORTED_AT,
     REPORTS_AT,
     STATE_AT,
 )
 from yehu_server.core.engine.telemetry import METERS, close_window, hear
-from yehu_server.core.physics import kernel
-from yehu_server.core.physics.layout import MODEL, RELATIVE_VELOCITY, STATE, STRINGS
+from yehu_server.core.physics import kernel, refined
+from yehu_server.core.physics.layout import MODEL, REFINED, RELATIVE_VELOCITY, STATE, STRINGS
 from yehu_server.core.player.ear import EAR_SAMPLES, remember
 from yehu_server.core.player.listening import attend
 from yehu_server.core.player.record import PLAYER
@@ -130,7 +133,7 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
     mail = record_at(rig, MAIL_AT, MAIL)
     t = record_at(rig, METERS_AT, METERS)
     p = record_at(rig, PLAYER_AT, PLAYER)
-    wanted = min(wanted, CHUNK)
+    wanted, refining = min(wanted, CHUNK), carray(at(rig, KERNEL_AT), (1,), np.int64)[0]
     sounded.silenced_at = NOT_SILENCED
     done = 0
     while done < wanted:
@@ -163,14 +166,24 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
             if begin == end:
                 retune(model, state, c)
                 end = done
-            kernel.advance(model, state, o.controls[begin:end], o.probes[begin:end], None)
+            if refining != 0:
+                advance_at(refining, rig, begin, end)
+            else:
+                kernel.advance(model, state, o.controls[begin:end], o.probes[begin:end], None)
             begin = end
         write_output(rig, sounded.dry, first, start, done)
         if silenced:
-            kernel.come_to_rest(model[0], state[0])
-            clear_filters(o)
+            come_to_rest(rig, model, state)
             sounded.silenced_at = done - 1
         close_window(t, model[0], state[0].motion)
+
+
+@compiled_with_aliasing
+def come_to_rest(rig: Any, model: Array, state: Array) -> None:
+    """Put the model to rest, and what filters its sound."""
+    kernel.come_to_rest(model[0], state[0])
+    refined.come_to_rest(record_at(rig, REFINED_AT, REFINED))
+    clear_filters(record_at(rig, OUTPUT_AT, OUTPUT))
 
 
 @compiled_with_aliasing

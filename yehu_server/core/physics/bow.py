@@ -14,6 +14,7 @@ from yehu_server.core.physics.grid import read
 from yehu_server.core.physics.layout import BOW, STRINGS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion, Work
+from yehu_server.core.physics.torsion import largest_yielding
 
 FRICTION_MARGIN = 4.0  # times mu_S F_N
 
@@ -36,14 +37,20 @@ def prepare_bow(model: np.void, quantities: Quantities) -> None:
     model["C_h"] = 4.0 * k**2 / Lambda
 
 
-def friction_bound(model: np.void) -> float:
+def friction_bound(model: np.void, refined: np.void | None = None) -> float:
     """Return a number that is below 1 where the friction equation has one solution only.
 
     For the worst case, the bow exactly on a node. It is a sufficient bound, as long as bristles
     are not stretched far beyond what the bow force sustains. Source: docs/physics.md.
+
+    Parameters
+    ----------
+    refined : record of dtype REFINED
+        Of an instrument with torsion, which makes the string yield more.
     """
     k = model["k"]
-    mobility = (model["spread"].max() + model["C_h"]) / (2.0 * k)
+    yielding = 0.0 if refined is None else largest_yielding(refined)
+    mobility = (model["spread"].max() + model["C_h"] + yielding) / (2.0 * k)
     return float(1.34 * mobility * model["epsilon_0"] * k / 2.0)
 
 

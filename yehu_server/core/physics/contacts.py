@@ -47,11 +47,7 @@ def place_contacts(model: Model, c: Contacts, control: Array, bowed_string: int)
     x_b = control[X_B]
     if c.placed == 0 or c.x[BOW] != x_b or c.string[BOW] != bowed_string:
         i, first, string = bowed_string, c.first[BOW], c.string[BOW]
-        c.x[BOW], c.string[BOW] = x_b, i
-        h = model.h[i]
-        position = max(1.0, min(x_b / h, model.bridge_x / h - 1.0))
-        c.first[BOW] = place_linear(position, model.N[i], c.weights[BOW])
-        set_compliances(model, c, BOW)
+        place_hair(model, c, BOW, i, x_b)
         moved = c.first[BOW] != first or string != i
     fingers_moved = False
     for j in range(model.fingers):
@@ -68,6 +64,16 @@ def place_contacts(model: Model, c: Contacts, control: Array, bowed_string: int)
         sort_fingers(model, c)
     c.placed = 1
     return bool(moved or fingers_moved)
+
+
+@compiled
+def place_hair(model: Model, c: Contacts, p: int, i: int, x: float) -> None:
+    """Put contact `p`, of hair, onto string `i` at `x` (m)."""
+    c.x[p], c.string[p] = x, i
+    h = model.h[i]
+    position = max(1.0, min(x / h, model.bridge_x / h - 1.0))
+    c.first[p] = place_linear(position, model.N[i], c.weights[p])
+    set_compliances(model, c, p)
 
 
 @compiled

@@ -281,7 +281,7 @@ def solve_contacts(
     """
     s, c, w = state.motion, state.contacts, state.work
     string = c.string[BOW]
-    mu_S = static_coefficient(m, s, string)
+    mu_S = static_coefficient(m, s.w[string])
     tangent: Tangent = (s.tangent[0], s.tangent[1], s.tangent[2])
     f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
     if near > 0:

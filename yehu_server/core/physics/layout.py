@@ -28,12 +28,15 @@ VECTOR = 8  # numbers worked on at once: two vectors of AVX2, one of AVX-512
 POINTS = MAX_INTERVALS + 2 * VECTOR
 LEVELS = 3  # u[n+1], u[n], u[n-1], taking turns
 MAX_MODES = 64
+MAX_TWISTS = 16  # torsional modes of a string
 MAX_SECTIONS, USUAL_SECTIONS = 64, 32  # most bodies need no more than the usual
 MAX_TAPS = 12
 MAX_FINGERS = 4
 STENCIL = 4  # nodes that one contact touches (cubic interpolation)
-MAX_CONTACTS = MAX_FINGERS * STRINGS + 1  # finger j on string i is contact 2 j + i
-BOW = MAX_CONTACTS - 1
+MAX_POINTS = 4  # across the width of the hair
+BOW = MAX_FINGERS * STRINGS  # finger j on string i is contact 2 j + i
+POINT = BOW + 1  # the first of the points across the width
+MAX_CONTACTS = POINT + MAX_POINTS
 HEATS = 256  # of the table of friction over temperature
 LINE_BYTES = 64  # of the processor's cache: vectors within one are read and written at once
 
@@ -250,6 +253,45 @@ STATE = lined_up(
         # counters, which outlive a lost state
         ("unconverged", np.int64),
         ("lost", np.int64),
+    ]
+)
+
+# What only an instrument with torsion, or with hair of some width, has (refined.py).
+REFINED = lined_up(
+    [
+        # width of the hair
+        ("points", np.int64),
+        ("share", np.float64),
+        ("offset", np.float64, MAX_POINTS),
+        # torsion
+        ("twists", np.int64),
+        ("M_t", np.float64, (STRINGS, MAX_TWISTS)),
+        ("K_t", np.float64, (STRINGS, MAX_TWISTS)),
+        ("R_t", np.float64, (STRINGS, MAX_TWISTS)),
+        ("A_t", np.float64, (STRINGS, MAX_TWISTS)),
+        ("B_t", np.float64, (STRINGS, MAX_TWISTS)),
+        ("C_t", np.float64, (STRINGS, MAX_TWISTS)),
+        ("R_skin", np.float64),
+        # motion
+        ("zeta", np.float64, (LEVELS, MAX_POINTS, STRINGS)),
+        ("z", np.float64, (MAX_POINTS, STRINGS)),
+        ("w", np.float64, (MAX_POINTS, STRINGS)),
+        ("f_b", np.float64, MAX_POINTS),
+        ("v_r", np.float64, MAX_POINTS),
+        ("tangent", np.float64, (MAX_POINTS, 3)),
+        ("twist", np.float64, (LEVELS, STRINGS, MAX_TWISTS)),
+        ("stored", np.float64),
+        # shapes of the torsional modes under a finger on each string, and under each point
+        ("twist_x", np.float64, STRINGS + MAX_POINTS),
+        ("twist_shapes", np.float64, (STRINGS + MAX_POINTS, MAX_TWISTS)),
+        # intermediate results of one step
+        ("responses", np.float64, (MAX_POINTS, 2 * STRINGS)),
+        ("free", np.float64, MAX_POINTS),
+        ("mobility", np.float64, (MAX_POINTS, MAX_POINTS)),
+        ("z_bar", np.float64, MAX_POINTS),
+        ("r", np.float64, MAX_POINTS),
+        ("skin_drag", np.float64, STRINGS),
+        ("twist_per_newton", np.float64, (MAX_POINTS, MAX_TWISTS)),
     ]
 )
 

@@ -55,6 +55,8 @@ class StringQuantities:
     reach: float = quantity(
         11.5, "semitones", 1.0, 24.0, "chosen: fingers stop it so far above its open note"
     )
+    G: float = quantity(2.4e9, "Pa", 1e6, 1e12, "[Fibres], spider silk; this one's is unknown")
+    Q_t: float = quantity(34.0, "1", 1.0, 1e6, "[Mansour], a cello string; silk's is unknown")
 
     @property
     def rho_A(self) -> float:
@@ -91,6 +93,8 @@ class BowQuantities:
     )
     grain: float = quantity(3e-4, "m", 1e-6, 0.1, "by ear: see docs/physics.md")
     hair: float = quantity(0.0, "1", 0.0, 65535.0, "chosen: which of many alike")
+    width: float = quantity(0.0, "m", 0.0, 0.03, "chosen: see decisions/0022")
+    points: float = quantity(2.0, "1", 2.0, 4.0, "chosen: that share a width above 0")
     friction: str = choice("elasto-plastic", "thermal", source=SMITH)
     cooling_time: float = quantity(1e-4, "s", 1e-6, 1.0, SMITH)
 
@@ -104,6 +108,7 @@ class FingerQuantities:
     alpha: float = quantity(2.3, "1", 1.001, 5.0, "[Yehu] section 5.2")
     beta: float = quantity(20.0, "s/m", 0.0, 1e3, "[Yehu] section 5.2")
     rest_height: float = quantity(0.5e-3, "m", 1e-6, 0.05, DATA_SET)
+    R_t: float = quantity(1.0, "kg/s", 0.0, 1e4, "chosen: see docs/physics.md")
     # Critically damped: from a 1 N press back within 2 % of the way in 24 ms.
     omega_lift: float = quantity(300.0, "rad/s", 1.0, 5e3, "chosen: see decisions/0004")
 
@@ -218,6 +223,7 @@ class Quantities:
     felt_loss: float = quantity(
         300.0, "1/s", 0.0, 1e4, "chosen: felt under the strings behind the bridge; [Yehu]: 0"
     )
+    torsion: str = choice("off", "on", source="chosen: see decisions/0022")
     body: Body = field(default_factory=measured_body)
 
     def __post_init__(self) -> None:

@@ -1,6 +1,7 @@
 """Types of the model's records; written by scripts/generate.py from layout.py.
 
-A record of an array of layout.MODEL or layout.STATE has these attributes in compiled code.
+In compiled code a record of an array of layout.MODEL, layout.STATE or layout.REFINED has these
+attributes.
 docs/notation.md has their symbols and units.
 """
 
@@ -186,3 +187,36 @@ class State(Protocol):
     work: Work
     unconverged: int
     lost: int
+
+
+class Refined(Protocol):
+    """What an instrument with torsion, or with wide hair, has besides."""
+
+    points: int
+    share: float
+    offset: Array
+    twists: int
+    M_t: Array
+    K_t: Array
+    R_t: Array
+    A_t: Array
+    B_t: Array
+    C_t: Array
+    R_skin: float
+    zeta: Array
+    z: Array
+    w: Array
+    f_b: Array
+    v_r: Array
+    tangent: Array
+    twist: Array
+    stored: float
+    twist_x: Array
+    twist_shapes: Array
+    responses: Array
+    free: Array
+    mobility: Array
+    z_bar: Array
+    r: Array
+    skin_drag: Array
+    twist_per_newton: Array

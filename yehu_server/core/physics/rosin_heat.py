@@ -42,11 +42,11 @@ def prepare_heat(model: np.void, quantities: Quantities) -> None:
 
 
 @compiled
-def static_coefficient(m: Model, s: Motion, i: int) -> float:
-    """The static friction coefficient of string `i`, as hot as it is."""
+def static_coefficient(m: Model, w: float) -> float:
+    """The static friction coefficient of a contact at a temperature w (m/s)."""
     if m.is_thermal == 0:
         return float(m.mu_S)
-    at = min(s.w[i] * m.per_heat, HEATS - 1.000001)
+    at = min(w * m.per_heat, HEATS - 1.000001)
     cell = int(at)
     low, high = m.softened[cell], m.softened[cell + 1]
     return float(low + (at - cell) * (high - low))

@@ -8,17 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from yehu_server.compile.jit import IS_PLAIN, compiled_exactly, compiled_with_aliasing
 from yehu_server.compile.memory import with_attributes
 from yehu_server.core.physics import kernel
+from yehu_server.core.physics import refined as refined_kernel
 from yehu_server.core.physics.layout import (
     F_N,
     MODEL,
     PRESSURE,
+    REFINED,
     RELATIVE_VELOCITY,
     STATE,
     V_B,
@@ -73,14 +75,33 @@ def control_curves_of(curves: dict[int, list[tuple[float, float]]]) -> ControlCu
     return ControlCurves(first, flat[:, 0].copy(), flat[:, 1].copy())
 
 
+class Instruments(NamedTuple):
+    """What `find` bows.
+
+    Attributes
+    ----------
+    models : ndarray [dtype=layout.MODEL]
+    rests : ndarray [dtype=layout.STATE]
+        The state from which each model begins.
+    refined : ndarray [dtype=layout.REFINED]
+        What each has besides; one with no points has nothing.
+    """
+
+    models: Array
+    rests: Array
+    refined: Array
+
+
 def prepared(
     quantities: Sequence[Quantities], rates: Sequence[float], plucks: Sequence[Any] = ()
-) -> tuple[Array, Array]:
-    """Models, and their states at rest, for `bow_strokes`.
+) -> Instruments:
+    """Prepare instruments for `find`.
 
     `plucks` tells from where the string of each is let go (`gesture.Pluck`), or None.
     """
-    models, rests = np.zeros(len(quantities), MODEL), np.zeros(len(quantities), STATE)
+    count = len(quantities)
+    models, rests = np.zeros(count, MODEL), np.zeros(count, STATE)
+    refined = np.zeros(count, REFINED)
     for i, (instrument, rate) in enumerate(zip(quantities, rates, strict=True)):
         model = kernel.prepare(instrument, rate)
         rest = kernel.at_rest(model)
@@ -89,7 +110,10 @@ def prepared(
             pluck_string(model, rest, pluck.string - 1, pluck.position, pluck.amplitude)
         # Not by `concatenate`, which would give the records another layout.
         models[i], rests[i] = model[0], rest[0]
-    return models, rests
+        more = refined_kernel.prepare(instrument, rate)
+        if more is not None:
+            refined[i] = more[0]
+    return Instruments(models, rests, refined)
 
 
 @compiled_exactly
@@ -125,20 +149,23 @@ def write_controls(
 def bow_strokes(
     models: Array,
     rests: Array,
+    refined: Array,
     strokes: Array,
     first: Array,
     times: Array,
     values: Array,
     model: Array,
     state: Array,
+    more: Array,
     signals: Array,
     findings: Array,
 ) -> None:
     """Bow strokes one after another, and judge each.
 
-    Each model begins from its state in `rests`; curves are those of `ControlCurves`. It works in
-    `model`, `state` [shape=(1,)] and `signals` [shape=(6, most frames)], and writes `findings`
-    [shape=(strokes,), dtype=FINDING].
+    Each model begins from its state in `rests`; curves are those of `ControlCurves`. `refined` is
+    None where all strokes are of plain instruments: the other kernel is not compiled then. It works
+    in `model`, `state`, `more` [shape=(1,)] and `signals` [shape=(6, most frames)], and writes
+    `findings` [shape=(strokes,), dtype=FINDING].
     """
     columns = first.shape[0] - 1
     controls = np.zeros((BLOCK, columns))
@@ -150,6 +177,8 @@ def bow_strokes(
         model[0] = models[stroke.model]
         model[0].hair = stroke.hair
         state[0] = rests[stroke.model]
+        if refined is not None:
+            more[0] = refined[stroke.model]
         rate, place, force = model[0].rate, 0.0, 0.0
         at[:] = first[:columns]
         for begin in range(0, stroke.frames, BLOCK):
@@ -158,7 +187,10 @@ def bow_strokes(
                 write_controls(stroke.moves, first, times, values, at, begin + n, rate, controls[n])
                 place += controls[n, V_B] / rate
                 controls[n, Y_B] = place
-            kernel.advance(model, state, controls[:count], probes[:count], None)
+            if refined is None:
+                kernel.advance(model, state, controls[:count], probes[:count], None)
+            else:
+                refined_kernel.advance(model, state, more, controls[:count], probes[:count], None)
             for n in range(count):
                 relative[begin + n] = probes[n, RELATIVE_VELOCITY]
                 pressure[begin + n] = probes[n, PRESSURE]
@@ -172,21 +204,31 @@ def bow_strokes(
         out.faults = min(MOST_FAULTS, state[0].unconverged + state[0].lost)
 
 
-def find(models: Array, rests: Array, strokes: Array, hands: ControlCurves) -> Array:
+def find(instruments: Instruments, strokes: Array, hands: ControlCurves) -> Array:
     """Bow strokes, and judge each: findings [shape=(strokes,), dtype=FINDING].
 
     The strokes do not touch each other: any order of them, in any number of calls, finds the same.
-    `models` and `rests` are as of `bow_strokes`, and are not changed.
+    The instruments are not changed.
     """
     findings = new_findings(len(strokes))
     strokes = np.ascontiguousarray(strokes)
-    if IS_PLAIN:
-        strokes = strokes.view(with_attributes(STROKE))
-    if len(strokes):
-        signals = np.zeros((6, int(strokes["frames"].max())))
-        model, state = new_record(MODEL), new_record(STATE)
-        bow_strokes(
-            models, rests, strokes, hands.first, hands.times, hands.values, model, state, signals,
-            findings,
-        )  # fmt: skip
+    if len(strokes) == 0:
+        return findings.view(FINDING)
+    models, rests, refined = instruments
+    is_refined = refined["points"][strokes["model"]] > 0
+    signals = np.zeros((6, int(strokes["frames"].max())))
+    model, state = new_record(MODEL), new_record(STATE)
+    for which, own, more in (
+        (~is_refined, None, None),
+        (is_refined, refined, new_record(REFINED)),
+    ):
+        bowed, found = strokes[which], findings[which]
+        if IS_PLAIN:
+            bowed = bowed.view(with_attributes(STROKE))
+        if len(bowed):
+            bow_strokes(
+                models, rests, own, bowed, hands.first, hands.times, hands.values, model, state,
+                more, signals, found,
+            )  # fmt: skip
+            findings[which] = found
     return findings.view(FINDING)

@@ -17,7 +17,13 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import wave_speed
 from yehu_server.errors import ParameterError
 from yehu_server.lab.regimes.judge import check_length
-from yehu_server.lab.regimes.strokes import STROKE, ControlCurves, control_curves_of, prepared
+from yehu_server.lab.regimes.strokes import (
+    STROKE,
+    ControlCurves,
+    Instruments,
+    control_curves_of,
+    prepared,
+)
 from yehu_server.lab.sweeps.axes import Axis, Value
 from yehu_server.lab.sweeps.note_strokes import distinct
 from yehu_server.scores.gesture import CONTROLS, Gesture, gesture_from
@@ -96,8 +102,8 @@ class GestureBow:
 
     def strokes(
         self, axes: Sequence[Axis], index: Array
-    ) -> tuple[Array, Array, Array, ControlCurves]:
-        """Models, states at rest, strokes and curves of some points.
+    ) -> tuple[Instruments, Array, ControlCurves]:
+        """Instruments, strokes and curves of some points.
 
         `index` [shape=(points, axes)] is the place of each point on each axis.
         """
@@ -133,12 +139,12 @@ class GestureBow:
             silent = [(base.hammer[0][0], 0.0), *base.hammer, (base.hammer[-1][0], 0.0)]
             curves[F_HAMMER] = silent
         self._hear(strokes, gestures, columns)
-        models, rests = prepared(
+        instruments = prepared(
             [gesture.quantities for gesture in gestures],
             [gesture.sample_rate for gesture in gestures],
             [gesture.pluck for gesture in gestures],
         )
-        return models, rests, strokes, control_curves_of(curves)
+        return instruments, strokes, control_curves_of(curves)
 
     def gesture(self, axes: Sequence[Axis], place: Sequence[int]) -> Gesture:
         """One of the strokes as a gesture, for `simulate`."""

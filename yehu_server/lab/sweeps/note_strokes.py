@@ -23,7 +23,13 @@ from yehu_server.core.player.calibration import (
 )
 from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.lab.regimes.judge import check_length
-from yehu_server.lab.regimes.strokes import STROKE, ControlCurves, control_curves_of, prepared
+from yehu_server.lab.regimes.strokes import (
+    STROKE,
+    ControlCurves,
+    Instruments,
+    control_curves_of,
+    prepared,
+)
 from yehu_server.lab.sweeps.axes import Axis
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.stringing import notes_of
@@ -158,8 +164,8 @@ class NoteBow:
 
     def strokes(
         self, axes: Sequence[Axis], index: Array
-    ) -> tuple[Array, Array, Array, ControlCurves]:
-        """Models, states at rest, strokes and curves of some points.
+    ) -> tuple[Instruments, Array, ControlCurves]:
+        """Instruments, strokes and curves of some points.
 
         `index` [shape=(points, axes)] is the place of each point on each axis.
         """
@@ -174,7 +180,7 @@ class NoteBow:
             self._quantities(dict(zip(names, key, strict=True)), int(value["string"][at]))
             for key, at in keys
         ]
-        models, rests = prepared(instruments, [self.rate] * len(instruments))
+        made = prepared(instruments, [self.rate] * len(instruments))
         strokes = np.zeros(count, STROKE)
         strokes["model"], strokes["hair"] = numbers, value["seed"]
         strokes["frames"] = round(self.duration * self.rate)
@@ -192,12 +198,12 @@ class NoteBow:
         scale[:, X_B] = bridge - value["position"] * (bridge - stop)
         scale[:, TEXTURE] = value["noise"]
         scale[:, FINGER_CONTROLS], scale[:, FINGER_CONTROLS + 1] = place, press
-        return models, rests, strokes, HANDS
+        return made, strokes, HANDS
 
     def gesture(self, axes: Sequence[Axis], place: Sequence[int]) -> Gesture:
         """One of the strokes as a gesture, for `simulate`."""
         index = np.array([place])
-        strokes, hands = self.strokes(axes, index)[2:]
+        _, strokes, hands = self.strokes(axes, index)
         values = {axis.name: axis.values[i] for axis, i in zip(axes, place, strict=True)}
         varied = {name: value for name, value in values.items() if _is_of_model(name)}
         string = int(values.get("string", self.fixed["string"]))

@@ -174,8 +174,8 @@ def limits_of(study: Study, at: Mapping[str, int]) -> Limits:
     `at` is the place on each axis, by name; 0 where it has none.
     """
     index = np.array([[at.get(axis.name, 0) for axis in study.axes]])
-    models, _, strokes, hands = study.bow.strokes(study.axes, index)
-    model, stroke = models[0], strokes[0]
+    instruments, strokes, hands = study.bow.strokes(study.axes, index)
+    model, stroke = instruments.models[0], strokes[0]
 
     def end(column: int) -> float:
         move = stroke["moves"][column]

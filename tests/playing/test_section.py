@@ -14,6 +14,7 @@ from together import Together
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import RIG_BYTES
+from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import IN_PORT, MIDI, clear_held, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
@@ -49,7 +50,7 @@ class Told:
     The first of the part leads it: what is posted there is interpreted at once, for all of them.
     """
 
-    is_live, frame = False, 0
+    is_live, frame, spec = False, 0, InstrumentSpec(44100.0)
 
     def __init__(self, number: int, part: list[Told]) -> None:
         self.address, self._part = number * RIG_BYTES, part

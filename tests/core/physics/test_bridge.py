@@ -11,7 +11,8 @@ from core.physics.runs import bump, play, shaped
 
 from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics.bridge import advance_bridge
-from yehu_server.core.physics.quantities import Quantities, StringQuantities
+from yehu_server.core.physics.quantities import Body, Quantities, StringQuantities
+from yehu_server.errors import ParameterError
 from yehu_server.lab.simulation import simulate
 from yehu_server.scores.gesture import Gesture
 
@@ -171,3 +172,22 @@ def test_felt_quiets_the_strings_behind_the_bridge():
             levels[felt, i] = 20.0 * math.log10(spectrum[near].max())
     for i in range(layout.STRINGS):
         assert levels[0.0, i] - levels[YEHU.felt_loss, i] > 40.0
+
+
+def test_the_energy_of_a_body_of_sixty_four_modes_and_sections_balances():
+    random = np.random.default_rng(0)
+    hertz = np.sort(random.uniform(150.0, 6000.0, layout.MAX_MODES))
+    mass = random.uniform(0.02, 0.5, layout.MAX_MODES)
+    damping = mass * 2.0 * np.pi * hertz * random.uniform(0.01, 0.05, layout.MAX_MODES)
+    usual = Quantities().body
+    sections = (usual.sections * 3)[: layout.MAX_SECTIONS]
+    body = Body(tuple(hertz), tuple(mass), tuple(damping), 44100.0, sections, usual.direct_gain)
+    controls = {"bow_force": ((0.0, 0.7),), "bow_velocity": ((0.0, 0.0), (0.03, 0.2))}
+    found = simulate(Gesture(44100.0, 0.1, Quantities(body=body), controls), energy=True)
+    power = np.abs(found.arrays["power_in"]).max()
+    assert power > 1e-3
+    assert np.abs(found.arrays["energy_error"]).max() < 1e-9 * power
+    more = {name: (*getattr(body, name), 0.1) for name in ("mass", "damping")}
+    crowded = replace(body, frequency_hz=(*body.frequency_hz, 99.0), **more)
+    with pytest.raises(ParameterError, match="at most 64 bridge modes, not 65"):
+        simulate(Gesture(44100.0, 0.1, Quantities(body=crowded), {}))

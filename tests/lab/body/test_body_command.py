@@ -84,7 +84,7 @@ def test_the_shipped_body_is_shown(command):
         ("-o", "-"),
         ("-o", "m.toml", "--band", "5:x"),
         ("-o", "m.toml", "--band", "500:100"),
-        ("-o", "m.toml", "--modes", "17"),
+        ("-o", "m.toml", "--modes", "65"),
         ("-o", "m.toml", "--kind", "speed"),
         ("-o", "m.toml", "--plot", "m.jpg"),
         ("-o", "m.toml", "--channels", "volts=1"),

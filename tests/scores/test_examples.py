@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from yehu_server.scores.reading import read_written
 from yehu_server.scores.score import Score
 from yehu_server.scores.smf.reader import read_score
 
@@ -65,3 +66,14 @@ def test_the_bends_of_shi_bei_jiu_are_small(tune):
     bends = [message.pitch for message in messages(tune, "pitchwheel")]
     assert min(bends) == -2048
     assert max(bends) <= 0.15 * 4096 + 1
+
+
+def test_every_phrase_is_understood_and_lies_within_the_yehu():
+    wrong = []
+    for path in sorted((ROOT / "examples" / "phrases").glob("*.jianpu")):
+        written = read_written(path)
+        if written.warnings or written.not_understood:
+            wrong.append((path.stem, written.warnings, written.not_understood))
+        if not all(65.0 <= note.pitch <= 89.0 for part in written.parts for note in part.notes):
+            wrong.append((path.stem, "range"))
+    assert wrong == []

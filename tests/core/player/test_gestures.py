@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
@@ -89,20 +91,40 @@ def test_no_finger_goes_where_none_fits_by_the_loop():
     assert bends("wavering", 0.3, note=65).min() == 0.0
 
 
-def test_a_slide_into_a_note_stays_on_one_string():
+def test_a_slide_in_a_note_stays_on_one_string():
+    """Also on the open C5, which is stopped on the F string for it."""
     wrong = []
-    for note in (74, 75, 79):
-        playing = Playing(articulation=NUMBER["passed-slide"], variation=0.0, listening=0.0)
-        playing.on(76)
+    for name in ("passed-slide", "fall", "turning-slide", "sliding-vibrato"):
+        for note in (71, 72, 74, 75, 79):
+            playing = Playing(articulation=NUMBER[name], variation=0.0, listening=0.0)
+            playing.on(76)
+            playing.play(0.2)
+            playing.on(note)
+            fingered = set()
+            for _ in range(110):
+                playing.play(0.005)
+                player = playing.player
+                fingered.add((int(player["string"]), bool(player["position"] > 0.0)))
+            if len(fingered) != 1 or not fingered.pop()[1]:
+                wrong.append((name, note))
+    assert wrong == []
+
+
+def test_a_slide_goes_over_to_another_string_with_another_finger():
+    for first, second in ((70, 79), (79, 70)):
+        playing = Playing(portamento=1.0, portamento_time=200.0, variation=0.0, listening=0.0)
+        playing.on(first)
         playing.play(0.2)
-        playing.on(note)
-        strings = set()
+        playing.on(second)
+        held = []
         for _ in range(60):
             playing.play(0.005)
-            strings.add(int(playing.player["string"]))
-        if len(strings) != 1:
-            wrong.append((note, strings))
-    assert wrong == []
+            player = playing.player
+            held.append((int(player["string"]), int(player["finger"]), float(player["position"])))
+        assert {string for string, _, _ in held} == {0, 1}
+        for (string, finger, _), (next_string, next_finger, _) in itertools.pairwise(held):
+            assert (string != next_string) == (finger != next_finger)
+        assert all(position > 0.0 for _, _, position in held)
 
 
 def test_the_level_goes_with_the_bow_of_a_swell():

@@ -73,18 +73,20 @@ def choose(p: Any, pitch: float, speed: float) -> tuple[int, float]:
 def stay(p: Any, pitch: float, speed: float) -> tuple[int, float]:
     """Follow a bent pitch on the string that sounds, as far as that has it.
 
-    Below the open outer string it changes to the inner one, and above where that is stopped to the
-    outer, unless the inner is wished for. Returns as `choose` does.
+    Where the outer string has no finger it changes to the inner one, and above where that is stopped
+    to the outer, unless the inner is wished for. An open string stays open within OPEN_WITHIN.
+    Returns as `choose` does.
     """
     wish = wished_string(p)
     string = p.string if wish < 0 else wish
     if pitch < p.open_note[0]:
         return 0, OPEN
-    if abs(pitch - p.open_note[string]) < OPEN_WITHIN:
+    is_open = string == 0 or p.position == OPEN
+    if abs(pitch - p.open_note[string]) < OPEN_WITHIN and is_open:
         return string, OPEN
     if string == 0 and pitch > p.highest[0] and wish != 0:
         string = 1
-    if string == 1 and pitch <= p.open_note[1]:
+    if string == 1 and pitch < p.open_note[1] + OPEN_WITHIN:
         string = 0
     if string != p.string:
         return string, learnt_position(p, string, pitch, speed)
@@ -92,18 +94,19 @@ def stay(p: Any, pitch: float, speed: float) -> tuple[int, float]:
 
 
 @compiled_exactly
-def stay_for_slide(p: Any, pitch: float, aim: float, speed: float) -> tuple[int, float]:
-    """The fingering of a pitch from which the finger slides to another, on one string if it can.
+def choose_for_slide(
+    p: Any, pitch: float, low: float, high: float, speed: float
+) -> tuple[int, float]:
+    """The fingering of a pitch where the finger slides between two others, on one string if it can.
 
     Returns as `choose` does.
     """
-    low, high = min(pitch, aim), max(pitch, aim)
     first, second = p.open_note[0], p.open_note[1]
     if low < second + OPEN_WITHIN and high <= p.highest[0] and wished_string(p) != 1:
         return 0, OPEN if pitch < first + OPEN_WITHIN else learnt_position(p, 0, pitch, speed)
     if low > second and pitch > second + OPEN_WITHIN and wished_string(p) != 0:
         return 1, learnt_position(p, 1, pitch, speed)
-    return stay(p, pitch, speed)
+    return stay(p, pitch, speed) if p.string >= 0 else choose(p, pitch, speed)
 
 
 @compiled_exactly

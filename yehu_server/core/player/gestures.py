@@ -89,6 +89,17 @@ SHAPES = np.array([
      row.tremolo_depth, row.is_plucked)
     for row in _ROWS
 ])  # fmt: skip
+
+
+def _reach(row: Articulation) -> tuple[float, float]:
+    """How far slides and vibrato take a finger from the note's pitch, down and up (semitones)."""
+    has_slide = any(step.glide_ms for step in row.fingers)
+    slides = [step.semitones for step in row.fingers if has_slide]
+    wide = 0.01 * row.vibrato.cents if row.vibrato else 0.0
+    return min(0.0, -wide, *slides), max(0.0, wide, *slides)
+
+
+REACH = np.array([_reach(row) for row in _ROWS])
 HAS_VIBRATO = np.array([row.vibrato is not None for row in _ROWS])
 VIBRATOS = np.array([
     (row.vibrato.cents, row.vibrato.hertz, row.vibrato.press, row.vibrato.upward,

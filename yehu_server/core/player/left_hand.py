@@ -23,6 +23,7 @@ from yehu_server.core.player.ownership import USUAL_MS, move, take_back
 from yehu_server.core.player.phrasing import (
     OWN_DELAY,
     OWN_DEPTH,
+    STEP_MS,
     own_factor,
     own_phase,
     varied_landing,
@@ -49,6 +50,7 @@ LANDING_MS, LIFTING_MS = 3.0, 5.0
 # A position nearer than this is reached by a slide, as no second finger fits beside the first.
 NEAREST_STEP = 2e-3  # m
 SETTLING_MS = 8.0
+FADING_MS = 600.0  # of the vibrato, after the last note
 
 
 @compiled_exactly
@@ -70,9 +72,12 @@ def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide
     least_press : float
         Least finger force (N) that the sounding pitch needs.
     slide_ms : float
-        Time in which the finger that is down slides there; `phrasing.STEP_MS` for a step.
+        Time in which the finger that is down slides there; `phrasing.STEP_MS` for a step. On
+        another string it always steps.
     """
     before = OPEN if p.string < 0 else p.position
+    if string != p.string:
+        slide_ms = STEP_MS
     p.string, p.position = string, position
     if OPEN in (position, before):
         if position != OPEN:
@@ -132,6 +137,12 @@ def begin_vibrato(p: Any, c: Any) -> None:
     move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
     if delay_ms > 0.0:
         move(p, c, VIBRATO_ONSET, 1.0, delay_ms)
+
+
+@compiled_exactly
+def end_vibrato(p: Any, c: Any) -> None:
+    """Let the vibrato fade with the last note, or the finger would rock the string on for ever."""
+    move(p, c, VIBRATO_ONSET, 0.0, FADING_MS)
 
 
 @compiled_exactly

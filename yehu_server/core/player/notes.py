@@ -14,9 +14,10 @@ from yehu_server.core.controls.slots import SILENCE, SPEED
 from yehu_server.core.player import brilliance, left_hand, right_hand, velocity
 from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
-from yehu_server.core.player.fingering import choose, stay, stay_for_slide
+from yehu_server.core.player.fingering import choose, choose_for_slide, stay
 from yehu_server.core.player.gestures import (
     IS_PLUCKED,
+    REACH,
     SHAPES,
     attack_ms,
     begin_gesture,
@@ -106,6 +107,7 @@ def end(p: Any, c: Any, channel: int, key: float, more_end: bool) -> None:
     else:
         p.sounding = SILENT
         right_hand.lift(p, c, p.value[RELEASE])
+        left_hand.end_vibrato(p, c)
 
 
 @compiled_exactly
@@ -148,9 +150,10 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
         pitch = p.finger_pitch = note_pitch(p)
     else:
         pitch = p.finger_pitch = note_pitch(p)
-        if p.gesture.bend != 0.0 and p.string >= 0:  # on the string that has all of the slide
+        low, high = REACH[p.gesture.row, 0], REACH[p.gesture.row, 1]
+        if low < high:  # on the string that has all of the slide
             aim = pitch - p.gesture.bend
-            string, position = stay_for_slide(p, pitch, aim, wished_speed(p))
+            string, position = choose_for_slide(p, pitch, aim + low, aim + high, wished_speed(p))
         else:
             string, position = choose(p, pitch, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
@@ -180,7 +183,8 @@ def begin_from_last(p: Any, slide_ms: float) -> tuple[int, float]:
     """
     wished = note_pitch(p)
     begin_slide(p, p.finger_pitch - wished, p.gesture.bend, 0.0, 1e-3 * slide_ms)
-    return stay_for_slide(p, note_pitch(p), wished, wished_speed(p))
+    pitch = note_pitch(p)
+    return choose_for_slide(p, pitch, min(pitch, wished), max(pitch, wished), wished_speed(p))
 
 
 @compiled_exactly

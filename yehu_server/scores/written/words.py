@@ -16,7 +16,7 @@ SIGNS: tuple[tuple[str, tuple[str, float | None]], ...] = (
     (r"(?:sul|on)? ?(?:the )?(?:pont|bridge)|am steg|近[码馬]", ("sul-ponticello", None)),
     (r"flautand", ("flautando", None)),
     (r"(?:sul |sur la )?(?:tast|touche)|am griffbrett", ("sul-tasto", None)),
-    (r"(?:modo )?ord|nat(?:\.|ural)|normal|pos\. ?ord", ("ordinary", None)),
+    (r"(?:modo )?ord|nat(?:\.|ural)|normal|pos\. ?ord|普通", ("ordinary", None)),
     (r"non[- ]legato|d[eé]tach|分弓", ("non-legato", None)),
     (r"(?:sempre |molto )?legato|连弓|連弓", ("legato", None)),
     (r"(?:sempre )?stacc|顿弓|頓弓", ("staccato", None)),

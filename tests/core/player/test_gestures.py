@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
-from yehu_server.core.controls.slots import DEPTH, SIDE, SPEED, TREMOLO, UPWARD
+from yehu_server.core.controls.slots import DEPTH, ONSET, SIDE, SPEED, TREMOLO, UPWARD
 from yehu_server.errors import ParameterError
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER, number_of
 
@@ -196,3 +196,17 @@ def test_names_are_found_in_both_languages():
     assert number_of("spiccato") == number_of("跳弓") == NUMBER["spiccato"]
     with pytest.raises(ParameterError, match="did you mean spiccato"):
         number_of("spicato")
+
+
+def test_a_vibrato_fades_with_the_last_note_and_comes_in_anew_with_the_next():
+    playing = Playing(vibrato=30.0, vibrato_delay=500.0, variation=0.0, listening=0.0)
+    playing.on(74)
+    playing.play(1.0)
+    playing.off(74)
+    playing.play(0.05)
+    playing.on(76)
+    onset = playing.play(0.7, "value")[0][:, ONSET]
+    assert onset[: at(0.1)].max() < 0.3
+    assert onset[-1] == 1.0
+    playing.off(76)
+    assert playing.play(1.0, "value")[0][-1, ONSET] == 0.0

@@ -19,7 +19,7 @@ from yehu_server.core.player.gestures import (
     vibrato_rate,
     vibrato_upward,
 )
-from yehu_server.core.player.ownership import USUAL_MS, move, take_back
+from yehu_server.core.player.ownership import USUAL_MS, forget, move, take_back
 from yehu_server.core.player.phrasing import (
     OWN_DELAY,
     OWN_DEPTH,
@@ -90,10 +90,11 @@ def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide
         move(p, c, FINGER_POSITION[p.finger], position, slide_ms)
         press(p, c, least_press)
         return
-    lifted = FINGER_PRESS[p.finger]
     land(p, c, position)
     press(p, c, least_press)
-    move(p, c, lifted, 0.0, LIFTING_MS)
+    for finger in range(FINGER_COUNT):  # all, since a direct write may have put others down
+        if finger != p.finger:
+            move(p, c, FINGER_PRESS[finger], 0.0, LIFTING_MS)
 
 
 @compiled_exactly
@@ -143,6 +144,7 @@ def begin_vibrato(p: Any, c: Any) -> None:
 def end_vibrato(p: Any, c: Any) -> None:
     """Let the vibrato fade with the last note, or the finger would rock the string on for ever."""
     move(p, c, VIBRATO_ONSET, 0.0, FADING_MS)
+    forget(p, VIBRATO_ONSET)  # the next note may begin while it fades
 
 
 @compiled_exactly

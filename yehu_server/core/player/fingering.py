@@ -73,16 +73,16 @@ def choose(p: Any, pitch: float, speed: float) -> tuple[int, float]:
 def stay(p: Any, pitch: float, speed: float) -> tuple[int, float]:
     """Follow a bent pitch on the string that sounds, as far as that has it.
 
-    Where the outer string has no finger it changes to the inner one, and above where that is stopped
-    to the outer, unless the inner is wished for. An open string stays open within OPEN_WITHIN.
-    Returns as `choose` does.
+    Where the outer string has no finger it changes to the inner one, and above where that is
+    stopped to the outer, unless the inner is wished for. An open string stays open within
+    OPEN_WITHIN. Returns as `choose` does.
     """
     wish = wished_string(p)
     string = p.string if wish < 0 else wish
     if pitch < p.open_note[0]:
         return 0, OPEN
-    is_open = string == 0 or p.position == OPEN
-    if abs(pitch - p.open_note[string]) < OPEN_WITHIN and is_open:
+    may_be_open = string == 0 or p.position == OPEN
+    if abs(pitch - p.open_note[string]) < OPEN_WITHIN and may_be_open:
         return string, OPEN
     if string == 0 and pitch > p.highest[0] and wish != 0:
         string = 1

@@ -309,7 +309,7 @@ def test_a_wrong_instrument_file_gets_one_line(refused, tune, tmp_path, out, nam
 
 def test_an_instrument_the_grid_cannot_hold_gets_one_line(refused, tune, tmp_path, out):
     path = tmp_path / "x.toml"
-    path.write_text("[string_1]\nr = 5e-3\nE = 1e12")
+    path.write_text("[string_1]\nr = 1.47e-3\nrho = 100\nE = 1e12")  # a stiff rod
     assert "grid" in refused("render", tune, "-o", out / "x.wav", "--instrument", path)
     assert not list(out.iterdir())
 

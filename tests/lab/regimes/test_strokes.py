@@ -115,7 +115,7 @@ def test_schellengs_limits_bracket_helmholtz_motion():
         place = base | {"vary": {"position": [beta]}}
         limits = limits_of(study_of(place), {})
         middle = (limits.lower * limits.upper) ** 0.5
-        forces = [limits.lower / 5, middle, limits.upper * 5]
+        forces = [limits.lower / 5, middle, limits.upper * 8]
         study = place | {"vary": {"position": [beta], "force": forces}}
         light, usual, heavy = find(*batch(study)[2])["regime"] == HELMHOLTZ
         assert usual

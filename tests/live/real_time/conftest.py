@@ -87,7 +87,9 @@ class Jackd:
         self._card = card
         words = [str(word) for option in card.items() for word in option]
         safe = ("--no-realtime", "--no-mlock", "-p", "128")
-        program = ["jackd", *safe, "-n", self.name, "-d", "dummy", *words]
+        # One that outlives tests that were killed would be in the way of later ones.
+        with_us = ["setpriv", "--pdeathsig", "KILL"] if shutil.which("setpriv") else []
+        program = [*with_us, "jackd", *safe, "-n", self.name, "-d", "dummy", *words]
 
         def is_up() -> bool:
             if self._process is None or self._process.poll() is not None:

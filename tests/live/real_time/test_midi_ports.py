@@ -30,7 +30,7 @@ from yehu_server.playing.options import PlayingOptions
 
 RATE, PERIOD = 48000, 1024
 LISTENS_AFTER_S = 0.2  # see test_a_port_is_listened_to_before_it_is_open
-SOON_S = 15.0  # a port is looked for every half a second
+SOON_S = 60.0  # a port is looked for every half a second
 
 # Orders on stdin: "open CLIENT PORT", "close CLIENT", "send CLIENT HEX ...".
 SENDER = """

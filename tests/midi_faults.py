@@ -308,6 +308,12 @@ TIMES = (
         "an impossible time signature ignored, at byte 22",
     ),
     Case(
+        "key-signature-of-8-sharps",
+        song(b"\0\xff\x59\2\x08\0" + TUNE),
+        "an impossible key signature ignored, at byte 22",
+        mido=REFUSES,
+    ),
+    Case(
         "long-silence-at-the-end",
         song(FIRST + SECOND + REST + b"\xff\x2f\0"),
         "silence at the end cut to 30 s, at byte 38",

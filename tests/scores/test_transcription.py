@@ -16,6 +16,7 @@ from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, STOP, WISH
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
+from yehu_server.scores.midi_export import midi_file
 from yehu_server.scores.reading import read_written
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.transcription import (
@@ -24,6 +25,7 @@ from yehu_server.scores.transcription import (
     written_of_midi,
     written_of_seconds,
 )
+from yehu_server.scores.written.performed import performed
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 RATE = 48000.0
@@ -57,6 +59,33 @@ def midi(path: Path, notes, ticks=480, channel=0) -> Path:
         now = tick
     file.save(path)
     return path
+
+
+def test_keys_are_those_of_the_file_but_c_that_programs_write_unasked(tmp_path):
+    tune = [(beat, beat + 1, key, 80) for beat, key in enumerate((67, 69, 71, 72, 74, 76, 78, 79))]
+    wrong = []
+    for told, expected in [
+        ([], [(0, 1)]),  # what the notes fit: G
+        ([(0, "C")], [(0, 1)]),
+        ([(0, "Eb")], [(0, -3)]),
+        ([(0, "Em"), (4, "Bb")], [(0, 1), (4, -2)]),
+        ([(4, "F#")], [(0, 0), (4, 6)]),
+    ]:
+        path = midi(tmp_path / "x.mid", tune)
+        file = mido.MidiFile(path)
+        track, now = file.add_track(), 0
+        for beat, key in told:
+            track.append(mido.MetaMessage("key_signature", key=key, time=480 * (beat - now)))
+            now = beat
+        file.save(path)
+        written, _ = written_of_midi(read_score(path))
+        if (found := [(sign.beat, sign.fifths) for sign in written.keys]) != expected:
+            wrong.append((told, found))
+        (tmp_path / "again.mid").write_bytes(midi_file(written, performed(written))[0])
+        again, _ = written_of_midi(read_score(tmp_path / "again.mid"))
+        if again.keys != written.keys:
+            wrong.append((told, again.keys))
+    assert not wrong
 
 
 def test_beats_are_divided_as_they_were_written(tmp_path):

@@ -108,7 +108,9 @@ def _conductor(written: Written, clock: WrittenClock) -> list[tuple[int, mido.Me
         if unit in (4, 8, 16, 32, 64) and 0 < count <= MOST_NUMERATOR:
             signature = mido.MetaMessage("time_signature", numerator=count, denominator=unit)
             messages.append((_tick(metre.beat), signature))
-    return messages
+    return messages + [
+        (_tick(sign.beat), mido.MetaMessage("key_signature", key=sign.do)) for sign in written.keys
+    ]
 
 
 class _Translation:

@@ -93,6 +93,14 @@ COMMON_TIME = Metre(0.0, 4.0)
 
 
 @dataclass(frozen=True)
+class KeySignature:
+    """A key signature: the beat (quarter notes) from which it holds; sharps, or below 0 flats."""
+
+    beat: float
+    sharps: int
+
+
+@dataclass(frozen=True)
 class ScorePart:
     """A part of a score, by its name: what a channel plays, or a track, or both; None: any.
 
@@ -123,6 +131,7 @@ class Score:
     parts: tuple[ScorePart, ...] = ()  # those with notes, as far as they are known
     # One line each, of what a player should know and no file is to blame for.
     remarks: tuple[str, ...] = ()
+    keys: tuple[KeySignature, ...] = ()  # in order, as far as they are told
 
     def bar_at(self, beat: float) -> tuple[float, float]:
         """Return the beat from which the metre of a beat holds, and the quarters in its bars."""

@@ -26,6 +26,7 @@ from yehu_server.scores.phrasing import FEW_VELOCITIES, MARKED_SPAN
 from yehu_server.scores.reading import is_capture, is_written, read_written
 from yehu_server.scores.score import (
     COMMON_TIME,
+    KeySignature,
     Metre,
     Score,
     ScoreEvent,
@@ -108,7 +109,7 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
     if by_frames:
         written, more = written_of_seconds(voices, tempo)
         return replace(written, title=score.name), {**lost, **more}
-    whole, chords = _written(voices, _tempi(score), score.metres)
+    whole, chords = _written(voices, _tempi(score), score.metres, score.keys)
     lost["lower notes of chords"] += chords
     return replace(whole, title=score.name), dict(+lost)
 
@@ -195,9 +196,16 @@ def _tempo_of(begins: Sequence[float]) -> float:
 
 
 def _written(
-    voices: Sequence[tuple[str, Sequence[Heard]]], tempi: Sequence[Tempo], metres: Sequence[Metre]
+    voices: Sequence[tuple[str, Sequence[Heard]]],
+    tempi: Sequence[Tempo],
+    metres: Sequence[Metre],
+    told: Sequence[KeySignature] = (),
 ) -> tuple[Written, int]:
-    """A score of notes in quarters, and how many lower notes of chords it leaves out."""
+    """A score of notes in quarters, and how many lower notes of chords it leaves out.
+
+    Key signatures count that were `told`, but C alone, which sequencers write unasked: then those
+    that the notes fit.
+    """
     begins = sorted({note.begin for _, heard in voices for note in heard})
     if not begins:
         raise ScoreError("has no note to write")
@@ -211,7 +219,10 @@ def _written(
         chords += more
         if part.notes:
             parts.append(part)
-    keys = (KeySign(Fraction(0), _fifths_of(parts)),)
+    signs = {Fraction(each.beat).limit_denominator(960): each.sharps for each in told}
+    if not any(signs.values()):
+        signs = {Fraction(0): _fifths_of(parts)}
+    keys = tuple(KeySign(*each) for each in ({Fraction(0): 0} | signs).items())
     return Written(tuple(parts), tuple(tempi), tuple(metres), keys=keys), chords
 
 

@@ -22,6 +22,7 @@ from yehu_server.errors import ScoreError
 from yehu_server.scores.score import (
     COMMON_TIME,
     MAX_DURATION_H,
+    KeySignature,
     Metre,
     Score,
     ScoreEvent,
@@ -182,6 +183,8 @@ def _play_together(
     )
     signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
     metres = (Metre(clock.beat(tick), quarters) for tick, quarters in signatures)
+    told_keys = sorted({each for track in tracks for each in track.keys})
+    keys = tuple(KeySignature(clock.beat(tick), sharps) for tick, sharps in told_keys)
     tunings = sorted((each for track in tracks for each in track.tunings), key=itemgetter(0))
     tuned, remarks = retuned(events, [(clock.seconds(tick), body) for tick, body in tunings])
     places = {
@@ -191,7 +194,8 @@ def _play_together(
     }
     names = {number: track.name for number, track in enumerate(tracks, start=first)}
     parts = _parts(places, names)
-    return Score(tuned, end_s, metres=(COMMON_TIME, *metres), parts=parts, remarks=remarks)
+    metres = (COMMON_TIME, *metres)
+    return Score(tuned, end_s, metres=metres, parts=parts, remarks=remarks, keys=keys)
 
 
 def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> str:

@@ -22,7 +22,8 @@ TRUE_FRAMES = {29: (30_000, 1001)}  # "29" frames a second are the 29.97 of drop
 FILM_FRAMES = (24, 25, 29, 30)
 SMPTE = 0x8000
 META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
-TRACK_NAME, END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE = 0x03, 0x2F, 0x51, 0x58
+TRACK_NAME, END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE, KEY_SIGNATURE = 0x03, 0x2F, 0x51, 0x58, 0x59
+MOST_SHARPS = 7  # or flats, of a key signature
 LONGEST_NAME = 40  # characters
 STATUS = re.compile(rb"[\x80-\xff]")
 SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
@@ -92,6 +93,7 @@ class Track:
     messages: list[Placed] = field(default_factory=list)
     tempos: list[tuple[int, int]] = field(default_factory=list)  # in us a quarter
     metres: list[tuple[int, float]] = field(default_factory=list)  # quarters a bar
+    keys: list[tuple[int, int]] = field(default_factory=list)  # sharps, or below 0 flats
     tunings: list[tuple[int, bytes]] = field(default_factory=list)  # by system exclusive
     end: int = 0  # ticks
     end_at: int = 0  # byte of the last event
@@ -206,7 +208,7 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) 
 
 
 def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: DamageReport) -> None:
-    """Keep a tempo, a time signature or the track's name; other metas are dropped."""
+    """Keep a tempo, a signature of time or key, or the track's name; other metas are dropped."""
     if kind == TRACK_NAME and not track.name:
         track.name = _text(body)
     elif kind == SET_TEMPO:
@@ -220,6 +222,12 @@ def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: Dama
             track.metres.append((tick, 4.0 * body[0] / 2.0 ** body[1]))
         else:
             faults.add("an impossible time signature ignored", at)
+    elif kind == KEY_SIGNATURE:
+        sharps = int.from_bytes(body[:1], "big", signed=True)
+        if body and abs(sharps) <= MOST_SHARPS:
+            track.keys.append((tick, sharps))
+        else:
+            faults.add("an impossible key signature ignored", at)
 
 
 def _text(body: bytes) -> str:

@@ -109,7 +109,8 @@ def _conductor(written: Written, clock: WrittenClock) -> list[tuple[int, mido.Me
             signature = mido.MetaMessage("time_signature", numerator=count, denominator=unit)
             messages.append((_tick(metre.beat), signature))
     return messages + [
-        (_tick(sign.beat), mido.MetaMessage("key_signature", key=sign.do)) for sign in written.keys
+        (_tick(float(sign.beat)), mido.MetaMessage("key_signature", key=sign.do))
+        for sign in written.keys
     ]
 
 

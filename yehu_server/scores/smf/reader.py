@@ -182,7 +182,7 @@ def _play_together(
         for tick, message, at in messages
     )
     signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
-    metres = (Metre(clock.beat(tick), quarters) for tick, quarters in signatures)
+    metres = [Metre(clock.beat(tick), quarters) for tick, quarters in signatures]
     told_keys = sorted({each for track in tracks for each in track.keys})
     keys = tuple(KeySignature(clock.beat(tick), sharps) for tick, sharps in told_keys)
     tunings = sorted((each for track in tracks for each in track.tunings), key=itemgetter(0))
@@ -194,8 +194,9 @@ def _play_together(
     }
     names = {number: track.name for number, track in enumerate(tracks, start=first)}
     parts = _parts(places, names)
-    metres = (COMMON_TIME, *metres)
-    return Score(tuned, end_s, metres=metres, parts=parts, remarks=remarks, keys=keys)
+    return Score(
+        tuned, end_s, metres=(COMMON_TIME, *metres), parts=parts, remarks=remarks, keys=keys
+    )
 
 
 def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> str:

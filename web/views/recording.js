@@ -71,6 +71,7 @@ function performances({ instrument, keys, fingerboard, bow }) {
   });
   /** @type {Replayer | null} */
   let replayer = null;
+  let playing = ""; // what is said of it
   const load = toggle("keep.load", "keep.stop", (isOn) => {
     load.set(replayer !== null);
     if (!isOn) replayer?.stop();
@@ -87,7 +88,7 @@ function performances({ instrument, keys, fingerboard, bow }) {
       if (replayer !== one) return;
       replayer = null;
       load.set(false);
-      word.textContent = "";
+      if (word.textContent === playing) word.textContent = ""; // a refused file stays said
     });
   }
 
@@ -121,8 +122,9 @@ function performances({ instrument, keys, fingerboard, bow }) {
       await instrument.start();
       play(read);
       const { players } = read;
-      word.textContent =
+      playing =
         players > 1 ? translate("keep.one", { name: file.name, count: players }) : file.name;
+      word.textContent = playing;
     } catch {
       word.textContent = translate("keep.wrong", { name: file.name });
     }

@@ -19,7 +19,7 @@ from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.live.page.facts import facts
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
-from yehu_server.playing.practice import Search
+from yehu_server.playing.practice import Search, pitches_near_notes, stops_of
 from yehu_server.playing.stringing import notes_of, range_text
 from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.scores.capture_header import SessionStart, header_of, read_header
@@ -59,6 +59,8 @@ def test_what_a_fiddle_is_tuned_to_follows_from_its_strings():
     for strings in ((9.0, 0.0), (0.0, 8.0)):
         with pytest.raises(ParameterError, match="expected the second higher than the first"):
             notes_of(tuned(*strings))
+    with pytest.raises(ParameterError, match="at most 3 octaves from a yehu's"):
+        notes_of(override(tuned(7.0, 7.0), {"bridge_x": 0.05}))
 
 
 def test_a_file_may_be_based_on_another_and_not_on_itself(tmp_path):
@@ -153,6 +155,19 @@ def test_practice_plays_the_notes_of_the_fiddle():
     assert (search.sounds, search.is_high_on_inner) == (72, True)
     assert not Search(0, 70, 0, np.zeros(6)).is_high_on_inner
     assert PITCHES[0][0] == 66.0  # the tables are of a yehu's names
+
+
+def test_what_is_practised_are_notes_that_the_fiddle_has():
+    for reaches in ((11.5, 24.0), (8.5, 20.5), (9.0, 7.0), (12.0, 24.9)):
+        for open_notes in ((65, 72), (62, 69), (67, 72)):
+            notes = NoteRange(open_notes, reaches)
+            known = pitches_near_notes(float, notes)
+            sounding = {
+                Search(string, note, 0, np.zeros(6), notes=notes).sounds
+                for string, note in stops_of(notes)
+            }
+            assert sounding <= known.keys(), (open_notes, reaches)
+            assert {notes.lowest, notes.highest} <= sounding, (open_notes, reaches)
 
 
 def test_the_page_of_a_server_has_the_notes_of_its_instrument():

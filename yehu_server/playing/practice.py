@@ -22,27 +22,20 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import (
-    AT_FIRM,
-    AT_FLAUTANDO,
-    AT_LIGHT,
-    DISTANCE_FACTOR,
     FIRST,
     FLAUTANDO,
     LAST,
-    LEAST_PRESS,
     PLACES,
-    TOP_SPEED,
     default_recipes,
 )
 from yehu_server.core.player.calibration import OPEN_NOTES, Calibration
 from yehu_server.core.player.note_range import LOWEST_NOTE, YEHU, NoteRange
-from yehu_server.params.table import find
+from yehu_server.playing.practice_recipes import DEFAULT, ROUNDS, lighter, lost, moved
 from yehu_server.playing.wishes import Key, WishPoster
 
 Array = Any
 Progress = Callable[[float, float], None]
 
-DEFAULT = PLACES.index(find("/playing/bow_position").default)  # practised first
 SPEEDS, PRESSURES = (0.12, 0.16, 0.2, 0.25), (0.2, 0.3, 0.42, 0.55)
 QUICK = (0.2, 0.24)  # speeds (m/s) for which a light bow is practised
 RESTS_S = (0.02, 0.12)
@@ -57,17 +50,6 @@ CERTAIN, FEWEST, MOST, NEAR_EARLY, NEAR_LATE, EARLY = 0.97, 0.7, 1.4, 60.0, 15.0
 NEAR_OPEN = 8.0  # of open strings, which nothing tunes
 OFF_WEIGHT = 600.0  # cents of the first error that count as much as never to speak
 GOOD, BETTER = 0.96, 0.015  # a score that is not improved, and by how much another must be better
-AWAY, CHANGED = 0.05, 0.02  # lost for moving the bow by a factor of e, and its share
-# Distances of the bow from the bridge, relative to those wished for; on the F string at the default
-# place, too.
-FARTHERS = ((0.7, 0.85, 1.0, 1.2, 1.45, 1.75), (0.75, 0.87, 1.0, 1.15))
-DEFAULT_FARTHERS = ((1.0, 1.15, 1.3, 1.5, 1.7), (0.87, 1.0, 1.15))
-SHARES, FIRMEST = (0.75, 1.0, 1.35, 1.8, 2.3), (1.2, 3.5)
-TOP_SPEEDS, PRESSES = (0.08, 0.1, 0.13, 0.16, 0.2, 0.25, 0.6), (0.0, 3.0, 4.0)
-FIRM_SHARES = (0.7, 0.85, 1.2)
-FINE_FARTHERS, FINE_SHARES = (0.95, 1.0, 1.05), (0.88, 1.0, 1.13)
-FLAUTANDO_SHARES = (1.0, 1.3, 1.6, 2.0, 2.4)
-NEAREST, FARTHEST = 0.055, 0.36  # bow positions
 HALF = 0.5  # semitones
 
 
@@ -116,20 +98,6 @@ class Search:
     def is_high_on_inner(self) -> bool:
         """Whether it is played on the inner string only where that is wished for, or near."""
         return self.string == 0 and self.sounds >= self.notes.open_notes[1]
-
-    def varied(
-        self, recipe: Array, positions: Iterable[float], shares: Iterable[float]
-    ) -> list[Array]:
-        """A recipe with the bow elsewhere and other shares of Schelleng's limit."""
-        varied = []
-        for position in positions:
-            for share in shares:
-                changed = _with(recipe, DISTANCE_FACTOR, position / PLACES[self.place])
-                changed[[AT_FLAUTANDO, AT_LIGHT, AT_FIRM]] *= share
-                changed[AT_FIRM] = min(changed[AT_FIRM], FIRMEST[self.string])
-                if NEAREST <= position <= FARTHEST:
-                    varied.append(changed)
-        return varied
 
 
 class Practice:
@@ -189,9 +157,9 @@ class Practice:
             for done, (string, note) in enumerate(stops, start=1):
                 for place in sorted(asked, key=lambda place: place != DEFAULT):
                     start = table[string, place, note - FIRST].copy()
-                    moved = None if place == DEFAULT else _moved(table, string, note, place)
+                    there = None if place == DEFAULT else moved(table, string, note, place)
                     found = self._best(
-                        Search(string, note, place, start, moved, self._notes), workers
+                        Search(string, note, place, start, there, self._notes), workers
                     )
                     self.notes_changed += int(np.any(found != start))
                     table[string, place, note - FIRST] = found
@@ -210,7 +178,7 @@ class Practice:
 
         def scores(tried: list[Array], passages: list[Passage]) -> Array:
             found = list(workers.map(lambda m: self.score(search, m, passages), tried))
-            return np.array(found) - [_lost(recipe, start) for recipe in tried]
+            return np.array(found) - [lost(recipe, start) for recipe in tried]
 
         def choose(best: Array, score: float, tried: Iterable[Array]) -> tuple[Array, float]:
             tried = list(tried)
@@ -234,19 +202,8 @@ class Practice:
         if search.moved is not None:
             best, score = choose(best, score, [search.moved])
         if score < GOOD or float(scores([best], again)[0]) < GOOD:
-            farthers = (DEFAULT_FARTHERS if place == DEFAULT else FARTHERS)[string]
-            asked = tuple(PLACES[place] * farther for farther in farthers)
-            own = PLACES[place] * best[DISTANCE_FACTOR]
-            beta = sorted({*asked, *(own * near for near in FINE_FARTHERS)})
-            best, score = choose(best, score, search.varied(best, beta, SHARES))
-            best, score = choose(best, score, (_with(best, TOP_SPEED, v) for v in TOP_SPEEDS))
-            best, score = choose(best, score, (_with(best, LEAST_PRESS, v) for v in PRESSES))
-            firm = best[AT_FIRM]
-            best, score = choose(
-                best, score, (_with(best, AT_FIRM, firm * share) for share in FIRM_SHARES)
-            )
-            beta = [PLACES[place] * best[DISTANCE_FACTOR] * near for near in FINE_FARTHERS]
-            best, score = choose(best, score, search.varied(best, beta, FINE_SHARES))
+            for others in ROUNDS:
+                best, score = choose(best, score, others(best, string, place))
         if best is not start:  # a best of many is biased upwards: score it again on fresh passages
             fresh = _passages(search, seed + 2 * AGAIN, 2 * TRIES, speeds, pressures)
             before, after = scores([start, best], fresh)
@@ -257,9 +214,8 @@ class Practice:
         """A recipe with a share for flautando at which a quick bow speaks."""
         passages = _passages(search, search.note, QUICK_TRIES, QUICK, (FLAUTANDO,))
         best, most = usual, -math.inf
-        for share in FLAUTANDO_SHARES:
-            recipe = _with(usual, AT_FLAUTANDO, usual[AT_FLAUTANDO] * share)
-            score = self.score(search, recipe, passages) - CHANGED * math.log(share)
+        for recipe, loss in lighter(usual):
+            score = self.score(search, recipe, passages) - loss
             if score > most + BETTER:
                 best, most = recipe, score
             if score >= GOOD:
@@ -327,11 +283,12 @@ def stops_of(notes: NoteRange) -> list[tuple[int, int]]:
 
     What is bent above the first's goes to the other.
     """
-    return [
-        (string, note)
-        for string, (first, reach) in enumerate(zip(OPEN_NOTES, notes.reaches, strict=True))
-        for note in range(first, min(first + math.ceil(reach), LAST) + 1)
-    ]
+    stops = []
+    for string, (first, reach) in enumerate(zip(OPEN_NOTES, notes.reaches, strict=True)):
+        above = notes.open_notes[string] - first
+        last = min(first + math.ceil(reach), LAST, notes.highest - above)
+        stops += [(string, note) for note in range(first, last + 1)]
+    return stops
 
 
 def pitches_near_notes(
@@ -377,28 +334,3 @@ def _passages(
         )
         for i in range(count)
     ]
-
-
-def _moved(table: Array, string: int, note: int, place: int) -> Array:
-    """The recipe of a note at the default place, with the bow moved to another.
-
-    On the F string it moves as far as ordinarily.
-    """
-    recipe = table[string, DEFAULT, note - FIRST].copy()
-    ordinary = default_recipes()[string, :, note - FIRST, DISTANCE_FACTOR]
-    recipe[DISTANCE_FACTOR] *= ordinary[place] / ordinary[DEFAULT]
-    farthest = FARTHEST / PLACES[place]
-    recipe[DISTANCE_FACTOR] = min(max(recipe[DISTANCE_FACTOR], NEAREST / PLACES[place]), farthest)
-    return recipe
-
-
-def _lost(recipe: Array, usual: Array) -> float:
-    """What a recipe loses for its distance from the usual one."""
-    moved = abs(math.log(recipe[DISTANCE_FACTOR] / usual[DISTANCE_FACTOR]))
-    return AWAY * moved + CHANGED * abs(math.log(recipe[AT_LIGHT] / usual[AT_LIGHT]))
-
-
-def _with(recipe: Array, column: int, value: float) -> Array:
-    changed = recipe.copy()
-    changed[column] = value
-    return changed

@@ -32,11 +32,15 @@ def notes_of(quantities: Quantities) -> NoteRange:
     if abs(first - second) <= APART:
         first = second = 0.5 * (first + second)
     inner, outer = OPEN_NOTES[0] + round(first), OPEN_NOTES[1] + round(second)
-    if max(abs(first), abs(second)) > FARTHEST or not 0 < outer - inner <= FARTHEST_APART:
+    sound = (
+        f"the strings sound {note_name(inner)} and {note_name(outer)} by length, mass and tension"
+    )
+    if not 0 < outer - inner <= FARTHEST_APART:
         raise ParameterError(
-            f"the strings sound {note_name(inner)} and {note_name(outer)} by length, mass and "
-            "tension: expected the second higher than the first, by at most an octave"
+            f"{sound}: expected the second higher than the first, by at most an octave"
         )
+    if max(abs(first), abs(second)) > FARTHEST:
+        raise ParameterError(f"{sound}: expected at most {FARTHEST // 12} octaves from a yehu's")
     return NoteRange.tuned_to((inner, outer), quantities)
 
 

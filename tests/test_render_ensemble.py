@@ -12,12 +12,18 @@ import pytest
 import soundfile
 from midi_files import midi_file, notes
 
+from yehu_server.cli import _parser
+from yehu_server.cli.ensemble_parts import players_of
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.note_range import NoteRange
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering import cores
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
-from yehu_server.scores.reading import part_of
+from yehu_server.scores.reading import How, part_of, read_any
+from yehu_server.scores.score import Score
 from yehu_server.scores.smf.reader import read_score
+from yehu_server.util.files import shipped_folder
 
 QUIET = ("--gain-db", -20, "--tail", 0.5)  # the limiter does nothing
 FLOAT = ("--subtype", "float")
@@ -251,6 +257,25 @@ def test_an_ensemble_file_says_who_plays_what_where_and_on_which_instrument(play
     assert low["preset"].endswith("pizzicato.toml")
     assert (other["name"], other["seed"], other["distance_m"]) == ("channel 5", 1, 2.0)
     assert Path(summary["stems"][0]).name == "01-low---inner.wav"
+
+
+def test_each_part_is_moved_into_the_range_of_its_own_instrument(tmp_path):
+    tune = midi_file(tmp_path / "low.mid", [*line(1, 62), *line(2, 62)])
+    band = tmp_path / "band.toml"
+    erhu = shipped_folder("examples") / "erhu.toml"
+    band.write_text(f'[[part]]\nchannel = 1\n[[part]]\nchannel = 2\ninstrument = "{erhu}"\n')
+    words = ("render", tune, "-o", tmp_path / "out.wav", "--ensemble", band)
+    arguments = _parser().parse_args([*map(str, words)])
+
+    def scores_for(within: NoteRange) -> list[Score]:
+        return [read_any(tune, How(all_parts=True, within=within))]
+
+    players = players_of(arguments, scores_for, PlayingOptions(), Quantities(), 0.0)
+    keys = [
+        [each.message.note for each in part.score.events if each.message.type == "note_on"]
+        for part in players.parts
+    ]
+    assert keys == [[74, 75, 76, 77], [62, 63, 64, 65]]
 
 
 def test_channels_that_nobody_plays_are_told(command, trio, tmp_path):

@@ -20,7 +20,9 @@ from forks import start
 from midi_files import midi_file, notes
 
 from yehu_server.cli import _parser, folder_tasks, render_folder, render_one
+from yehu_server.core.player.bowing import default_recipes
 from yehu_server.errors import OutputError
+from yehu_server.playing.practice_files import write_practice
 from yehu_server.rendering.workers import Event
 from yehu_server.util.sound_file import is_rendered
 
@@ -176,6 +178,18 @@ def test_a_changed_mapping_renders_again(tmp_path, command):
         code, out, err = command(*words)
         assert code == 0, err
         assert told in out
+
+
+def test_a_practice_that_comes_beside_the_instrument_renders_again(tmp_path, command):
+    tune(tmp_path / "in" / "a.mid")
+    instrument = tmp_path / "mine.toml"
+    instrument.write_text("bridge_x = 0.3\n")
+    words = ("render", tmp_path / "in", "-o", tmp_path / "out", *DRY, "--instrument", instrument)
+    assert "1 rendered, 0 up" in command(*words)[1]
+    assert "0 rendered, 1 up" in command(*words)[1]
+    write_practice(tmp_path / "mine.practice.json", default_recipes(), 44100.0)
+    assert "1 rendered, 0 up" in command(*words)[1]
+    assert "0 rendered, 1 up" in command(*words)[1]
 
 
 def test_a_file_of_the_users_own_is_not_replaced(folder, command):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -41,6 +42,7 @@ from yehu_server.playing.practice_files import (
     LOWEST,
     VERSION,
     as_data,
+    practice_beside,
     read_practice,
     shipped_practice,
     write_practice,
@@ -192,6 +194,15 @@ def test_what_was_practised_is_heard_and_named(render, tmp_path):
     other, summary = render("--practice", path)
     assert summary["practice"] == str(path)
     assert not np.array_equal(other, same)
+
+
+def test_the_practice_beside_an_instrument_is_found_where_it_is_a_file(tmp_path):
+    instrument, beside = tmp_path / "mine.toml", tmp_path / "mine.practice.json"
+    (tmp_path / "folder.practice.json").mkdir()
+    named = (None, Path(), Path("/"), instrument, tmp_path / "folder.toml")
+    assert [practice_beside(path) for path in named] == [None] * len(named)
+    beside.touch()
+    assert practice_beside(instrument) == beside
 
 
 # ---------------------------------------------------------------- what is shipped

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +17,7 @@ from yehu_server.scores.score import Score, concatenate
 
 if TYPE_CHECKING:
     from yehu_server.core.physics.quantities import Quantities
+    from yehu_server.core.player.note_range import NoteRange
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Part
     from yehu_server.scores.ensemble_file import EnsembleFile, PartEntry
@@ -35,7 +36,7 @@ class Players:
 
 def players_of(
     arguments: argparse.Namespace,
-    scores: Sequence[Score],
+    scores_for: Callable[[NoteRange], list[Score]],
     playing: PlayingOptions,
     quantities: Quantities,
     phrasing: float,
@@ -44,14 +45,17 @@ def players_of(
 
     Raises YehuError where there are too many parts, or what a file names is not there.
 
+    `scores_for`: reads the scores, with their parts moved into the range of an instrument.
     `playing`, `quantities`, `phrasing`: of all players, where an ensemble file does not say
     otherwise.
     """
     from yehu_server.core.physics.quantities import read_quantities
     from yehu_server.playing.parts import seated
-    from yehu_server.playing.practice_files import practice_beside
+    from yehu_server.playing.practice_files import practice_beside, practices_beside
+    from yehu_server.playing.stringing import notes_of
     from yehu_server.scores.reading import percussion_notes
 
+    scores = scores_for(notes_of(quantities))
     room: Values = ()
     ensemble = None
     files: list[Path] = []
@@ -80,9 +84,11 @@ def players_of(
             if arguments.practice is None:
                 own = replace(own, bowing=None, practice=None)
                 own = own.practised(practice_beside(entry.instrument))
-            files.append(entry.instrument)
+            files += [entry.instrument, *practices_beside(entry.instrument)]
         files += own.files
-        part = _part(entry, scores, instrument, phrasing, arguments)
+        with _at(entry.where):
+            read = scores_for(notes_of(instrument))
+        part = _part(entry, read, instrument, phrasing, arguments)
         seed = own.seed if entry.seed is None else entry.seed
         gain_db = _gain_db(own, entry, len(entries), arguments)
         parts.append(replace(part, playing=replace(own, seed=seed), gain_db=gain_db))

@@ -26,6 +26,7 @@ from yehu_server.util.files import anything, check_distinct, make_folder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from yehu_server.core.player.note_range import NoteRange
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Options, Part
     from yehu_server.rendering.summary import PartSummary, Summary
@@ -52,6 +53,7 @@ def rendered(
     `follow`: called with the seconds done and those of the score, in place of a progress bar.
     """
     from yehu_server.playing.calibration import calibration_key
+    from yehu_server.playing.practice_files import practices_beside
     from yehu_server.rendering.to_files import render
 
     check_stage(arguments)
@@ -74,13 +76,15 @@ def rendered(
         channels=None if arguments.channel is None else frozenset(arguments.channel),
         jobs=arguments.jobs,
     )
-    scores = _scores(arguments, options.playing)
+    scores = cache(partial(_scores, arguments, options.playing))
     players = _players(arguments, scores, options, phrasing)
     read = [*arguments.midi, *playing.files, *instrument, *players.files]
+    read += practices_beside(arguments.instrument)
     stems = _stems(arguments, options, players)
     check_distinct({**outputs, **{f"stem {stem.name}": stem for stem in stems}}, read)
-    played = players.parts[0].score
-    for line in (*played.remarks * (not arguments.quiet), *played.warnings):
+    played = [part.score for part in players.parts]
+    remarks = [] if arguments.quiet else [line for score in played for line in score.remarks]
+    for line in dict.fromkeys([*remarks, *played[0].warnings]):
         warn(line)
     compile_all(arguments)
     parts = _calibrated(arguments, players.parts, float(options.rate))
@@ -122,14 +126,19 @@ def _format(arguments: argparse.Namespace) -> str:
 
 
 def _players(
-    arguments: argparse.Namespace, scores: Sequence[Score], options: Options, phrasing: float
+    arguments: argparse.Namespace,
+    scores: Callable[[NoteRange], list[Score]],
+    options: Options,
+    phrasing: float,
 ) -> Players:
     """Who plays: one instrument the whole score, or an ensemble."""
+    from yehu_server.playing.stringing import notes_of
     from yehu_server.scores.phrasing import is_fingered, phrased
 
     if arguments.ensemble is not None:
         return players_of(arguments, scores, options.playing, options.quantities, phrasing)
-    score = concatenate([phrased(each, phrasing) for each in scores])
+    read = scores(notes_of(options.quantities))
+    score = concatenate([phrased(each, phrasing) for each in read])
     part = options.solo(score)
     return Players((replace(part, phrasing=0.0 if is_fingered(score) else phrasing),))
 
@@ -179,14 +188,14 @@ def _counts(summary: Summary | PartSummary) -> dict[str, Any]:
     return fields
 
 
-def _scores(arguments: argparse.Namespace, playing: PlayingOptions) -> list[Score]:
-    """Read all files.
+def _scores(
+    arguments: argparse.Namespace, playing: PlayingOptions, within: NoteRange
+) -> list[Score]:
+    """Read all files, for an instrument of some notes.
 
     Raises DamagedError where --strict refuses one; ScoreError where one cannot be read, or they
     last too long together.
     """
-    from yehu_server.cli.arguments import instrument_of
-    from yehu_server.playing.stringing import notes_of
     from yehu_server.playing.tuning import RangePolicy
     from yehu_server.scores.reading import How, read_any
 
@@ -196,7 +205,7 @@ def _scores(arguments: argparse.Namespace, playing: PlayingOptions) -> list[Scor
         all_parts=arguments.ensemble is not None or arguments.channel is not None,
         in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
         is_mpe=playing.mapping.mpe,
-        within=notes_of(instrument_of(arguments)),
+        within=within,
     )
     read = partial(read_any, song=arguments.song, strict=arguments.strict, max_duration_h=longest)
     scores = []

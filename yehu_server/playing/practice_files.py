@@ -102,8 +102,14 @@ def read_practice(path: Path) -> Array:
 
 def practice_beside(instrument: Path | None) -> Path | None:
     """The practice of an instrument file: beside it, of the same name and ``.practice.json``."""
-    path = None if instrument is None else instrument.with_suffix(".practice.json")
-    return path if path is not None and path.is_file() else None
+    return next((path for path in practices_beside(instrument) if path.is_file()), None)
+
+
+def practices_beside(instrument: Path | None) -> list[Path]:
+    """Where the practice of an instrument file is looked for, whether it is there or not."""
+    if instrument is None or not instrument.name:
+        return []
+    return [instrument.with_suffix(".practice.json")]
 
 
 def write_practice(path: Path, table: Array, rate: float) -> None:

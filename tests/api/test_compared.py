@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import soundfile
@@ -50,6 +52,8 @@ def test_brightness_and_pitch_are_told_apart():
     found = yehu.compare(tones(), tones(sharper), RATE)
     assert found.pitch_cents == pytest.approx(20.0, abs=2.0)
     assert repr(found).endswith("pitch +20 cents>")
+    unpitched = replace(found, pitches=np.full_like(found.pitches, np.nan))
+    assert repr(unpitched).endswith("no common pitch>")
 
 
 def test_it_is_drawn_in_one_call():

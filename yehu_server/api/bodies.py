@@ -116,9 +116,9 @@ def fit(
         Lowest and highest frequency to be met; by default from 100 Hz to where the hammer stops
         to excite, at most 8 kHz.
     modes : int, optional
-        Number of bridge modes; by default as many as the measurement shows, at most 64.
+        Number of bridge modes; by default as many as the measurement shows.
     sections : int
-        Number of sections of the radiation, at most 64; by default at most 32.
+        Highest number of sections of the radiation.
 
     Raises
     ------

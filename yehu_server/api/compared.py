@@ -88,10 +88,11 @@ class Comparison:
         return float(SEMITONE * np.median((rendered - recorded)[both])) if both.any() else math.nan
 
     def __repr__(self) -> str:
+        off = self.pitch_cents
+        pitch = f"pitch {off:+.0f} cents" if math.isfinite(off) else "no common pitch"
         return (
             f"<yehu_server.Comparison of {len(self.times) * STEP_S:.2f} s: "
-            f"spectrum {self.spectrum_db:.1f} dB, level {self.level_db:.1f} dB, "
-            f"pitch {self.pitch_cents:+.0f} cents>"
+            f"spectrum {self.spectrum_db:.1f} dB, level {self.level_db:.1f} dB, {pitch}>"
         )
 
     def plot(self, figure: Figure | None = None) -> Figure:

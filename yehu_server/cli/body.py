@@ -86,7 +86,7 @@ def _add_fit(actions: Any) -> None:
         --kind: what the responses of a .csv or .uff are that does not tell
         --sensor-mass GRAMS: of an accelerometer on the bridge, whose effect is taken off
         --band LO:HI: frequencies to fit, Hz (default: from 100 to where the hammer excites)
-        --modes N: number of bridge modes, 1 to 64 (default: as many as show)
+        --modes N: number of bridge modes (default: as many as show)
         --plot PNG: draw measured and fitted, too
         --overwrite: replace other files, too
         --json: print one JSON object when done

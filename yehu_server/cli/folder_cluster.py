@@ -123,7 +123,7 @@ def _sent(task: Task, arguments: argparse.Namespace, mark: Path) -> Task:
     entry = task.entry
     entry = replace(entry, source=entry.source.absolute(), target=entry.target.absolute())
     picture = None if task.picture is None else task.picture.absolute()
-    return Task(arguments, entry, picture, task.key, task.seconds, mark, score)
+    return replace(task, arguments=arguments, entry=entry, picture=picture, mark=mark, score=score)
 
 
 def _received(task: Task, told: Any) -> Done:

@@ -1,10 +1,11 @@
 """Find how each note of an instrument is best bowed.
 
 It is played after others, at several places, speeds and pressures of the bow, until it speaks as
-well as can be found; what was learnt is written, for --practice.
+well as can be found; what was learnt is written, for --practice. Beside an instrument file
+NAME.toml, NAME.practice.json is taken without that.
 
   yehu-server practise -o mine.json
-  yehu-server practise --instrument heavy_bridge.toml --rate 48000 -o heavy.json
+  yehu-server practise --instrument heavy_bridge.toml -o heavy_bridge.practice.json
   yehu-server practise --preset sul-ponticello -o near.json
   yehu-server practise --tuning chaozhou-seven-equal -o chaozhou.json
   yehu-server render tune.mid -o tune.wav --practice mine.json

@@ -32,6 +32,7 @@ from yehu_server.playing.calibration import (
 from yehu_server.playing.pitch_and_level import cents
 from yehu_server.util.files import read_text, why
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
+from yehu_server.util.values import whole
 
 log = logging.getLogger(__name__)
 
@@ -96,7 +97,7 @@ def read_measured(data: Any) -> Calibration:
     """
     try:
         first, second = map(float, data["tensions"])
-        inner, outer = map(int, data.get("open_notes", OPEN_NOTES))
+        inner, outer = (whole(note, 0, HIGHEST_KEY) for note in data.get("open_notes", OPEN_NOTES))
         a4 = float(data["a4"])
         sharpening = _tables(data["sharpening"], 0, -MOST_SHARPENING_CENTS, MOST_SHARPENING_CENTS)
         levels = _tables(data["levels"], 1, -MOST_LEVEL_DB, MOST_LEVEL_DB)
@@ -104,8 +105,8 @@ def read_measured(data: Any) -> Calibration:
         raise ParameterError("is not a calibration") from error
     if not LEAST_N <= min(first, second) <= max(first, second) <= MOST_N:  # also refuses NaN
         raise ParameterError(f"has tensions of {first:g} and {second:g} N")
-    if not 0 <= inner < outer <= HIGHEST_KEY:
-        raise ParameterError(f"open strings of {inner} and {outer}: expected MIDI notes")
+    if inner >= outer:
+        raise ParameterError(f"open strings of {inner} and {outer}: expected the lower one first")
     return Calibration(a4, (first, second), sharpening, levels, (inner, outer))
 
 

@@ -54,10 +54,7 @@ class PlayingOptions:
     def practised(self, path: Path | None) -> PlayingOptions:
         """The same options with notes bowed as a practice file says, unless another is asked for.
 
-        Raises
-        ------
-        YehuError
-            Where it cannot be read.
+        Raises YehuError where it cannot be read.
         """
         if path is None or self.bowing is not None:
             return self

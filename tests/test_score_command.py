@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from musicxml_text import dynamics, note, score, slur, technical, tempo, words
@@ -41,6 +42,14 @@ def test_a_score_is_shown_note_by_note(command, tune):
     assert rows[2] == ["3", "1/2", "C5", "1", "1/2"]
     assert rows[3][:4] == ["2", "1", "F#4-50", "2"]
     assert lines[-1] == 'not understood: words "with a smile"'
+
+
+def test_a_score_is_shown_in_the_range_of_its_instrument(command, tmp_path):
+    tune = tmp_path / "tune.jianpu"
+    tune.write_text("1=C 2 3 4 5\n", encoding="utf-8")  # D4, which an erhu has and a yehu has not
+    erhu = Path(__file__).resolve().parents[1] / "examples" / "erhu.toml"
+    assert "an octave up" in command("score", "show", tune)[1]
+    assert "an octave up" not in command("score", "show", tune, "--instrument", erhu)[1]
 
 
 def test_a_score_is_shown_as_json(command, tune):

@@ -9,8 +9,7 @@ from musicxml_text import note, score
 from yehu_server.errors import ScoreError
 from yehu_server.scores.octaves import Sounding, octaves_of
 from yehu_server.scores.reading import How, read_any
-from yehu_server.scores.score import notes_of
-from yehu_server.scores.written.notated import DO_BY_FIFTHS
+from yehu_server.scores.score import DO_BY_FIFTHS, notes_of
 
 LOW = [60, 62, 64, 65, 67]
 
@@ -145,4 +144,4 @@ def test_coarse_tuning_counts_for_the_range(tmp_path):
 
 
 def test_keys_have_the_names_of_their_do():
-    assert (DO_BY_FIFTHS[6], DO_BY_FIFTHS[7], DO_BY_FIFTHS[5]) == ("C", "G", "F")
+    assert (DO_BY_FIFTHS[0], DO_BY_FIFTHS[1], DO_BY_FIFTHS[-1]) == ("C", "G", "F")

@@ -70,6 +70,9 @@ def test_keys_are_those_of_the_file_but_c_that_programs_write_unasked(tmp_path):
         ([(0, "Eb")], [(0, -3)]),
         ([(0, "Em"), (4, "Bb")], [(0, 1), (4, -2)]),
         ([(4, "F#")], [(0, 0), (4, 6)]),
+        ([(0, "Cb"), (4, "C#")], [(0, -7), (4, 7)]),
+        ([(0, "F"), (0, "C")], [(0, -1)]),  # as two tracks say it
+        ([(0, "Eb"), (4, "Eb"), (8, "C"), (9, "C")], [(0, -3), (8, 0)]),
     ]:
         path = midi(tmp_path / "x.mid", tune)
         file = mido.MidiFile(path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from yehu_server.core.player.note_range import NoteRange
 from yehu_server.scores.octaves import Sounding
 from yehu_server.scores.tune_part import melodic_part, take_turns
 
@@ -41,6 +42,13 @@ def test_the_tune_is_found_among_what_accompanies_it():
         if melodic_part(names, parts) != expected
     }
     assert not wrong
+
+
+def test_a_tune_fits_the_instrument_that_plays_it():
+    erhu = NoteRange((62, 69), (32.0, 32.0))
+    wide = line(62, 69, 76, 83, 90, 97, 101, 97)
+    assert melodic_part(["a", "b"], [wide, TUNE]) == 1
+    assert melodic_part(["a", "b"], [wide, TUNE], erhu) == 0
 
 
 def test_parts_that_take_turns_are_told_from_parts_that_sound_together():

@@ -17,13 +17,12 @@ from yehu_server.scores.jianpu.writer import jianpu_of
 from yehu_server.scores.musicxml.reader import parse, written_of
 from yehu_server.scores.musicxml.writer import musicxml_of
 from yehu_server.scores.reading import read_written
-from yehu_server.scores.score import COMMON_TIME, Metre
+from yehu_server.scores.score import COMMON_TIME, KeySignature, Metre
 from yehu_server.scores.written.layout import tuplet_of
 from yehu_server.scores.written.notated import (
     DYNAMICS,
     MARKS,
     Grace,
-    KeySign,
     Mark,
     Note,
     Part,
@@ -108,7 +107,7 @@ def scores(draw, marks):
     tempi = [Tempo(Fraction(0), float(draw(st.integers(30, 240))))]
     if draw(st.booleans()) and found[0].notes[-1].beat > 0:
         tempi.append(Tempo(found[0].notes[-1].beat, 72.0))
-    keys = () if fifths is None else (KeySign(Fraction(0), fifths),)
+    keys = () if fifths is None else (KeySignature(Fraction(0), fifths),)
     return Written(
         found, tuple(tempi), (COMMON_TIME, Metre(0.0, quarters)), (), "A tune", keys=keys
     )

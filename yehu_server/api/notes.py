@@ -16,7 +16,7 @@ from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.playing.stringing import range_text
-from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, Setting
+from yehu_server.scores.score import BEND, MAX_DURATION_H, Score, ScoreEvent, Setting
 
 SEMITONES = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
 ACCIDENTALS = {"#": 1, "♯": 1, "b": -1, "♭": -1}
@@ -66,7 +66,6 @@ def playable(note: str | float, notes: NoteRange = YEHU) -> float:
     return pitch
 
 
-BEND = "/playing/bend"
 LONGEST_S = 3600.0 * MAX_DURATION_H
 
 

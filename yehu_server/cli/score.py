@@ -86,6 +86,7 @@ def add_to(commands: Any) -> None:
 
 
 def _show(arguments: argparse.Namespace) -> int:
+    from yehu_server.playing.stringing import notes_of
     from yehu_server.scores.reading import read_written
     from yehu_server.scores.written.text import fields_of, lines_of
 
@@ -97,7 +98,7 @@ def _show(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(fields_of(written)))
     else:
-        for line in lines_of(written):
+        for line in lines_of(written, notes_of(instrument_of(arguments))):
             print_result(line)
     return 0
 
@@ -109,12 +110,12 @@ def _plot(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.scores.written.in_range import usual_parts
 
     check_distinct(picture_output(arguments), [arguments.score])
+    within = notes_of(instrument_of(arguments))
     with naming(arguments.score):
         asked = [arguments.part] if arguments.part else []
-        numbers = numbers_of(written.names, asked) if asked else usual_parts(written)
+        numbers = numbers_of(written.names, asked) if asked else usual_parts(written, within)
         if not numbers or not written.parts[numbers[0]].notes:
             raise ScoreError("has no note to draw")
-    within = notes_of(instrument_of(arguments))
     write_bowed_score(written, numbers[0], arguments.plot, within, overwrite=arguments.overwrite)
 
 

@@ -1,1 +1,1 @@
-"""Files of performances: MIDI files, MusicXML, jianpu, captures, ensembles, gestures."""
+"""Files of performances: MIDI, MusicXML, ABC, jianpu, captures, ensembles, gestures."""

@@ -31,7 +31,7 @@ from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import read_lines, why
 
 MOST_BYTES = 1 << 30
-MOST_WISHES = 20_000_000  # each takes 40 bytes
+MOST_WISHES = 20_000_000  # each takes 48 bytes
 MOST_RESTS = 1000
 ROW = np.dtype([("wish", WISH), ("player", np.int64)])
 

@@ -10,13 +10,13 @@ from yehu_server.errors import ScoreError, did_you_mean
 from yehu_server.scores.octaves import Sounding, octaves_of
 from yehu_server.scores.phrasing import REST_S
 from yehu_server.scores.score import Score, ScorePart, notes_of
-from yehu_server.scores.smf.tunings import transposed_keys
+from yehu_server.scores.smf.tunings import RPN_FINE, transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
 from yehu_server.scores.written.notated import Written
 
 MOST_NAMED = 8  # parts in a line
-RPN_FINE, MPE_CONFIGURATION = 100, 6
+MPE_CONFIGURATION = 6
 ONE_BY_ONE = "--part NAME plays one of them, --ensemble all, each on a yehu of its own"
 
 
@@ -60,7 +60,7 @@ def says_mpe(score: Score) -> bool:
     )
 
 
-def usual_midi_part(score: Score) -> Score:
+def usual_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
     """Return the part of a score of MIDI that carries the tune, and name the others in a remark.
 
     Parts that take turns stay together.
@@ -71,7 +71,7 @@ def usual_midi_part(score: Score) -> Score:
         at = _number_of(score.parts, note.channel, score.events[note.begins].track)
         if at is not None:
             parts[at].append(Sounding(note.start_s, note.end_s, (float(note.key),)))
-    tune = melodic_part(names, parts)
+    tune = melodic_part(names, parts, within)
     if tune is None or take_turns(parts):
         return score
     others = [name for at, name in enumerate(names) if at != tune]

@@ -15,14 +15,13 @@ import mido
 from yehu_server.params.table import find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import DEFAULT, load
-from yehu_server.scores.score import Score, Setting
+from yehu_server.scores.score import BEND, Score, Setting
+from yehu_server.scores.written.layout import signature
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.tempo import WrittenClock
 
 TICKS = 960  # a quarter note
-BEND = "/playing/bend"
 BEND_RANGE = 24  # semitones
-MOST_NUMERATOR = 255
 SLOWEST = 0xFFFFFF  # microseconds a quarter, the longest that a file can say
 
 
@@ -102,12 +101,10 @@ def _conductor(written: Written, clock: WrittenClock) -> list[tuple[int, mido.Me
             messages.append((_tick(beat), mido.MetaMessage("set_tempo", tempo=tempo)))
             last = tempo
     for metre in written.metres:
-        quarters = Fraction(metre.quarters).limit_denominator(16)
-        unit = max(4 * quarters.denominator, 4)
-        count = int(quarters * unit / 4)
-        if unit in (4, 8, 16, 32, 64) and 0 < count <= MOST_NUMERATOR:
-            signature = mido.MetaMessage("time_signature", numerator=count, denominator=unit)
-            messages.append((_tick(metre.beat), signature))
+        if figures := signature(Fraction(metre.quarters).limit_denominator(64)):
+            count, unit = figures
+            message = mido.MetaMessage("time_signature", numerator=count, denominator=unit)
+            messages.append((_tick(metre.beat), message))
     return messages + [
         (_tick(float(sign.beat)), mido.MetaMessage("key_signature", key=sign.do))
         for sign in written.keys

@@ -33,7 +33,7 @@ HIGHER, MOST_HIGHER = 6.0, 50.0
 # Notes in one bow: so many, each no longer, in steps no wider (semitones), nothing between them.
 MOST_IN_A_BOW, SHORT_S, STEP, GAP_S = 4, 0.3, 4, 0.03
 LEAST_FOR_BOWS = 0.25  # of phrasing, from which notes share a bow
-OVERLAP_S = 0.012
+OVERLAP_S = 0.012  # of slurred notes
 SAME_BEAT = 1e-3
 
 

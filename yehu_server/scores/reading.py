@@ -156,7 +156,7 @@ def performed_part(written: Written, how: How = USUAL) -> Score:
     elif how.all_parts:
         plays = [*range(len(written.parts))]
     else:
-        plays = usual_parts(written)
+        plays = usual_parts(written, how.within)
     remarks = [*written.remarks, chosen_parts.told_others(written, plays)]
     if how.in_range:
         written, line = moved(written, plays, how.within)
@@ -169,7 +169,7 @@ def _midi_played(score: Score, how: How) -> Score:
     if how.parts:
         score = chosen_parts.parts_chosen(score, how.parts)
     elif len(score.parts) > 1 and not (how.all_parts or how.is_mpe or chosen_parts.says_mpe(score)):
-        score = chosen_parts.usual_midi_part(score)
+        score = chosen_parts.usual_midi_part(score, how.within)
     if not has_notes([score]):
         line = "has controllers and no note: nothing sounds"
         return replace(score, remarks=(*score.remarks, line))
@@ -195,7 +195,7 @@ def read_written(path: Path, song: int | None = None) -> Written:
         from yehu_server.scores.musicxml.reader import read_musicxml
 
         return read_musicxml(path)
-    if is_abc and kind != ".txt":
+    if is_abc:
         from yehu_server.scores.abc.reader import read_abc
 
         return read_abc(path, song)

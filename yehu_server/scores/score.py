@@ -8,6 +8,7 @@ import math
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import ClassVar
 
@@ -57,6 +58,9 @@ def read_score_bytes(path: str | os.PathLike[str], most_bytes: int) -> bytes:
     return data
 
 
+BEND = "/playing/bend"  # address of what lies between keys
+
+
 @dataclass(frozen=True)
 class Setting:
     """Stands among the messages of a score's events."""
@@ -90,14 +94,26 @@ class Metre:
 
 
 COMMON_TIME = Metre(0.0, 4.0)
+_NAMES = ("Cb", "Gb", "Db", "Ab", "Eb", "Bb", "F", "C", "G", "D", "A", "E", "B", "F#", "C#")
+DO_BY_FIFTHS = dict(zip(range(-7, 8), _NAMES, strict=True))
+
+
+def nearest_key(fifths: int) -> int:
+    """The key signature on the same do that has five flats to six sharps."""
+    return (fifths + 5) % 12 - 5
 
 
 @dataclass(frozen=True)
 class KeySignature:
     """A key signature: the beat (quarter notes) from which it holds; sharps, or below 0 flats."""
 
-    beat: float
-    sharps: int
+    beat: Fraction
+    fifths: int  # -7 to 7
+
+    @property
+    def do(self) -> str:
+        """The name of do in this key, such as F or Bb."""
+        return DO_BY_FIFTHS[self.fifths]
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ from yehu_server.scores.score import (
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.written import notated
-from yehu_server.scores.written.notated import KeySign, Mark, Note, Part, Sign, Span, Tempo, Written
+from yehu_server.scores.written.notated import Mark, Note, Part, Sign, Span, Tempo, Written
 
 # Parts of a beat, and what each costs (quarters) beside the distance of its onsets.
 DIVISIONS = {1: 0.0, 2: 0.004, 4: 0.008, 3: 0.012, 8: 0.016, 6: 0.02, 5: 0.03, 12: 0.03, 16: 0.03,
@@ -219,10 +219,10 @@ def _written(
         chords += more
         if part.notes:
             parts.append(part)
-    signs = {Fraction(each.beat).limit_denominator(960): each.sharps for each in told}
+    signs = {each.beat.limit_denominator(960): each.fifths for each in told}
     if not any(signs.values()):
         signs = {Fraction(0): _fifths_of(parts)}
-    keys = tuple(KeySign(*each) for each in ({Fraction(0): 0} | signs).items())
+    keys = tuple(KeySignature(*each) for each in ({Fraction(0): 0} | signs).items())
     return Written(tuple(parts), tuple(tempi), tuple(metres), keys=keys), chords
 
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.scores.octaves import Sounding, octaves_of
 
 NAMED = re.compile(
@@ -24,17 +25,18 @@ REPEATED = 0.8  # share of notes that are the one before: a drone or an accompan
 OVERLAP = 0.05  # of the shorter part's sound, from which two parts sound at once
 
 
-def melodic_part(names: Sequence[str], parts: Sequence[Sequence[Sounding]]) -> int | None:
+def melodic_part(
+    names: Sequence[str], parts: Sequence[Sequence[Sounding]], within: NoteRange = YEHU
+) -> int | None:
     """Return the number, from 0, of the first part that is a melody; else the first with notes.
 
-    A part that is named as one goes before others. Names and parts are those of all parts: the
-    notes of each, in any one unit of time.
+    A part that is named as one goes before others, and most of a melody fits `within`. Names and
+    parts are those of all parts: the notes of each, in any one unit of time.
     """
     longest = max(map(_sounds, parts), default=0.0)
     sounding = [at for at, notes in enumerate(parts) if notes]
-    tunes = [
-        at for at in sounding if not ACCOMPANIES.search(names[at]) and _is_tune(parts[at], longest)
-    ]
+    may_be = [at for at in sounding if not ACCOMPANIES.search(names[at])]
+    tunes = [at for at in may_be if _is_tune(parts[at], longest, within)]
     named = [at for at in tunes if NAMED.search(names[at])]
     return next(iter([*named, *tunes, *sounding]), None)
 
@@ -52,13 +54,13 @@ def _sounds(notes: Sequence[Sounding]) -> float:
     return sum(note.end - note.begin for note in notes)
 
 
-def _is_tune(notes: Sequence[Sounding], longest: float) -> bool:
+def _is_tune(notes: Sequence[Sounding], longest: float, within: NoteRange) -> bool:
     pitches = [max(note.pitches) for note in notes if note.pitches]
     if not pitches or _sounds(notes) <= LONG_ENOUGH * longest:
         return False
     chords = sum(after.begin - note.begin < TOGETHER for note, after in pairwise(notes))
     same = sum(one == other for one, other in pairwise(pitches))
-    octaves = octaves_of([note for note in notes if note.pitches], rest=float("inf"))
+    octaves = octaves_of([note for note in notes if note.pitches], float("inf"), within)
     return (
         sum(pitches) / len(pitches) >= LOWEST_TUNE
         and chords <= MOST_TOGETHER * len(notes)

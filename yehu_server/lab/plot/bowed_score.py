@@ -18,12 +18,13 @@ from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.lab.plot import png
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.scores.jianpu.figures import SIGN_OF, figure_of, signed_lengths, written_key
+from yehu_server.scores.jianpu.figures import SIGN_OF, figure_of, signed_lengths
+from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written import layout
 from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.layout import PageBar, Piece
 from yehu_server.scores.written.mark_settings import DOWN, UP, actives_of, is_plucked
-from yehu_server.scores.written.notated import DYNAMICS, FORCED, Note, Part, Span, Written
+from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Note, Part, Span, Written
 from yehu_server.scores.written.part_bowing import Played, bowed
 from yehu_server.scores.written.tempo import WrittenClock
 from yehu_server.scores.written.words import words_of_sign
@@ -136,7 +137,7 @@ class _Page:
         self._begins = [note.beat for note in part.notes]
         keys = [key for key in written.keys if key.beat <= self._begins[0]]
         self._key = keys[-1] if keys else None
-        self._fifths = 0 if self._key is None else written_key(self._key.fifths)
+        self._fifths = 0 if self._key is None else nearest_key(self._key.fifths)
 
     @property
     def head(self) -> str:
@@ -237,7 +238,7 @@ class _Page:
             x, text = _at(places, beat) - 0.02, ", ".join(texts)
             axes.text(x, -1.85, text, fontsize=8, color=LOUD, style="italic", va="center")
         for span in self._part.spans:
-            if span.name in ("crescendo", "diminuendo"):
+            if span.name in HAIRPINS:
                 self._hairpin(axes, span, self._bars[row.start].begin, last, places)
 
     def _hairpin(

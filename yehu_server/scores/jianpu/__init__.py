@@ -1,1 +1,1 @@
-"""Read jianpu, numbered notation, and its kin: two-four notation and gongche."""
+"""Read jianpu (numbered notation), two-four notation and gongche; write jianpu."""

@@ -7,8 +7,9 @@ from dataclasses import replace
 from fractions import Fraction
 
 from yehu_server.scores.jianpu.scale import LOWEST_DO, MIDDLE_C
+from yehu_server.scores.score import DO_BY_FIFTHS
 from yehu_server.scores.written.layout import LETTERS, STEPS, Piece, key_alter, spelled
-from yehu_server.scores.written.notated import DO_BY_FIFTHS, Span
+from yehu_server.scores.written.notated import Span
 
 # Of a quarter: what a hemidemisemiquaver is, and where notes of tuplets may begin.
 FINEST = (16, 48, 80, 112)
@@ -25,18 +26,13 @@ PICKUPS = {Fraction(4, unit) * factor: f"{unit}{dot}" for unit in (1, 2, 4, 8, 1
            for factor, dot in ((Fraction(1), ""), (Fraction(3, 2), "."))}  # fmt: skip
 
 
-def written_key(fifths: int) -> int:
-    """A key signature as one of those that have a name here, from six flats to six sharps."""
-    return (fifths + 5) % 12 - 5
-
-
 def figure_of(pitch: float, fifths: int) -> tuple[str, int]:
     """Return the figure of a pitch with its accidental, and by how many octaves it is marked.
 
-    Of a MIDI note the nearest semitone is written; `fifths` is that of `written_key`.
+    Of a MIDI note the nearest semitone is written; `fifths` is that of `score.nearest_key`.
     """
     letter, alter, octave = spelled(pitch, fifths)
-    name = DO_BY_FIFTHS[fifths + 6]
+    name = DO_BY_FIFTHS[fifths]
     first = LETTERS.index(name[0])
     do = (STEPS[first] - LOWEST_DO) % 12.0 + LOWEST_DO + {"#": 1, "b": -1}.get(name[1:], 0)
     degree = (letter - first) % 7

@@ -21,9 +21,16 @@ from yehu_server.scores.jianpu.parser import PartParser
 from yehu_server.scores.jianpu.part import PartPlayer
 from yehu_server.scores.jianpu.scale import Scale
 from yehu_server.scores.jianpu.text import Header, Word, decoded, printable, words_of
-from yehu_server.scores.score import COMMON_TIME, Metre, naming, read_score_bytes
+from yehu_server.scores.score import (
+    COMMON_TIME,
+    KeySignature,
+    Metre,
+    naming,
+    nearest_key,
+    read_score_bytes,
+)
 from yehu_server.scores.written import notated
-from yehu_server.scores.written.notated import Bar, KeySign, Part, Tempo, Written
+from yehu_server.scores.written.notated import Bar, Part, Tempo, Written
 
 MOST_BYTES = 1 << 20
 MOST_MOVEMENTS = 64
@@ -144,8 +151,8 @@ class _Reader:
         whole = Written(tuple(parts), self._tempi(), metres, self._bars(metres), self._title)
         if self._key is None:
             return whole
-        fifths = (7 * round(self._key) + 5) % 12 - 5
-        return replace(whole, keys=(KeySign(Fraction(0), fifths),))
+        fifths = nearest_key(7 * round(self._key))
+        return replace(whole, keys=(KeySignature(Fraction(0), fifths),))
 
     def _tempi(self) -> tuple[Tempo, ...]:
         """Of all parts; where several change it at once, the first of them."""

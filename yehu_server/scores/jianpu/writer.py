@@ -12,6 +12,7 @@ from fractions import Fraction
 
 from yehu_server.scores.jianpu import figures
 from yehu_server.scores.jianpu.mark_words import COMMANDS, FINGERING
+from yehu_server.scores.score import DO_BY_FIFTHS, nearest_key
 from yehu_server.scores.written import layout, notated
 from yehu_server.scores.written.layout import PageBar, Piece
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Span, Tempo, Written
@@ -162,10 +163,10 @@ class _PartWriter:
     def _key(self, bar: PageBar) -> Iterator[str]:
         changed = False
         while self._keys and self._keys[0].beat <= bar.begin:
-            self._fifths = figures.written_key(self._keys.pop(0).fifths)
+            self._fifths = nearest_key(self._keys.pop(0).fifths)
             changed = True
         if changed:
-            yield f"1={notated.DO_BY_FIFTHS[self._fifths + 6]}"
+            yield f"1={DO_BY_FIFTHS[self._fifths]}"
 
     def _metre(self, bar: PageBar) -> Iterator[str]:
         """The metre where it changes; that of a bar that is short or long is its own."""

@@ -1,1 +1,1 @@
-"""Read MusicXML."""
+"""Read and write MusicXML."""

@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.directions import DirectionReader
 from yehu_server.scores.musicxml.marks import NoteMarks, neighbour, number, printable
+from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import SEMITONES
 from yehu_server.scores.written.notated import MOST_BEATS, MOST_NOTES
 from yehu_server.scores.written.repeats import MOST_TIMES, BarLines
@@ -119,7 +120,7 @@ class BarReader:
         if attributes.find("key") is not None and self._bar.fifths is None:
             # Of the key that sounds, which a transposing part does not write.
             fifths = self._fifths + 7 * int(self._transposed)
-            self._bar.fifths = (fifths + 5) % 12 - 5 if self._transposed else fifths
+            self._bar.fifths = nearest_key(fifths) if self._transposed else fifths
 
     def _time(self, time: Element) -> None:
         quarters = Fraction(0)

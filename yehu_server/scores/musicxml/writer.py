@@ -37,7 +37,6 @@ SIGNED = sorted(
      for factor, dots in DOTTED.items()), reverse=True,
 )  # fmt: skip
 SIGNS_OF = dict(SIGNED)
-WEDGES = ("crescendo", "diminuendo")
 LINES = {"slur": "slur", "glissando": "glissando", "portamento": "slide", "trill": "wavy-line"}
 MOST_LINES = 16  # of a kind, open at once
 
@@ -276,7 +275,9 @@ class _PartWriter:
         if isinstance(what, Span):
             if what.name in WRITTEN_CHANGES and each.is_end:
                 self._check_change(what)
-            return what.name in WEDGES or (what.name in WRITTEN_CHANGES and not each.is_end)
+            return what.name in notated.HAIRPINS or (
+                what.name in WRITTEN_CHANGES and not each.is_end
+            )
         if what.name in notated.DYNAMICS or what.name in notated.FORCED or what.name == "velocity":
             return True
         if words_of_sign(what.name, what.value) is not None:
@@ -303,7 +304,7 @@ class _PartWriter:
             SubElement(metronome, "beat-unit").text = "quarter"
             SubElement(metronome, "per-minute").text = f"{what.quarters_per_minute:.4g}"
             sound = {"tempo": repr(what.quarters_per_minute)}
-        elif isinstance(what, Span) and what.name in WEDGES:
+        elif isinstance(what, Span) and what.name in notated.HAIRPINS:
             number = self._line("wedge", what, is_end=each.is_end) or "1"
             form = "stop" if each.is_end else what.name
             SubElement(kind, "wedge", {"type": form, "number": number})

@@ -13,11 +13,13 @@ from bisect import bisect_right
 from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
+from fractions import Fraction
 from operator import itemgetter
 from pathlib import Path
 
 import mido
 
+from yehu_server.core.midi.channels import PERCUSSION
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import (
     COMMON_TIME,
@@ -34,10 +36,9 @@ from yehu_server.scores.score import (
 )
 from yehu_server.scores.smf.chunks import Part, read_parts, unwrapped
 from yehu_server.scores.smf.faults import DamageReport
-from yehu_server.scores.smf.track import Clock, Placed, Track, checked_division
+from yehu_server.scores.smf.track import SMPTE, Clock, Placed, Track, checked_division
 from yehu_server.scores.smf.tunings import retuned
 
-PERCUSSION = 9  # whose notes end by themselves
 # Controllers: all sound off, all notes off, and changes of mode, which end notes too.
 ENDS_ALL = {120, *range(123, 128)}
 MAX_BYTES = 64 * 2**20
@@ -81,7 +82,7 @@ def _held(messages: Sequence[Placed]) -> list[Placed]:
             held[message.channel].pop(message.note, None)
         elif kind == "control_change" and message.control in ENDS_ALL:
             held[message.channel].clear()
-    held.pop(PERCUSSION, None)
+    held.pop(PERCUSSION, None)  # whose notes end by themselves
     return [placed for notes in held.values() for placed in notes.values()]
 
 
@@ -97,12 +98,12 @@ def read_score(
     Formats 0 and 1 play all tracks together under the tempo changes of all of them. Format 2 plays
     its tracks one after another, as `concatenate` would, each starting at 120 bpm with tempo
     changes of its own. Files that were joined play in turn too. Sysex other than tuning, escapes,
-    and metas other than tempo and time signature are dropped. A channel message with a data byte
-    above 127 is dropped as a whole. `song` is the only one to play, from 1, of those that play one
-    after another; `strict` refuses a file with any damage. Raises DamagedError with `strict`: one
-    line naming the file, its first damage and the byte of that; ScoreError, one line naming the
-    file, whatever its bytes: missing, unreadable, too large or too long, not a MIDI file, or
-    without one channel message to play.
+    and metas other than tempo, signatures of time and key, and names of tracks are dropped. A
+    channel message with a data byte above 127 is dropped as a whole. `song` is the only one to
+    play, from 1, of those that play one after another; `strict` refuses a file with any damage.
+    Raises DamagedError with `strict`: one line naming the file, its first damage and the byte of
+    that; ScoreError, one line naming the file, whatever its bytes: missing, unreadable, too large
+    or too long, not a MIDI file, or without one channel message to play.
     """
     faults = DamageReport()
     with naming(path):
@@ -183,8 +184,6 @@ def _play_together(
     )
     signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
     metres = [Metre(clock.beat(tick), quarters) for tick, quarters in signatures]
-    told_keys = sorted({each for track in tracks for each in track.keys})
-    keys = tuple(KeySignature(clock.beat(tick), sharps) for tick, sharps in told_keys)
     tunings = sorted((each for track in tracks for each in track.tunings), key=itemgetter(0))
     tuned, remarks = retuned(events, [(clock.seconds(tick), body) for tick, body in tunings])
     places = {
@@ -195,8 +194,30 @@ def _play_together(
     names = {number: track.name for number, track in enumerate(tracks, start=first)}
     parts = _parts(places, names)
     return Score(
-        tuned, end_s, metres=(COMMON_TIME, *metres), parts=parts, remarks=remarks, keys=keys
+        tuned,
+        end_s,
+        metres=(COMMON_TIME, *metres),
+        parts=parts,
+        remarks=remarks,
+        keys=_keys(tracks, division),
     )
+
+
+def _keys(tracks: Sequence[Track], division: int) -> tuple[KeySignature, ...]:
+    """The key signatures that change something; of several at a tick the first that is not C.
+
+    Sequencers write C unasked. A file that counts frames has no beats to place them at.
+    """
+    if division >= SMPTE:
+        return ()
+    by_tick: dict[int, int] = {}
+    for tick, fifths in sorted((key for track in tracks for key in track.keys), key=itemgetter(0)):
+        by_tick[tick] = by_tick.get(tick) or fifths
+    found: list[KeySignature] = []
+    for tick, fifths in by_tick.items():
+        if not found or found[-1].fifths != fifths:
+            found.append(KeySignature(Fraction(tick, division), fifths))
+    return tuple(found)
 
 
 def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from yehu_server.scores.score import Score, ScoreEvent, Setting
+from yehu_server.scores.score import BEND, Score, ScoreEvent, Setting
 
 UNIVERSAL = (0x7E, 0x7F)  # not in real time, in real time
 DEVICE_CONTROL, TUNING = 4, 8
@@ -20,7 +20,6 @@ MOST_BYTES, MOST = 512, 1000  # of a message; messages of a track
 CENTRE, FINE_CENTRE = 64, 8192
 DATA, NRPN_FINE, NRPN, RPN_FINE, RPN = 6, 98, 99, 100, 101
 FINE, COARSE = 1, 2
-BEND = "/playing/bend"
 SINGLE_KEYS = "tuning of single keys by system exclusive is not obeyed"
 BENDS_TOO = "tuning by system exclusive is rounded to semitones on channels with pitch bends"
 

@@ -1,1 +1,1 @@
-"""What a written score says, and how its marks are played."""
+"""What a written score says, how its marks are played, and how it is laid out."""

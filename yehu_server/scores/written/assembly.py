@@ -8,9 +8,9 @@ from fractions import Fraction
 from typing import TypeVar
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.score import COMMON_TIME, Metre
+from yehu_server.scores.score import COMMON_TIME, KeySignature, Metre
 from yehu_server.scores.written import notated
-from yehu_server.scores.written.notated import Bar, KeySign, Part, Tempo, Written
+from yehu_server.scores.written.notated import Bar, Part, Tempo, Written
 from yehu_server.scores.written.repeats import BarLines, left_out, order_of
 from yehu_server.scores.written.voices import FINEST, RawBar, parts_of
 
@@ -85,13 +85,13 @@ def _told(missing: Sequence[int], bars: Sequence[RawBar]) -> str:
     return f"{len(missing)} {plural} not played, which repeats or jumps pass over: {named}{more}"
 
 
-def _keys(bars: Sequence[RawBar], played: Iterable[tuple[int, Fraction]]) -> Iterable[KeySign]:
+def _keys(bars: Sequence[RawBar], played: Iterable[tuple[int, Fraction]]) -> Iterable[KeySignature]:
     holding, last = _holding(bar.fifths for bar in bars), None
     for number, begin in played:
         fifths = holding[number]
         if fifths is not None and fifths != last:
             last = fifths
-            yield KeySign(begin, fifths)
+            yield KeySignature(begin, fifths)
 
 
 def _check_amount(parts_bars: list[list[RawBar]], order: list[int]) -> None:

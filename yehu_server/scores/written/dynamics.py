@@ -6,14 +6,13 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from fractions import Fraction
 
-from yehu_server.scores.written.notated import DYNAMICS, FORCED, Note, Part, Sign, Span
+from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Note, Part, Sign, Span
 
 USUAL = float(DYNAMICS["mf"])
 # In steps of velocity, by ear.
 ACCENTS = {"accent": 14.0, "marcato": 20.0, "soft-accent": 8.0, "stress": 8.0, "unstress": -8.0}
 HAIRPIN = 20.0  # of one that leads to no dynamic
 FORCED_BY = 16.0  # a forced note is at least so much louder
-HAIRPINS = ("crescendo", "diminuendo")
 REACH = Fraction(1)  # quarters after a hairpin, in which a dynamic is its aim
 SOFTEST, LOUDEST = 1.0, 127.0
 DB_PER_STEP = 18.0 / 126.0  # of velocity, over the whole range (core/player/velocity.py)

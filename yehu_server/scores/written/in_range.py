@@ -15,10 +15,10 @@ from yehu_server.scores.written.notated import Grace, Note, Part, Written
 REST = 0.5  # quarters of silence that part phrases
 
 
-def usual_parts(written: Written) -> list[int]:
+def usual_parts(written: Written, within: NoteRange = YEHU) -> list[int]:
     """The number, from 0, of the part that plays where none is asked for, if any has notes."""
-    parts = [[sounding(note) for note in part.notes] for part in written.parts]
-    tune = melodic_part(written.names, parts)
+    parts = [[sounding(note, within) for note in part.notes] for part in written.parts]
+    tune = melodic_part(written.names, parts, within)
     return [] if tune is None else [tune]
 
 

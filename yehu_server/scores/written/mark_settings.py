@@ -17,7 +17,7 @@ from yehu_server.scores.written.notated import FORCED, Note, Part, Sign
 
 Values = dict[str, float]
 
-BEND, PHRASING = "/playing/bend", "/playing/phrasing"
+PHRASING = "/playing/phrasing"
 ARTICULATION, TREMOLO_DEPTH = "/playing/articulation", "/playing/tremolo_depth"
 DIRECTION, STRING, TREMOLO = "/playing/direction", "/playing/string", "/playing/tremolo"
 PIZZICATO, PRESSURE, VIBRATO = "/playing/pizzicato", "/playing/pressure", "/playing/vibrato"

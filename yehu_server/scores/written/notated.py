@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from yehu_server.scores.score import COMMON_TIME, Metre
+from yehu_server.scores.score import COMMON_TIME, KeySignature, Metre
 
 # Bounds for readers: what a file may ask for, repeats unfolded.
 MOST_BYTES = 16 << 20  # of a file
@@ -20,6 +20,7 @@ MOST_NOTES = 100_000
 MOST_BEATS = 400_000  # quarter notes; a day at 278 a minute
 MOST_PARTS = 64
 LOWEST_TEMPO, HIGHEST_TEMPO = 5.0, 1000.0  # quarter notes a minute
+HAIRPINS = ("crescendo", "diminuendo")
 USUAL_TEMPO = 100.0  # where none is written
 MOST_NAMED = 12  # marks that were not understood
 LONGEST_CHANGE = Fraction(8)  # quarters of a change of tempo, where nothing written ends it
@@ -114,8 +115,6 @@ SIGNS: Mapping[str, str] = {
     "caesura": "time stops for a moment before it",
     "breath": "the note before ends a little early",
 }
-DO_BY_FIFTHS = ("Gb", "Db", "Ab", "Eb", "Bb", "F", "C", "G", "D", "A", "E", "B", "F#")
-DO = ("C", "G", "D", "A", "E", "B", "F#", "C#", "Ab", "Eb", "Bb", "F")  # by fifths modulo 12
 
 
 def times(text: str, count: int) -> str:
@@ -233,19 +232,6 @@ class Tempo:
 
 
 @dataclass(frozen=True)
-class KeySign:
-    """A key signature from a beat on: sharps, or below 0 flats."""
-
-    beat: Fraction
-    fifths: int
-
-    @property
-    def do(self) -> str:
-        """The name of do in this key, such as F or Bb."""
-        return DO[self.fifths % 12] if abs(self.fifths) > 6 else DO_BY_FIFTHS[self.fifths + 6]
-
-
-@dataclass(frozen=True)
 class Bar:
     """A bar line: the beat after it, and the bar's number as written."""
 
@@ -266,7 +252,7 @@ class Written:
     # Marks that were not understood: each as written (one printable line), and how often.
     unknown: Mapping[str, int] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()  # one line each, about anything else that is not as it should be
-    keys: tuple[KeySign, ...] = ()  # in order of beats; empty where none is written
+    keys: tuple[KeySignature, ...] = ()  # in order of beats; empty where none is written
     # One line each, of what a player should know and nothing is wrong with.
     remarks: tuple[str, ...] = ()
 

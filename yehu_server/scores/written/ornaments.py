@@ -9,9 +9,9 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from yehu_server.scores.phrasing import OVERLAP_S
 from yehu_server.scores.written.notated import Grace, Note
 
-OVERLAP_S = 0.012  # of slurred notes: as `scores.phrasing` has it
 GRACE_S = 0.085
 GRACE_SHARE = 0.5  # of a note, at most, for all its grace notes
 TAP_S = 0.075  # of a mordent's other note, and of each note of a turn

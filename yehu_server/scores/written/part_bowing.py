@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 
+from yehu_server.scores.phrasing import OVERLAP_S
 from yehu_server.scores.written.mark_settings import DOWN, UP, Active, is_plucked
 from yehu_server.scores.written.notated import Note, Part, Span
-from yehu_server.scores.written.ornaments import OVERLAP_S
 from yehu_server.scores.written.tempo import CAESURA_S, WrittenClock
 
 # Sounding shares of the written length, by ear. The shortest that is marked counts.

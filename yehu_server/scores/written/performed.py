@@ -16,10 +16,9 @@ import mido
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError
-from yehu_server.scores.score import Score, ScoreEvent, ScorePart, Setting
+from yehu_server.scores.score import BEND, Score, ScoreEvent, ScorePart, Setting
 from yehu_server.scores.written.dynamics import Loudness
 from yehu_server.scores.written.mark_settings import (
-    BEND,
     DIRECTION,
     FINGER_POSITION,
     FINGER_PRESS,

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
+from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.scores.written.in_range import moved_part, usual_parts
@@ -17,8 +18,11 @@ ARTICULATED = {float(number): row.name for number, row in enumerate(ARTICULATION
 MOST_TEMPI = 20  # that the head shows
 
 
-def lines_of(written: Written) -> Iterator[str]:
-    """The score as lines: what is at its head, then the notes of each part."""
+def lines_of(written: Written, within: NoteRange = YEHU) -> Iterator[str]:
+    """The score as lines: what is at its head, then the notes of each part.
+
+    How parts move is told for an instrument that has the notes `within`.
+    """
     yield written.title or "(no title)"
     yield from written.remarks
     for key in written.keys:
@@ -31,17 +35,17 @@ def lines_of(written: Written) -> Iterator[str]:
     for beat, quarters in _metres(written):
         bar = written.place(beat)[0]
         yield f"bar {bar}: {quarters:g} quarter{'' if quarters == 1.0 else 's'} in a bar"
-    played = next(iter(usual_parts(written)), None)
+    played = next(iter(usual_parts(written, within)), None)
     for number, (part, name) in enumerate(zip(written.parts, written.names, strict=True), start=1):
         yield ""
-        yield f"part {number}: {name}, {_what(part, is_played=number - 1 == played)}"
+        yield f"part {number}: {name}, {_what(part, within, is_played=number - 1 == played)}"
         yield f"{'bar':>5}  {'quarter':<8}  {'note':<7}  {'length':<7}  marks"
         yield from _notes(written, part)
     yield ""
     yield from [*written.warnings, *written.not_understood] or ["all marks understood"]
 
 
-def _what(part: Part, *, is_played: bool) -> str:
+def _what(part: Part, within: NoteRange, *, is_played: bool) -> str:
     """How much a part has, how high it is, and what becomes of it."""
     if not part.notes:
         return "0 notes, not played"
@@ -50,7 +54,7 @@ def _what(part: Part, *, is_played: bool) -> str:
     told = f"{len(part.notes)} note{'' if len(part.notes) == 1 else 's'}, {lowest} to {highest}"
     if is_played:
         told += ", played where no other is asked for"
-    moved = moved_part(part)[1].told
+    moved = moved_part(part, within)[1].told
     return f"{told}; {moved}" if moved else told
 
 

@@ -19,7 +19,6 @@ FINEST = 1 << 24  # the smallest part of a quarter note is this one
 RANKS = {"words": 0, "figures": 1, "playback": 2}
 SPANS = {"slur": "slur", "glissando": "glissando", "slide": "portamento"}
 MOST_VOICES = 16  # of a part; no music has more
-WEDGES = ("crescendo", "diminuendo")
 LONGEST_HAIRPIN = Fraction(32)  # in words, where no sign ends it
 
 
@@ -180,7 +179,7 @@ class Directions:
             sign = Sign(beat, raw.name, raw.value)
             if sign not in self.signs[-8:]:  # two staves may say the same
                 self.signs.append(sign)
-        elif raw.kind == "wedge" and raw.name in WEDGES:
+        elif raw.kind == "wedge" and raw.name in notated.HAIRPINS:
             self._hairpin.end(beat)
             self._wedges[raw.number] = (raw.name, beat)
         elif raw.kind == "wedge":
@@ -211,7 +210,7 @@ class Directions:
 def parts_of(
     name: str, bars: list[RawBar], played: list[tuple[int, Fraction]], end: Fraction
 ) -> tuple[list[Part], dict[Fraction, tuple[int, float]]]:
-    """Return the voices of one part, and its tempi with their ranks (`raw.RANKS`), by beats.
+    """Return the voices of one part, and its tempi with their ranks (`RANKS`), by beats.
 
     `played` are the numbers of the bars in the order in which they are played, and their beats.
     """

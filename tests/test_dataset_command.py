@@ -18,6 +18,7 @@ from forks import start
 
 from yehu_server.errors import OutputError, ParameterError
 from yehu_server.lab.dataset import making
+from yehu_server.lab.dataset.card import card_of
 from yehu_server.lab.dataset.description import read_description
 from yehu_server.rendering import cluster_worker
 from yehu_server.util import __version__
@@ -83,8 +84,11 @@ def test_the_card_tells_licence_version_and_units(made):
     assert facts["made_by"] == f"yehu-server {__version__}"
     assert facts["description"]["draw"]["duration"] == 0.1
     card = (made / "out" / "README.md").read_text()
-    for told in ('license: "mit"', facts["made_by"], "| `bow_velocity` | m s-1 |", "torsion"):
+    for told in ('license: "mit"', facts["made_by"], "| `bow_velocity` | m s-1 |"):
         assert told in card
+    assert "Torsion of strings: off; width of the hair:\n0 mm." in card
+    facts["instrument"] |= {"torsion": "on", "bow": facts["instrument"]["bow"] | {"width": 0.008}}
+    assert "Torsion of strings: on; width of the hair:\n8 mm." in card_of(facts)
 
 
 def test_a_licence_changes_no_sound(made):

@@ -32,8 +32,6 @@ from yehu_server.cli.playing_options import add_tuning, tuning_of
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar
 from yehu_server.util.files import check_distinct, check_target
 
-A4 = 440.0  # Hz
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
@@ -62,6 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.practice import Practice
     from yehu_server.playing.practice_files import shipped_practice, write_practice
     from yehu_server.playing.preset_folders import Presets
+    from yehu_server.playing.tuning import STANDARD_A4
 
     check_rate(arguments.rate)
     tuning = tuning_of(arguments)
@@ -75,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
     with progress_bar(arguments, "calibrating", "notes") as progress:
         calibration = calibration_for(arguments.rate, quantities, progress=progress)
     practice = Practice(
-        arguments.rate, quantities, calibration, values, lambda key: tuning.pitch(key, A4)
+        arguments.rate, quantities, calibration, values, lambda key: tuning.pitch(key, STANDARD_A4)
     )
     with progress_bar(arguments, "practising", "notes") as progress:
         table = practice.learn(progress, table=shipped_practice(arguments.rate))

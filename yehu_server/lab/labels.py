@@ -13,7 +13,7 @@ import numpy as np
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.scores.gesture import CONTROLS
 
-ACCELERATION = "bow_acceleration"
+ACCELERATION = "bow_acceleration"  # from rest to the largest bow_velocity of the gesture
 OF_TIME, OF_FINGER = ("time",), ("time", "finger")
 
 

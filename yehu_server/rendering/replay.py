@@ -15,8 +15,8 @@ import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.stage.image_sources import EARS
-from yehu_server.errors import ScoreError
 from yehu_server.scores.capture import Capture
+from yehu_server.scores.score import check_duration
 from yehu_server.util.files import anything
 from yehu_server.util.sound_file import sound_file
 
@@ -70,11 +70,7 @@ def replay(
     may_replace: Callable[[Path], bool] = anything,
 ) -> Replayed:
     """Render a capture to a sound file. Raises YehuError; no partial file is left then."""
-    hours = capture.frames / capture.rate / 3600.0
-    if hours > max_duration_h:
-        raise ScoreError(
-            f"the capture lasts {hours:.3g} hours, more than {max_duration_h:g}: see --max-duration"
-        )
+    check_duration(capture.frames / capture.rate, max_duration_h, "the capture lasts")
     ensemble = capture.beginning.ensemble()
     start = time.perf_counter()
     rate = round(capture.rate)

@@ -3,13 +3,14 @@
 import builtins
 import importlib
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from lab.body.bodies import admittance
 
 from yehu_server.core.physics.quantities import read_quantities
-from yehu_server.lab.plot.body import write_picture
+from yehu_server.lab.plot.body import draw, write_picture
 
 HZ = np.arange(300.0, 2500.0, 6.0)
 
@@ -147,6 +148,21 @@ def test_a_missing_library_is_one_line_that_names_its_extra(
     monkeypatch.setattr(importlib, "import_module", without(importlib.import_module))
     assert f"yehu-server[{extra}]" in refused("body", *words)
     monkeypatch.undo()
+
+
+def test_many_modes_leave_the_picture_its_room(whole_fit, monkeypatch):
+    lines = [f"row {number}" for number in range(99)]
+    monkeypatch.setattr("yehu_server.lab.plot.body.lines_of", lambda _: lines)
+    body = whole_fit.body
+    modes = {name: getattr(body, name)[:1] * 64 for name in ("frequency_hz", "mass", "damping")}
+    figure = draw(replace(whole_fit, body=replace(body, **modes)))
+    panels = {axes.get_label(): axes for axes in figure.axes}
+    (text,) = panels["table"].texts
+    rows = text.get_text().splitlines()
+    assert rows[:37] == lines[:37]
+    assert rows[37:39] == ["and 28 more", ""]
+    figure.draw_without_rendering()
+    assert panels["admittance"].get_position().height > 0.2
 
 
 @pytest.mark.slow

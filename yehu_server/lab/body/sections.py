@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.core.physics.radiation import response
 from yehu_server.errors import MeasurementError
 from yehu_server.lab.body.curve import Complexes, Curve, Floats, as_db, interpolated
 
@@ -131,10 +132,8 @@ class Sections:
 
     def response(self, frequency_hz: Floats) -> Complexes:
         """Pressure per force (Pa/N) at frequencies [shape=(lines,)], without the delay."""
-        z_1 = np.exp(-2j * np.pi * frequency_hz / self.rate)[:, np.newaxis]
-        b_0, b_1, a_1, a_2 = self.coefficients.T
-        each = (b_0 + b_1 * z_1) / (1.0 + a_1 * z_1 + a_2 * z_1**2)
-        return np.asarray(each.sum(axis=1) + self.direct_gain)
+        direct = np.array([self.direct_gain])
+        return np.asarray(response(self.coefficients, direct, self.rate, frequency_hz))
 
 
 def fit_sections(curve: Curve, count: int = 32, rate: float = 44100.0) -> Sections:

@@ -70,6 +70,7 @@ def card_of(facts: dict[str, Any]) -> str:
     ]
     splits = ", ".join(f"{count} in `{name}`" for name, count in facts["splits"].items())
     regimes = ", ".join(f"{count} {name}" for name, count in facts["commonest_regimes"].items())
+    instrument = facts["instrument"]
     title = facts["about"] or f"{facts['kind'].capitalize()} of a yehu"
     return "\n".join(
         [
@@ -93,8 +94,9 @@ def card_of(facts: dict[str, Any]) -> str:
             "|---|---|---|",
             *rows,
             "",
-            "The model leaves out torsion of strings and the width of the hair: what is learned",
-            "from these sounds holds for a fiddle as far as the model does.",
+            f"Torsion of strings: {instrument['torsion']}; width of the hair:",
+            f"{1e3 * instrument['bow']['width']:g} mm. What is learned from these sounds holds for",
+            "a fiddle as far as the model does.",
             "",
         ]
     )

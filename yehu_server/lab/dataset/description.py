@@ -22,12 +22,12 @@ from yehu_server.lab.dataset.draws import (
 from yehu_server.params.table import find
 from yehu_server.playing.calibration import calibration_key
 from yehu_server.playing.stringing import notes_of
+from yehu_server.playing.tuning import STANDARD_A4
 from yehu_server.scores.gesture import CONTROLS, played_rate
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import PLAIN_NAME
 from yehu_server.util.values import brief, choice, choices, number, whole
 
-A4 = 440.0  # Hz
 LICENCE = "MIT"  # where none is told: that of this program, and of the body it was measured with
 LONGEST_LINE = 1000
 KINDS = ("strokes", "notes")
@@ -116,7 +116,7 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
     rate = table.read("sample_rate", played_rate, 44100.0)
     keep = table.table("keep")
     quantities = override(Quantities(), table.table("instrument"), folder)
-    body = calibration_key(rate, quantities, A4)  # files that are named may change
+    body = calibration_key(rate, quantities, STANDARD_A4)  # files that are named may change
     told = {"count": 0, "about": ""}  # of no matter to a sound
     kept = {name: entry for name, entry in table.data.items() if name != "license"}
     text = json.dumps(kept | told, sort_keys=True, default=str)

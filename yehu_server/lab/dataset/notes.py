@@ -64,7 +64,7 @@ def stroke(description: Description, number: int) -> Sound:
         audio=made.arrays["pressure"].astype(np.float32),
         arrays=made.arrays,
         drawn=drawn,
-        found=regimes(made.arrays, asked, description.rate),
+        found=regimes(made.arrays, asked, description.rate, quantities.bow.lift_force),
         stroke=judged(made.arrays, hertz[-1], description.rate),
         faults=int(made.meta["unconverged_solves"]) + int(made.meta["lost_states"]),
     )
@@ -109,7 +109,7 @@ def melody(description: Description, number: int) -> Sound:
     frames = instrument.frames(1e3 * (end_s + drawn["tail"]))
     if frames > LONGEST_S * rate:
         raise ParameterError(f"lasts {frames / rate:.0f} s, longer than {LONGEST_S:g}")
-    return _played(instrument, frames, drawn, rate, calibration.a4)
+    return _played(instrument, frames, drawn, description, calibration.a4)
 
 
 def _written(description: Description, number: int, count: int) -> list[dict[str, float]]:
@@ -125,7 +125,9 @@ def _written(description: Description, number: int, count: int) -> list[dict[str
     return notes
 
 
-def _played(instrument: Any, frames: int, drawn: dict[str, Any], rate: float, a4: float) -> Sound:
+def _played(
+    instrument: Any, frames: int, drawn: dict[str, Any], description: Description, a4: float
+) -> Sound:
     rig = np.frombuffer(instrument.memory, RIG, count=1)[0]
     audio = np.zeros(frames, np.float32)
     probes = np.zeros((frames, probe_columns(MAX_FINGERS)))
@@ -137,12 +139,13 @@ def _played(instrument: Any, frames: int, drawn: dict[str, Any], rate: float, a4
         probes[start:end] = rig["output"]["probes"][: end - start]
         controls[start:end] = rig["output"]["controls"][: end - start]
         pitch[start:end] = instrument.meters()["pitch"]
+    rate = description.rate
     arrays = signals(probes, controls, rate)
     asked = a4 * np.exp2((pitch - 69.0) / 12.0)
     return Sound(
         audio=audio,
         arrays=arrays,
         drawn=drawn,
-        found=regimes(arrays, asked, rate),
+        found=regimes(arrays, asked, rate, description.quantities.bow.lift_force),
         faults=instrument.unconverged_solves + instrument.lost_states,
     )

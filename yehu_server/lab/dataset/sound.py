@@ -11,15 +11,15 @@ import numpy as np
 
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import Calibration
-from yehu_server.lab.dataset.description import A4, Description
+from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.regimes.columns import REGIMES, UNBOWED
 from yehu_server.lab.regimes.judge import LEAST_PERIODS, PERIODS, judge
 from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.tuning import STANDARD_A4
 
 Array = Any
 
 HOP_S = 0.02  # between two judgements of the regime
-LEAST_FORCE = 1e-3  # N: below, the bow is lifted
 BOWED = 0.9  # share of what is judged in which the bow is on the string
 STEADY_CENTS = 50.0  # by which the pitch asked for may move in what is judged
 
@@ -59,11 +59,13 @@ class Sound:
         }
 
 
-def regimes(arrays: Mapping[str, Array], asked_hz: Array, rate: float) -> dict[str, Array]:
+def regimes(
+    arrays: Mapping[str, Array], asked_hz: Array, rate: float, lift_force: float
+) -> dict[str, Array]:
     """Judge the regime every HOP_S, by the last periods before.
 
     Of signals and controls, and the pitch that is fingered [shape=(frames,)], NaN where none is,
-    this is `Sound.found`.
+    this is `Sound.found`. A bow of less than `lift_force` (N) is lifted.
     """
     frames = len(asked_hz)
     ends = np.arange(round(HOP_S * rate), frames + 1, round(HOP_S * rate))
@@ -77,7 +79,7 @@ def regimes(arrays: Mapping[str, Array], asked_hz: Array, rate: float) -> dict[s
         begin = max(0, end - math.ceil((PERIODS + 6) * rate / hertz))
         part = slice(begin, end)
         drift = np.abs(1200.0 * np.log2(asked_hz[part] / hertz))
-        is_bowed = force[end - 1] >= LEAST_FORCE and (force[part] >= LEAST_FORCE).mean() > BOWED
+        is_bowed = force[end - 1] >= lift_force and (force[part] >= lift_force).mean() > BOWED
         is_long = (end - begin) * hertz >= LEAST_PERIODS * rate
         if not (is_bowed and is_long and drift.max() < STEADY_CENTS):
             continue
@@ -109,6 +111,6 @@ def calibrated(description: Description) -> tuple[Quantities, Calibration]:
     """The instrument of a description, tuned to F4 and C5; and how it was."""
     key = description.key
     if key not in _calibrated:
-        calibration = calibration_for(description.rate, description.quantities, a4=A4)
+        calibration = calibration_for(description.rate, description.quantities, a4=STANDARD_A4)
         _calibrated[key] = calibration.tuned(description.quantities), calibration
     return _calibrated[key]

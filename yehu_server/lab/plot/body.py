@@ -22,6 +22,7 @@ LINES = 3000
 RESIDUAL_DB = 6.0
 TICKS_HZ = (100, 200, 300, 500, 700, 1000, 2000, 3000, 5000, 7000, 10000)
 MOST_WARNINGS, WIDTH = 5, 150
+MOST_MODES = 36  # rows of the table that the page has room for
 NAMES = 90  # characters of the measurements' names
 ROWS = ("admittance", "phase", "radiation", "left")
 
@@ -121,7 +122,9 @@ def _scale(axes: Any, band_hz: tuple[float, float], *, is_last: bool) -> None:
 
 def _write_table(axes: Any, fit: Fit) -> None:
     axes.axis("off")
-    modes = lines_of(fit)[: 1 + len(fit.body.mass)]
+    modes = lines_of(fit)[: 1 + min(len(fit.body.mass), MOST_MODES)]
+    if len(fit.body.mass) > MOST_MODES:
+        modes.append(f"and {len(fit.body.mass) - MOST_MODES} more")
     told = [f"{len(fit.body.mass)} bridge modes", f"{len(fit.body.sections)} sections of radiation"]
     for what, off in (("admittance", fit.admittance_db), ("radiation", fit.radiation_db)):
         if off is not None:
@@ -131,7 +134,8 @@ def _write_table(axes: Any, fit: Fit) -> None:
                 f"  the measurement scatters by {off.scatter:.2f} dB",
             ]
     text = "\n".join([*modes, "", *told])
-    axes.text(0.0, 1.0, text, family="monospace", fontsize=9.0, va="top", transform=axes.transAxes)
+    table = axes.text(0.0, 1.0, text, family="monospace", fontsize=9.0, va="top")
+    table.set(transform=axes.transAxes, in_layout=False)
 
 
 def _title(fit: Fit) -> str:

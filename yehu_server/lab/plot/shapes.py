@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INNER, OUTER, FINGER, BOW = "#1f5fa8", "0.35", "#c03a2b", "#e08a00"
-LEAST_FORCE = 1e-3  # N; below, bow and fingers are lifted
 MM = 1e3
 USUAL = ("bridge_force", "relative_velocity", "friction_force", "pressure")
 WIDTH, HEIGHT = 9.0, 1.7  # inches, of each signal
@@ -133,11 +132,12 @@ def strings(simulation: Any, time: float, *, ax: Axes | None = None) -> Axes:
         )
     presses = np.atleast_1d(arrays["press_force"][at])
     places = np.atleast_1d(arrays["finger_position"][at])
-    is_down = presses > LEAST_FORCE
+    lift_force = simulation.meta["instrument"]["bow"]["lift_force"]
+    is_down = presses > lift_force
     if is_down.any():
         heights = np.interp(places[is_down], arrays["x_1"], MM * arrays["string_1"][row])
         axes.plot(places[is_down], heights, "o", color=FINGER, ms=10, mfc="none", label="finger")
-    if abs(arrays["bow_force"][at]) > LEAST_FORCE:
+    if abs(arrays["bow_force"][at]) > lift_force:
         axes.axvline(arrays["bow_position"][at], color=BOW, lw=1.2, label="bow")
     axes.plot(simulation.meta["bridge_x_m"], 0.0, "k^", ms=7, label="bridge")
     axes.set(xlabel="m from the loop", ylabel="mm")

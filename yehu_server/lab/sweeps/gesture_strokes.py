@@ -16,6 +16,7 @@ from yehu_server.core.physics.layout import F_HAMMER, V_B
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import wave_speed
 from yehu_server.errors import ParameterError
+from yehu_server.lab.labels import ACCELERATION
 from yehu_server.lab.regimes.judge import check_length
 from yehu_server.lab.regimes.strokes import (
     STROKE,
@@ -32,7 +33,6 @@ from yehu_server.util.documents import Fields
 Array = Any
 
 BESIDE = ("sample_rate", "duration", "instrument", "stroke")  # a gesture file has its own
-ACCELERATION = "bow_acceleration"  # m/s^2: from rest to the largest bow_velocity of the gesture
 LEAST, MOST = 1e-3, 1e5  # of it
 MOST_INSTRUMENTS = 100_000  # and other entries of gestures; each is checked
 TOUCHING = 1e-9  # N of press, above which a finger stops the strings

@@ -33,6 +33,7 @@ from yehu_server.lab.regimes.strokes import (
 from yehu_server.lab.sweeps.axes import Axis
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.stringing import notes_of
+from yehu_server.playing.tuning import STANDARD_A4
 from yehu_server.scores.gesture import CONTROLS, Gesture, played_rate
 from yehu_server.util.documents import Fields
 from yehu_server.util.values import brief, number
@@ -41,7 +42,6 @@ Array = Any
 # s: finger and hair are on the string before the bow moves.
 FINGER_DOWN, HAIR_ON, HAIR_DOWN, BOW_MOVES = 0.01, 0.01, 0.02, 0.03
 LONGEST = 60.0  # s
-A4 = 440.0
 SLACK = 1.5  # by which a note may be lowered
 UNTOUCHED = 0.012  # m: where a lifted finger waits
 HANDS = control_curves_of(
@@ -104,7 +104,7 @@ class Tuned:
     def fingering(self, string: int, note: float, speed: float) -> tuple[float, float]:
         """Where a finger stops a note (m), as the player's tables say; its frequency (Hz)."""
         tuned = self.calibration
-        frequency = frequency_hz(note, A4)
+        frequency = frequency_hz(note, STANDARD_A4)
         rows = np.array(tuned.sharpening[string])
         logarithm = math.log(speed)
         at_speed = [float(np.interp(logarithm, np.log(SPEEDS), row)) for row in rows]
@@ -160,7 +160,7 @@ class NoteBow:
                 self._quantities({axis.name: value})
         deepest = float(min(values["note"]))
         bowed = round((self.duration - BOW_MOVES) * self.rate)
-        check_length(bowed, self.rate, frequency_hz(deepest, A4) / SLACK)
+        check_length(bowed, self.rate, frequency_hz(deepest, STANDARD_A4) / SLACK)
 
     def strokes(
         self, axes: Sequence[Axis], index: Array

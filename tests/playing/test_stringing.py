@@ -174,7 +174,7 @@ def test_the_page_of_a_server_has_the_notes_of_its_instrument():
     made = facts(NoteRange((D4, A4), (11.5, 24.0)))
     told = made["notes"]["OPEN"], made["notes"]["LOWEST_NOTE"], made["notes"]["HIGHEST_NOTE"]
     assert told == ([62.0, 69.0], D4, A6)
-    assert made["notesHere"] == [65, 89]
+    assert (made["isYehu"], facts()["isYehu"]) == (False, True)
 
 
 def test_parts_are_moved_into_the_range_of_the_fiddle():

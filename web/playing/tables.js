@@ -54,7 +54,8 @@ export function writeTables(tables, { mpe, keySwitches, start, x, y, binds }, tu
     tables[AT.start_row + place] = row;
   });
   tables[AT.starts] = Object.keys(start).length;
-  [tables[AT.lowest], tables[AT.highest]] = facts.notesHere;
+  tables[AT.lowest] = facts.notes.LOWEST_NOTE;
+  tables[AT.highest] = facts.notes.HIGHEST_NOTE;
   tables[AT.received] = ALL_BUT_PERCUSSION;
   writeTuning(tables, tuning);
 }

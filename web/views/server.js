@@ -16,8 +16,6 @@ import { onLanguage, translate } from "../i18n.js";
 /** @type {Way[]} */
 const WAYS = ["here", "there", "listen"];
 const { LOWEST_NOTE, HIGHEST_NOTE } = facts.notes;
-/** Whether this page, which is a yehu where it sounds by itself, has the notes of the server. */
-const IS_ALIKE = facts.notesHere[0] === LOWEST_NOTE && facts.notesHere[1] === HIGHEST_NOTE;
 const LOOKED_MS = 1000; // a server that is away is not waited for any longer
 
 /** The choice, and the state of the server. @param {Instrument} instrument */
@@ -63,7 +61,7 @@ export function showServer(instrument) {
     return sound;
   }
 
-  const canBeHere = () => IS_ALIKE && line.status.sounds === "ready";
+  const canBeHere = () => facts.isYehu && line.status.sounds === "ready";
 
   function tell() {
     const { device, pages, sounds, parts } = line.status;
@@ -83,7 +81,7 @@ export function showServer(instrument) {
     const told = [
       device ? translate("server.device", { device }) : translate("server.silent"),
       translate("server.pages", { count: pages }),
-      IS_ALIKE
+      facts.isYehu
         ? own[sounds]
         : translate("server.other", { low: nameOf(LOWEST_NOTE), high: nameOf(HIGHEST_NOTE) }),
     ];

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import random
+import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,8 @@ from live.page import streams
 
 from yehu_server.core.midi.events import FINGER_ON
 from yehu_server.core.midi.tables import TABLES
+from yehu_server.core.player.note_range import NoteRange
+from yehu_server.core.player.wishes import BEGIN
 from yehu_server.live.page import facts
 from yehu_server.params.table import find
 from yehu_server.playing.live_player import LivePlayer
@@ -141,16 +144,21 @@ def page_told(node, playing, mappings, taught, everything):
     played = [made.next() for _ in range(MANY_STREAMS if everything else STREAMS)]
     own = {name: facts.mapping(mapping) for name, mapping in mappings.items()}
     own |= {name: each["page"] for name, each in taught.items()}
+    tables, *wishes = play(node, playing, own, *played)
+    return played, tables, wishes
+
+
+def play(node: str, folder: Path, *lines: Any) -> list[Any]:
+    """What the page of a folder answers to mappings and streams: see ``playing.mjs``."""
     result = subprocess.run(
-        [node, Path(__file__).with_name("playing.mjs"), playing],
-        input="\n".join(json.dumps(each) for each in (own, *played)),
+        [node, Path(__file__).with_name("playing.mjs"), folder],
+        input="\n".join(json.dumps(each) for each in lines),
         capture_output=True,
         text=True,
         check=False,
     )
     assert result.returncode == 0, result.stderr
-    tables, *wishes = map(json.loads, result.stdout.splitlines())
-    return played, tables, wishes
+    return [json.loads(line) for line in result.stdout.splitlines()]
 
 
 def test_the_page_wishes_what_the_server_wishes(page_told, mappings, tmp_path):
@@ -189,6 +197,17 @@ def points_of(table: Any) -> list[list[tuple[float, float]]]:
     points = list(zip(table["x"].tolist(), table["y"].tolist(), strict=True))
     firsts, counts = table["first_point"].astype(int), table["points"].astype(int)
     return [points[first : first + count] for first, count in zip(firsts, counts, strict=True)]
+
+
+def test_the_page_of_another_fiddle_plays_that_fiddles_notes(node, playing, tmp_path):
+    folder = tmp_path / "web"
+    shutil.copytree(playing, folder)
+    erhu = NoteRange((62, 69), (11.5, 24.0))
+    (folder / "facts.js").write_text(facts.module(facts.facts(erhu)))
+    calls = [["midi", [0x90, key, 90], number, 0] for number, key in enumerate((61, 62, 93, 94))]
+    _, wishes = play(node, folder, {}, calls)
+    begun = [wish[4] for wish in np.reshape(wishes, (-1, 5)) if wish[1] == BEGIN]
+    assert begun == [73.0, 62.0, 93.0, 82.0]  # an octave from what it has not
 
 
 def test_the_page_s_own_player_has_hands(node, playing):

@@ -137,7 +137,8 @@ def facts(notes: NoteRange = YEHU) -> dict[str, Any]:
             "KEYS": KEYS[-1] + 1,
             "ELSEWHERE": ELSEWHERE,
         },
-        "notesHere": list(YEHU.ends),
+        # Whether a page that sounds by itself, as a yehu, has the server's notes.
+        "isYehu": (notes.open_notes, notes.highest) == (YEHU.open_notes, YEHU.highest),
         "sources": {
             "BEND": sources.BEND,
             "OF_ONE_NOTE": sorted(sources.OF_ONE_NOTE),

@@ -4,7 +4,7 @@
 /** @typedef {import('./instrument.js').Wish} Wish */
 
 import facts from "./facts.js";
-import { TABLE, find } from "./playing/table.js";
+import { FREE, TABLE, find } from "./playing/table.js";
 import { WISH } from "./sound/kernel.js";
 
 const FORMAT = "yehu-server capture";
@@ -17,7 +17,7 @@ const LONGEST_S = 24 * 3600;
 const EVERY = 60; // ms
 const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW } = facts.kinds;
 /** Kinds of wishes, by their numbers. */
-const NAMES = Object.keys(facts.kinds).map((name) => name.toLowerCase());
+export const KINDS = Object.keys(facts.kinds);
 const OF_SLOT = TABLE.filter(({ slot }) => slot !== null).map(({ address }) => address);
 const SILENCE = "silence"; // in place of an engine's parameter
 
@@ -40,25 +40,21 @@ export function indexOf(kind, address) {
   return address === SILENCE ? OF_SLOT.length : OF_SLOT.indexOf(find(address).address);
 }
 
-/** Keeps the wishes that the instrument fulfils. */
+/** Keeps the wishes that a sound fulfils, which is able to. */
 export class CaptureWriter {
-  /** @param {Instrument} instrument */
-  constructor(instrument) {
-    this.instrument = instrument;
+  /** @param {import('./interfaces.js').Player} player @param {import('./interfaces.js').Sound} sound */
+  constructor(player, sound) {
+    this.player = player;
+    this.sound = sound;
     /** @type {Record<string, number>} */
     this.values = {};
   }
 
-  /** Whether there is something that can keep wishes. */
-  get isAble() {
-    return Boolean(this.instrument.sound?.keep);
-  }
-
   start() {
-    const { player, sound } = this.instrument;
-    const own = TABLE.filter(({ owned }) => !owned);
-    this.values = Object.fromEntries(own.map(({ address }) => [address, player.value(address)]));
-    sound?.keep?.start();
+    this.values = Object.fromEntries(
+      FREE.map(({ address }) => [address, this.player.value(address)]),
+    );
+    this.sound.keep?.start();
   }
 
   /**
@@ -66,8 +62,8 @@ export class CaptureWriter {
    * @returns {Promise<Performance & {frames: number}>}
    */
   async stop() {
-    const { sound } = this.instrument;
-    if (!sound?.keep) throw new Error("nothing is kept");
+    const { sound } = this;
+    if (!sound.keep) throw new Error("nothing is kept");
     const { from, to, wishes } = await sound.keep.stop();
     const rows = Array.from({ length: wishes.length / WISH }, (_, i) => {
       const [frame, kind, index, value, other] = wishes.slice(i * WISH, (i + 1) * WISH);
@@ -97,7 +93,7 @@ export async function fileOf({ rate, values, wishes, frames }) {
 /** @param {Wish} wish */
 function lineOf(wish) {
   const { frame, kind, index, value, other } = wish;
-  const line = [frame, OWN, NAMES[kind]];
+  const line = [frame, OWN, KINDS[kind].toLowerCase()];
   const address = addressOf(wish);
   if (address !== null) return [...line, address, value, ...(kind === EXPRESS ? [] : [other])];
   if (kind === BEGIN || kind === END) return [...line, index, value, other];
@@ -169,7 +165,7 @@ export function checked(performance) {
  * @returns {Wish}
  */
 function wishOf([frame, name, ...rest]) {
-  const kind = NAMES.indexOf(String(name));
+  const kind = KINDS.indexOf(String(name).toUpperCase());
   if (kind < 0) throw new TypeError(`no ${name}`);
   /** @type {Wish} */
   const wish = { frame: finite(frame), kind, index: 0, value: 0, other: 0 };

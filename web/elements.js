@@ -149,21 +149,43 @@ export function download(blob, name) {
  * A button that is on or off, and says which.
  * @param {string} off key of its text
  * @param {string} on
- * @param {(isOn: boolean) => void | Promise<void>} changed
+ * @param {(isOn: boolean) => void | Promise<void>} change called once it is done with the change before;
+ *   `isOn` tells it of presses meanwhile
  */
-export function toggle(off, on, changed) {
+export function toggle(off, on, change) {
   let isOn = false;
-  const set = (/** @type {boolean} */ isOnNow) => {
-    isOn = isOnNow;
+  let isDone = false; // what was called for last
+  let isBusy = false;
+  const show = () => {
     button.setAttribute("aria-pressed", String(isOn));
     button.textContent = translate(isOn ? on : off);
   };
-  const button = makeButton("", () => {
-    set(!isOn);
-    changed(isOn);
-  });
-  onLanguage(() => set(isOn));
-  return { button, set };
+  /** @param {boolean} isOnNow without a call */
+  const set = (isOnNow) => {
+    isOn = isDone = isOnNow;
+    show();
+  };
+  const press = async () => {
+    isOn = !isOn;
+    show();
+    if (isBusy) return;
+    isBusy = true;
+    try {
+      while (isDone !== isOn) await change((isDone = isOn));
+    } finally {
+      isBusy = false;
+    }
+  };
+  const button = makeButton("", press);
+  onLanguage(show);
+  return {
+    button,
+    set,
+    press,
+    get isOn() {
+      return isOn;
+    },
+  };
 }
 
 /**

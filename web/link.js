@@ -2,9 +2,8 @@
 
 /** @typedef {import('./capture.js').Performance} Performance */
 
-import facts from "./facts.js";
-import { OF_PARAMETERS, addressOf, checked, indexOf } from "./capture.js";
-import { TABLE } from "./playing/table.js";
+import { KINDS, OF_PARAMETERS, addressOf, checked, indexOf } from "./capture.js";
+import { FREE } from "./playing/table.js";
 
 const MARK = "#play=";
 const VERSION = 1;
@@ -13,8 +12,6 @@ const FINE = 1e4; // values are kept to the tenth of a thousandth
 const BASE = 128; // of numbers of many bytes
 const MOST = 24_000; // characters that browsers and letters pass on
 const MOST_BYTES = 4 << 20; // unpacked
-const NAMES = Object.keys(facts.kinds);
-const OWN = TABLE.filter(({ owned }) => !owned);
 
 /**
  * The link that plays a performance on this page; null where it is too long for one.
@@ -65,11 +62,11 @@ async function through(stream, bytes) {
 function pack({ rate, values, wishes }) {
   const kinds = [...new Set(wishes.map(({ kind }) => kind))];
   const addresses = [...new Set(wishes.map(addressOf).filter((found) => found !== null))];
-  const changed = OWN.filter((one) => (values[one.address] ?? one.default) !== one.default);
+  const changed = FREE.filter((one) => (values[one.address] ?? one.default) !== one.default);
   const head = new TextEncoder().encode(
     JSON.stringify({
       v: VERSION,
-      kinds: kinds.map((kind) => NAMES[kind]),
+      kinds: kinds.map((kind) => KINDS[kind]),
       addresses,
       values: Object.fromEntries(changed.map(({ address }) => [address, values[address]])),
     }),
@@ -115,7 +112,7 @@ function unpack(bytes) {
   const head = JSON.parse(new TextDecoder().decode(bytes.subarray(at, at + length)));
   at += length;
   if (head.v !== VERSION) throw new TypeError("another version");
-  const kinds = head.kinds.map((/** @type {string} */ name) => NAMES.indexOf(name));
+  const kinds = head.kinds.map((/** @type {string} */ name) => KINDS.indexOf(name));
   const last = new Last();
   const wishes = [];
   for (let frame = 0; at < bytes.length;) {
@@ -131,7 +128,7 @@ function unpack(bytes) {
     }
     wishes.push(wish);
   }
-  const values = OWN.map((one) => [one.address, Number(head.values[one.address] ?? one.default)]);
+  const values = FREE.map((one) => [one.address, Number(head.values[one.address] ?? one.default)]);
   return checked({ rate: RATE, values: Object.fromEntries(values), wishes, players: 1 });
 }
 

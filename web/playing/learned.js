@@ -2,7 +2,7 @@
 
 import facts from "../facts.js";
 import { BEND, controller, isOfOneNote, isSource } from "./sources.js";
-import { ParameterError, TABLE, find } from "./table.js";
+import { FREE, ParameterError, find } from "./table.js";
 
 /**
  * A bind of a shipped mapping: one source that moves one target.
@@ -36,8 +36,6 @@ import { ParameterError, TABLE, find } from "./table.js";
 /** The shipped mappings, by name. @type {Readonly<Record<string, Mapping>>} */
 export const MAPPINGS = /** @type {any} */ (facts.mappings);
 const EXPONENTIAL = "exp";
-/** The parameters that may be bound: the player moves the others itself. */
-export const FREE = TABLE.filter(({ owned }) => !owned);
 
 /**
  * A bind of a source to a parameter, over its whole range, for all notes.

@@ -1,7 +1,7 @@
 /** The part that the page plays: interprets events to wishes, and keeps the values of its parameters. */
 
 import facts from "../facts.js";
-import { TABLE, find } from "./table.js";
+import { FREE, find } from "./table.js";
 import { writeTables, writeTuning } from "./tables.js";
 
 const { WRITE, DRAW, STOP } = facts.kinds;
@@ -74,8 +74,8 @@ export class Part {
   /** Let the interpreter know what others have set. @param {Interpreter} interpreter */
   #learnValues(interpreter) {
     const { values } = interpreter;
-    for (const { address, row, owned } of TABLE) {
-      if (owned || this.#isRecent(row)) continue;
+    for (const { address, row } of FREE) {
+      if (this.#isRecent(row)) continue;
       const wasSet = this.#news(address, row);
       if (wasSet !== undefined && row !== SECTION) {
         this.#told.set(row, wasSet);

@@ -9,6 +9,8 @@ const OCTAVE = 12;
 
 /** @type {readonly Param[]} */
 export const TABLE = facts.parameters;
+/** The parameters that may be set by anybody: the player moves the others itself. */
+export const FREE = TABLE.filter(({ owned }) => !owned);
 /** Their groups, in the order of their use. */
 export const GROUPS = [
   ...new Set([

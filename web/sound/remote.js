@@ -4,7 +4,7 @@
  */
 
 import facts from "../facts.js";
-import { TABLE } from "../playing/table.js";
+import { FREE } from "../playing/table.js";
 import { StreamPlayer } from "./stream_player.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
 import { WishBatch } from "./kernel.js";
@@ -13,7 +13,7 @@ import { WishBatch } from "./kernel.js";
 /** @typedef {import('../interfaces.js').Status} Status */
 
 /** Rows of parameters that the engine does not own, by address. */
-const ROWS = new Map(TABLE.filter(({ owned }) => !owned).map(({ address, row }) => [address, row]));
+const ROWS = new Map(FREE.map(({ address, row }) => [address, row]));
 
 /** Tells by events: 'state' of a new snapshot. */
 export class Remote extends EventTarget {

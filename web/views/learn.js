@@ -15,9 +15,8 @@ import {
   section,
   words,
 } from "../elements.js";
-import { FREE } from "../playing/learned.js";
 import { BEND } from "../playing/sources.js";
-import { GROUPS, find } from "../playing/table.js";
+import { FREE, GROUPS, find } from "../playing/table.js";
 import { onLanguage, translate, translateOr } from "../i18n.js";
 import { nameFor, unitFor, written } from "./slider.js";
 

@@ -29,18 +29,45 @@ function fileName(ending) {
   return `yehu-${stamp}.${ending}`;
 }
 
+/**
+ * A button that keeps something of what sounds, until it is pressed again or another sound takes its place.
+ * @template T
+ * @param {Instrument} instrument
+ * @param {string} off key of its text
+ * @param {(sound: Instrument["sound"]) => {start: () => void, stop: () => T} | null | undefined} choose
+ * @param {(kept: Awaited<T> | null) => unknown} tell null: it begins
+ */
+function keeping(instrument, off, choose, tell) {
+  /** @type {ReturnType<typeof choose>} */
+  let keeper;
+  const one = toggle(off, "keep.stop", async (isOn) => {
+    if (!isOn) {
+      if (keeper) await tell(await keeper.stop());
+      return;
+    }
+    await instrument.start();
+    keeper = choose(instrument.sound);
+    if (!keeper || !one.isOn) return one.set(false);
+    tell(null);
+    keeper.start();
+  });
+  instrument.addEventListener("way", () => one.isOn && one.press());
+  return one.button;
+}
+
 /** @param {Instrument} instrument */
 function recording(instrument) {
   const time = make("output", { class: "soft" });
   let begun = 0;
-  const { button, set } = toggle("keep.record", "keep.stop", async (isOn) => {
-    if (isOn) await instrument.start();
-    const record = instrument.sound?.record;
-    if (!record) return set(false);
-    begun = isOn ? performance.now() : 0;
-    if (isOn) record.start();
-    else download(await record.stop(), fileName("wav"));
-  });
+  const button = keeping(
+    instrument,
+    "keep.record",
+    (sound) => sound?.record,
+    (blob) => {
+      begun = blob ? 0 : performance.now();
+      if (blob) download(blob, fileName("wav"));
+    },
+  );
   setInterval(() => {
     if (begun && !document.hidden) time.textContent = clock((performance.now() - begun) / 1000);
   }, 250);
@@ -51,17 +78,18 @@ function recording(instrument) {
 
 /** @param {Page} page */
 function performances({ instrument, keys, fingerboard, bow }) {
-  const keeper = new CaptureWriter(instrument);
   const word = make("p", { class: "soft", role: "status" });
   const offer = make("div", { class: "row" });
-  const keep = toggle("keep.begin", "keep.stop", async (isOn) => {
-    offer.replaceChildren();
-    word.textContent = "";
-    if (isOn) await instrument.start();
-    if (!keeper.isAble) keep.set(false);
-    else if (isOn) keeper.start();
-    else await tellKept(await keeper.stop());
-  });
+  const keep = keeping(
+    instrument,
+    "keep.begin",
+    (sound) => sound?.keep && new CaptureWriter(instrument.player, sound),
+    async (kept) => {
+      offer.replaceChildren();
+      word.textContent = "";
+      if (kept) await tellKept(kept);
+    },
+  );
   const label = words("keep.load");
   const input = make("input", {
     type: "file",
@@ -135,8 +163,8 @@ function performances({ instrument, keys, fingerboard, bow }) {
     hand.addEventListener("play", () => replayer?.yield());
   }
   invite(instrument, play);
-  const lack = judge(instrument, keep.button, (sound) => !sound || keeper.isAble);
-  const row = make("div", { class: "row" }, [keep.button, load.button, input]);
+  const lack = judge(instrument, keep, (sound) => !sound || Boolean(sound.keep));
+  const row = make("div", { class: "row" }, [keep, load.button, input]);
   return section("keep.performance", note(words("keep.performance.about")), row, lack, offer, word);
 }
 

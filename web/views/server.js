@@ -6,7 +6,7 @@
 import facts from "../facts.js";
 import { find, make, makeChoice, section, words } from "../elements.js";
 import { nameOf } from "../hands/scale.js";
-import { TABLE } from "../playing/table.js";
+import { FREE } from "../playing/table.js";
 import { remember, settings } from "../settings.js";
 import { ServerConnection } from "../sound/server_connection.js";
 import { Remote } from "../sound/remote.js";
@@ -54,9 +54,9 @@ export function showServer(instrument) {
   async function openAlike() {
     const sound = await instrument.openHere();
     await Promise.race([line.looked, new Promise((resolve) => setTimeout(resolve, LOOKED_MS))]);
-    for (const { address, row, owned } of TABLE) {
+    for (const { address, row } of FREE) {
       const value = line.wasSet(address) ?? instrument.player.value(address);
-      if (!owned) sound.post(null, facts.kinds.WRITE, row, value, 0);
+      sound.post(null, facts.kinds.WRITE, row, value, 0);
     }
     return sound;
   }

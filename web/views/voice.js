@@ -33,12 +33,12 @@ export function makeVoice({ instrument, gallery }) {
   async function begin() {
     await instrument.start();
     const voice = instrument.sound?.voice;
-    try {
-      if (!voice) throw new Error("a sound elsewhere follows no voice");
-      await voice.start();
-    } catch {
+    let lack = voice ? "" : "missing";
+    if (hum.isOn) await voice?.start().catch(() => (lack = "voice.refused")); // the browser asks
+    if (lack || !hum.isOn || voice !== instrument.sound?.voice) {
+      voice?.stop();
       hum.set(false);
-      word.textContent = translate(voice ? "voice.refused" : "missing");
+      word.textContent = lack && translate(lack);
       return;
     }
     before = AS_IT_SINGS.map(([address]) => [address, player.value(address)]);
@@ -56,9 +56,7 @@ export function makeVoice({ instrument, gallery }) {
     word.textContent = "";
   }
 
-  instrument.addEventListener("silence", () => {
-    if (before.length) end();
-  });
+  instrument.addEventListener("silence", () => hum.isOn && end());
   const isAble = (/** @type {typeof instrument.sound} */ sound) =>
     Boolean(navigator.mediaDevices) && (!sound || Boolean(sound.voice));
   const lack = judge(instrument, hum.button, isAble);

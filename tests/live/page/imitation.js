@@ -42,14 +42,27 @@ export class Sound extends EventTarget {
     };
     const context = new OfflineAudioContext(1, RATE, RATE);
     this.analyser = imitateAnalyser(context, () => this.state);
+    /** What was begun and ended, in order, of any sound. @type {string[]} */
+    this.done = globalThis.done ??= [];
     this.record = {
-      start: () => {},
-      stop: () => new Blob(["RIFF"], { type: "audio/wav" }),
+      start: () => this.done.push("record"),
+      stop: () => {
+        this.done.push("recorded");
+        return new Blob(["RIFF"], { type: "audio/wav" });
+      },
+    };
+    this.voice = {
+      start: async () => {
+        await globalThis.agreed;
+        this.done.push("voice");
+      },
+      stop: () => this.done.push("silent"),
     };
     /** @type {number[]} */
     this.kept = [];
     this.keep = {
       start: () => {
+        this.done.push("keep");
         this.kept = [];
         this.keptFrom = this.state?.frame ?? 0;
       },

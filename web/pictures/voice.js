@@ -20,15 +20,17 @@ export class Voice extends Picture {
     this.heard = heard;
     /** @type {{time: number, heard: number, played: number}[]} */
     this.trace = [];
+    this.octaves = 0; // by which it is played higher
   }
 
   /** @param {Moment} moment */
   draw({ state, isNew, now }) {
     const { context } = this;
     if (state && isNew) {
-      const played = soundingPitch(state);
-      const octaves = Math.round((played - this.heard()) / OCTAVE); // as it is played
-      this.trace.push({ time: now, heard: this.heard() + OCTAVE * octaves, played });
+      const [heard, played] = [this.heard(), soundingPitch(state)];
+      const away = Math.round((played - heard) / OCTAVE);
+      if (!Number.isNaN(away)) this.octaves = away; // else as it was played last
+      this.trace.push({ time: now, heard: heard + OCTAVE * this.octaves, played });
     }
     while (this.trace.length && this.trace[0].time < now - LASTS) this.trace.shift();
     const pitches = this.trace.flatMap(({ heard, played }) => [heard, played]);
@@ -46,8 +48,10 @@ export class Voice extends Picture {
       context.fillStyle = this.colours.soft;
       if (span < 2 * OCTAVE) context.fillText(nameOf(note), 2, y(note));
     }
-    this.#line("heard", this.colours.accent, 3, x, y);
-    this.#line("played", this.colours.outer, 1.5, x, y);
+    context.globalAlpha = 0.4; // a band, on both sides of the line of what is played
+    this.#line("heard", this.colours.accent, 8, x, y);
+    context.globalAlpha = 1;
+    this.#line("played", this.colours.outer, 2, x, y);
   }
 
   /**

@@ -25,9 +25,16 @@ await run(
     await word.waitFor();
     await page.waitForTimeout(3000);
     await page.locator("#panel-connect canvas").scrollIntoViewIfNeeded();
-    const colours = await page.locator("#panel-connect canvas").evaluate((canvas) => {
+    // Pixels of the reddish band and of the bluish line; all else is nearly grey.
+    const pixels = await page.locator("#panel-connect canvas").evaluate((canvas) => {
       const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-      return new Set(new Uint32Array(data.buffer)).size;
+      const count = { heard: 0, played: 0 };
+      for (let i = 0; i < data.length; i += 4) {
+        const [red, , blue, alpha] = data.subarray(i, i + 4);
+        if (alpha > 60 && red - blue > 60) count.heard += 1;
+        if (alpha > 60 && blue - red > 60) count.played += 1;
+      }
+      return count;
     });
     await page.screenshot({ path: `${folder}/voice.png` });
     const pressed = page.locator("#panel-keep button[aria-pressed=true]");
@@ -42,7 +49,7 @@ await run(
       await button.click();
       await (await download).saveAs(`${folder}/${name}`);
     }
-    return { errors, colours, still: await word.count() };
+    return { errors, pixels, still: await word.count() };
   },
   { args: [...FLAGS, ...MICROPHONE] },
 );

@@ -36,10 +36,7 @@ class SoundWriter:
     `software`: named in the file as its maker.
     `channels`: 1 to `MOST_CHANNELS` of the format.
 
-    Raises
-    ------
-    OutputError
-        Here and from all methods; what was written before stays valid.
+    Raises OutputError, from all methods too; what was written before stays valid.
     """
 
     def __init__(

@@ -35,10 +35,7 @@ class WavStream:
     `software`: named in the file as its maker; nothing by default.
     `channels`: 1 to `MOST_CHANNELS`.
 
-    Raises
-    ------
-    OSError
-        Here and from all methods; what was written before stays valid.
+    Raises OSError, from all methods too; what was written before stays valid.
     """
 
     def __init__(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy import signal, special
+import scipy
 
 OCTAVES = (125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0)
 
@@ -13,8 +13,8 @@ OCTAVES = (125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0)
 def octave(sound: Any, rate: float, centre: float) -> Any:
     """The sound of one octave band, filtered forward and backward, so without delay."""
     edges = centre / np.sqrt(2.0), min(centre * np.sqrt(2.0), 0.49 * rate)
-    sections = signal.butter(3, edges, "bandpass", fs=rate, output="sos")
-    return signal.sosfiltfilt(sections, sound, axis=0, padlen=0)
+    sections = scipy.signal.butter(3, edges, "bandpass", fs=rate, output="sos")
+    return scipy.signal.sosfiltfilt(sections, sound, axis=0, padlen=0)
 
 
 def energy_left(response: Any) -> Any:
@@ -56,7 +56,7 @@ def echo_density(response: Any, rate: float, at_s: float, window_s: float = 0.03
     part = response[middle - half : middle + half + 1]
     deviation = np.sqrt(np.sum(weights * np.square(part), axis=0))
     shares = np.sum(weights * (np.abs(part) > deviation), axis=0)
-    return float(np.mean(shares) / special.erfc(1.0 / np.sqrt(2.0)))
+    return float(np.mean(shares) / scipy.special.erfc(1.0 / np.sqrt(2.0)))
 
 
 def highest_mode_db(tail: Any, rate: float, lo: float = 100.0, hi: float = 8000.0) -> float:

@@ -9,9 +9,11 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 import forks
+import pytest
 
 TESTS = Path(__file__).resolve().parent
 PYTHONPATH = f"{TESTS}:{TESTS.parent}"
@@ -20,6 +22,8 @@ WORKER = (
     "from distributed.cli.dask_worker import main; main()"
 )
 HERE = ("--host", "127.0.0.1", "--no-dashboard")
+
+needs_distributed = pytest.mark.skipif(find_spec("distributed") is None, reason="no distributed")
 
 
 class Processes:

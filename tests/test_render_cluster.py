@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Self
 
 import pytest
-from clusters import cluster_in, wait_until
+from clusters import cluster_in, needs_distributed, wait_until
 from commands import is_one_line, results_in
 from forks import start
 from midi_files import midi_file, notes
@@ -16,7 +16,7 @@ from midi_files import midi_file, notes
 from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.workers import Event
 
-pytest.importorskip("distributed")
+pytestmark = needs_distributed
 
 DRY = ("--dry", "--mono", "--tail", "0")
 SCORES = 8

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy
 from pitch import cents, pitch_of
-from scipy.signal import lfilter
 
 from yehu_server.cli import main
 from yehu_server.errors import OutputError, ParameterError, ScoreError
@@ -98,7 +98,7 @@ def test_pressure_is_the_bridge_force_through_the_measured_filter(kept):
     force = kept["bridge_force"]
     expected = radiation["direct_gain"] * force
     for b0, b1, a1, a2 in radiation["sections"]:
-        expected = expected + lfilter([b0, b1], [1.0, a1, a2], force)
+        expected = expected + scipy.signal.lfilter([b0, b1], [1.0, a1, a2], force)
     scale = np.abs(expected).max()
     np.testing.assert_allclose(kept["pressure"], expected, rtol=0, atol=1e-9 * scale)
 

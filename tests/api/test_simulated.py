@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray
 
 import yehu_server as yehu
 from yehu_server import YehuError
@@ -185,6 +184,7 @@ def test_it_is_the_same_for_any_number_of_workers(swept):
 
 
 def test_a_labelled_dataset_has_names_values_and_units(swept):
+    xarray = pytest.importorskip("xarray")
     found = swept.to_xarray()
     assert isinstance(found, xarray.Dataset)
     assert found.pitch_hz.dims == ("bow_force", "bow_position")
@@ -199,6 +199,7 @@ def test_a_labelled_dataset_has_names_values_and_units(swept):
 
 
 def test_every_format_can_hold_a_data_set(swept, tmp_path):
+    xarray = pytest.importorskip("xarray")
     run = yehu.simulate(GESTURE, strings_every=100)
     for number, found in enumerate((swept.to_xarray(), run.to_xarray())):
         found.to_netcdf(tmp_path / f"{number}.nc", engine="scipy")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 import some_jobs
-from clusters import Processes, cluster_in, wait_until
+from clusters import Processes, cluster_in, needs_distributed, wait_until
 
 import yehu_server
 from yehu_server.errors import YehuError
@@ -20,7 +20,7 @@ from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.cluster import Cluster, scheduler_address
 from yehu_server.util.processes import machine_lock
 
-pytest.importorskip("distributed")
+pytestmark = needs_distributed
 
 
 @pytest.fixture(autouse=True)

@@ -104,7 +104,6 @@ def reporting(instrument: Instrument) -> Instrument:
 _post = numba.njit(native.post.function)
 
 
-@numba.cfunc("int64(voidptr, int64, int64)")
 def storm(rig, start, count):
     """Post numbered wishes as fast as possible, each until it is taken; return the refusals."""
     refused = 0
@@ -116,7 +115,8 @@ def storm(rig, start, count):
 
 
 def post_by_storm(instrument: Instrument, count: int) -> int:
-    return sum(storm.ctypes(instrument.address, start, 1000) for start in range(0, count, 1000))
+    compiled = numba.cfunc("int64(voidptr, int64, int64)")(storm).ctypes
+    return sum(compiled(instrument.address, start, 1000) for start in range(0, count, 1000))
 
 
 def post_by_python(instrument: Instrument, count: int) -> int:

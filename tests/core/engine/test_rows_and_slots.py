@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 from yehu_server.compile.cache_folder import SOURCE_FOLDERS
@@ -120,7 +121,7 @@ def source_of(module: str) -> Path:
     return PACKAGE.parent / f"{module.replace('.', '/')}.py"
 
 
-def places(module: Module, functions: dict[tuple[str, str], list[str]], own: str):
+def places(module: Module, own: str):
     """Each place for a row or a slot: its line, which of both, the expression there."""
     for node in ast.walk(module.tree):
         if isinstance(node, ast.Subscript):
@@ -134,7 +135,7 @@ def places(module: Module, functions: dict[tuple[str, str], list[str]], own: str
                 yield from ((node.lineno, kind, each) for each in given)
             if isinstance(node.func, ast.Name):
                 called = module.imported.get(node.func.id, (own, node.func.id))
-                for parameter, each in zip(functions.get(called, []), node.args, strict=False):
+                for parameter, each in zip(functions().get(called, []), node.args, strict=False):
                     if parameter in ("row", "slot"):
                         yield node.lineno, ROW if parameter == "row" else SLOT, each
 
@@ -158,30 +159,38 @@ def name_of(path: Path) -> str:
     return ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts)
 
 
-ALL = {name_of(path): Module(path.read_text(encoding="utf-8")) for path in SOURCES}
-FUNCTIONS = dict(each for name, module in ALL.items() for each in functions_in(name, module))
+@cache
+def all_modules() -> dict[str, Module]:
+    return {name_of(path): Module(path.read_text(encoding="utf-8")) for path in SOURCES}
+
+
+@cache
+def functions() -> dict[tuple[str, str], list[str]]:
+    return dict(
+        each for name, module in all_modules().items() for each in functions_in(name, module)
+    )
 
 
 def mixed(module: Module, own: str = "") -> list[str]:
     """Where a module takes one for the other."""
     found = [
         f"line {line}: {ast.unparse(node)} is {OTHER[kind]}, {kind} is wanted"
-        for line, kind, node in places(module, FUNCTIONS, own)
+        for line, kind, node in places(module, own)
         if module.kind_of(node) == OTHER[kind]
     ]
     return found + [f"line {line}: {what}" for line, what in module.twice]
 
 
 def test_no_module_takes_a_row_for_a_slot_or_a_slot_for_a_row():
-    found = {name: mixed(module, name) for name, module in ALL.items()}
+    found = {name: mixed(module, name) for name, module in all_modules().items()}
     assert {name: lines for name, lines in found.items() if lines} == {}
 
 
 def test_most_places_are_known():
     known = [
         module.kind_of(node) == kind
-        for name, module in ALL.items()
-        for _, kind, node in places(module, FUNCTIONS, name)
+        for name, module in all_modules().items()
+        for _, kind, node in places(module, name)
     ]
     assert sum(known) > 250
 

@@ -454,7 +454,6 @@ _read_meters = numba.njit(native.read_meters.function)
 _publish = numba.njit(native.publish.function)
 
 
-@numba.cfunc("int64(voidptr, int64)")
 def tell(rig, times):
     """Publish records that hold one number in all their fields."""
     t = numba.carray(at(rig, METERS_AT), (1,), METERS)[0]
@@ -468,7 +467,6 @@ def tell(rig, times):
     return times
 
 
-@numba.cfunc("int64(voidptr, voidptr, int64)")
 def listen(rig, into, times):
     """Read records; return the number of whole ones, or minus the number of torn ones."""
     t = numba.carray(into, (1,), METERS)[0]
@@ -485,11 +483,13 @@ def listen(rig, into, times):
 
 def test_a_reader_never_sees_half_of_a_record():
     instrument, into, times = Instrument(InstrumentSpec(RATE)), np.zeros(1, METERS), 500_000
-    teller = threading.Thread(target=lambda: tell.ctypes(instrument.address, times))
+    telling = numba.cfunc("int64(voidptr, int64)")(tell).ctypes
+    listening = numba.cfunc("int64(voidptr, voidptr, int64)")(listen).ctypes
+    teller = threading.Thread(target=lambda: telling(instrument.address, times))
     teller.start()
     found = []
     while teller.is_alive():
-        found.append(listen.ctypes(instrument.address, into.ctypes.data, 10_000))
+        found.append(listening(instrument.address, into.ctypes.data, 10_000))
     teller.join()
     assert min(found) >= 0
     assert sum(found) > 1000

@@ -10,9 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 from core.physics.runs import bump, rows, shaped
-from scipy.interpolate import CubicSpline
-from scipy.linalg import null_space
 
 from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics.quantities import Quantities
@@ -59,7 +58,7 @@ def continuous_shapes(shape, modes):
     constraint[:, 2 * modes :] = -1.0
     # In coordinates of unit mass; `free` spans the motions that keep both constraints.
     unit = 1.0 / np.sqrt(mass)
-    free = null_space(constraint * unit)
+    free = scipy.linalg.null_space(constraint * unit)
     size = free.shape[1]
     rigidity = free.T @ ((stiffness * unit**2)[:, np.newaxis] * free)
     damping = free.T @ ((loss * unit**2)[:, np.newaxis] * free)
@@ -99,7 +98,7 @@ def simulated_shapes(rate):
                 1 : N + 2
             ]
             u = u + (u - before) * (time * rate - done)
-            both.append(CubicSpline(np.linspace(0.0, L, N + 1), u)(PLACES))
+            both.append(scipy.interpolate.CubicSpline(np.linspace(0.0, L, N + 1), u)(PLACES))
         shapes.append(np.concatenate(both))
     return np.array(shapes)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy import signal
+import scipy
 from stages import NAMES, RANGES, SILENCED, SMALL, Stage, told
 
 RATE = 48000.0
@@ -26,8 +26,8 @@ def tone(frames: int) -> np.ndarray:
 
 def splash(out: np.ndarray) -> np.ndarray:
     """Energy above 10 kHz, where the note has nothing, in windows of 5 ms."""
-    sections = signal.butter(8, 10000.0, "highpass", fs=RATE, output="sos")
-    high = signal.sosfilt(sections, out, axis=0)
+    sections = scipy.signal.butter(8, 10000.0, "highpass", fs=RATE, output="sos")
+    high = scipy.signal.sosfilt(sections, out, axis=0)
     window = round(0.005 * RATE)
     count = len(high) // window
     return np.sum(np.square(high[: count * window]).reshape(count, -1), axis=1)

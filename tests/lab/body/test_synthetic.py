@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+import scipy
 from lab.body.bodies import DAMPING, HZ, MASS, radiation, rms
-from scipy.linalg import expm
 
 from yehu_server.core.physics.quantities import measured_body
 from yehu_server.lab.body import made_taps
@@ -25,10 +25,10 @@ def test_the_closed_form_is_the_motion_of_masses_on_springs():
         A[2 * i + 1, 2 * i + 1] = -damping / mass
         A[2 * i + 1, size] = NEWTONS / mass  # times sin
     A[size, size + 1], A[size + 1, size] = turn, -turn  # sin and cos
-    step = expm(A / rate)
+    step = scipy.linalg.expm(A / rate)
     state = np.zeros(size + 2)
     state[size + 1] = 1.0
-    free = expm(A[:size, :size] / rate)
+    free = scipy.linalg.expm(A[:size, :size] / rate)
     ends = round(CONTACT_S * rate)
     expected = []
     for n in range(steps):

@@ -55,7 +55,7 @@ function assemble() {
   for (const picture of [
     yehu,
     score,
-    new Tuner(find("tuner", HTMLCanvasElement)),
+    new Tuner(find("tuner", HTMLCanvasElement), tuned),
     new Level(find("level", HTMLCanvasElement)),
     schelleng,
     new Spectrum(find("spectrum", HTMLCanvasElement), analyser),

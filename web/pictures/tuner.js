@@ -16,11 +16,12 @@ const LOUD = -3; // from here on the limiter works
 const FALL = 24; // dB/s
 const HOLD = 1.5; // s that the greatest level is marked
 
-/** The note that sounds, and how far from it, in cents; now and over the last seconds. */
+/** The note of the tuning that sounds, and how far from it, in cents; now and over the last seconds. */
 export class Tuner extends Picture {
-  /** @param {HTMLCanvasElement} canvas */
-  constructor(canvas) {
+  /** @param {HTMLCanvasElement} canvas @param {import('../hands/scale.js').KeyTuning} tuned */
+  constructor(canvas, tuned) {
     super(canvas);
+    this.tuned = tuned;
     /** @type {{time: number, pitch: number}[]} */
     this.trace = [];
     this.pitch = NaN;
@@ -31,7 +32,7 @@ export class Tuner extends Picture {
     const { context } = this;
     if (state && isNew) this.#hear(soundingPitch(state), now, elapsed);
     const { width, height } = this;
-    const note = Math.round(this.pitch);
+    const note = this.tuned.nearest(this.pitch);
     const sounds = !Number.isNaN(this.pitch);
     const cents = (this.pitch - note) * 100;
     const isTrue = Math.abs(cents) <= TRUE_WITHIN;
@@ -105,7 +106,7 @@ export class Tuner extends Picture {
 
   /**
    * The pitch over time: the latest at the bottom, as the needle leaves it behind.
-   * @param {number} note
+   * @param {number} note its pitch
    * @param {number} now
    */
   #trace(note, now) {

@@ -18,7 +18,7 @@ const LINGERS = 2000; // ms after a note in which a finger on the diagram still 
 const EVERY = 150; // ms: a word that changes faster is not read
 
 /** @param {Page} page */
-export function showSeeing({ instrument, yehu, surface }) {
+export function showSeeing({ instrument, tuned, yehu, surface }) {
   const panel = find("panel-see", HTMLElement);
   const regime = find("regime", HTMLElement);
   const about = find("regime-about", HTMLElement);
@@ -43,10 +43,11 @@ export function showSeeing({ instrument, yehu, surface }) {
       tell();
     }
     const pitch = soundingPitch(state);
-    const cents = Math.round((pitch - Math.round(pitch)) * 100);
+    const note = tuned.nearest(pitch);
+    const cents = Math.round((pitch - note) * 100);
     tuner.ariaLabel = Number.isNaN(pitch)
       ? translate("tuner.silent")
-      : translate("tuner.told", { note: nameOf(pitch), cents });
+      : translate("tuner.told", { note: nameOf(note), cents });
   };
   whileShown(panel, follow, EVERY);
   panel.append(

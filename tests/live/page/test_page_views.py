@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any
 
 import pytest
@@ -80,6 +81,12 @@ def test_the_diagram_places_the_bow_until_it_is_let_go(found) -> None:
     assert 0.04 <= near < far <= 0.5
     assert 0.0 < light < firm <= 5.0
     assert end[0] == "RELEASE"
+
+
+def test_the_tuner_measures_from_the_notes_of_the_tuning(found) -> None:
+    note, cents = re.fullmatch(r"Tuner: (\S+), (-?\d+) cents", found["tuner"]).groups()
+    assert note == "A4"
+    assert abs(int(cents)) <= 5  # as far as the imitation is out of tune
 
 
 def test_a_preset_writes_its_values(found) -> None:

@@ -60,6 +60,8 @@ export class Keys extends EventTarget {
 
   /** @param {KeyboardEvent} event */
   #press(event) {
+    const focused = document.activeElement;
+    if (focused instanceof HTMLElement) delete focused.dataset.touched; // keys that find the way show where
     if (event.ctrlKey || event.metaKey || event.altKey || event.isComposing) return;
     if (event.key === "?") return; // asks for help
     if (event.target instanceof Element && event.target.matches(WRITING)) return;
@@ -71,6 +73,7 @@ export class Keys extends EventTarget {
     const note = NOTES.get(event.code);
     if (note === undefined) return;
     event.preventDefault(); // "/" and "'" would open the browser's search
+    if (focused instanceof HTMLElement) focused.dataset.touched = ""; // those that play need no ring
     if (event.repeat || this.down.has(event.code)) return;
     const pitch = this.tuned.pitchOf(note + this.octave);
     if (pitch === null || Math.round(pitch) < LOWEST || Math.round(pitch) > HIGHEST) return;

@@ -10,8 +10,9 @@ export const HIGHEST = facts.notes.HIGHEST_NOTE;
 export const OPEN = facts.notes.OPEN;
 /** Room beside the first and the last note, semitones. */
 const MARGIN = 0.6;
-/** A finger's room for a semitone, px; where there is less, a part of the board is shown. */
-const ROOM = 22;
+/** Room for a semitone, px, for a finger and a mouse; where there is less, a part of the board is shown. */
+const [FINGER, MOUSE] = [22, 16];
+const coarse = globalThis.matchMedia?.("(pointer: coarse)");
 const LEAST_SHOWN = 8;
 
 /** In F, the scale of the open strings, and in B flat these are no sharps. @type {Record<number, string>} */
@@ -97,8 +98,9 @@ export class Scale {
   /** @param {number} length px @param {number} lowest note that should be shown first */
   constructor(length, lowest = LOWEST) {
     const whole = HIGHEST - LOWEST;
+    const room = coarse?.matches ? FINGER : MOUSE;
     this.length = Math.max(length, 1);
-    this.span = Math.min(whole, Math.max(LEAST_SHOWN, Math.floor(length / ROOM - 2 * MARGIN)));
+    this.span = Math.min(whole, Math.max(LEAST_SHOWN, Math.floor(length / room - 2 * MARGIN)));
     this.first = Math.min(Math.max(lowest, LOWEST), HIGHEST - this.span);
   }
 

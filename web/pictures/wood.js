@@ -15,6 +15,7 @@ const LABELS = 66; // px at the soft side, with the names of notes
 const GRAINS = 5;
 const LEAST_FOR_SOFT = 340; // px across: else a button is there
 const KEY = 22; // px, the side of a printed key
+const BESIDE = 62; // px from the edge, where buttons for lower and higher notes stand
 
 /** Half the width of the neck, px. @param {Surface} surface */
 function neckOf({ breadth }) {
@@ -189,7 +190,7 @@ export function writeNotes({ context, surface, colours, fingerboard: { scale }, 
     }
     const key = keys.get(note);
     if (key) {
-      const across = surface.loudnessAt(1) + (isUpright ? -18 : 18);
+      const across = surface.loudnessAt(1) + (isUpright ? -(scale.isPart ? BESIDE : 18) : 18);
       const [x, y] = isUpright ? [across, along] : [along, across];
       context.globalAlpha = 0.85;
       context.fillStyle = colours.surface;

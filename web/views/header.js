@@ -7,6 +7,9 @@ import { remember, settings } from "../settings.js";
 import { onLanguage, language, translate, setLanguage } from "../i18n.js";
 
 const EVERY = 500; // ms
+/** From here on load and latency are told: else they are of no use to whoever plays. */
+const HEAVY = 70; // %
+const LATE = 100; // ms
 
 /** @param {Page} page */
 export function showHeader({ instrument, gallery }) {
@@ -14,7 +17,10 @@ export function showHeader({ instrument, gallery }) {
   const status = find("status", HTMLElement);
   const tell = () => {
     start.textContent = translate(instrument.sound ? "header.silence" : "header.start");
-    status.textContent = statusText(instrument);
+    const { loadPercent = 0, latencyMs = 0 } = instrument.sound?.status ?? {};
+    status.dataset.state = stateOf(instrument);
+    const isWell = status.dataset.state === "on" && loadPercent < HEAVY && latencyMs < LATE;
+    status.textContent = isWell ? "" : statusText(instrument);
   };
   start.addEventListener("click", () => {
     if (instrument.sound?.status.running) instrument.silence();
@@ -59,10 +65,16 @@ function showNotice(instrument) {
   onLanguage(tell);
 }
 
+/** @param {import('../instrument.js').Instrument} instrument */
+function stateOf({ sound, opening }) {
+  if (!sound) return opening ? "opening" : "off";
+  if (sound.status.running) return "on";
+  return sound.status.backend === "remote" ? "broken" : "waiting";
+}
+
 /** The state of the sound in a line. @param {import('../instrument.js').Instrument} instrument */
-export function statusText({ sound, opening }) {
-  if (!sound) return translate(opening ? "status.opening" : "status.off");
-  const { running, backend, loadPercent, latencyMs } = sound.status;
-  if (!running) return translate(backend === "remote" ? "status.broken" : "status.waiting");
-  return translate("status.on", { load: loadPercent.toFixed(0), latency: latencyMs.toFixed(0) });
+export function statusText(instrument) {
+  const { loadPercent = 0, latencyMs = 0 } = instrument.sound?.status ?? {};
+  const values = { load: loadPercent.toFixed(0), latency: latencyMs.toFixed(0) };
+  return translate(`status.${stateOf(instrument)}`, values);
 }

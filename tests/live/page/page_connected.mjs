@@ -67,7 +67,7 @@ async function startsEarly(browser, url) {
   const status = page.locator("#status");
   const before = await status.textContent();
   connect();
-  await page.waitForFunction(() => /load/.test(document.querySelector("#status").textContent));
+  await page.waitForSelector("#status[data-state=on]", { state: "attached" });
   await page.click("#tab-connect");
   const panel = page.locator("#panel-connect");
   await page.waitForFunction(() =>
@@ -87,7 +87,8 @@ async function startsEarly(browser, url) {
  */
 async function isHeardSteadily(page) {
   await heard(page);
-  const gaps = async () => /drop-outs (\d+)/.exec(await page.locator("#status").textContent())?.[1];
+  const panel = page.locator("#panel-connect");
+  const gaps = async () => /last minute: (\d+)/.exec(await panel.textContent())[1];
   let [before, since] = [await gaps(), Date.now()];
   for (const end = Date.now() + PATIENCE_MS; Date.now() < end;) {
     await page.waitForTimeout(100);
@@ -103,7 +104,7 @@ await run(async (browser, url) => {
   const { page, errors } = await open(browser, url);
   const touch = await fingersOf(page);
   const found = {};
-  const status = () => page.locator("#status").textContent();
+  const status = () => page.getAttribute("#status", "data-state");
   found.early = await startsEarly(browser, url);
   await page.bringToFront();
   await page.click("#tab-connect");
@@ -112,7 +113,7 @@ await run(async (browser, url) => {
   found.reachable = await reach("opened");
 
   await page.click("#way-there");
-  await page.waitForFunction(() => document.querySelector("#status").textContent.includes("load"));
+  await page.waitForSelector("#status[data-state=on]", { state: "attached" });
   found.there = await status();
   const board = await page.locator("#fingerboard").boundingBox();
   const finger = { x: board.x + board.width / 2, y: board.y + board.height / 2, id: 1 };
@@ -161,7 +162,7 @@ await run(async (browser, url) => {
     /does not answer/.test(document.querySelector("#status").textContent),
   );
   await reach("start the server");
-  await page.waitForFunction(() => /load/.test(document.querySelector("#status").textContent));
+  await page.waitForSelector("#status[data-state=on]", { state: "attached" });
   await touch("touchStart", [finger]);
   await reach("holds again");
   await touch("touchEnd", []);

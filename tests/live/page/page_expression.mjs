@@ -105,8 +105,12 @@ await run(async (browser, url) => {
         look();
       }),
   );
+  found.loaded = [];
+  const asked = (request) => request.serviceWorker() || found.loaded.push(request.url());
+  page.on("request", asked);
   await page.mouse.down();
   found.firstMs = await heard;
+  page.off("request", asked);
   await page.waitForTimeout(500);
   found.playing = await load(browser, 3);
   await page.mouse.up();

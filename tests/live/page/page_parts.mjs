@@ -17,7 +17,7 @@ async function reach(step) {
  * @param {import("playwright-core").Page} page
  */
 async function shown(page) {
-  await page.waitForFunction(() => /load/.test(document.querySelector("#status").textContent));
+  await page.waitForSelector("#status[data-state=on]", { state: "attached" });
   await page.waitForTimeout(200);
   return page.evaluate(() => {
     const select = document.querySelector("#part");

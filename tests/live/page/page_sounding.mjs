@@ -50,7 +50,7 @@ async function playAndKeep(page) {
   await page.getByRole("button", { name: "Keep", exact: true }).click();
   await page.keyboard.down(KEY);
   await page.waitForTimeout(1000);
-  const status = await page.textContent("#status");
+  const status = await page.getAttribute("#status", "data-state");
   await page.keyboard.up(KEY);
   await page.waitForTimeout(300);
   const pressed = page.locator("#panel-keep button[aria-pressed=true]");

@@ -64,8 +64,13 @@ await run(async (browser, url) => {
   }
   await page.click("#start");
   await page.waitForFunction(() => globalThis.imitation);
-  await page.waitForFunction(() => /load/.test(document.querySelector("#status").textContent));
-  found.status = await page.textContent("#status");
+  await page.waitForSelector("#status[data-state=on]", { state: "attached" });
+  found.status = [];
+  for (const loadPercent of [3, 85]) {
+    await page.evaluate((load) => (globalThis.imitation.status.loadPercent = load), loadPercent);
+    await page.waitForTimeout(600);
+    found.status.push(await page.textContent("#status"));
+  }
 
   // The bow, placed by the diagram.
   await page.click("#tab-see");

@@ -67,8 +67,8 @@ def test_what_has_the_focus_is_seen_to_have_it(found) -> None:
     assert {each["ring"] for each in found["focus"]} == {"solid"}
 
 
-def test_the_status_tells_load_and_latency(found) -> None:
-    assert found["status"] == "load 3 % · latency 12 ms"
+def test_load_and_latency_are_told_where_they_are_high(found) -> None:
+    assert found["status"] == ["", "load 85 % · latency 12 ms"]
 
 
 def test_the_diagram_places_the_bow_until_it_is_let_go(found) -> None:

@@ -104,9 +104,7 @@ function connect({ instrument, hands, keys, fingerboard, bow, gallery }) {
   hands.isAssisted = settings.isAssisted;
   fingerboard.isLandingInTune = settings.isLandingInTune;
   // Whoever plays wants to hear it: any hand on the instrument starts the sound.
-  for (const hand of [keys, fingerboard, bow]) {
-    hand.addEventListener("play", () => instrument.start());
-  }
+  hands.addEventListener("play", () => instrument.start());
   keys.addEventListener("silence", () => instrument.silence());
   instrument.addEventListener("silence", () => hands.rest());
   instrument.addEventListener("state", () => {

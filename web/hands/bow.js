@@ -30,14 +30,13 @@ const STROKES = { ArrowLeft: -1, ArrowRight: 1 };
 const KEYS_STEP = 0.05; // of the height
 const STILL = 0.002; // m/s; slower is at rest
 
-export class Bow extends EventTarget {
+export class Bow {
   /**
    * @param {HTMLElement} element
    * @param {Hands} hands
    * @param {import('./surface.js').Surface} surface
    */
   constructor(element, hands, surface) {
-    super();
     this.element = element;
     this.hands = hands;
     this.surface = surface;
@@ -79,7 +78,7 @@ export class Bow extends EventTarget {
     this.by = touch.id;
     this.way = [{ place: this.#across(touch), time: touch.time }];
     this.height = this.#heightOf(touch);
-    this.dispatchEvent(new Event("play"));
+    this.hands.begin();
     this.#draw(0);
     requestAnimationFrame((now) => this.#tick(now));
   }
@@ -173,7 +172,7 @@ export class Bow extends EventTarget {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key in STROKES) {
       if (!event.repeat && this.by === null) {
-        this.dispatchEvent(new Event("play"));
+        this.hands.begin();
         this.keysSpeed = STROKES[/** @type {keyof typeof STROKES} */ (event.key)] * KEYS_SPEED;
         this.#draw(this.keysSpeed);
       }

@@ -107,7 +107,7 @@ export class Fingerboard extends EventTarget {
     const landing = new Landing(place, this.tuned.nearest(withinRange(place)));
     const loud = this.#loudnessOf(touch);
     this.touches.set(touch.id, { landing, rocking: new Rocking(), loud });
-    this.dispatchEvent(new Event("play"));
+    this.hands.begin();
     const pitch = this.isLandingInTune ? landing.pitchAt(place) : place;
     this.hands.touch(touch.id, pitch, VELOCITY, dynamicsOf(loud));
   }
@@ -157,7 +157,7 @@ export class Fingerboard extends EventTarget {
       this.hands.slide(BY_KEYS, this.place);
       this.#tell();
     } else if ((event.key === " " || event.key === "Enter") && !event.repeat) {
-      this.dispatchEvent(new Event("play"));
+      this.hands.begin();
       this.hands.touch(BY_KEYS, this.place, VELOCITY);
     } else if (event.key !== " " && event.key !== "Enter") {
       return;

@@ -21,7 +21,7 @@ const RETURNS_AFTER = 600;
  */
 
 /**
- * Both hands. With assist a finger is a note, which the player bows; without, and while the bow is
+ * Both hands; tells by events: 'play' before they do something, 'change' after it, and 'rock'. With assist a finger is a note, which the player bows; without, and while the bow is
  * drawn by hand, fingers only stop the string. The last finger sounds; lifting it returns to the
  * one before.
  */
@@ -39,6 +39,11 @@ export class Hands extends EventTarget {
     this.dynamics = 1; // as a share of the usual ones
     this.returning = 0; // timer
     this.stroke = { speed: 0, force: 0 };
+  }
+
+  /** Somebody plays from now on. */
+  begin() {
+    this.dispatchEvent(new Event("play"));
   }
 
   /** The finger that stops the string. */

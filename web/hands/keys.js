@@ -79,6 +79,7 @@ export class Keys extends EventTarget {
     if (pitch === null || Math.round(pitch) < LOWEST || Math.round(pitch) > HIGHEST) return;
     this.down.add(event.code);
     this.dispatchEvent(new Event("play"));
+    this.hands.begin();
     this.hands.touch(event.code, pitch, VELOCITY);
   }
 

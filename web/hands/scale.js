@@ -11,7 +11,7 @@ export const OPEN = facts.notes.OPEN;
 /** Room beside the first and the last note, semitones. */
 const MARGIN = 0.6;
 /** Room for a semitone, px, for a finger and a mouse; where there is less, a part of the board is shown. */
-const [FINGER, MOUSE] = [22, 16];
+const [FINGER, MOUSE] = [21, 16];
 const coarse = globalThis.matchMedia?.("(pointer: coarse)");
 const LEAST_SHOWN = 8;
 

@@ -16,19 +16,16 @@ const TOLD_WITHIN_S = 0.1;
  * @typedef {import('./learned.js').Mapping} Mapping
  * @typedef {import('./tables.js').Tuning} Tuning
  *
- * @typedef {object} Sink What wishes are posted to.
- * @property {(frame: number | null, kind: number, index: number, value: number, other: number)
- *   => unknown} post one wish; frame null is now
- * @property {number} [frame] number of the next sample, as far as the page knows
+ * @typedef {import('../interfaces.js').SoundMembers} SoundMembers
+ *
+ * @typedef {object} Others What a sink may know of those who play the same.
  * @property {number} [rate] Hz
- * @property {(address: string) => number | undefined} [target] where a parameter of bow and
- *   fingers moves to
- * @property {number} [people] how many may play it; by default one
- * @property {(address: string) => number | undefined} [reported] the value of any other parameter, where
- *   others set them too
- * @property {(address: string) => number | undefined} [wasSet] the one that was set, which notes and
- *   controllers move from
+ * @property {(address: string) => number | undefined} [wasSet] the value of a parameter that was set, which notes
+ *   and controllers move from
  * @property {(row: number, value: number) => unknown} [follow] take what others have set
+ *
+ * @typedef {Pick<SoundMembers, "post" | "frame" | "target" | "reported" | "people"> & Others} Sink What wishes
+ *   are posted to.
  */
 
 /** Has events interpreted, and posts what they come to; a frame of null is now. */

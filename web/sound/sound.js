@@ -1,24 +1,21 @@
 /** The sound of this page: posts wishes to the instrument, and tells what it does. */
 
 import facts from "../facts.js";
-import { openBackend } from "./backends.js";
+import { Engine } from "./engine.js";
 import { CHANNELS, WishBatch } from "./kernel.js";
+import { Output } from "./output.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
 import { settings } from "../settings.js";
 
 /** @typedef {import('../interfaces.js').Status} Status */
+/** @typedef {import('./engine.js').Take} Take */
 /** @typedef {import('./engine.js').Told} Told */
 
 const USUAL_RATE = 48000;
 const WATCH_MS = 500;
 const LAG_S = 0.03; // by which sound falls behind the clock where samples were missing
-const FFT = 4096;
 const SUSPENDS_AFTER_MS = 10_000;
-const FADE_S = 0.01;
-// Of WAV files:
-const FLOAT = 3; // the format's number
-const BITS = 32;
-const HEAD = 44; // bytes
+const FLOAT = 3; // the number of that format in WAV files
 
 export class Sound extends EventTarget {
   /**
@@ -45,8 +42,10 @@ export class Sound extends EventTarget {
     this.context = context;
     this.seen = new Float64Array(facts.lookLength);
     this.state = snapshotOf(this.seen);
-    this.analyser = new AnalyserNode(context, { fftSize: FFT, smoothingTimeConstant: 0.6 });
-    this.gain = new GainNode(context, { gain: 1 });
+    this.output = new Output(context);
+    this.analyser = this.output.analyser;
+    /** Where there is no worklet. @type {Engine | null} */
+    this.engine = null;
     this.loadPercent = 0;
     this.isAsleep = false; // nothing sounds, and nothing is computed
     this.suspending = 0; // timer
@@ -64,7 +63,7 @@ export class Sound extends EventTarget {
     /** @type {MediaStreamAudioSourceNode | null} */
     this.microphone = null;
     this.keep = {
-      start: () => this.backend?.take({ keep: true }),
+      start: () => this.#take({ keep: true }),
       stop: () => this.#stopKeeping(),
     };
     this.#watch();
@@ -72,17 +71,34 @@ export class Sound extends EventTarget {
 
   /** @param {ArrayBuffer} bytes */
   async #connect(bytes) {
-    this.backend = await openBackend(this.context, bytes, facts.lookLength, (told) =>
-      this.#hear(told),
-    );
-    this.backend.node.connect(this.gain).connect(this.analyser).connect(this.context.destination);
+    const { lookLength } = facts;
+    const { sampleRate } = this.context;
+    await this.output.connect({
+      name: "yehu",
+      file: "processor.js",
+      inputs: 1, // a voice
+      options: { bytes, lookLength },
+      make: (frames) => {
+        const hear = (/** @type {Told} */ told) => this.#hear(told);
+        const engine = (this.engine = new Engine(bytes, sampleRate, frames, lookLength, hear));
+        return (left, right) => engine.fill(left, right);
+      },
+    });
+    const { port } = this.output;
+    if (port) port.onmessage = ({ data }) => this.#hear(data);
+  }
+
+  /** @param {Take} message @param {Transferable[]} [buffers] */
+  #take(message, buffers = []) {
+    this.engine?.take(message);
+    this.output.port?.postMessage(message, buffers);
   }
 
   /** @param {Float64Array<ArrayBuffer>} wishes */
   #send(wishes) {
     clearTimeout(this.suspending);
     if (this.isAsleep) this.resume();
-    this.backend?.take({ wishes }, [wishes.buffer]);
+    this.#take({ wishes }, [wishes.buffer]);
   }
 
   /** @param {string} address of a parameter of bow or fingers */
@@ -92,12 +108,12 @@ export class Sound extends EventTarget {
 
   /** @returns {Status} */
   get status() {
-    const { baseLatency = 0, outputLatency = 0, sampleRate, state } = this.context;
+    const { sampleRate, state } = this.context;
     return {
-      backend: this.backend?.name ?? "worklet",
+      backend: this.engine ? "script" : "worklet",
       rate: sampleRate,
       loadPercent: this.loadPercent,
-      latencyMs: 1e3 * (baseLatency + outputLatency),
+      latencyMs: this.output.latencyMs,
       dropouts: this.dropouts,
       running: state === "running" || this.isAsleep,
     };
@@ -122,12 +138,7 @@ export class Sound extends EventTarget {
   close() {
     this.#stopVoice();
     clearInterval(this.watching);
-    const end = this.context.currentTime + FADE_S;
-    this.gain.gain.linearRampToValueAtTime(0, end);
-    setTimeout(() => {
-      this.backend?.close();
-      this.context.close();
-    }, 2e3 * FADE_S);
+    this.output.close();
   }
 
   /** @param {Told} told */
@@ -146,7 +157,7 @@ export class Sound extends EventTarget {
     if (seen) {
       this.seen.set(seen);
       this.state = snapshotOf(this.seen);
-      this.backend?.take({ seen }, [/** @type {ArrayBuffer} */ (seen.buffer)]);
+      this.#take({ seen }, [/** @type {ArrayBuffer} */ (seen.buffer)]);
       this.dispatchEvent(new Event("state"));
     }
   }
@@ -157,8 +168,8 @@ export class Sound extends EventTarget {
       audio: { echoCancellation: false, noiseSuppression: false, autoGainControl: false },
     });
     this.microphone = this.context.createMediaStreamSource(stream);
-    if (this.backend) this.microphone.connect(this.backend.node);
-    this.backend?.take({ voice: true });
+    if (this.output.node) this.microphone.connect(this.output.node);
+    this.#take({ voice: true });
     await this.resume();
   }
 
@@ -167,19 +178,19 @@ export class Sound extends EventTarget {
     this.microphone?.disconnect();
     for (const track of this.microphone?.mediaStream.getTracks() ?? []) track.stop();
     this.microphone = null;
-    this.backend?.take({ voice: false });
+    this.#take({ voice: false });
   }
 
   #startRecording() {
     this.chunks = [];
-    this.backend?.take({ record: true });
+    this.#take({ record: true });
   }
 
   /** @returns {Promise<Blob>} */
   #stopRecording() {
     return new Promise((resolve) => {
       this.recorded = resolve;
-      this.backend?.take({ record: false });
+      this.#take({ record: false });
     });
   }
 
@@ -187,7 +198,7 @@ export class Sound extends EventTarget {
   #stopKeeping() {
     return new Promise((resolve) => {
       this.kept = resolve;
-      this.backend?.take({ keep: false });
+      this.#take({ keep: false });
     });
   }
 
@@ -226,23 +237,13 @@ function newContext() {
  * @param {number} channels
  */
 function wav(chunks, rate, channels) {
-  const frameBytes = (channels * BITS) / 8;
   const bytes = 4 * chunks.reduce((sum, chunk) => sum + chunk.length, 0);
-  const view = new DataView(new ArrayBuffer(HEAD));
-  /** @param {number} at @param {string} text */
-  const write = (at, text) =>
-    [...text].forEach((letter, i) => view.setUint8(at + i, letter.charCodeAt(0)));
-  write(0, "RIFF");
-  view.setUint32(4, HEAD - 8 + bytes, true);
-  write(8, "WAVEfmt ");
-  view.setUint32(16, 16, true);
-  view.setUint16(20, FLOAT, true);
-  view.setUint16(22, channels, true);
-  view.setUint32(24, rate, true);
-  view.setUint32(28, rate * frameBytes, true);
-  view.setUint16(32, frameBytes, true);
-  view.setUint16(34, BITS, true);
-  write(36, "data");
-  view.setUint32(40, bytes, true);
-  return new Blob([view, .../** @type {BlobPart[]} */ (chunks)], { type: "audio/wav" });
+  const frame = 4 * channels; // bytes
+  // Numbers have their lowest byte first, as in all browsers.
+  const long = (/** @type {number[]} */ ...numbers) => Uint32Array.from(numbers);
+  const short = (/** @type {number[]} */ ...numbers) => Uint16Array.from(numbers);
+  const format = [long(16), short(FLOAT, channels), long(rate, rate * frame), short(frame, 32)];
+  const head = ["RIFF", long(36 + bytes), "WAVEfmt ", ...format, "data", long(bytes)];
+  const samples = /** @type {BlobPart[]} */ (chunks);
+  return new Blob([...head, ...samples], { type: "audio/wav" });
 }

@@ -18,7 +18,7 @@ const HELP = "?";
 const FIRST_NOTE = 69; // that a ring invites to
 
 /** @param {Page} page @param {import('./tunes.js').Lesson} lesson */
-export function showGuide({ instrument, hands, bow, fingerboard, keys, yehu }, lesson) {
+export function showGuide({ instrument, hands, bow, keys, yehu }, lesson) {
   const stage = find("stage", HTMLElement);
   const guide = find("guide", HTMLElement);
   let at = -1; // before it, or after
@@ -120,7 +120,7 @@ export function showGuide({ instrument, hands, bow, fingerboard, keys, yehu }, l
     find("invite", HTMLElement).hidden = true;
     notice("begin");
   };
-  for (const hand of [keys, fingerboard, bow]) hand.addEventListener("play", begin);
+  hands.addEventListener("play", begin);
   // The computer's keys are printed on the fingerboard, once one is pressed.
   const print = () => {
     yehu.keys = new Map([...NOTES].map(([code, note]) => [note + keys.octave, signOf(code)]));

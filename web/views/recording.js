@@ -77,7 +77,7 @@ function recording(instrument) {
 }
 
 /** @param {Page} page */
-function performances({ instrument, keys, fingerboard, bow }) {
+function performances({ instrument, hands }) {
   const word = make("p", { class: "soft", role: "status" });
   const offer = make("div", { class: "row" });
   const keep = keeping(
@@ -159,9 +159,7 @@ function performances({ instrument, keys, fingerboard, bow }) {
   });
   instrument.addEventListener("silence", () => replayer?.stop());
   // Whoever plays while it plays goes on from there.
-  for (const hand of [keys, fingerboard, bow]) {
-    hand.addEventListener("play", () => replayer?.yield());
-  }
+  hands.addEventListener("play", () => replayer?.yield());
   invite(instrument, play);
   const lack = judge(instrument, keep, (sound) => !sound || Boolean(sound.keep));
   const row = make("div", { class: "row" }, [keep, load.button, input]);

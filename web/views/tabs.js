@@ -3,6 +3,7 @@
 /** @typedef {import('../main.js').Page} Page */
 
 import { find, makeButton, words } from "../elements.js";
+import { onLanguage, translate } from "../i18n.js";
 import { remember, settings } from "../settings.js";
 
 const PANELS = ["see", "sound", "tunes", "keep", "connect", "all"];
@@ -14,6 +15,8 @@ const PANELS = ["see", "sound", "tunes", "keep", "connect", "all"];
 export function showTabs({ gallery }) {
   const list = find("tabs", HTMLElement);
   const more = find("more", HTMLElement);
+  const shown = find("shown", HTMLElement);
+  const tell = () => (shown.textContent = settings.panel && translate(`tab.${settings.panel}`));
   const tabs = PANELS.map((name) => {
     const tab = makeButton(
       words(`tab.${name}`),
@@ -43,6 +46,7 @@ export function showTabs({ gallery }) {
       tab.offsetLeft + tab.offsetWidth - list.clientWidth,
     );
     remember({ panel: chosen });
+    tell();
     gallery.renew();
   }
 
@@ -62,6 +66,7 @@ export function showTabs({ gallery }) {
     choose("");
     tab?.focus();
   });
+  onLanguage(tell);
   choose(PANELS.includes(settings.panel) ? settings.panel : "");
   return () => getComputedStyle(more).position === "fixed" && choose("");
 }

@@ -1,6 +1,6 @@
 /** Looks at the page in every size, theme and language; prints what it finds. */
 
-import { READY, SIZES, held, open, pretendMidi, run, wished, wishes } from "./browser.mjs";
+import { READY, SIZES, drawn, held, open, pretendMidi, run, wished, wishes } from "./browser.mjs";
 
 /** Elements that a finger should be able to touch, and their sizes. */
 const TARGETS = "button:not([hidden]), select, input, summary, canvas[tabindex]";
@@ -48,6 +48,17 @@ await run(async (browser, url) => {
     found.errors.push(...errors);
     await page.close();
   }
+
+  // A panel beside the instrument, on a laptop.
+  const { page: laptop } = await open(browser, url);
+  await laptop.setViewportSize({ width: 1280, height: 720 });
+  await laptop.click("#tab-sound");
+  await drawn(laptop);
+  found.beside = {
+    more: await laptop.isVisible("#more"),
+    shift: await laptop.isVisible("#higher"),
+  };
+  await laptop.close();
 
   const { page, errors } = await open(browser, url);
   // The way through the page by the tab key, from its beginning to the tabs.

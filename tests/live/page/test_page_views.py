@@ -67,6 +67,10 @@ def test_what_has_the_focus_is_seen_to_have_it(found) -> None:
     assert {each["ring"] for each in found["focus"]} == {"solid"}
 
 
+def test_all_notes_are_there_beside_a_panel_on_a_laptop(found) -> None:
+    assert found["beside"] == {"more": True, "shift": False}
+
+
 def test_load_and_latency_are_told_where_they_are_high(found) -> None:
     assert found["status"] == ["", "load 85 % · latency 12 ms"]
 

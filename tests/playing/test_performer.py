@@ -9,6 +9,7 @@ from hands import Checked, Move, Watched, ideal
 
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import FIRST, TOP_SPEED, default_recipes
+from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.playing.wishes import Key
@@ -89,6 +90,17 @@ def test_a_string_may_be_wished_for(player, listener, wish, note, expected):
     player.note_on(key(71))  # from here the F string would be nearer for 74
     player.write("/playing/string", wish)
     player.note_on(key(note))
+    assert listener.where() == expected
+
+
+@pytest.mark.parametrize(("wish", "expected"), [(0.0, ("F", 7)), (2.0, ("C", None))])
+def test_a_string_may_be_wished_for_a_note_that_no_string_has_all_of(
+    player, listener, wish, expected
+):
+    player.note_on(key(71))
+    player.write("/playing/string", wish)
+    player.write("/playing/articulation", float(NUMBER["sliding-vibrato"]))
+    player.note_on(key(72))  # its vibrato goes below the open C string
     assert listener.where() == expected
 
 

@@ -95,18 +95,19 @@ def stay(p: Any, pitch: float, speed: float) -> tuple[int, float]:
 
 @compiled_exactly
 def choose_for_slide(
-    p: Any, pitch: float, low: float, high: float, speed: float
+    p: Any, pitch: float, low: float, high: float, speed: float, is_new: bool
 ) -> tuple[int, float]:
     """The fingering of a pitch where the finger slides between two others, on one string if it can.
 
-    Returns as `choose` does.
+    If it cannot, a note that is new is fingered as without a slide; else the finger goes on from
+    where it is. Returns as `choose` does.
     """
     first, second = p.open_note[0], p.open_note[1]
     if low < second + OPEN_WITHIN and high <= p.highest[0] and wished_string(p) != 1:
         return 0, OPEN if pitch < first + OPEN_WITHIN else learnt_position(p, 0, pitch, speed)
     if low > second and pitch > second + OPEN_WITHIN and wished_string(p) != 0:
         return 1, learnt_position(p, 1, pitch, speed)
-    return stay(p, pitch, speed) if p.string >= 0 else choose(p, pitch, speed)
+    return choose(p, pitch, speed) if is_new else stay(p, pitch, speed)
 
 
 @compiled_exactly

@@ -153,7 +153,8 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
         low, high = REACH[p.gesture.row, 0], REACH[p.gesture.row, 1]
         if low < high:  # on the string that has all of the slide
             aim = pitch - p.gesture.bend
-            string, position = choose_for_slide(p, pitch, aim + low, aim + high, wished_speed(p))
+            low, high = aim + low, aim + high
+            string, position = choose_for_slide(p, pitch, low, high, wished_speed(p), True)
         else:
             string, position = choose(p, pitch, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
@@ -184,7 +185,8 @@ def begin_from_last(p: Any, slide_ms: float) -> tuple[int, float]:
     wished = note_pitch(p)
     begin_slide(p, p.finger_pitch - wished, p.gesture.bend, 0.0, 1e-3 * slide_ms)
     pitch = note_pitch(p)
-    return choose_for_slide(p, pitch, min(pitch, wished), max(pitch, wished), wished_speed(p))
+    low, high = min(pitch, wished), max(pitch, wished)
+    return choose_for_slide(p, pitch, low, high, wished_speed(p), False)
 
 
 @compiled_exactly

@@ -84,7 +84,7 @@ def regimes(strings: list[Maps], target: Path, errors: str) -> None:
     save(figure, target / "playability_schelleng.png")
 
 
-def onsets(strings: list[Maps], target: Path, errors: str) -> None:
+def onsets(strings: list[Maps], target: Path) -> None:
     """Draw Guettler's diagram of every note on both strings."""
 
     def draw(axes: Any, maps: Maps, i: int) -> Any:
@@ -93,7 +93,6 @@ def onsets(strings: list[Maps], target: Path, errors: str) -> None:
 
     figure, panels, image = of_all_notes(strings, "acceleration", draw)
     figure.colorbar(image, ax=panels, label=f"{PERIODS}; grey: never", aspect=50, pad=0.01)
-    figure.suptitle(errors, fontsize=9)
     save(figure, target / "playability_guettler.png")
 
 
@@ -154,7 +153,7 @@ def main() -> None:
     }
     errors = Errors.of(found["repeats"]).text
     regimes(found["schelleng"], target, errors)
-    onsets(found["guettler"], target, errors)
+    onsets(found["guettler"], target)
     forces(found["schelleng"], target)
     repeats(found["repeats"], target, errors)
     if len(sys.argv) == 1:

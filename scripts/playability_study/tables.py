@@ -28,11 +28,11 @@ def write_tables(found: Mapping[str, Sequence[Maps]]) -> None:
     """Write all tables that come of the maps."""
     errors = Errors.of(found["repeats"])
     write_table("strokes", strokes(found))
-    write_table("schelleng", [*schelleng(found["schelleng"]), *errors.rows(1, 3)])
-    write_table("notes", [*notes(found["schelleng"], found["guettler"]), *errors.rows(1, 9)])
-    write_table("guettler", [*guettler(found["guettler"]), *errors.rows(1, 3)])
+    write_table("schelleng", [*schelleng(found["schelleng"]), *errors.rows(3)])
+    write_table("notes", [*notes(found["schelleng"], found["guettler"]), *errors.rows(9)])
+    write_table("guettler", guettler(found["guettler"]))
     write_table("repeats", repeats(found["repeats"]))
-    write_table("speeds", [*speeds(found["speeds"]), *errors.rows(1, 4)])
+    write_table("speeds", speeds(found["speeds"]))
 
 
 @dataclass(frozen=True)
@@ -70,14 +70,13 @@ class Errors:
             f"rate {self.cells:.0%} of cells are of another regime"
         )
 
-    def rows(self, at: int, columns: int) -> list[str]:
-        """Rows for the end of a table whose shares are in the columns from `at` on."""
+    def rows(self, columns: int) -> list[str]:
+        """Rows for the end of a table whose shares of Helmholtz motion are in the second column."""
         told = (
             ("error of a share, by the sample rate", f"± {self.by_rate:.1f} points"),
             ("error of a share, by other hair", f"± {self.by_hair:.1f} points"),
         )
-        rows = [[name, *[""] * (at - 1), bar, *[""] * (columns - at - 1)] for name, bar in told]
-        return table([], rows)[2:]
+        return table([], [[name, bar, *[""] * (columns - 2)] for name, bar in told])[2:]
 
 
 def write_table(name: str, rows: Sequence[str]) -> None:

@@ -252,7 +252,7 @@ class Housekeeper:
         self._counters.look(
             {
                 "the model lost its state and was put back to rest": self._ensemble.lost_states,
-                "events were dropped, as the ring was full": sum(
+                "events were dropped, as the ring was full or their time too far ahead": sum(
                     instrument.dropped_events for instrument in self._ensemble.instruments
                 ),
                 "OSC packets were dropped by the system": self._osc_drops(),

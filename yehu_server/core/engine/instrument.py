@@ -201,7 +201,7 @@ class Instrument:
 
     @property
     def dropped_events(self) -> int:
-        """Number of events dropped because a ring was full, since the start."""
+        """Number of events dropped, since the start: a ring was full, or a time too far ahead."""
         return int(self._rig["mail"]["dropped"][0, :, 0].sum())
 
     @property

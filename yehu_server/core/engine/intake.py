@@ -107,7 +107,7 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
     """Move posted events to the heap of a part, up to the budget of a callback.
 
     A writer that lost its count, or laps the reader, loses what it wrote; and so does one that
-    writes frames that are no time at all, which would fill the heap for ever. Both are counted.
+    writes frames too far from now, which would fill the heap for ever. Both are counted.
     """
     events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
     for writer in range(WRITERS):

@@ -100,12 +100,12 @@ FOLLOWER = np.dtype(
 
 
 def ends_of(notes: NoteRange) -> tuple[float, ...]:
-    """The fields ENDS of a follower for the notes of an instrument."""
+    """The fields NOTE_LIMITS of a follower for the notes of an instrument."""
     inner = notes.open_notes[1] + ON_INNER, notes.highest_notes[0] - ON_OUTER
     return (*map(float, notes.ends), *inner)
 
 
-ENDS = ("lowest", "highest", "on_inner", "on_outer")
+NOTE_LIMITS = ("lowest", "highest", "on_inner", "on_outer")
 OF_YEHU = ends_of(YEHU)
 
 

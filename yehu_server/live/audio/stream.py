@@ -85,11 +85,11 @@ def _following(address: int, order: Message) -> tuple[Any, Any]:
     import numpy as np
 
     from yehu_server.core.engine.voice_callback import follow_input, voice_prepare
-    from yehu_server.core.voice.deciding import ENDS, FOLLOWER
+    from yehu_server.core.voice.deciding import FOLLOWER, NOTE_LIMITS
 
     voice = np.zeros(1, FOLLOWER)
     voice_prepare.call(voice.ctypes.data, order["rate"], order["transpose"])
-    for field, end in zip(ENDS, order["ends"], strict=True):
+    for field, end in zip(NOTE_LIMITS, order["ends"], strict=True):
         voice[field] = end
     voice["rig"] = address
     return follow_input, voice

@@ -61,6 +61,8 @@ def test_what_a_fiddle_is_tuned_to_follows_from_its_strings():
             notes_of(tuned(*strings))
     with pytest.raises(ParameterError, match="at most 3 octaves from a yehu's"):
         notes_of(override(tuned(7.0, 7.0), {"bridge_x": 0.05}))
+    with pytest.raises(ParameterError, match=r"stopped up to F6, which is above .* D6"):
+        notes_of(override(Quantities(), {"string_1": {"reach": 24}, "string_2": {"reach": 14}}))
 
 
 def test_a_file_may_be_based_on_another_and_not_on_itself(tmp_path):

@@ -41,7 +41,14 @@ def notes_of(quantities: Quantities) -> NoteRange:
         )
     if max(abs(first), abs(second)) > FARTHEST:
         raise ParameterError(f"{sound}: expected at most {FARTHEST // 12} octaves from a yehu's")
-    return NoteRange.tuned_to((inner, outer), quantities)
+    notes = NoteRange.tuned_to((inner, outer), quantities)
+    first_highest, second_highest = notes.highest_notes
+    if first_highest > second_highest:
+        raise ParameterError(
+            f"string_1.reach: the first string is stopped up to {note_name(first_highest)}, which "
+            f"is above the highest note of the second, {note_name(second_highest)}"
+        )
+    return notes
 
 
 def range_text(notes: NoteRange) -> str:

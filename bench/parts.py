@@ -106,10 +106,7 @@ class Kernel:
     def advance(self, rows: Any, probes: Any) -> float:
         """Advance over rows of controls; return the seconds it took."""
         start = time.perf_counter()
-        if self.refined is None:
-            kernel.advance(self.model, self.state, rows, probes, None)
-        else:
-            refined.advance(self.model, self.state, self.refined, rows, probes, None)
+        refined.run(self.model, self.state, self.refined, rows, probes, None)
         return time.perf_counter() - start
 
     def fastest_ns(self) -> tuple[float, float]:

@@ -191,10 +191,7 @@ def simulate(
                 shaped[i].append(shape_of(m, state["motion"][0], i))
         part = slice(start, min(start + hop, frames))
         kept = ledger[part] if energy else None
-        if more is None:
-            kernel.advance(model, state, controls[part], probes[part], kept)
-        else:
-            refined.advance(model, state, more, controls[part], probes[part], kept)
+        refined.run(model, state, more, controls[part], probes[part], kept)
         if progress is not None:
             progress(part.stop / gesture.sample_rate, gesture.duration)
 

@@ -41,5 +41,7 @@ def test_torsion_and_width_are_heard_the_same_in_blocks_of_any_size():
 
 
 def test_they_are_not_played_live_where_another_process_has_the_sound():
-    with pytest.raises(ParameterError, match="torsion and the width of the hair are not played"):
+    with pytest.raises(
+        ParameterError, match="torsion, wide hair, hyperbolic and viscous friction are not played"
+    ):
         Instrument(InstrumentSpec(RATE, REFINED), is_live=True)

@@ -103,11 +103,7 @@ def play(
     state["motion"]["stored"] = stored_energy(
         model[0], state[0]["motion"], level, (level + 2) % layout.LEVELS
     )
-    kept = book if ledger else None
-    if more is None:
-        kernel.advance(model, state, controls, probes, kept)
-    else:
-        refined.advance(model, state, more, controls, probes, kept)
+    refined.run(model, state, more, controls, probes, book if ledger else None)
     return Run(rate, model, state, more, controls, probes, book)
 
 

@@ -1,4 +1,4 @@
-"""Hair of some width, and torsion: the energy ledger, and the plain motion at no width."""
+"""Wide hair, torsion, other friction: the energy ledger, and the plain motion at no width."""
 
 import numpy as np
 import pytest
@@ -13,6 +13,8 @@ KINDS = {
     "torsion": {"torsion": "on"},
     "width": WIDE,
     "both": WIDE | {"torsion": "on"},
+    "hyperbolic": {"bow": {"friction": "hyperbolic"}},
+    "both, viscous": {"torsion": "on", "bow": {"width": 0.008, "epsilon_2": 0.4}},
     "both, thermal": {
         "torsion": "on",
         "bow": {"width": 0.008, "points": 3, "friction": "thermal"},
@@ -37,7 +39,7 @@ def jumps(t):
 
 @pytest.mark.parametrize("rate", [44100.0, 88200.0, 352800.0])
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_ledger_closes_with_torsion_and_width(kind, rate):
+def test_the_ledger_closes_with_torsion_width_and_other_friction(kind, rate):
     quantities = override(YEHU, KINDS[kind])
     seconds = 0.4 if rate < 1e5 else 0.1
     for curves, fingers in ((performance, 1), (jumps, 2)):

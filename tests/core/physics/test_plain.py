@@ -27,10 +27,7 @@ def step_through(quantities: Quantities) -> np.ndarray:
     controls[20:, layout.FINGER_CONTROLS] = 0.25  # under the bow: contacts are solved jointly
     probes = np.zeros((FRAMES, layout.probe_columns(3)))
     ledger = np.zeros((FRAMES, len(layout.LEDGER)))
-    if more is None:
-        kernel.advance(model, state, controls, probes, ledger)
-    else:
-        refined.advance(model, state, more, controls, probes, ledger)
+    refined.run(model, state, more, controls, probes, ledger)
     return np.hstack([probes, ledger])
 
 

@@ -23,7 +23,7 @@ def modes(string, rate):
 
 
 def advanced(model, more, frames):
-    """Controls, probes, and the state, after frames in which nothing touches the strings."""
+    """Let frames pass in which nothing touches the strings; the level that is now."""
     rows = np.zeros((frames, layout.control_columns(1)))
     rows[:, layout.X_B] = 0.255
     state = kernel.at_rest(model)

@@ -92,7 +92,9 @@ class Instrument:
         rig["state"] = kernel.at_rest(rig["model"])
         made = refined.prepare(spec.quantities, self.rate)
         if made is not None and self.is_live:  # the audio process has code at other addresses
-            raise ParameterError("torsion and the width of the hair are not played live")
+            raise ParameterError(
+                "torsion, wide hair, hyperbolic and viscous friction are not played live"
+            )
         refine(rig, made)
         rig["controls"] = prepare_controls(spec.quantities, self.rate, values)
         rig["player"] = prepare_player(

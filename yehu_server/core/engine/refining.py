@@ -1,6 +1,6 @@
-"""Calls the kernel of an instrument with torsion or wide hair, where one is played. Compiled.
+"""Calls the kernel of an instrument that is not plain (refined.py), where one is played. Compiled.
 
-Few instruments have either, and that kernel takes long to compile. So it is compiled with the first
+Few instruments are, and that kernel takes long to compile. So it is compiled with the first
 such instrument, and the others call it by the address in their memory; 0 is the plain kernel.
 """
 

@@ -12,12 +12,24 @@ from yehu_server.core.physics.bow import contact_velocity
 from yehu_server.core.physics.grid import read
 from yehu_server.core.physics.layout import (
     BOW,
+    CONSTRAINT_RESIDUAL,
+    ENERGY,
+    ENERGY_ERROR,
     F_HAMMER,
     F_N,
     GHOST,
     LEVELS,
+    LOSS_BOW_LIFT,
+    LOSS_BRIDGE,
+    LOSS_CONTACT_RESET,
+    LOSS_FINGER,
+    LOSS_FRICTION,
+    LOSS_HAIR,
+    LOSS_STRINGS,
+    POWER_IN,
     STRINGS,
     V_B,
+    V_R_RESIDUAL,
     whole_vectors,
 )
 from yehu_server.core.physics.pluck import pluck_power
@@ -136,11 +148,11 @@ def book(model: Model, s: Motion, c: Contacts, w: Work, control: Array, row: Arr
     for i in range(STRINGS):
         at_bridge = read(s.u[next_, i], model.bridge_first[i], model.bridge_weights[i])
         residual = max(residual, abs(at_bridge - Q))
-    row[0] = stored
-    row[1] = power
-    row[2], row[3], row[4], row[5], row[6] = strings, bridge, finger, hair, friction
-    row[7], row[8] = lifted, reset
-    row[9] = (stored - s.stored) / k - power + losses
-    row[10] = abs(v_r - s.v_r) if abs(control[F_N]) >= model.lift_force else 0.0
-    row[11] = residual
+    row[ENERGY], row[POWER_IN] = stored, power
+    row[LOSS_STRINGS], row[LOSS_BRIDGE], row[LOSS_FINGER] = strings, bridge, finger
+    row[LOSS_HAIR], row[LOSS_FRICTION] = hair, friction
+    row[LOSS_BOW_LIFT], row[LOSS_CONTACT_RESET] = lifted, reset
+    row[ENERGY_ERROR] = (stored - s.stored) / k - power + losses
+    row[V_R_RESIDUAL] = abs(v_r - s.v_r) if abs(control[F_N]) >= model.lift_force else 0.0
+    row[CONSTRAINT_RESIDUAL] = residual
     s.stored = stored

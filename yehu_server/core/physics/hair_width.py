@@ -25,6 +25,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.contacts import place_hair
 from yehu_server.core.physics.friction import solve_friction
+from yehu_server.core.physics.friction_curve import solve_curve
 from yehu_server.core.physics.grid import read
 from yehu_server.core.physics.layout import LEVELS, POINT, STRINGS
 from yehu_server.core.physics.quantities import Quantities
@@ -90,16 +91,23 @@ def solve_points(m: Model, state: State, t: Refined, string: int, F_N: float) ->
             for other in range(t.points):
                 if other != e:
                     free -= t.mobility[e, other] * t.f_b[other]
-            mu_S = static_coefficient(m, t.w[e, string])
-            tangent = (t.tangent[e, 0], t.tangent[e, 1], t.tangent[e, 2])
-            f_b, z_bar, v_r, tangent, again, converged = solve_friction(
-                free, mobility, t.z[e, string], F_N, mu_S, tangent, m, string
-            )
+            # Viscous friction is linear: the law proper sees a string that yields less.
+            less = 1.0 / (1.0 + mobility * t.epsilon_2)
+            if t.is_hyperbolic:
+                f_b, v_r = solve_curve(free * less, mobility * less, F_N, t.v_r[e], m)
+                iterations += 1
+            else:
+                mu_S = static_coefficient(m, t.w[e, string])
+                tangent = (t.tangent[e, 0], t.tangent[e, 1], t.tangent[e, 2])
+                f_b, t.z_bar[e], v_r, tangent, again, converged = solve_friction(
+                    free * less, mobility * less, t.z[e, string], F_N, mu_S, tangent, m, string
+                )
+                t.tangent[e, 0], t.tangent[e, 1], t.tangent[e, 2] = tangent
+                iterations += again
+                is_solved = is_solved and converged
+            f_b += t.epsilon_2 * v_r
             change = max(change, abs(f_b - t.f_b[e]) * mobility)
-            t.f_b[e], t.z_bar[e], t.v_r[e] = f_b, z_bar, v_r
-            t.tangent[e, 0], t.tangent[e, 1], t.tangent[e, 2] = tangent
-            iterations += again
-            is_solved = is_solved and converged
+            t.f_b[e], t.v_r[e] = f_b, v_r
         if t.points == 1 or change <= SETTLED or sweeps == MOST_SWEEPS:
             break
     if not is_solved or (t.points > 1 and change > 100.0 * SETTLED):

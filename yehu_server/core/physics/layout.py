@@ -256,9 +256,12 @@ STATE = lined_up(
     ]
 )
 
-# What only an instrument with torsion, or with hair of some width, has (refined.py).
+# What only an instrument with torsion, hair of some width or another friction has (refined.py).
 REFINED = lined_up(
     [
+        # another law of friction
+        ("is_hyperbolic", np.uint8),
+        ("epsilon_2", np.float64),
         # width of the hair
         ("points", np.int64),
         ("share", np.float64),
@@ -334,7 +337,7 @@ def whole_vectors(count: int) -> int:
     return int((np.int64(count) + VECTOR - 1) & -VECTOR)
 
 
-# Columns of the energy ledger: J, then W, then two residuals (m/s and m).
+# Columns of the energy ledger, by name and by number: J, then W, then two residuals (m/s and m).
 LEDGER = (
     "energy",
     "power_in",
@@ -349,3 +352,17 @@ LEDGER = (
     "v_r_residual",
     "constraint_residual",
 )
+(
+    ENERGY,
+    POWER_IN,
+    LOSS_STRINGS,
+    LOSS_BRIDGE,
+    LOSS_FINGER,
+    LOSS_HAIR,
+    LOSS_FRICTION,
+    LOSS_BOW_LIFT,
+    LOSS_CONTACT_RESET,
+    ENERGY_ERROR,
+    V_R_RESIDUAL,
+    CONSTRAINT_RESIDUAL,
+) = range(len(LEDGER))

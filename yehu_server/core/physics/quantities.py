@@ -13,6 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from yehu_server.core.physics.layout import MAX_POINTS
 from yehu_server.errors import ParameterError
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.values import brief, number
@@ -29,6 +30,13 @@ def quantity(
     return field(default=default, metadata={"unit": unit, "lo": lo, "hi": hi, "source": source})
 
 
+def count(default: float, lo: int, hi: int, source: str) -> Any:
+    """A dataclass field for a whole number."""
+    return field(
+        default=default, metadata={"unit": "1", "lo": lo, "hi": hi, "source": source, "whole": True}
+    )
+
+
 def choice(default: str, *others: str, source: str) -> Any:
     """A dataclass field for a choice between words; the first is the default."""
     return field(default=default, metadata={"choices": (default, *others), "source": source})
@@ -37,6 +45,7 @@ def choice(default: str, *others: str, source: str) -> Any:
 TABLE_1 = "[Yehu] table 1"
 DATA_SET = "[YehuData]"
 SMITH = "chosen: see rosin_heat.py; [Smith]"
+OTHER_LAWS = "[Yehu]; see rosin_heat.py, friction_curve.py"
 
 
 @dataclass(frozen=True)
@@ -92,11 +101,12 @@ class BowQuantities:
         1e-3, "N", 1e-6, 1.0, "chosen: a bow force below this is a lifted bow"
     )
     grain: float = quantity(3e-4, "m", 1e-6, 0.1, "by ear: see docs/physics.md")
-    hair: float = quantity(0.0, "1", 0.0, 65535.0, "chosen: which of many alike")
+    hair: float = count(0.0, 0, 65535, "chosen: which of many alike")
     width: float = quantity(0.0, "m", 0.0, 0.03, "chosen: see decisions/0022")
-    points: float = quantity(2.0, "1", 2.0, 4.0, "chosen: that share a width above 0")
-    friction: str = choice("elasto-plastic", "thermal", source=SMITH)
+    points: float = count(2.0, 2, MAX_POINTS, "chosen: that share a width above 0")
+    friction: str = choice("elasto-plastic", "thermal", "hyperbolic", source=OTHER_LAWS)
     cooling_time: float = quantity(1e-4, "s", 1e-6, 1.0, SMITH)
+    epsilon_2: float = quantity(0.0, "kg/s", 0.0, 100.0, "[Willemsen]: viscous; [Yehu]: none")
 
 
 @dataclass(frozen=True)
@@ -240,7 +250,7 @@ class Quantities:
 
 
 def override(
-    base: Quantities, changes: Mapping[str, Any] | Fields, folder: Path = Path(), depth: int = 0
+    base: Quantities, changes: Mapping[str, Any] | Fields, folder: Path = Path()
 ) -> Quantities:
     """Return `base` with some quantities replaced.
 
@@ -258,14 +268,18 @@ def override(
     ParameterError
         For an unknown name, a wrong type, a value out of bounds.
     """
-    table = Fields.of(changes, "instrument")
+    return _override_all(base, Fields.of(changes, "instrument"), folder, 0)
+
+
+def _override_all(base: Quantities, table: Fields, folder: Path, depth: int) -> Quantities:
+    """As `override`, of a file on which `depth` others are based."""
 
     def read_base(name: Any) -> Quantities:
         if depth == MOST_BASES:
             raise ParameterError(
                 f"{brief(name)}: more than {MOST_BASES} files are based on another"
             )
-        return read_quantities(folder / str(name), depth + 1)
+        return _read_quantities(folder / str(name), depth + 1)
 
     with table.at():
         base = table.read("base", read_base, base)
@@ -287,21 +301,24 @@ def _override(base: Any, table: Fields, folder: Path) -> Any:
             values[name] = table.read(name, _checked, None, item)
         else:
             values[name] = _override(getattr(base, name), table.table(name), folder)
-    table.only(*(item.name for item in fields(base)), "base")
+    table.only(*(item.name for item in fields(base)))
     return replace(base, **values)
 
 
 def _checked(value: Any, item: Any) -> Any:
     lo, hi, unit = item.metadata["lo"], item.metadata["hi"], item.metadata["unit"]
     if not isinstance(item.default, tuple):
-        return number(value, lo, hi, unit)
+        found = number(value, lo, hi, unit)
+        if "whole" in item.metadata and not found.is_integer():
+            raise ParameterError(f"expected a whole number from {lo} to {hi}, got {brief(value)}")
+        return found
     count = len(item.default)
     if not isinstance(value, list | tuple) or len(value) != count:
         raise ParameterError(f"expected {count} numbers, got {brief(value)}")
     return tuple(number(entry, lo, hi, unit) for entry in value)
 
 
-def read_quantities(path: Path, depth: int = 0) -> Quantities:
+def read_quantities(path: Path) -> Quantities:
     """Read an instrument file (TOML, or JSON by its ending) of quantities to change.
 
     Raises
@@ -309,6 +326,10 @@ def read_quantities(path: Path, depth: int = 0) -> Quantities:
     ParameterError
         Naming the file.
     """
+    return _read_quantities(path, 0)
+
+
+def _read_quantities(path: Path, depth: int) -> Quantities:
     document = Document(path, "an instrument file").read(path)
     table = document.json() if path.suffix == ".json" else document.toml()
-    return override(Quantities(), table, path.parent, depth)
+    return _override_all(Quantities(), table, path.parent, depth)

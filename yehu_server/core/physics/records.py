@@ -192,6 +192,8 @@ class State(Protocol):
 class Refined(Protocol):
     """What an instrument with torsion, or with wide hair, has besides."""
 
+    is_hyperbolic: int
+    epsilon_2: float
     points: int
     share: float
     offset: Array

@@ -1,9 +1,9 @@
-"""The time loop of an instrument with torsion, or with hair of some width.
+"""The time loop of an instrument with torsion, hair of some width, or another law of friction.
 
 The step of kernel.py with several points in the place of the bow, each of which also twists the
-string. It is apart from that one, so that an instrument without either pays nothing. All contacts
+string. It is apart from that one, so that an instrument without them pays nothing. All contacts
 are solved jointly; the fingers are eliminated with a column for each point.
-docs/derivation.md, sections 8 and 9.
+docs/derivation.md, sections 8 to 10.
 """
 
 from __future__ import annotations
@@ -11,7 +11,13 @@ from __future__ import annotations
 from typing import Any
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.bow import advance_hair, choose_string, friction_limit
+from yehu_server.core.physics import kernel
+from yehu_server.core.physics.bow import (
+    FRICTION_MARGIN,
+    advance_hair,
+    choose_string,
+    friction_limit,
+)
 from yehu_server.core.physics.bridge import (
     advance_bridge,
     eliminate_tension_and_bridge,
@@ -24,9 +30,14 @@ from yehu_server.core.physics.contacts import (
     place_contacts,
     response,
 )
-from yehu_server.core.physics.elimination import assemble_contacts, find_travel
+from yehu_server.core.physics.elimination import (
+    assemble_contacts,
+    back_substitute_jointly,
+    find_travel,
+)
 from yehu_server.core.physics.energy import book
-from yehu_server.core.physics.finger import advance_contact, advance_fingers, limit_gradients
+from yehu_server.core.physics.finger import advance_fingers, limit_gradients
+from yehu_server.core.physics.friction_curve import prepare_friction
 from yehu_server.core.physics.grid import read, spread
 from yehu_server.core.physics.hair import grip
 from yehu_server.core.physics.hair_width import (
@@ -39,17 +50,23 @@ from yehu_server.core.physics.hair_width import (
     solve_points,
     warm_points,
 )
-from yehu_server.core.physics.kernel import measure
 from yehu_server.core.physics.layout import (
     BOW,
+    ENERGY,
+    ENERGY_ERROR,
     F_HAMMER,
     F_N,
     ITERATIONS,
     LEVELS,
+    LOSS_FINGER,
+    LOSS_FRICTION,
+    LOSS_HAIR,
+    LOSS_STRINGS,
     POINT,
     REFINED,
     STRINGS,
     V_B,
+    V_R_RESIDUAL,
     X_B,
     new_record,
 )
@@ -71,18 +88,22 @@ from yehu_server.core.physics.torsion import (
 
 
 def prepare(quantities: Quantities, rate: float) -> Any:
-    """What an instrument has besides ``kernel.prepare``, at rest; None where it has neither.
+    """What an instrument has besides ``kernel.prepare``, at rest; None where it has nothing.
 
     Returns: ndarray [shape=(1,), dtype=layout.REFINED].
 
     Raises
     ------
     ParameterError
-        Where no torsional mode is low enough for the sample rate.
+        Where no torsional mode is low enough for the sample rate, or hair with a friction that is
+        hyperbolic has some width.
     """
-    if quantities.torsion == "off" and quantities.bow.width == 0.0:
+    bow = quantities.bow
+    is_plain = bow.width == 0.0 and bow.friction != "hyperbolic" and bow.epsilon_2 == 0.0
+    if is_plain and quantities.torsion == "off":
         return None
     refined = new_record(REFINED)
+    prepare_friction(refined[0], quantities)
     prepare_width(refined[0], quantities)
     if quantities.torsion == "on":
         prepare_torsion(refined[0], quantities, 1.0 / rate)
@@ -118,10 +139,28 @@ def advance(
         if ledger is not None and n < ledger.shape[0]:
             book(m, s.motion, s.contacts, s.work, controls[n], ledger[n])
             book_points(m, s, t, controls[n], ledger[n])
-        measure(m, s, probes[n])
+        kernel.measure(m, s, probes[n])
         if probes[n, ITERATIONS] < 0.0:  # lost
             come_to_rest(t)
         next_, now, prev = prev, next_, now
+
+
+def run(
+    model: Records,
+    state: Records,
+    refined: Records | None,
+    controls: Array,
+    probes: Array,
+    ledger: Array | None,
+) -> None:
+    """Advance by the kernel that an instrument has: `refined` is what `prepare` returned.
+
+    Not compiled, so that the other kernel is not compiled either.
+    """
+    if refined is None:
+        kernel.advance(model, state, controls, probes, ledger)
+    else:
+        advance(model, state, refined, controls, probes, ledger)
 
 
 @compiled
@@ -182,7 +221,7 @@ def step(
         for e in range(t.points):
             w.tau[i] += t.responses[e, i] * t.share * t.f_b[e]
             w.f_c[i] += t.responses[e, STRINGS + i] * t.share * t.f_b[e]
-    back_substitute(m, state, t, next_)
+    back_substitute_fingers(m, state, t, next_)
     move_strings(m, s, c, w, u_next, near, bowed=False)
     for e in range(t.points):
         p, f = POINT + e, t.share * t.f_b[e]
@@ -212,7 +251,10 @@ def eliminate_fingers(
     s, c, w = state.motion, state.contacts, state.work
     c.is_chain = 0
     w.Delta_u_at[BOW] = read(s.Delta_u[c.string[BOW]], c.first[BOW], c.weights[BOW])
-    f_b, margin = (s.f_b, abs(s.f_b) + friction_limit(m, F_N)) if bowed else (0.0, 0.0)
+    f_b, margin = 0.0, 0.0
+    if bowed:
+        viscous = FRICTION_MARGIN * t.epsilon_2 * abs(t.free[0])
+        f_b, margin = s.f_b, abs(s.f_b) + friction_limit(m, F_N) + viscous
     # theta is found with the friction of the last step, in the middle of the hair.
     if find_travel(m, s, c, w, u_next, next_, near, response(c, w, BOW), f_b, margin):
         limit_gradients(s, c, w, near, f_b)
@@ -240,23 +282,19 @@ def eliminate_fingers(
 
 
 @compiled
-def back_substitute(m: Model, state: State, t: Refined, next_: int) -> None:
-    """Find the fingers' forces from those of the points, from the last contact to the first."""
-    s, c, w = state.motion, state.contacts, state.work
+def back_substitute_fingers(m: Model, state: State, t: Refined, next_: int) -> None:
+    """Find the fingers' forces from those of the points.
+
+    What all points move each contact by is folded into one column, that of one newton.
+    """
+    w = state.work
     count = w.touching_count
-    for back in range(count):
-        row = count - 1 - back
-        p, displacement = w.touching[row], 0.0
+    for row in range(count):
+        displacement = 0.0
         for e in range(t.points):
             displacement += w.G[row, count + e] * t.share * t.f_b[e]
-        for other in range(row + 1, count):
-            displacement += w.G[row, other] * w.f_f[w.touching[other]]
-        f_f = w.d[row] - w.A_f[row] * displacement
-        advance_contact(m, s, w, next_, p, f_f)
-        p_response = response(c, w, p)
-        for i in range(STRINGS):
-            w.tau[i] += p_response[i] * f_f
-            w.f_c[i] += p_response[STRINGS + i] * f_f
+        w.G[row, count] = displacement
+    back_substitute_jointly(m, state.motion, state.contacts, w, next_, 1.0)
 
 
 @compiled
@@ -276,9 +314,10 @@ def book_points(m: Model, state: State, t: Refined, control: Array, row: Array) 
             friction += t.share * (t.f_b[e] * v_r - m.epsilon_0 * t.z_bar[e] * t.r[e])
             residual = max(residual, abs(v_r - t.v_r[e]))
     hair = hair_loss(m, t, next_, prev)
-    row[9] += (stored - t.stored) * m.rate + strings + finger + hair + friction - row[6]
-    row[0] += stored
-    row[2] += strings
-    row[4] += finger
-    row[5], row[6], row[10] = hair, friction, residual
+    losses = strings + finger + hair + friction - row[LOSS_FRICTION]
+    row[ENERGY_ERROR] += (stored - t.stored) * m.rate + losses
+    row[ENERGY] += stored
+    row[LOSS_STRINGS] += strings
+    row[LOSS_FINGER] += finger
+    row[LOSS_HAIR], row[LOSS_FRICTION], row[V_R_RESIDUAL] = hair, friction, residual
     t.stored = stored

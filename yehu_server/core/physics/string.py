@@ -116,9 +116,9 @@ def advance_nodes(
     Delta_u : ndarray [shape=(STRINGS, POINTS), m]
         The second difference of u_prev; written: that of u.
     inside, held : ndarray [shape=(STRINGS, POINTS)]
-        How much of its free motion a node makes, and how much of u_prev it keeps: one and none
-        between the ends of a string, less and the rest where felt damps it; at the ends and
-        beyond none of both.
+        The share of its free motion that a node makes, and that of u_prev that it keeps: 1 and 0
+        between the ends of a string, r and 1 - r where felt damps it, 0 and 0 at the ends and
+        beyond.
     N : int
         The grid intervals of the longer string.
     B : ndarray [shape=(STRINGS, 3)]

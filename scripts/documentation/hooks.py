@@ -17,6 +17,7 @@ from pathlib import Path, PurePosixPath
 from posixpath import relpath
 from urllib.parse import unquote, urlsplit
 
+from latex2mathml.converter import convert
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files, InclusionLevel
@@ -49,6 +50,7 @@ LANGUAGES = {".c": "c", ".js": "js", ".mjs": "js", ".py": "python", ".sh": "bash
 _CODE = r"^(?P<fence>`{3,}).*?^(?P=fence)$|`[^`\n]+`"
 _LINK = r"(?P<words>\[[\w/.-]+\.md)?\]\((?P<link>[^)\s]+)\)"
 _FIGURE = re.compile(r"^!\[[^\]]*\]\((?P<link>[^)\s]+\.png)\)$", re.MULTILINE)
+_MATH = re.compile(r"^```math\n(?P<tex>.*?)\n```$", re.MULTILINE | re.DOTALL)
 _SOUND = re.compile(r"\[([^\]]+)\]\(([^)\s]+\.(?:flac|wav|ogg))\)")
 _LOADED = re.compile(r'<(?!a\b)[^>]*?\b(?:src|srcset|poster|data)="((?:\w+:)?//[^"]+)')
 # Kept until MkDocs ends, which may build many times (mkdocs serve).
@@ -108,11 +110,12 @@ def on_nav(nav: Navigation, *, config: MkDocsConfig, files: Files) -> Navigation
 
 
 def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:  # noqa: ARG001
-    """Mend links, which are right in the repository; add players of sounds."""
+    """Mend links, which are right in the repository; typeset equations; add players of sounds."""
     uri = page.file.src_uri
     paths = {uri: path for path, uri in pages().items()}
     text = mended(markdown, paths.get(uri, f"examples/{uri}"), uri)  # or a notebook
     text = _FIGURE.sub(r"[\g<0>](\g<link>)", text)  # a figure opens large
+    text = _MATH.sub(lambda found: typeset(found["tex"]), text)
     return "\n\n".join(_with_players(block) for block in text.split("\n\n"))
 
 
@@ -229,6 +232,11 @@ def mended(text: str, path: str, uri: str) -> str:
 
     key = rf"(?P<head>^\| )?\[(?P<key>{_keys()})\](?![(\[])"
     return re.sub(f"{_CODE}|{_LINK}|{key}", mend, text, flags=re.MULTILINE | re.DOTALL)
+
+
+def typeset(tex: str) -> str:
+    """Return an equation in LaTeX as MathML, which browsers show by themselves."""
+    return f'<div class="equation" tabindex="0">{convert(tex, display="block")}</div>'
 
 
 def _title(path: str) -> str | None:

@@ -86,7 +86,7 @@ def test_a_change_changes_that_quantity_and_no_other():
     ("changes", "named"),
     [
         ({"bows": {}}, "instrument.bows: unknown entry; did you mean bow?"),
-        ({"bow": {"epsilon": 1.0}}, "bow.epsilon: unknown entry; did you mean epsilon_1?"),
+        ({"bow": {"epsilon1": 1.0}}, "bow.epsilon1: unknown entry; did you mean epsilon_1?"),
         ({"string_1": {"rho_A": 1e-3}}, "string_1.rho_A: unknown entry"),
         ({"bow": 3.0}, "bow: expected a table of names and values, got 3.0"),
         ({"bow": None}, "bow: expected a table"),

@@ -43,6 +43,9 @@ LABELS = {
     "press_force": "finger force, N",
     "finger_position": "finger position, m from the loop",
 }
+# Points by which a map's share of Helmholtz motion is off with another sample rate than 44.1 kHz,
+# the mean of four notes: docs/validation.md.
+RATE_ERROR = 2.5
 Array = Any
 EQUAL = 1.2  # steps or ratios that differ by less are equal
 WIDE = 5.0  # from which ratio uneven values are drawn by logarithms
@@ -167,6 +170,12 @@ def regime_patches(regimes: Sequence[str], cells: Array) -> list[Any]:
 
     names = [regimes[int(number)] for number in np.unique(cells)]
     return [Patch(fc=COLOURS.get(name, OTHER), ec="0.6", label=name) for name in names]
+
+
+def share_of(regimes: Sequence[str], cells: Array) -> str:
+    """Return a map's share of Helmholtz motion with its error bar, for its title."""
+    share = 100.0 * np.mean(np.asarray(cells) == list(regimes).index("helmholtz"))
+    return f"Helmholtz motion: {share:.1f} % ± {RATE_ERROR:g} points by the sample rate"
 
 
 def draw_limits(axes: Any, along: Array, lower: Iterable[float], upper: Iterable[float]) -> None:

@@ -22,10 +22,12 @@ from yehu_server.lab.plot import png
 from yehu_server.lab.plot.cells import (
     COLOURS,
     LABELS,
+    RATE_ERROR,
     draw_limits,
     limit_lines,
     regime_patches,
     set_scale,
+    share_of,
 )
 from yehu_server.lab.plot.sweep_maps import (
     ALONG,
@@ -89,7 +91,10 @@ def write_picture(
             else:
                 image = draw_map(axes, result, x, y, map_of(result, grid, x, y, at), what)
                 draw_limits_over(axes, result, study, x, y, at)
-            axes.set_title(title_of(result, at), fontsize="small")
+            told = [title_of(result, at)]
+            if what == "regime" and y is not None:
+                told.append(share_of(result.regimes, map_of(result, grid, x, y, at)))
+            axes.set_title("\n".join(filter(None, told)), fontsize="small")
             axes.set(xlabel="", ylabel="")
         for axes in panels.flat[max(0, len(maps) - across) : len(maps)]:
             axes.set_xlabel(LABELS.get(x, x))
@@ -181,6 +186,7 @@ def write_page(result: Result, target: Path) -> None:
     note = f"{len(result)} strokes, by {result.meta['made_by']}."
     if result.meta["levels"]:
         note += " Where all strokes about were alike, those between were not computed."
+    note += f" A share of Helmholtz motion is {RATE_ERROR:g} points off with another sample rate."
     data = json.dumps(facts_of(result, x, y)).replace("<", "\\u003c")
     page = read_text(TEMPLATE)
     for place, text in (

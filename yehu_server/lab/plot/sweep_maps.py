@@ -17,6 +17,7 @@ from yehu_server.lab.plot.cells import (
     limit_lines,
     regime_colours,
     regime_patches,
+    share_of,
 )
 from yehu_server.lab.sweeps.result import Result
 from yehu_server.lab.sweeps.study import limits_of
@@ -77,6 +78,7 @@ def regimes(sweep: Result, x: str, y: str, *, at: At | None = None, ax: Axes | N
     cells = map_of(sweep, sweep.grid("regime"), x, y, place_of(sweep, x, y, at))
     axes = axes_of(ax)
     draw_map(axes, sweep, x, y, cells, "regime")
+    axes.set_title(share_of(sweep.regimes, cells), fontsize="small")
     axes.legend(handles=regime_patches(sweep.regimes, cells), **BESIDE)
     return axes
 
@@ -128,6 +130,7 @@ def schelleng(sweep: Result, *, at: At | None = None, ax: Axes | None = None) ->
     ends = axes.get_ylim()
     draw_limits(axes, betas, (each.lower for each in limits), (each.upper for each in limits))
     axes.set(ylim=ends, xlabel=LABELS["position"], ylabel=LABELS["force"])
+    axes.set_title(share_of(sweep.regimes, cells), fontsize="small")
     axes.legend(handles=[*regime_patches(sweep.regimes, cells), *limit_lines()], **BESIDE)
     return axes
 

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from validation import convergence, energy, ideal
+from validation import convergence, energy, held_out, ideal, laws
 from validation.draw import draw
 from validation.tables import PAGE, page
 
@@ -43,6 +43,8 @@ SUBJECTS: dict[str, Callable[[], Any]] = {
     "ideal": measure_ideal,
     "energy": energy.measure,
     "convergence": measure_convergence,
+    "laws": laws.measure,
+    "held_out": held_out.measure,
 }
 
 

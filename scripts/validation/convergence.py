@@ -18,6 +18,7 @@ RATES = (44100.0, 88200.0, 176400.0, 352800.0)
 HEADROOMS = (1.0, 1.1, 1.15)  # other numbers of nodes, and the same physics
 SEEDS = (1, 2, 3)
 NOISE = 0.025  # of the hair, as the player's bow has it
+BARE: dict[str, Any] = {"felt_loss": 0.0}  # no felt behind the bridge, as in [Yehu]
 SOFT = 1.0 / 8.0  # of the bristles' stiffness: what 352.8 kHz has at 44.1 kHz
 SPEED = 0.2
 BETAS = np.geomspace(0.05, 0.3, 10)
@@ -30,14 +31,15 @@ SOUNDING = 1.02  # of an ideal string's length: a stopped string sounds flat of 
 def maps(note: str) -> dict[str, Result]:
     """Maps of one note: by rate, by grid, by seed, with soft bristles."""
     string, pitch = NOTES[note]
-    found = {f"rate {rate:g}": one(string, pitch, rate) for rate in RATES}
+    found = {f"rate {rate:g}": one(string, pitch, rate, BARE) for rate in RATES}
     for headroom in HEADROOMS:
-        found[f"grid {headroom:g}"] = one(string, pitch, RATES[0], {"tension_headroom": headroom})
+        other = BARE | {"tension_headroom": headroom}
+        found[f"grid {headroom:g}"] = one(string, pitch, RATES[0], other)
     for seed in SEEDS:
-        hair = {"bow": {"hair": seed}}
+        hair = BARE | {"bow": {"hair": seed}}
         found[f"seed {seed}"] = one(string, pitch, RATES[0], hair, noise=NOISE)
     for rate in (RATES[0], RATES[-1]):
-        soft = {"bow": {"epsilon_0": SOFT * Quantities().bow.epsilon_0}}
+        soft = BARE | {"bow": {"epsilon_0": SOFT * Quantities().bow.epsilon_0}}
         found[f"soft {rate:g}"] = one(string, pitch, rate, soft)
     return found
 
@@ -50,6 +52,24 @@ def one(
     noise: float = 0.0,
 ) -> Result:
     """A map over bow position and force."""
+    gesture, bridge_x, length = stroke(string, pitch, rate, instrument, noise)
+    sign = 1.0 if string == 1 else -1.0
+    vary = {
+        "bow_position": (bridge_x - BETAS * length).tolist(),
+        "bow_force": (sign * FORCES).tolist(),
+    }
+    return sweep(study_of({"gesture": gesture, "vary": vary}))
+
+
+def stroke(
+    string: int,
+    pitch: float,
+    rate: float,
+    instrument: Mapping[str, Any] | None = None,
+    noise: float = 0.0,
+    speed: float = SPEED,
+) -> tuple[dict[str, Any], float, float]:
+    """A gesture without force and place of the bow; where the bridge is, and the length (m)."""
     quantities = Quantities()
     own = quantities.strings[string - 1]
     hertz = 440.0 * 2.0 ** ((pitch - 69.0) / 12.0)
@@ -58,7 +78,7 @@ def one(
     finger = 0.05 if is_open else quantities.bridge_x - sounding
     length = quantities.bridge_x if is_open else sounding
     controls = {
-        "bow_velocity": [[0.0, 0.0], [0.02, SPEED]],
+        "bow_velocity": [[0.0, 0.0], [0.02, speed]],
         "finger_position": finger,
         "press_force": 0.0 if is_open else 1.5,
         "bow_noise": noise,
@@ -69,12 +89,7 @@ def one(
         "instrument": dict(instrument or {}),
         "controls": controls,
     }
-    sign = 1.0 if string == 1 else -1.0
-    vary = {
-        "bow_position": (quantities.bridge_x - BETAS * length).tolist(),
-        "bow_force": (sign * FORCES).tolist(),
-    }
-    return sweep(study_of({"gesture": gesture, "vary": vary}))
+    return gesture, quantities.bridge_x, length
 
 
 def compared(found: Mapping[str, Result]) -> list[dict[str, Any]]:

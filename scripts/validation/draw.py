@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from pictures.saving import ROOT, save
 
-from validation import ideal
+from validation import ideal, laws
 from validation.tables import KINDS, exponents
 
 FIGURES = ROOT / "docs" / "figures"
@@ -24,6 +24,7 @@ def draw(found: Mapping[str, Any]) -> None:
     """Draw all of them."""
     save(ideal_string(found["ideal"]), FIGURES / "validation_ideal.png", dpi=80)
     save(convergence(found["convergence"]), FIGURES / "validation_convergence.png", dpi=80)
+    save(friction_laws(), FIGURES / "validation_laws.png", dpi=80)
 
 
 def ideal_string(found: Mapping[str, Any]) -> Any:
@@ -94,4 +95,22 @@ def convergence(found: Mapping[str, Any]) -> Any:
         ax.set_xticks(khz, [f"{each:g}" for each in khz])
         ax.minorticks_off()
     panels[0].legend(frameon=False)
+    return figure
+
+
+def friction_laws() -> Any:
+    """Four periods of a stroke by each law, and the friction that its hair has over its slip."""
+    figure, panels = plt.subplots(
+        2, len(laws.LAWS), figsize=(16.0, 6.4), sharey="row", layout="constrained"
+    )
+    for (above, below), law in zip(panels.T, laws.LAWS, strict=True):
+        run = laws.stroke(law)
+        last = run["time"] >= run["time"][-1] - 4.0 / 466.16
+        since = 1e3 * (run["time"][last] - run["time"][last][0])
+        above.plot(since, run["relative_velocity"][last], lw=0.8)
+        below.plot(run["relative_velocity"][last], run["coefficient"][last], lw=0.6)
+        above.set(title=law, xlabel="ms")
+        below.set(xlabel="string on hair, m/s")
+    panels[0, 0].set_ylabel("string on hair, m/s")
+    panels[1, 0].set_ylabel("friction over bow force")
     return figure

@@ -31,6 +31,8 @@ def page(found: Mapping[str, Any]) -> str:
         "convergence": convergence(found["convergence"]),
         "bars": bars(found["convergence"]),
         "energy": energy(found["energy"]),
+        "laws": laws(found["laws"]),
+        "held-out": held_out(found["held_out"]),
     }
     for name, rows in made.items():
         mark = f"<!-- table {name} -->"
@@ -175,3 +177,51 @@ def energy(found: Sequence[Mapping[str, Any]]) -> list[str]:
         for row in found
     ]
     return table(["rate", "playing", "runs", "worst", "median", "greatest power"], rows)
+
+
+def laws(found: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What maps are like with each law of friction."""
+
+    def told(text: str) -> str:
+        return "" if "nan" in text else text
+
+    rows = [
+        [
+            row["note"],
+            row["law"],
+            f"{row['helmholtz']:.1%}",
+            f"{row['aperiodic']:.1%}",
+            f"{row['same']:.0%}",
+            told(f"{row['least']:.2f} to {row['greatest']:.2g}"),
+            told(f"{row['flatter']:.0f}"),
+            told(f"{row['cents']:+.1f}"),
+            told(f"{row['brighter'] - 1.0:+.0%}"),
+            told(f"{row['onset_ms']:.0f}"),
+        ]
+        for row in found
+    ]
+    head = ["note", "law", "Helmholtz", "aperiodic", "cells alike", "force at β = 0.13, N"]
+    head += ["flattening, cents", "pitch, cents", "centroid", "onset, ms"]
+    return table(head, rows)
+
+
+def held_out(found: Mapping[str, Any]) -> list[str]:
+    """Shares of regimes of the strokes by chance, at both rates."""
+    low, high = np.array(found["regimes"]).T
+    rows = [
+        [
+            name,
+            f"{np.mean(low == name):.1%}",
+            f"{np.mean(high == name):.1%}",
+            f"{100.0 * (np.mean(low == name) - np.mean(high == name)):+.1f}",
+            f"± {100.0 * _paired_error(low == name, high == name):.1f}",
+        ]
+        for name in sorted({*low, *high}, key=list(low).count, reverse=True)
+    ]
+    head = ["regime", *(f"{rate / 1e3:g} kHz" for rate in found["rates"])]
+    return table([*head, "difference, points", "its error by chance"], rows)
+
+
+def _paired_error(one: Any, other: Any) -> float:
+    """The standard error of the difference of two shares of the same strokes."""
+    return float((one.astype(float) - other).std(ddof=1) / np.sqrt(len(one)))

@@ -75,7 +75,8 @@ function pack({ rate, values, wishes }) {
   const bytes = [];
   put(bytes, head.length);
   bytes.push(...head);
-  const last = new Last();
+  /** @type {Map<string, number>} */
+  const last = new Map();
   let before = 0;
   for (const wish of wishes) {
     const time = Math.round((wish.frame / rate) * RATE);
@@ -85,7 +86,8 @@ function pack({ rate, values, wishes }) {
     put(bytes, address === null ? wish.index : addresses.indexOf(address));
     for (const name of /** @type {const} */ (["value", "other"])) {
       const value = Math.round(wish[name] * FINE);
-      put(bytes, value - last.swap(wish, name, value));
+      put(bytes, value - (last.get(keyOf(wish, name)) ?? 0));
+      last.set(keyOf(wish, name), value);
     }
     before = time;
   }
@@ -113,7 +115,8 @@ function unpack(bytes) {
   at += length;
   if (head.v !== VERSION) throw new TypeError("another version");
   const kinds = head.kinds.map((/** @type {string} */ name) => KINDS.indexOf(name));
-  const last = new Last();
+  /** @type {Map<string, number>} */
+  const last = new Map();
   const wishes = [];
   for (let frame = 0; at < bytes.length;) {
     frame += take();
@@ -122,8 +125,8 @@ function unpack(bytes) {
     if (OF_PARAMETERS.includes(wish.kind))
       wish.index = indexOf(wish.kind, head.addresses[wish.index]);
     for (const name of /** @type {const} */ (["value", "other"])) {
-      const value = last.get(wish, name) + take();
-      last.swap(wish, name, value);
+      const value = (last.get(keyOf(wish, name)) ?? 0) + take();
+      last.set(keyOf(wish, name), value);
       wish[name] = value / FINE;
     }
     wishes.push(wish);
@@ -132,28 +135,8 @@ function unpack(bytes) {
   return checked({ rate: RATE, values: Object.fromEntries(values), wishes, players: 1 });
 }
 
-/** The last values by what they are of: most differ little from those before. */
-class Last {
-  /** @type {Map<string, number>} */
-  #known = new Map();
-
-  /** @param {{kind: number, index: number}} wish @param {string} name */
-  get({ kind, index }, name) {
-    return this.#known.get(`${kind} ${index} ${name}`) ?? 0;
-  }
-
-  /**
-   * Remember a value; return the one before.
-   * @param {{kind: number, index: number}} wish
-   * @param {string} name
-   * @param {number} value
-   */
-  swap(wish, name, value) {
-    const before = this.get(wish, name);
-    this.#known.set(`${wish.kind} ${wish.index} ${name}`, value);
-    return before;
-  }
-}
+/** What a value is of: most differ little from the last one. @param {{kind: number, index: number}} wish @param {string} name */
+const keyOf = ({ kind, index }, name) => `${kind} ${index} ${name}`;
 
 /**
  * Put a whole number behind others: the sign in the last bit, and seven bits a byte.

@@ -4,16 +4,13 @@
  */
 
 import facts from "../facts.js";
-import { FREE } from "../playing/table.js";
+import { find } from "../playing/table.js";
 import { StreamPlayer } from "./stream_player.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
 import { WishBatch } from "./kernel.js";
 
 /** @typedef {import('./server_connection.js').ServerConnection} ServerConnection */
 /** @typedef {import('../interfaces.js').Status} Status */
-
-/** Rows of parameters that the engine does not own, by address. */
-const ROWS = new Map(FREE.map(({ address, row }) => [address, row]));
 
 /** Tells by events: 'state' of a new snapshot. */
 export class Remote extends EventTarget {
@@ -60,8 +57,8 @@ export class Remote extends EventTarget {
 
   /** The value of any other parameter, whoever set it. @param {string} address */
   reported(address) {
-    const row = ROWS.get(address);
-    return row === undefined || !this.isSeen ? undefined : this.seen[facts.lookLength + row];
+    const { row, owned } = find(address);
+    return owned || !this.isSeen ? undefined : this.seen[facts.lookLength + row];
   }
 
   /** @returns {Status} */

@@ -1,6 +1,7 @@
 /** Reads a look at the instrument, numbers in the order of `facts.look`; and names the motion of its string. */
 
 import facts from "../facts.js";
+import { find } from "../playing/table.js";
 
 /** @typedef {import('../interfaces.js').Snapshot} Snapshot */
 
@@ -11,11 +12,6 @@ const LEAST_DB = -160;
 /** Where each field begins. @type {Record<string, number>} */
 const AT = Object.fromEntries(Object.entries(facts.look).map(([name, [at]]) => [name, at]));
 const FINGERS = facts.look.finger_x[1];
-
-/** Parameters by address, in the order of the engine. @type {Map<string, number>} */
-const SLOTS = new Map(
-  facts.parameters.flatMap(({ address, slot }) => (slot === null ? [] : [[address, slot]])),
-);
 
 /**
  * @param {Float64Array} look
@@ -51,8 +47,8 @@ export function snapshotOf(look) {
  * @param {string} address
  */
 export function targetOf(look, address) {
-  const slot = SLOTS.get(address);
-  return slot === undefined ? undefined : look[AT.targets + slot];
+  const { slot } = find(address);
+  return slot === null ? undefined : look[AT.targets + slot];
 }
 
 /** @param {Float64Array} look @param {number} string */

@@ -45,7 +45,7 @@ function row(lesson, tune) {
   const buttons = WAYS.map((way) => {
     const button = makeButton("", () => lesson.toggle(tune, way));
     const tell = () => {
-      const isOn = lesson.tune === tune && lesson.way === way;
+      const isOn = lesson.isOn(tune, way);
       const word = translate(isOn ? "tunes.stop" : `tunes.${way}`);
       button.setAttribute("aria-label", `${word}: ${name()}`);
       button.setAttribute("aria-pressed", String(isOn));
@@ -75,10 +75,8 @@ export class Lesson extends EventTarget {
   course = null;
   /** @type {Tune | null} the one that is on, or that was */
   tune = null;
-  /** @type {Way | null} */
-  way = null;
-  /** @type {[Tune, Way] | null} what was on last */
-  last = null;
+  /** @type {Way} */
+  way = "listen";
   /** The note that is asked for. @type {import('../tune.js').Note | undefined} */
   asked = undefined;
   /** The easiest tune. @type {Tune | null} */
@@ -99,7 +97,12 @@ export class Lesson extends EventTarget {
       this.course ? this.course.stop() : this.#leave(),
     );
     onLanguage(() => this.#tell());
-    this.again.addEventListener("click", () => this.last && this.toggle(...this.last));
+    this.again.addEventListener("click", () => this.tune && this.toggle(this.tune, this.way));
+  }
+
+  /** @param {Tune} tune @param {Way} way */
+  isOn(tune, way) {
+    return this.course !== null && this.tune === tune && this.way === way;
   }
 
   /**
@@ -108,7 +111,7 @@ export class Lesson extends EventTarget {
    * @param {Way} way
    */
   async toggle(tune, way) {
-    const isOn = this.tune === tune && this.way === way;
+    const isOn = this.isOn(tune, way);
     this.course?.stop();
     if (isOn) return;
     const { instrument, score, yehu } = this.page;
@@ -119,7 +122,7 @@ export class Lesson extends EventTarget {
       way === "listen"
         ? new TunePlayer(instrument, tune, pace)
         : new TuneGuide(instrument, tune, pace, way === "timed");
-    Object.assign(this, { course, tune, way, last: [tune, way], asked: undefined });
+    Object.assign(this, { course, tune, way, asked: undefined });
     this.page.setTonic(tune.tonic);
     this.bar.hidden = this.canvas.hidden = false;
     find("invite", HTMLElement).hidden = true;
@@ -174,7 +177,7 @@ export class Lesson extends EventTarget {
   /** @param {TunePlayer | TuneGuide} course */
   #end(course) {
     if (this.course !== course) return;
-    this.course = this.way = null;
+    this.course = null;
     const { yehu, score, fingerboard } = this.page;
     yehu.ask(null);
     yehu.showsFingers = false;

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -17,9 +16,7 @@ from yehu_server.core.engine.look import LOOK, look
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
 from yehu_server.core.player.wishes import BEGIN
-from yehu_server.live.page import facts
 
-ROOT = Path(__file__).parents[3]
 RATE = 44100.0
 E5 = 76.0
 
@@ -41,19 +38,15 @@ def seen(instrument) -> Any:
 
 
 @pytest.fixture(scope="module")
-def snapshots(node, seen, tmp_path_factory) -> Any:
+def snapshots(node, seen, page) -> Any:
     """What the page makes of it, and of an instrument at rest."""
-    folder = tmp_path_factory.mktemp("web")
-    shutil.copytree(ROOT / "web" / "sound", folder / "sound")
-    (folder / "package.json").write_text('{"type": "module"}')
-    facts.write(folder)
     at_rest = np.zeros(1, LOOK)
     silent = Instrument(InstrumentSpec(RATE))
     look.call(silent.address, at_rest.ctypes.data)
     rows = [np.frombuffer(record.tobytes(), np.float64) for record in (seen, at_rest[0])]
     lines = [json.dumps([None if math.isnan(x) else x for x in row.tolist()]) for row in rows]
     result = subprocess.run(
-        [node, Path(__file__).with_name("looking.mjs"), folder],
+        [node, Path(__file__).with_name("looking.mjs"), page],
         input="\n".join(lines), capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert result.returncode == 0, result.stderr

@@ -200,7 +200,7 @@ def read_written(path: Path, song: int | None = None) -> Written:
 
         return read_abc(path, song)
     if kind in MUSESCORE:
-        from yehu_server.scores.musicxml.reader import read_musescore
+        from yehu_server.scores.musicxml.musescore import read_musescore
 
         return read_musescore(path)
     if kind in HUMDRUM or _beginning(path).startswith((b"**", b"!!!")):

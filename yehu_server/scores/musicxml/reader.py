@@ -1,4 +1,4 @@
-"""Read MusicXML: `.musicxml`, `.xml` and `.mxl`; and what MuseScore exports of its own files.
+"""Read MusicXML: `.musicxml`, `.xml` and `.mxl`.
 
 docs/scores.md tells what is understood. Each voice becomes a part of its own, with one note at a
 time: the highest of a chord. Entities are refused: none of them belongs into a score, and they can
@@ -11,14 +11,10 @@ from __future__ import annotations
 import io
 import os
 import re
-import shutil
-import subprocess
 import sys
-import tempfile
 import zipfile
 import zlib
 from collections import Counter
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 from xml.etree.ElementTree import Element, SubElement
@@ -31,10 +27,6 @@ from yehu_server.scores.score import naming, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MOST_BYTES, MOST_PARTS, Written
 
-PROGRAMS = (
-    "mscore", "musescore", "mscore4portable", "mscore3", "musescore3", "MuseScore4", "MuseScore3",
-)  # fmt: skip
-LONGEST_S = 120.0
 MOST_XML_BYTES = 32 << 20
 MOST_ELEMENTS = 1_000_000
 DEEPEST = 100
@@ -109,33 +101,6 @@ def _title(root: Element) -> str:
         if title:
             return printable(title)
     return ""
-
-
-def read_musescore(path: Path) -> Written:
-    """Read a file of MuseScore as its program exports it.
-
-    Raises ScoreError, one line naming the file: where it cannot be read, or there is no such
-    program, how to export it.
-    """
-    with naming(path):
-        read_score_bytes(path, MOST_BYTES)
-        program = next(filter(None, map(shutil.which, PROGRAMS)), None)
-        if program is None:
-            raise ScoreError(
-                "is a file of MuseScore, which is read where MuseScore is installed; or export it "
-                "there: File, Export, MusicXML"
-            )
-        with tempfile.TemporaryDirectory(prefix="yehu-server-") as folder:
-            target = Path(folder) / "score.musicxml"
-            words = [program, "-o", str(target), str(path.resolve())]
-            try:
-                subprocess.run(words, check=True, capture_output=True, timeout=LONGEST_S)  # noqa: S603 - no shell
-                return read_musicxml(target)
-            except (subprocess.SubprocessError, OSError) as error:
-                why = type(error).__name__
-                raise ScoreError(f"{program} cannot export it ({why}); export it there") from None
-            except ScoreError as error:
-                raise ScoreError(str(error).removeprefix(f"{target}: ")) from None
 
 
 def read_root(path: str | os.PathLike[str]) -> ET.Element:

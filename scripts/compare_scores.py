@@ -1,39 +1,43 @@
-"""Compare the reader of written scores with music21, over a folder: pitch, beat and length.
+"""Compare the reader of written scores with another program, over a folder: pitch, beat, length.
 
     PYTHONPATH=. PYTHON scripts/compare_scores.py FOLDER [--most 1000] [--list differences.txt]
+    PYTHONPATH=. .venv/bin/python scripts/compare_scores.py FOLDER --midi MIDI_FOLDER
 
-PYTHON has this package's dependencies and music21 (developed with 10.5), which is too large for
-every install. A note agrees where music21 reads one at the same beat of the same bar, as bars are
-played, at the same pitch; of chords the highest counts. Bars are compared and not beats from the
-beginning, since music21 leaves parts of a score apart from each other after a bar that one of them
-does not fill. Where it cannot unfold the repeats, or has the bars in another order, each bar counts
-once. It also tells how many intervals of the parts are kept when they are moved into range as a
-whole, and note by note, as in live playing.
+The first compares with music21: PYTHON has this package's dependencies and music21 (developed with
+10.5), which is too large for every install. The second compares with the MIDI files that another
+program wrote of the scores, in MIDI_FOLDER and named as they are; those that are missing are made
+by MuseScore, where it is installed.
+
+A note agrees where the other program has one at the same beat of the same bar, as bars are played,
+at the same pitch; of chords the highest counts. Bars are compared and not beats from the beginning,
+since music21 leaves parts of a score apart from each other after a bar that one of them does not
+fill, and MuseScore makes such bars longer. Where music21 cannot unfold the repeats, or has the bars
+in another order, each bar counts once. It also tells how many intervals of the parts are kept when
+they are moved into range as a whole, and note by note, as in live playing.
 """
 
 from __future__ import annotations
 
 import argparse
-import re
 import signal
 import warnings
-from bisect import bisect_right
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, field
-from fractions import Fraction
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from score_readings import Reading, read_by_midi, read_by_music21, read_by_us
+
 from yehu_server.errors import YehuError
 from yehu_server.playing.tuning import RangePolicy
+from yehu_server.scores.musicxml.musescore import export
 from yehu_server.scores.reading import read_written
 from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.notated import Part, Written
 
 ENDINGS = (".musicxml", ".xml", ".mxl", ".abc")
-LIMIT_S = 90  # for music21 to read a file
 LOWEST, HIGHEST = 65, 89
 # What files may differ in.
 APART = "music21 has the parts apart"
@@ -41,92 +45,17 @@ FOLDED = "music21 does not unfold the repeats"
 ORDER = "another order of bars"
 LENGTHS = "lengths alone"
 NOTES = "other notes"
-
-
-@dataclass(frozen=True)
-class Heard:
-    """A note in its bar: the bar by its place as played, and by its number."""
-
-    bar: int
-    number: str
-    offset: Fraction  # quarters
-    length: Fraction
-    pitch: float
-
-
-@dataclass
-class Reading:
-    """All notes of a score, of all parts, and the numbers of its bars as played."""
-
-    notes: list[Heard] = field(default_factory=list)
-    bars: list[str] = field(default_factory=list)
-    is_unfolded: bool = True
-    is_together: bool = True  # all parts begin their bars at the same beats
-
-
-def read_by_music21(path: Path) -> Reading:
-    """What music21 reads."""
-    import music21  # type: ignore[import-not-found, unused-ignore]
-
-    parsed: Any = music21.converter.parse(path)
-    found = Reading()
-    begun: set[tuple[Fraction, ...]] = set()
-    for part in parsed.toSoundingPitch().parts:
-        try:
-            unfolded = part.expandRepeats()
-        except music21.repeat.ExpanderException:
-            unfolded, found.is_unfolded = part, False
-        measures = list(unfolded.getElementsByClass("Measure"))
-        begins = [_exact(measure.offset) for measure in measures]
-        found.bars = [str(measure.number) for measure in measures]
-        begun.add(tuple(begins))
-        for each in unfolded.stripTies().flatten().notes:
-            if each.duration.isGrace or isinstance(each, music21.harmony.ChordSymbol):
-                continue
-            if pitches := getattr(each, "pitches", ()):
-                pitch = max(float(pitch.ps) for pitch in pitches)
-                length = _exact(each.quarterLength)
-                found.notes.append(_heard(begins, found.bars, _exact(each.offset), length, pitch))
-    found.is_together = len(begun) <= 1
-    return found
-
-
-def read_by_us(written: Written) -> Reading:
-    """The same by our own reader."""
-    begins = [bar.beat for bar in written.bars]
-    numbers = [_number(bar.number) for bar in written.bars]
-    notes = [
-        _heard(begins, numbers, note.beat, note.length, note.pitch)
-        for part in written.parts
-        for note in part.notes
-    ]
-    return Reading(notes, numbers)
-
-
-def _number(text: str) -> str:
-    """The number of a bar as music21 has it: without the letter of one that a line divides."""
-    found = re.match(r"\d+", text)
-    return found[0] if found else text
-
-
-def _heard(
-    begins: list[Fraction], numbers: list[str], beat: Fraction, length: Fraction, pitch: float
-) -> Heard:
-    at = max(bisect_right(begins, _exact(beat)) - 1, 0)
-    offset = _exact(beat) - (begins[at] if begins else 0)
-    return Heard(at, numbers[at] if numbers else "", _exact(offset), _exact(length), pitch)
-
-
-def _exact(value: Any) -> Fraction:
-    return Fraction(value).limit_denominator(10_000)
+MOVED = "bars of other lengths"
 
 
 @dataclass
 class Judged:
     """How far two readings agree."""
 
-    notes: int  # that music21 has
+    notes: int  # that the other program has
+    alone: int  # that we alone have
     same: int
+    same_lengths: int  # of these
     kinds: list[str]
     first: str = ""  # an example of what differs
 
@@ -141,22 +70,32 @@ def judged(ours: Reading, theirs: Reading) -> Judged:
     if kinds:  # each bar once, by its number
         own = Counter({(each.number, each.offset, each.pitch) for each in ours.notes})
         other = Counter({(each.number, each.offset, each.pitch) for each in theirs.notes})
-        longer: Counter[Any] = Counter()
+        own_lengths = other_lengths = own & other  # are not compared
     else:
         own = Counter((str(each.bar), each.offset, each.pitch) for each in ours.notes)
         other = Counter((str(each.bar), each.offset, each.pitch) for each in theirs.notes)
-        longer = Counter((each.bar, each.offset, each.pitch, each.length) for each in ours.notes)
-        longer.subtract((each.bar, each.offset, each.pitch, each.length) for each in theirs.notes)
+        own_lengths = _with_lengths(ours)
+        other_lengths = _with_lengths(theirs)
     if not theirs.is_together:
         kinds.append(APART)
+    if theirs.moved:
+        kinds.append(MOVED)
     more, less = own - other, other - own
     first = ""
     if more or less:
         kinds.append(NOTES)
-        first = f"ours {_shown(more)}; music21 {_shown(less)}"
-    elif any(longer.values()):
+        first = f"ours {_shown(more)}; theirs {_shown(less)}"
+    elif own_lengths != other_lengths:
         kinds.append(LENGTHS)
-    return Judged(other.total(), (own & other).total(), kinds, first)
+        longer, shorter = own_lengths - other_lengths, other_lengths - own_lengths
+        first = f"ours {_shown(longer)}; theirs {_shown(shorter)}"
+    same_lengths = (own_lengths & other_lengths).total()
+    same = (own & other).total()
+    return Judged(other.total(), more.total(), same, same_lengths, kinds, first)
+
+
+def _with_lengths(reading: Reading) -> Counter[Any]:
+    return Counter((str(each.bar), each.offset, each.pitch, each.length) for each in reading.notes)
 
 
 def _same_runs(ours: Reading, theirs: Reading) -> bool:
@@ -197,9 +136,13 @@ def files_of(folder: Path, most: int) -> Iterator[Path]:
 
 
 class Comparison:
-    """Compares file after file, and counts."""
+    """Compares file after file, and counts.
 
-    def __init__(self) -> None:
+    With music21, `limit_s` (s) for a file; or with the MIDI files of a folder.
+    """
+
+    def __init__(self, folder: Path, limit_s: int, midi: Path | None = None) -> None:
+        self._folder, self._limit_s, self._midi = folder, limit_s, midi
         self.counts: Counter[str] = Counter()
         self.kinds: Counter[str] = Counter()
         self.intervals = {"first parts": [0, 0, 0], "those that fit": [0, 0, 0]}
@@ -216,7 +159,7 @@ class Comparison:
             return
         self._count_intervals(written)
         if asks:
-            self._ask(path, read_by_us(written))
+            self._ask(path, written)
 
     def _count_intervals(self, written: Written) -> None:
         first = next((part for part in written.parts if part.notes), None)
@@ -226,13 +169,13 @@ class Comparison:
                 pairs = zip(self.intervals[name], values, strict=True)
                 self.intervals[name] = [a + b for a, b in pairs]
 
-    def _ask(self, path: Path, ours: Reading) -> None:
+    def _ask(self, path: Path, written: Written) -> None:
         try:
-            signal.alarm(LIMIT_S)
-            theirs = read_by_music21(path)
+            signal.alarm(self._limit_s)
+            ours, theirs = self._readings(path, written)
         except Exception as error:  # noqa: BLE001 - another program may fail in any way
-            self.counts["not read by music21"] += 1
-            self.differences.append(f"{path}: music21: {type(error).__name__}")
+            self.counts["not read by the other program"] += 1
+            self.differences.append(f"{path}: not compared: {type(error).__name__}: {error}")
             return
         finally:
             signal.alarm(0)
@@ -240,11 +183,23 @@ class Comparison:
         self.counts["compared"] += 1
         self.counts["notes"] += found.notes
         self.counts["notes that agree"] += found.same
+        self.counts["of these, of the same length"] += found.same_lengths
+        self.counts["notes that only ours has"] += found.alone
+        self.counts["notes with ornaments, not compared"] += theirs.left_out
         self.kinds.update([", ".join(found.kinds) or "the same"])
         if found.kinds:
             share = 100.0 * found.same / found.notes if found.notes else 100.0
             kinds = ", ".join(found.kinds)
             self.differences.append(f"{path}: {share:.1f} % of notes; {kinds}; {found.first}")
+
+    def _readings(self, path: Path, written: Written) -> tuple[Reading, Reading]:
+        if self._midi is None:
+            return read_by_us(written), read_by_music21(path)
+        file = self._midi / path.relative_to(self._folder).with_suffix(".mid")
+        if not file.exists():
+            file.parent.mkdir(parents=True, exist_ok=True)
+            export(path, file)
+        return read_by_midi(file, written)
 
     def tell(self) -> None:
         """Print what was counted."""
@@ -267,11 +222,13 @@ def main() -> None:
     words.add_argument("folder", type=Path)
     words.add_argument("--most", type=int, default=100_000)
     words.add_argument("--list", type=Path)
-    words.add_argument("--intervals", action="store_true", help="do not ask music21")
+    words.add_argument("--intervals", action="store_true", help="compare with no other program")
+    words.add_argument("--limit", type=int, default=90, help="seconds for music21 to read a file")
+    words.add_argument("--midi", type=Path, help="MIDI files of another program to compare with")
     asked = words.parse_args()
     warnings.simplefilter("ignore")
     signal.signal(signal.SIGALRM, _too_slow)
-    comparison = Comparison()
+    comparison = Comparison(asked.folder, asked.limit, asked.midi)
     for path in files_of(asked.folder, asked.most):
         comparison.add(path, asks=not asked.intervals)
     comparison.tell()

@@ -332,6 +332,17 @@ def test_an_interrupted_ending_does_not_play_for_ever(read):
     assert len(read(score(bar)).parts[0].notes) == 4
 
 
+def test_of_hidden_notes_those_without_a_place_on_the_page_are_silent(read):
+    """Programs realize ornaments in such notes, in a voice of their own; MuseScore skips them."""
+    hidden = note("D5", 1).replace("<note>", '<note print-object="no">')
+    silent = note("E5", 1).replace("<note>", '<note print-object="no" print-spacing="no">')
+    written = read(score(note("C5", 1) + hidden + silent + note("F5", 1)))
+    assert [(each.beat, each.pitch) for each in written.parts[0].notes] == [
+        (0, 72.0), (1, 74.0), (3, 77.0)
+    ]  # fmt: skip
+    assert written.warnings == ("hidden notes without a place on the page are not played",)
+
+
 def test_a_cue_note_that_heads_a_chord_shifts_nothing(read):
     cue = note("G4", 1).replace("<note>", "<note><cue/>")
     written = read(

@@ -178,10 +178,12 @@ class BarReader:
             self._at += length
             self._bar.length = max(self._bar.length, self._at)
             self._head = note
-        if element.find("cue") is not None:
-            self._warnings["cue notes are not played"] += 1
+        is_rest = element.find("rest") is not None
+        silent = "" if is_rest else _why_silent(element)
+        if silent:
+            self._warnings[silent] += 1
             return
-        if element.find("rest") is not None:
+        if is_rest:
             if element.find("notations/fermata") is not None:
                 self._bar.directions.append(RawDirection(note.at, "sign", "fermata"))
             return
@@ -268,6 +270,15 @@ class BarReader:
                     dynamics, note.at
                 )
         note.marks = marks.marks
+
+
+def _why_silent(element: Element) -> str:
+    """Why a note is not played, as MuseScore has it for hidden ones; empty where it is."""
+    if element.find("cue") is not None:
+        return "cue notes are not played"
+    if element.get("print-spacing") == "no":
+        return "hidden notes without a place on the page are not played"
+    return ""
 
 
 def _divisions(element: Element) -> Fraction | None:

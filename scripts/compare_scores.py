@@ -46,6 +46,7 @@ ORDER = "another order of bars"
 LENGTHS = "lengths alone"
 NOTES = "other notes"
 MOVED = "bars of other lengths"
+MORE = "bars that the other program alone plays"
 
 
 @dataclass
@@ -80,6 +81,8 @@ def judged(ours: Reading, theirs: Reading) -> Judged:
         kinds.append(APART)
     if theirs.moved:
         kinds.append(MOVED)
+    if theirs.beside:
+        kinds.append(MORE)
     more, less = own - other, other - own
     first = ""
     if more or less:
@@ -186,6 +189,7 @@ class Comparison:
         self.counts["of these, of the same length"] += found.same_lengths
         self.counts["notes that only ours has"] += found.alone
         self.counts["notes with ornaments, not compared"] += theirs.left_out
+        self.counts["notes in bars that the other program alone plays"] += theirs.beside
         self.kinds.update([", ".join(found.kinds) or "the same"])
         if found.kinds:
             share = 100.0 * found.same / found.notes if found.notes else 100.0

@@ -6,7 +6,7 @@ import re
 from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
@@ -20,9 +20,8 @@ from yehu_server.scores.written.notated import Note, Part, Written
 PERCUSSION = 9
 # In MIDI files: what is nearer counts as one place; parts of a quarter.
 GRID = 48
-# A bar that another program has elsewhere: it is looked for so far away, and is found where so
-# much of its notes agrees.
-FARTHEST, ENOUGH = 64 * GRID, 0.5
+# A bar that another program has elsewhere is found where so much of its notes agrees.
+ENOUGH = 0.5
 # Notes of which a MIDI file has several, or elsewhere, as each program likes to play them.
 PLAYED_OUT = {
     "trill", "mordent", "inverted-mordent", "turn", "inverted-turn", "tremolo", "arpeggio",
@@ -57,6 +56,7 @@ class Reading:
     is_together: bool = True  # all parts begin their bars at the same beats
     moved: int = 0  # bars from which on a MIDI file is earlier or later
     left_out: int = 0  # notes that are not compared
+    beside: int = 0  # notes in bars that it alone plays
 
 
 def read_by_music21(path: Path) -> Reading:
@@ -133,9 +133,9 @@ def read_by_midi(path: Path, written: Written) -> tuple[Reading, Reading]:
     """What we read of a score, and what another program does, by the MIDI file that it wrote.
 
     A MIDI file has no bars: its notes are placed into ours. From a bar on that the other program
-    has longer or shorter, its notes are found by their pitches. Of what it strikes at once in a
-    track the highest counts, and what we have. Notes with grace notes or ornaments are left out,
-    and so is how long notes with articulations are.
+    has longer or shorter, or plays again, its notes are found by their pitches. Of what it strikes
+    at once in a track the highest counts, and what we have. Notes with grace notes or ornaments are
+    left out, and so is how long notes with articulations are.
     """
     bars = page_bars(written)
     begins = [_tick(bar.begin) for bar in bars]
@@ -160,14 +160,19 @@ def read_by_midi(path: Path, written: Written) -> tuple[Reading, Reading]:
         where[at] = max(where[at], where[at - 1])
     places = {(tick, pitch) for tick, pitch, _ in own}
     free = {(tick, pitch) for tick, pitch, length in own if not length}
+    ends = [_tick(bar.end) for bar in bars]
     found: dict[tuple[int, float], int] = {}
+    beside = 0
     for track in theirs:
         highest: dict[int, float] = {}
         for tick, key, _ in track:
             highest[tick] = max(highest.get(tick, 0.0), key)
         for tick, key, length in track:
-            moved = tick - shifts[max(bisect_right(where, tick) - 1, 0)]
-            if (moved, key) in places or (
+            at = max(bisect_right(where, tick) - 1, 0)
+            moved = tick - shifts[at]
+            if moved >= ends[at]:
+                beside += 1
+            elif (moved, key) in places or (
                 key == highest[tick] and not any(each.has(moved, key) for each in ornaments)
             ):
                 is_free = (moved, key) in free
@@ -186,7 +191,9 @@ def read_by_midi(path: Path, written: Written) -> tuple[Reading, Reading]:
     for tick, pitch, length in own:  # unisons of several parts are one
         ours[tick, pitch] = 0 if (tick, pitch) in free else max(length, ours.get((tick, pitch), 0))
     moved_bars = sum(one != other for one, other in pairwise([0, *shifts]))
-    return heard(ours), replace(heard(found), moved=moved_bars, left_out=len(ornaments))
+    other = heard(found)
+    other.moved, other.beside, other.left_out = moved_bars, beside, len(ornaments)
+    return heard(ours), other
 
 
 def _tick(beat: Fraction) -> int:
@@ -247,8 +254,7 @@ def _shifts(
 
         if same(shift) < ENOUGH * len(notes):
             tried = {there - tick for tick, pitch in notes for there in by_pitch[pitch]}
-            near = [by for by in tried if abs(by - shift) <= FARTHEST]
-            best = max(near, key=lambda by: (same(by), -abs(by - shift)), default=shift)
+            best = max(tried, key=lambda by: (same(by), -abs(by - shift)), default=shift)
             if same(best) >= ENOUGH * len(notes):
                 shift = best
         found.append(shift)

@@ -7,20 +7,20 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.lab.plot.bowed_score import string_of, strokes_of, write_bowed_score
+from yehu_server.lab.plot.bowed_score import string_of, write_bowed_score
+from yehu_server.lab.plot.strokes import strokes_of
 from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.reading import read_written
 from yehu_server.scores.written.mark_settings import DOWN, UP
 from yehu_server.scores.written.notated import Mark, Note
-from yehu_server.scores.written.tempo import WrittenClock
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 def strokes(text: str) -> list[tuple[int, int, float]]:
     written = parse_jianpu(text.encode())
-    found = strokes_of(written.parts[0], WrittenClock(written))
-    return [(each.first, each.last, each.direction) for each in found]
+    found = strokes_of(written, 0, phrasing=0.0)
+    return [(each.first, each.last, each.direction, *each.turns) for each in found]
 
 
 @pytest.mark.parametrize(
@@ -37,6 +37,8 @@ def strokes(text: str) -> list[tuple[int, int, float]]:
         ),
         ("1 ( 1 ) 2", [(0, 1, DOWN), (2, 2, UP)]),  # repeated under a slur: it goes on
         ('1 ^"legato" 2 3 ^"non legato" 4', [(0, 2, DOWN), (3, 3, UP)]),
+        ("4=30 1 - - - 2", [(0, 0, DOWN, UP), (1, 1, DOWN)]),  # the bow has an end
+        ("4=60 1 - 2 3", [(0, 0, DOWN), (1, 1, UP), (2, 2, DOWN)]),
     ],
 )
 def test_the_bow_turns_with_each_stroke_and_stays_under_slurs(text, expected):

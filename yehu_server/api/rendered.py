@@ -31,7 +31,7 @@ from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
 from yehu_server.rendering.to_files import NORMALIZED_PEAK
-from yehu_server.scores.phrasing import is_fingered, phrased
+from yehu_server.scores.phrasing import PHRASING, is_fingered, phrased
 from yehu_server.scores.reading import How, read_any
 from yehu_server.scores.score import Score
 
@@ -39,7 +39,6 @@ Sound = NDArray[np.float32]
 Floats = NDArray[np.float64]
 
 BLOCK = 512  # frames between two readings of the pitch that is asked for; the sound is the same
-PHRASING = 0.5  # of files, as of the command
 LONGEST_TAIL_S = 600.0
 GAIN_DB = (-60.0, 24.0)
 

@@ -20,6 +20,7 @@ from yehu_server.cli.sound_options import (
 )
 from yehu_server.cli.terminal import compile_all, progress_bar, warn
 from yehu_server.errors import OutputError
+from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.score import Score, check_duration, concatenate
 from yehu_server.util.files import anything, check_distinct, make_folder
 
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Options, Part
     from yehu_server.rendering.summary import PartSummary, Summary
-
-PHRASING = 0.5  # of files, where nothing else is asked for
 
 
 @dataclass(frozen=True)

@@ -110,13 +110,16 @@ def _plot(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.scores.written.in_range import usual_parts
 
     check_distinct(picture_output(arguments), [arguments.score])
-    within = notes_of(instrument_of(arguments))
+    quantities = instrument_of(arguments)
+    within = notes_of(quantities)
     with naming(arguments.score):
         asked = [arguments.part] if arguments.part else []
         numbers = numbers_of(written.names, asked) if asked else usual_parts(written, within)
         if not numbers or not written.parts[numbers[0]].notes:
             raise ScoreError("has no note to draw")
-    write_bowed_score(written, numbers[0], arguments.plot, within, overwrite=arguments.overwrite)
+    write_bowed_score(
+        written, numbers[0], arguments.plot, quantities, overwrite=arguments.overwrite
+    )
 
 
 def _write(arguments: argparse.Namespace) -> int:

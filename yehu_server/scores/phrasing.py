@@ -16,6 +16,7 @@ from itertools import pairwise
 
 from yehu_server.scores.score import Score, ScoreNote, notes_of
 
+PHRASING = 0.5  # of files, where nothing else is asked for
 LOUDNESS = {1, 2, 7, 11}  # controllers: modulation, breath, volume, expression
 PEDALS = {64, 68}  # sustain, legato
 LEFT_HAND = {1, 5, 65, 76, 77, 78, 84}  # modulation, portamento, vibrato

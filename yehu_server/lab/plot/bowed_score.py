@@ -1,32 +1,34 @@
 """The picture of a written part as it will be bowed, in lines of jianpu: a player can follow it.
 
 Over each figure stand the bow's direction, marks and dynamics; under it fingers and the string. A
-brace joins the notes of one stroke.
+brace joins the notes of one stroke; of a stroke that comes to the bow's end both directions stand
+at its beginning.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.lab.plot import png
+from yehu_server.lab.plot.strokes import Stroke, strokes_of
 from yehu_server.playing.pitch_and_level import note_name
+from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.scores.jianpu.figures import SIGN_OF, figure_of, signed_lengths
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written import layout
 from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.layout import PageBar, Piece
-from yehu_server.scores.written.mark_settings import DOWN, UP, actives_of, is_plucked
+from yehu_server.scores.written.mark_settings import DOWN, UP
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Note, Part, Span, Written
-from yehu_server.scores.written.part_bowing import Played, bowed
-from yehu_server.scores.written.tempo import WrittenClock
 from yehu_server.scores.written.words import words_of_sign
 
 BARS_A_LINE, MOST_LINES = 4, 60
@@ -40,42 +42,6 @@ MARK_SIGNS = {
     "harmonic": "o", "vibrato": "~", "breath": ",", "slide-in-up": "↗", "slide-in-down": "↘",
     "slide-out-up": "↗", "slide-out-down": "↘", "spiccato": "▾", "portato": "\N{EN DASH}·",
 }  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Stroke:
-    """Notes on one bow, by their numbers, both included, and its direction; 0: plucked."""
-
-    first: int
-    last: int
-    direction: float
-
-
-def strokes_of(part: Part, clock: WrittenClock) -> list[Stroke]:
-    """Return the strokes of a part, as the player bows it: it turns the bow with each new one."""
-    actives = actives_of(part)
-    found: list[Stroke] = []
-    last: Played | None = None
-    for at, each in enumerate(bowed(part, actives, clock)):
-        told = {"up-bow": UP, "down-bow": DOWN}
-        wished = next((told[mark.name] for mark in each.note.marks if mark.name in told), None)
-        wished = each.direction if wished is None else wished
-        if is_plucked(each.note, actives[at]):
-            found.append(Stroke(at, at, 0.0))
-        elif last is not None and _goes_on(last, each, wished, found[-1]):
-            found[-1] = replace(found[-1], last=at)
-        else:
-            usual = next((-old.direction for old in found[::-1] if old.direction), DOWN)
-            found.append(Stroke(at, at, wished or usual))
-        last = each
-    return found
-
-
-def _goes_on(before: Played, played: Played, wished: float, stroke: Stroke) -> bool:
-    """Whether a note is on the bow of the one before: they overlap, or it is told to go on."""
-    if before.end_s > played.begin_s:
-        return wished in (0.0, stroke.direction)
-    return bool(played.direction) and before.direction == played.direction == stroke.direction
 
 
 def string_of(note: Note, within: NoteRange = YEHU) -> str:
@@ -98,21 +64,28 @@ def write_bowed_score(
     written: Written,
     number: int,
     target: Path,
-    within: NoteRange = YEHU,
+    quantities: Quantities | None = None,
     *,
     overwrite: bool = False,
 ) -> None:
     """Draw a part, counted from 0, moved into range as it is played, and write it to a PNG file.
 
-    Raises ParameterError where it has no note; OutputError where it cannot be written.
+    The strokes are those with which the instrument of these `quantities` plays it. Raises
+    ParameterError where it has no note; OutputError where it cannot be written.
     """
+    quantities = quantities or Quantities()
+    within = range_of(quantities)
     part, octaves = moved_part(written.parts[number], within)
     if not part.notes:
         raise ParameterError("the score has no note to draw")
     bars = layout.page_bars(written)
     rows = [range(at, min(at + BARS_A_LINE, len(bars))) for at in range(0, len(bars), BARS_A_LINE)]
     rows = [row for row in rows if bars[row.start].begin < part.notes[-1].end][:MOST_LINES]
-    page = _Page(written, part, bars, within)
+    drawn = tuple(note for note in part.notes if note.beat < bars[rows[-1].stop - 1].end)
+    part = replace(part, notes=drawn)
+    parts = (*written.parts[:number], part, *written.parts[number + 1 :])
+    strokes = strokes_of(replace(written, parts=parts), number, quantities)
+    page = _Page(written, part, bars, within, strokes)
 
     def fill(figure: Any) -> None:
         panels = figure.subplots(len(rows), 1, squeeze=False)[:, 0]
@@ -128,12 +101,17 @@ def write_bowed_score(
 
 class _Page:
     def __init__(
-        self, written: Written, part: Part, bars: Sequence[PageBar], within: NoteRange
+        self,
+        written: Written,
+        part: Part,
+        bars: Sequence[PageBar],
+        within: NoteRange,
+        strokes: Sequence[Stroke],
     ) -> None:
         self._within = within
         self._part, self._bars, self._written = part, bars, written
         self._pieces = layout.pieces_of(part, bars)
-        self._strokes = strokes_of(part, WrittenClock(written))
+        self._strokes = strokes
         self._begins = [note.beat for note in part.notes]
         keys = [key for key in written.keys if key.beat <= self._begins[0]]
         self._key = keys[-1] if keys else None
@@ -207,7 +185,7 @@ class _Page:
             axes.text(x - 0.012, 0.75, f"{len(note.before)}", fontsize=6, color=INK, ha="right")
         stroke = next((each for each in self._strokes if each.first == at), None)
         if stroke is not None:
-            sign = BOWS.get(stroke.direction, "")
+            sign = "".join(BOWS.get(each, "") for each in (stroke.direction, *stroke.turns))
             axes.text(x, 2.0, sign, fontsize=11, color=BOW, ha="center", va="center")
         own = string_of(note, self._within)
         before = string_of(self._part.notes[at - 1], self._within) if at else ""

@@ -28,7 +28,7 @@ from yehu_server.cli.arguments import (
     picture_output,
 )
 from yehu_server.cli.converters import number_within, positive, target
-from yehu_server.cli.terminal import print_result, warn, warn_of_lost
+from yehu_server.cli.terminal import compile_all, print_result, warn, warn_of_lost
 from yehu_server.errors import OutputError, ScoreError
 from yehu_server.scores.score import naming
 from yehu_server.util.files import check_distinct, write_bytes
@@ -117,6 +117,7 @@ def _plot(arguments: argparse.Namespace, written: Written) -> None:
         numbers = numbers_of(written.names, asked) if asked else usual_parts(written, within)
         if not numbers or not written.parts[numbers[0]].notes:
             raise ScoreError("has no note to draw")
+    compile_all(argparse.Namespace(quiet=False))
     write_bowed_score(
         written, numbers[0], arguments.plot, quantities, overwrite=arguments.overwrite
     )

@@ -175,7 +175,7 @@ def test_regimes_are_drawn_where_they_were_found():
     (mesh,) = axes.collections
     np.testing.assert_array_equal(mesh.get_array().reshape(3, 2), [[0, 1], [1, 1], [6, 2]])
     assert labels(axes) == ["unbowed", "silent", "helmholtz", "raucous"]
-    assert axes.get_title() == "Helmholtz motion: 16.7 % ± 2.5 points by the sample rate"
+    assert axes.get_title() == "Helmholtz: 16.7 % ± 2.5 by the sample rate"
     assert axes.get_xlim() == pytest.approx((0.05, 0.25))
     plt.figure()
     turned = yehu.plot.regimes(found, "bow_force", "bow_velocity")

@@ -173,9 +173,9 @@ def regime_patches(regimes: Sequence[str], cells: Array) -> list[Any]:
 
 
 def share_of(regimes: Sequence[str], cells: Array) -> str:
-    """Return a map's share of Helmholtz motion with its error bar, for its title."""
+    """Return a map's share of Helmholtz motion with its error bar (points), for its title."""
     share = 100.0 * np.mean(np.asarray(cells) == list(regimes).index("helmholtz"))
-    return f"Helmholtz motion: {share:.1f} % ± {RATE_ERROR:g} points by the sample rate"
+    return f"Helmholtz: {share:.1f} % ± {RATE_ERROR:g} by the sample rate"
 
 
 def draw_limits(axes: Any, along: Array, lower: Iterable[float], upper: Iterable[float]) -> None:

@@ -38,6 +38,7 @@ from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.notated import Part, Written
 
 ENDINGS = (".musicxml", ".xml", ".mxl", ".abc")
+OF_MIDI = (*ENDINGS, ".jianpu")  # of which LilyPond makes MIDI files, after jianpu-ly
 LOWEST, HIGHEST = 65, 89
 # What files may differ in.
 APART = "music21 has the parts apart"
@@ -131,9 +132,9 @@ def _same(before: list[float], after: Any) -> int:
     return sum(abs((b - a) - (d - c)) < 1e-6 for (a, b), (c, d) in pairs)
 
 
-def files_of(folder: Path, most: int) -> Iterator[Path]:
+def files_of(folder: Path, most: int, endings: tuple[str, ...]) -> Iterator[Path]:
     """Scores below a folder, spread over all of them where they are more."""
-    found = sorted(path for path in folder.rglob("*") if path.suffix.lower() in ENDINGS)
+    found = sorted(path for path in folder.rglob("*") if path.suffix.lower() in endings)
     step = max(len(found) // most, 1)
     return iter(found[::step][:most])
 
@@ -227,13 +228,13 @@ def main() -> None:
     words.add_argument("--most", type=int, default=100_000)
     words.add_argument("--list", type=Path)
     words.add_argument("--intervals", action="store_true", help="compare with no other program")
-    words.add_argument("--limit", type=int, default=90, help="seconds for music21 to read a file")
+    words.add_argument("--limit", type=int, default=600, help="seconds for music21 to read a file")
     words.add_argument("--midi", type=Path, help="MIDI files of another program to compare with")
     asked = words.parse_args()
     warnings.simplefilter("ignore")
     signal.signal(signal.SIGALRM, _too_slow)
     comparison = Comparison(asked.folder, asked.limit, asked.midi)
-    for path in files_of(asked.folder, asked.most):
+    for path in files_of(asked.folder, asked.most, OF_MIDI if asked.midi else ENDINGS):
         comparison.add(path, asks=not asked.intervals)
     comparison.tell()
     if asked.list:

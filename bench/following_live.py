@@ -43,7 +43,7 @@ LATEST_S, STEP_S = 0.08, 0.0025  # of what is heard after what was sung
 def followed(sound: Array) -> tuple[Array, Array, Array]:
     """The times of blocks, the pitch that is followed after each (NaN: none), and the onsets."""
     voice, wishes = np.zeros(1, FOLLOWER), np.zeros((ROOM, OF_WISH))
-    voice_prepare.call(voice.ctypes.data, float(RATE), math.nan)
+    voice_prepare.call(voice.ctypes.data, float(RATE), math.nan, 0.0)
     sound = np.ascontiguousarray(sound, np.float32)
     ends = np.arange(BLOCK, len(sound), BLOCK)
     pitch, onsets = [], []

@@ -47,6 +47,11 @@
  * @property {number} dropouts
  * @property {boolean} running
  *
+ * @typedef {object} Microphone
+ * @property {() => Promise<void>} start
+ * @property {(tuning: number[]) => void} follow its voice, moved to these pitches if there are any
+ * @property {() => void} stop
+ *
  * @typedef {object} SoundMembers
  * @property {Post} post
  * @property {() => void} close
@@ -56,7 +61,7 @@
  * @property {AnalyserNode | null} analyser null: the page hears nothing
  * @property {{start: () => void, stop: () => Blob | Promise<Blob>}} [record] writes WAV
  * @property {{start: () => void, stop: () => Promise<CapturedWishes>}} [keep] what is fulfilled
- * @property {{start: () => Promise<void>, stop: () => void}} [voice] follows a microphone
+ * @property {Microphone} [voice] follows a microphone
  * @property {number} [heard] pitch of the voice; NaN for none
  * @property {(address: string) => number | undefined} [target] where a parameter of bow and
  *   fingers moves to

@@ -71,6 +71,17 @@ def test_strokes_and_slurs_are_told_apart():
     assert np.allclose(starts, [0.1, 0.6, 1.1, 1.5], atol=0.03)
 
 
+def test_a_vibrato_that_swings_the_level_is_one_stroke():
+    """As of violins, by 8 dB; a consonant there is another."""
+    pitches = vibrato(tune([(64.0, 2.0)], RATE), RATE, cents=20.0)
+    time = np.arange(len(pitches)) / RATE
+    sound = voice(pitches, RATE) * 10.0 ** (4.0 * np.sin(2.0 * np.pi * 5.5 * time) / 20.0)
+    assert len(strokes_of(heard(sound))) == 1
+    at = np.abs(time - 1.0) < 0.02
+    noise = np.random.default_rng(1).normal(0.0, 0.02 * np.abs(sound).max(), len(sound))
+    assert len(strokes_of(heard(np.where(at, noise, sound)))) == 2
+
+
 def test_a_long_way_is_a_slide_and_a_short_one_a_step():
     slide = np.linspace(57.0, 62.0, round(0.3 * RATE))
     still = tune([(57.0, 0.4)], RATE), tune([(62.0, 0.4)], RATE)

@@ -17,7 +17,8 @@ const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
  * @property {boolean} [record] begins or ends a recording
  * @property {boolean} [keep] begins or ends keeping the wishes that are fulfilled
  * @property {Float64Array} [seen] a look, given back
- * @property {boolean} [voice] begins or ends following a voice
+ * @property {number[] | null} [voice] begins following a voice, moved to these pitches if there are
+ *   any; null ends it
  *
  * @typedef {object} Told
  * @property {Float64Array} [seen] a look
@@ -87,15 +88,15 @@ export class Engine {
     if (isTaken && this.kept) this.kept.push(Math.max(frame, this.frame), ...wish);
   }
 
-  /** @param {boolean} isSung whether there is a voice to follow from now on */
-  #follow(isSung) {
-    if (isSung) this.kernel.prepareVoice(this.rate);
-    else if (this.follows) {
+  /** @param {number[] | null} tuning of the voice to follow from now on; null for none */
+  #follow(tuning) {
+    if (this.follows) {
       this.hear(new Float32Array(0));
       this.sleeps = false; // it tells anew that it sleeps, as the device may rest then
       this.restless = this.frame;
     }
-    this.follows = isSung;
+    if (tuning) this.kernel.prepareVoice(this.rate, tuning);
+    this.follows = tuning !== null;
   }
 
   /** Follow a voice, where one is followed. @param {Float32Array} samples at most a block */

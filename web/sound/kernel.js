@@ -8,6 +8,7 @@
 const PAGE_BYTES = 65536; // of WebAssembly's memory
 const ALIGNED = 64; // bytes
 const SECOND_NS = 1_000_000_000n;
+const KEYS = 128; // of a tuning
 
 /** Wishes for the frame that is computed next, whichever it is, have this one. */
 export const NOW = -1;
@@ -163,11 +164,18 @@ export class Kernel {
     this.exported.yehu_process(this.at.rig, this.at.out, this.lengths[frames]);
   }
 
-  /** Follow a voice from now on, at a rate in Hz. @param {number} rate */
-  prepareVoice(rate) {
+  /**
+   * Follow a voice from now on.
+   * @param {number} rate in Hz
+   * @param {number[]} tuning pitches that it is moved to; none: it is played as it is sung
+   */
+  prepareVoice(rate, tuning) {
     const bytes = Number(this.exported.yehu_voice_size());
     new Uint8Array(this.exported.memory.buffer, this.at.voice, bytes).fill(0);
-    this.exported.yehu_voice_prepare(this.at.voice, rate, NaN);
+    this.exported.yehu_voice_prepare(this.at.voice, rate, NaN, tuning.length ? 1 : 0);
+    for (let key = 0; key < KEYS; key++) {
+      this.exported.yehu_voice_tune(this.at.voice, BigInt(key), tuning[key] ?? NaN);
+    }
   }
 
   /**

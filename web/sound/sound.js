@@ -59,7 +59,11 @@ export class Sound extends EventTarget {
     /** @type {((kept: NonNullable<Told["kept"]>) => void) | null} */
     this.kept = null;
     this.heard = NaN; // pitch of a voice that is followed
-    this.voice = { start: () => this.#startVoice(), stop: () => this.#stopVoice() };
+    this.voice = {
+      start: () => this.#startVoice(),
+      follow: (/** @type {number[]} */ tuning) => this.#take({ voice: tuning }),
+      stop: () => this.#stopVoice(),
+    };
     /** @type {MediaStreamAudioSourceNode | null} */
     this.microphone = null;
     this.keep = {
@@ -169,7 +173,6 @@ export class Sound extends EventTarget {
     });
     this.microphone = this.context.createMediaStreamSource(stream);
     if (this.output.node) this.microphone.connect(this.output.node);
-    this.#take({ voice: true });
     await this.resume();
   }
 
@@ -178,7 +181,7 @@ export class Sound extends EventTarget {
     this.microphone?.disconnect();
     for (const track of this.microphone?.mediaStream.getTracks() ?? []) track.stop();
     this.microphone = null;
-    this.#take({ voice: false });
+    this.#take({ voice: null });
   }
 
   #startRecording() {

@@ -2,7 +2,7 @@
 
 /** @typedef {import('../main.js').Page} Page */
 
-import { find, make, note, section, toggle, words } from "../elements.js";
+import { find, make, makeSwitch, note, section, toggle, words } from "../elements.js";
 import { Voice } from "../pictures/voice.js";
 import facts from "../facts.js";
 import { translate } from "../i18n.js";
@@ -15,7 +15,7 @@ const AS_IT_SINGS = Object.entries(facts.asItSings);
  * @param {Page} page
  * @returns {HTMLElement}
  */
-export function makeVoice({ instrument, gallery }) {
+export function makeVoice({ instrument, gallery, tuned }) {
   const { player } = instrument;
   const word = make("p", { class: "soft", role: "status" });
   const canvas = make("canvas", {
@@ -30,6 +30,16 @@ export function makeVoice({ instrument, gallery }) {
   let before = [];
   const hum = toggle("voice.begin", "keep.stop", (isOn) => (isOn ? begin() : end()));
 
+  let isTuned = false;
+  const correct = makeSwitch(words("voice.tuned"), isTuned, (isOn) => {
+    isTuned = isOn;
+    if (before.length) follow();
+  });
+
+  function follow() {
+    instrument.sound?.voice?.follow(isTuned ? tuned.pitches : []);
+  }
+
   async function begin() {
     await instrument.start();
     const voice = instrument.sound?.voice;
@@ -43,6 +53,7 @@ export function makeVoice({ instrument, gallery }) {
     }
     before = AS_IT_SINGS.map(([address]) => [address, player.value(address)]);
     for (const [address, value] of AS_IT_SINGS) player.write(address, value);
+    follow();
     canvas.hidden = lines.hidden = false;
     find("invite", HTMLElement).hidden = true; // it plays without a touch
     word.textContent = translate("voice.headphones");
@@ -60,6 +71,6 @@ export function makeVoice({ instrument, gallery }) {
   const isAble = (/** @type {typeof instrument.sound} */ sound) =>
     Boolean(navigator.mediaDevices) && (!sound || Boolean(sound.voice));
   const lack = judge(instrument, hum.button, isAble);
-  const row = make("div", { class: "row" }, [hum.button]);
+  const row = make("div", { class: "row" }, [hum.button, correct]);
   return section("voice", note(words("voice.about")), row, lack, word, canvas, lines);
 }

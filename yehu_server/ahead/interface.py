@@ -298,6 +298,7 @@ def telling(sources: str) -> Native:
 FOLLOWING = [
     voice_callback.voice_size,
     voice_callback.voice_prepare,
+    voice_callback.voice_tune,
     voice_callback.follow_voice,
     voice_callback.voice_pitch,
 ]

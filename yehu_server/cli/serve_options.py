@@ -48,12 +48,14 @@ def add_arguments(parser: Parser) -> None:
             name: the system's input)
         --follow-transpose SEMITONES: how far from the voice it is played (default: by octaves, so
             that the first note is in the lower half)
+        --follow-correct SHARE: how far it is moved to the tuning, 0 to 1 (default: 0)
         """,
         rate=_rate,
         blocksize={"type": whole_within(1, 8192, "is not within 1 to 8192 frames"), "default": 128},
         latency={"type": _latency, "default": "low"},
         follow={"nargs": "?", "const": ANY_INPUT},
         follow_transpose=number_within(-60.0, 60.0, "semitones"),
+        follow_correct=number_within(0.0, 1.0, ""),
         channels={"type": positive, "default": 2},
     )
     add_options(
@@ -196,10 +198,12 @@ def _follow_of(arguments: argparse.Namespace) -> Any:
     from yehu_server.live.audio.voice_input import FollowOptions
 
     if arguments.follow is None:
-        if arguments.follow_transpose is not None:
-            raise ParameterError("--follow-transpose: nothing is followed; add --follow")
+        for option in ("transpose", "correct"):
+            if getattr(arguments, f"follow_{option}") is not None:
+                raise ParameterError(f"--follow-{option}: nothing is followed; add --follow")
         return None
-    return FollowOptions(arguments.follow or None, arguments.follow_transpose)
+    transpose, correct = arguments.follow_transpose, arguments.follow_correct or 0.0
+    return FollowOptions(arguments.follow or None, transpose, correct)
 
 
 def _page_of(arguments: argparse.Namespace) -> Any:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.following.frames import HOP_S
+from yehu_server.following.frames import BACK, HOP_S
 from yehu_server.following.heard import Heard
 
 Array = Any
@@ -21,6 +21,9 @@ PASSING, PASSING_S, ONE_WAY = 0.6, 0.2, 0.8
 # Struck again: the level rises by so much, and on the mean of all bands, in so short a time; and
 # had fallen before.
 RISE_DB, FALL_DB, FLUX_DB, RISE_S, FALL_S = 5.0, 2.0, 2.2, 0.06, 0.15
+# Where the sound stays as much like itself as it was by so much, as with a vibrato, all bands rise
+# by more.
+ALIKE, ALIKE_FLUX_DB = 0.15, 4.0
 # Cost of a frame of a note, by the distance of its pitch (semitones), and of another note.
 SPREAD, FARTHEST, STEP = 0.35, 6.0, 15.0
 AT_NOTE = 0.3  # semitones from the middle of a note: what lies between two is the way
@@ -111,7 +114,10 @@ def _offset(pitches: list[Array]) -> float:
 
 def _struck_again(heard: Heard, start: int, end: int) -> list[int]:
     """The frames of a run at which a new stroke begins."""
-    level, flux = heard.level_db[start:end], heard.flux_db[start:end]
+    level, flux, alike = (
+        each[start:end] for each in (heard.level_db, heard.flux_db, heard.likeness)
+    )
+    usual = float(np.median(alike))
     rise, fall = round(RISE_S / HOP_S), round(FALL_S / HOP_S)
     found: list[int] = []
     at = rise // 2
@@ -122,7 +128,9 @@ def _struck_again(heard: Heard, start: int, end: int) -> list[int]:
             low = max(at - rise, 0) + int(np.argmin(before))
             gained = level[at : at + rise].max() - level[low]
             lost = level[max(low - fall, 0) : low + 1].max() - level[low]
-            if gained >= RISE_DB and lost >= FALL_DB:
+            near = slice(max(low - BACK, 0), at + BACK)
+            is_alike = usual - alike[near].min() < ALIKE and flux[at] < ALIKE_FLUX_DB
+            if gained >= RISE_DB and lost >= FALL_DB and not is_alike:
                 found.append(start + at)
                 at += rise
         at += 1

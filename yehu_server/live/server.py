@@ -185,7 +185,8 @@ class Server:
         follow, output = self.options.follow, self.options.output
         if follow is None:
             return None
-        return VoiceInput(self.player, follow, output, self.output.memory, self._on_message)
+        playing, memory = self.options.parts[0].playing, self.output.memory
+        return VoiceInput(self.player, follow, playing, output, memory, self._on_message)
 
     @property
     def _rigs(self) -> list[int]:

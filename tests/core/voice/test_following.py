@@ -34,9 +34,11 @@ class Followed:
         return [(time, value) for time, kind, value in self.wishes if kind in kinds]
 
 
-def followed(sound: np.ndarray, rate: float = RATE, transpose: float = math.nan) -> Followed:
+def followed(
+    sound: np.ndarray, rate: float = RATE, transpose: float = math.nan, correct: float = 0.0
+) -> Followed:
     voice, into = np.zeros(1, FOLLOWER), np.zeros((256, OF_WISH))
-    voice_prepare.call(voice.ctypes.data, rate, transpose)
+    voice_prepare.call(voice.ctypes.data, rate, transpose, correct)
     sound = np.ascontiguousarray(sound, np.float32)
     wishes, times, pitch = [], [], []
     for start in range(0, len(sound) + 1, BLOCK):
@@ -216,3 +218,51 @@ def test_what_is_no_longer_followed_ends():
     sound = sung(lambda t: np.full(len(t), 62.0))[: int(0.8 * RATE) // BLOCK * BLOCK]
     heard = followed(sound)  # the last block is empty
     assert [kind for _, kind, _ in heard.wishes][-1] == END
+
+
+def test_vibrato_of_a_bowed_string_is_no_new_stroke():
+    """Partials come and go under a resonance as the pitch swings, by 8 dB; a breath is one."""
+    time = np.arange(int(2.0 * RATE)) / RATE
+    swing = np.sin(2.0 * np.pi * 5.5 * time)
+    sound = sung(lambda t: 64.0 + 0.2 * np.sin(2.0 * np.pi * 5.5 * t), 2.0)
+    inside = slice(14400, 14400 + len(time))
+    swinging, breathing = sound.copy(), sound.copy()
+    swinging[inside] *= 10.0 ** (4.0 * swing / 20.0)
+    breath = np.random.default_rng(2).normal(0.0, 0.02, len(sound))
+    at = np.abs(np.arange(len(sound)) / RATE - 1.3) < 0.03
+    breathing[at] = 0.2 * breathing[at] + breath[at]
+    assert len(followed(swinging).of(BEGIN)) == 1
+    assert len(followed(breathing).of(BEGIN)) == 2
+
+
+def test_a_knock_on_the_microphone_deafens_nothing():
+    """Nor does a sample far beyond full scale: what is sung after it is as loud as without."""
+    quiet = sung(lambda t: np.full(len(t), 62.0), level=0.01)
+    loudest = {}
+    for name, knock in (("none", 0.0), ("full scale", 1.0), ("beyond", 1e30)):
+        sound = quiet.copy()
+        sound[2000:2010] = knock
+        loudest[name] = max(value for _, value in followed(sound).of(LOUDER))
+    assert min(loudest.values()) > 0.9, loudest
+
+
+def test_clipped_and_offset_voices_are_heard():
+    for worse in (lambda x: np.clip(8.0 * x, -0.1, 0.1), lambda x: x + 0.5):
+        heard = followed(worse(sung(lambda t: np.full(len(t), 59.0))))
+        steady = heard.pitch[(heard.times > 0.5) & (heard.times < 1.2)]
+        assert len(heard.of(BEGIN)) == 1
+        assert np.abs(steady - 59.0).max() < 0.05
+
+
+def test_a_correction_moves_what_is_played_to_the_tuning():
+    def pitch(time: np.ndarray) -> np.ndarray:
+        return 67.3 + 0.27 * np.sin(2.0 * np.pi * 5.0 * time)
+
+    off = {}
+    for correct in (0.0, 0.5, 1.0):
+        heard = followed(sung(pitch), correct=correct)
+        played = np.array([value for _, value in heard.of(BEGIN, SLIDE)])
+        off[correct] = np.abs(played - 67.0).max()
+    assert off[1.0] < 1e-9  # though the voice is nearer to the next note at times
+    assert off[0.5] == pytest.approx(0.285, abs=0.03)
+    assert off[0.0] == pytest.approx(0.57, abs=0.05)

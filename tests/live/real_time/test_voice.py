@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -55,4 +57,39 @@ def test_an_input_that_is_not_there_is_told_and_the_rest_plays(jackd, serve):
     server = serve("--follow", "no such microphone", "--midi-api", "none")
     server.said("no voice to follow: no audio input matches 'no such microphone'")
     server.osc().send("/note", 69, 80)
+    server.close()
+
+
+@pytest.mark.parametrize("number", [signal.SIGSTOP, signal.SIGKILL])
+def test_an_input_that_stalls_or_goes_holds_no_note_and_is_followed_again(
+    number, jackd, serve, tmp_path, until
+):
+    """A sound server that is stopped says nothing; the input's silence tells."""
+    jackd.start(128)
+    take = tmp_path / "take.jsonl"
+
+    def count(kind: str) -> int:
+        lines = take.read_text().splitlines()[1:]  # the last may be cut off
+        return sum(f'"{kind}"' in line for line in lines)
+
+    server = serve("--follow", "--midi-api", "none", "--capture", take)
+    server.said("following system", 60.0)
+    phase = 2.0 * np.pi * 220.0 * np.arange(60 * RATE) / RATE
+    np.save(tmp_path / "voice.npy", 0.1 * sum(np.sin(k * phase) / k for k in range(1, 9)))
+    words = [jackd.name, "yehu-server voice:in_0", str(tmp_path / "voice.npy")]
+    singer = subprocess.Popen([sys.executable, SINGER, *words], env=jackd.environment)
+    try:
+        until(lambda: take.exists() and count("begin") > 0, 60.0, "a note")
+        said = len(server.lines)
+        os.kill(jackd.pid, number)
+        server.said("is gone; it is followed again", 60.0, said)
+    finally:
+        singer.kill()
+        singer.wait()
+    until(lambda: count("end") >= count("begin"), 60.0, "the end of the note")
+    if number == signal.SIGSTOP:
+        os.kill(jackd.pid, signal.SIGCONT)
+    else:
+        jackd.restart()
+    server.said("following system", 60.0, said)
     server.close()

@@ -15,7 +15,7 @@ from yehu_server.core.engine.atomics import pointer, record_at
 from yehu_server.core.engine.mailbox import SOUND_INPUT
 from yehu_server.core.engine.native import post_to
 from yehu_server.core.engine.processor import flush_denormals, monotonic_ns, restore_denormals
-from yehu_server.core.voice.deciding import FOLLOWER, decide, end, prepare_follower
+from yehu_server.core.voice.deciding import FOLLOWER, TUNED, decide, end, prepare_follower
 from yehu_server.core.voice.hearing import take
 
 FOLLOWER_BYTES = FOLLOWER.itemsize
@@ -29,13 +29,22 @@ def voice_size() -> int:
 
 
 @native
-def voice_prepare(voice: Any, rate: float, transpose: float) -> None:
+def voice_prepare(voice: Any, rate: float, transpose: float, correct: float) -> None:
     """Make a follower of a voice at a rate (Hz), in memory that is all 0.
 
     What is played is so many semitones above the voice; where that is NaN, by octaves, so that the
-    first note is in the lower half of the range.
+    first note is in the lower half of the range. It is moved to the twelve equal notes by `correct`
+    of its distance, 0 to 1.
     """
-    prepare_follower(record_at(voice, 0, FOLLOWER), rate, transpose)
+    prepare_follower(record_at(voice, 0, FOLLOWER), rate, transpose, correct)
+
+
+@native
+def voice_tune(voice: Any, key: int, pitch: float) -> None:
+    """Set the pitch of a key, 0 to 127, to which what is played is moved; NaN for none."""
+    f = record_at(voice, 0, FOLLOWER)
+    if 0 <= key < TUNED:
+        f.tuning[key] = pitch
 
 
 @native

@@ -36,18 +36,22 @@ FALLS, RISES = 0.1, 0.01  # parts of the difference, by hearing
 QUIETEST_FULL_DB, FORGOTTEN_DB = -55.0, 0.5 * HOP_S
 FELT_DB = 0.4  # dynamics less apart are the same
 LEAST_DYNAMICS = 0.03  # at which a note still speaks
-# -- struck again: the level falls and rises so much, faster than it swells.
+# -- struck again: the level falls and rises so much, faster than it swells; a sound that stays
+# like itself meanwhile, as with the vibrato of a violin, rises by more.
 FALL_DB, RISE_DB, SWELL_DB, PEAK_DB = 3.0, 5.0, 90.0 * HOP_S, 40.0 * HOP_S
+ALIKE, ALIKE_RISE_DB = 0.9, 12.0
 STROKE = 12  # hearings that a stroke lasts at least
 # -- pitch
 START = 6.0  # above the lowest: where the first note comes near to, from which tunes tend to rise
 FELT = 0.01  # semitones: pitches less apart are the same
+STAYS = 0.2  # semitones by which another pitch of the tuning is nearer, before it is aimed at
 # Up to so far over the open outer string, and from so far below the end of the inner: the string
 # asked for.
 ON_INNER, ON_OUTER = 2.5, 0.3
 INNER, EITHER = 1.0, 0.0
 VOICE = -2  # the channel of its notes
 KEYS = (0.0, 1.0)  # which it has in turn: of two that are slurred, both are held for a moment
+TUNED = 128  # keys of a tuning
 MOST_WISHES = 8
 
 
@@ -72,6 +76,10 @@ FOLLOWER = np.dtype(
         ("on_inner", np.float64),
         ("on_outer", np.float64),
         ("transpose", np.float64),  # semitones; NaN: by octaves, as the first note wants
+        ("sharper", np.float64),  # how much 440 Hz is above the instrument's A4 (semitones)
+        ("correct", np.float64),  # how far what is played is moved to the tuning: 0 to 1
+        ("tuning", np.float64, TUNED),  # pitches of its keys; NaN for a key without one
+        ("aim", np.float64),  # the pitch of the tuning that it is moved to
         ("is_open", np.int64),  # whether a note sounds
         ("agreed", np.int64),  # hearings
         ("doubted", np.int64),
@@ -88,6 +96,7 @@ FOLLOWER = np.dtype(
         ("full_db", np.float64),
         ("peak_db", np.float64),
         ("valley_db", np.float64),  # NaN: the level has not fallen
+        ("least", np.float64),  # certainty since it fell
         # What it has come to, in this hearing.
         ("wishes", np.int64),
         ("kind", np.int64, MOST_WISHES),
@@ -99,22 +108,27 @@ FOLLOWER = np.dtype(
 )
 
 
-def ends_of(notes: NoteRange) -> tuple[float, ...]:
-    """The fields NOTE_LIMITS of a follower for the notes of an instrument."""
-    inner = notes.open_notes[1] + ON_INNER, notes.highest_notes[0] - ON_OUTER
-    return (*map(float, notes.ends), *inner)
+def ends_of(notes: NoteRange) -> dict[str, float]:
+    """The fields of a follower for the notes of an instrument."""
+    return {
+        "lowest": float(notes.ends[0]),
+        "highest": float(notes.ends[1]),
+        "on_inner": float(notes.open_notes[1] + ON_INNER),
+        "on_outer": float(notes.highest_notes[0] - ON_OUTER),
+    }
 
 
-NOTE_LIMITS = ("lowest", "highest", "on_inner", "on_outer")
-OF_YEHU = ends_of(YEHU)
+OF_YEHU = tuple(ends_of(YEHU).values())
 
 
 @compiled_exactly
-def prepare_follower(f: Any, rate: float, transpose: float) -> None:
+def prepare_follower(f: Any, rate: float, transpose: float, correct: float) -> None:
     """Set up a record that is all 0 for a sound's rate (Hz); see its fields."""
     prepare_hearing(f.hearing, rate)
     f.lowest, f.highest, f.on_inner, f.on_outer = OF_YEHU
-    f.transpose = transpose
+    f.transpose, f.correct, f.aim = transpose, correct, math.nan
+    for key in range(TUNED):
+        f.tuning[key] = key
     f.noise_db, f.full_db = LEAST_DB, QUIETEST_FULL_DB
     f.dynamics_db = f.string = math.nan
 
@@ -132,7 +146,7 @@ def decide(f: Any) -> None:
     """Decide what the last hearing comes to. Real time: safe."""
     f.wishes = 0
     h = f.hearing
-    f.full_db = max(f.full_db - FORGOTTEN_DB, h.level_db, QUIETEST_FULL_DB)
+    f.full_db = max(f.full_db - FORGOTTEN_DB, QUIETEST_FULL_DB)
     if f.is_open == 0:
         await_note(f, h)
     elif h.certainty < UNSURE or h.level_db < gate_db(f) - CLOSES_DB:
@@ -171,9 +185,10 @@ def await_note(f: Any, h: Any) -> None:
 @compiled_exactly
 def begin(f: Any, pitch: float) -> None:
     """Begin a note of a pitch, in range."""
+    sharp = pitch + f.sharper
     if math.isnan(f.transpose):
-        f.transpose = 12.0 * np.rint((f.lowest + START - pitch) / 12.0)
-    played = pitch + f.transpose
+        f.transpose = 12.0 * np.rint((f.lowest + START - sharp) / 12.0)
+    played = sharp + f.transpose
     f.octaves = 0.0
     while played + f.octaves < f.lowest - 0.5:
         f.octaves += 12.0
@@ -188,7 +203,23 @@ def begin(f: Any, pitch: float) -> None:
 @compiled_exactly
 def playable(f: Any, pitch: float) -> float:
     """The pitch that is played for one that is heard."""
-    return float(min(max(pitch + f.transpose + f.octaves, f.lowest), f.highest))
+    played = pitch + f.sharper + f.transpose + f.octaves
+    if f.correct > 0.0:
+        nearest = nearest_of(f.tuning, played)
+        if not abs(played - f.aim) < abs(played - nearest) + STAYS:
+            f.aim = nearest
+        played += f.correct * (f.aim - played)
+    return float(min(max(played, f.lowest), f.highest))
+
+
+@compiled_exactly
+def nearest_of(tuning: Any, pitch: float) -> float:
+    """The pitch of a tuning that is nearest to another; that itself where there is none."""
+    nearest, least = pitch, math.inf
+    for key in range(TUNED):
+        if abs(tuning[key] - pitch) < least:
+            nearest, least = float(tuning[key]), abs(tuning[key] - pitch)
+    return nearest
 
 
 @compiled_exactly
@@ -206,7 +237,7 @@ def follow(f: Any, h: Any) -> None:
     f.age += 1
     f.note_age += 1
     set_dynamics(f, h)
-    if is_struck_again(f, h.level_db):
+    if is_struck_again(f, h.level_db, h.certainty):
         end(f)
         f.is_open, f.age = 1, 0
         begin(f, h.pitch)
@@ -231,7 +262,8 @@ def follow(f: Any, h: Any) -> None:
 
 @compiled_exactly
 def set_dynamics(f: Any, h: Any) -> None:
-    """Play as loud as the voice is, against its loudest."""
+    """Play as loud as the voice is, against its loudest; what is no voice does not count."""
+    f.full_db = max(f.full_db, h.level_db)
     level = h.level_db - f.full_db
     if not abs(level - f.dynamics_db) < FELT_DB:
         f.dynamics_db = level
@@ -240,18 +272,22 @@ def set_dynamics(f: Any, h: Any) -> None:
 
 
 @compiled_exactly
-def is_struck_again(f: Any, level_db: float) -> bool:
+def is_struck_again(f: Any, level_db: float, certainty: float) -> bool:
     """Whether the level falls and rises as where a note is struck again."""
     f.peak_db = max(level_db, f.peak_db - PEAK_DB)
     if math.isnan(f.valley_db):
         if level_db < f.peak_db - FALL_DB:
-            f.valley_db = level_db
+            f.valley_db, f.least = level_db, certainty
         return False
     f.valley_db = min(level_db, f.valley_db + SWELL_DB)
-    if level_db < f.valley_db + RISE_DB:
-        return False
-    f.valley_db, f.peak_db = math.nan, level_db
-    return bool(f.age >= STROKE)
+    f.least = min(f.least, certainty)
+    rise = level_db - f.valley_db
+    if rise >= (RISE_DB if f.least < ALIKE else ALIKE_RISE_DB):
+        f.valley_db, f.peak_db = math.nan, level_db
+        return bool(f.age >= STROKE)
+    if level_db >= f.peak_db and rise >= RISE_DB:  # as loud as before
+        f.valley_db = math.nan
+    return False
 
 
 @compiled_exactly

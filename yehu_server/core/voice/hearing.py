@@ -31,6 +31,7 @@ STEADY_HZ = 40.0  # of the high-pass, for what is steady
 # Loudness is that of what is above this: roughly as A-weighting has it for a voice.
 LOUDNESS_HZ, LOUDNESS_S = 400.0, 0.012
 SILENT = 1e-12  # power: -120 dB of full scale
+LOUDEST = 4.0  # of full scale: what is beyond is no voice, and would deafen for long
 A4_HZ = 440.0
 MOST_LAGS = 2 + math.ceil(2.0 * THINNED_HZ / LOWEST_HZ)
 
@@ -94,7 +95,7 @@ def set_lowpass(b: Array, angle: float, q: float) -> None:
 @compiled_exactly
 def take(h: Any, sample: float) -> bool:
     """Take a sample of the sound; return whether something new is heard. Real time: safe."""
-    passed = sample if math.isfinite(sample) else 0.0
+    passed = min(max(sample, -LOUDEST), LOUDEST) if math.isfinite(sample) else 0.0
     for section in range(2):
         b, z = h.lowpass[section], h.passed[section]
         out = b[0] * passed + z[0]

@@ -23,6 +23,7 @@ from yehu_server.util.processes import Message, Parent
 LOOK_EVERY_S, LATER_EVERY_S = 0.5, 2.0
 LATER = 60  # looks
 WATCH_EVERY_S = 0.02
+STALLED = 50  # of these, with nothing new from an input: it is lost, though it does not say so
 CLOSE_WITHIN_S = 0.5
 MOST_CHANNELS = 64
 
@@ -58,6 +59,11 @@ class Stream:
         return bool(self._stream.active)
 
     @property
+    def heard(self) -> int | None:
+        """How much an input has heard; None of an output."""
+        return None if self._own is None else int(self._own["hearing"]["heard"][0])
+
+    @property
     def latency_ms(self) -> float:
         """Latency between callback and device, as PortAudio reports it."""
         return 1e3 * float(self._stream.latency)
@@ -85,12 +91,12 @@ def _following(address: int, order: Message) -> tuple[Any, Any]:
     import numpy as np
 
     from yehu_server.core.engine.voice_callback import follow_input, voice_prepare
-    from yehu_server.core.voice.deciding import FOLLOWER, NOTE_LIMITS
+    from yehu_server.core.voice.deciding import FOLLOWER
 
     voice = np.zeros(1, FOLLOWER)
-    voice_prepare.call(voice.ctypes.data, order["rate"], order["transpose"])
-    for field, end in zip(NOTE_LIMITS, order["ends"], strict=True):
-        voice[field] = end
+    voice_prepare.call(voice.ctypes.data, order["rate"], order["transpose"], order["correct"])
+    for field, value in order["fields"].items():
+        voice[field] = value
     voice["rig"] = address
     return follow_input, voice
 
@@ -178,12 +184,14 @@ def _look(
 
 
 def _watch(parent: Parent, orders: queue.Queue[Message | None], stream: Stream) -> None:
-    while stream.is_active:
+    heard, still = stream.heard, 0
+    while stream.is_active and still < STALLED:
         try:
             if orders.get(timeout=WATCH_EVERY_S) is None:
                 return
         except queue.Empty:
-            continue
+            before, heard = heard, stream.heard
+            still = still + 1 if heard is not None and heard == before else 0
     parent.tell("lost", at=time.monotonic())
     os._exit(1)
 

@@ -6,12 +6,15 @@ import math
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from yehu_server.core.voice.deciding import KEYS, VOICE, ends_of
 from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.output import OutputOptions, SharedMemory
 from yehu_server.playing.live_player import LivePlayer
-from yehu_server.playing.options import AS_IT_SINGS
+from yehu_server.playing.options import AS_IT_SINGS, PlayingOptions
+from yehu_server.playing.tuning import KEYS as TUNED
+from yehu_server.playing.tuning import STANDARD_A4
 from yehu_server.playing.wishes import Key
 from yehu_server.util.processes import Child, Message, Supervisor
 
@@ -24,6 +27,17 @@ class FollowOptions:
 
     device: str | None = None  # None: the system's default
     transpose: float | None = None  # semitones; None: by octaves, as the first note wants
+    correct: float = 0.0  # how far what is played is moved to the tuning, 0 to 1
+
+
+def tuned_as(playing: PlayingOptions) -> dict[str, Any]:
+    """The fields of a follower for a tuning and a reference pitch."""
+    a4 = playing.a4
+    pitches = [playing.tuning.pitch(key, a4) for key in TUNED]
+    return {
+        "sharper": 12.0 * math.log2(STANDARD_A4 / a4),
+        "tuning": [math.nan if pitch is None else pitch for pitch in pitches],
+    }
 
 
 class VoiceInput(Supervisor):
@@ -36,6 +50,7 @@ class VoiceInput(Supervisor):
         self,
         player: LivePlayer,
         options: FollowOptions,
+        playing: PlayingOptions,
         output: OutputOptions,
         memory: SharedMemory,
         on_message: Callable[[str], None],
@@ -44,6 +59,7 @@ class VoiceInput(Supervisor):
         super().__init__(module, "voice", on_message, [memory.descriptor])
         self._player, self._options = player, options
         self._output, self._memory = output, memory
+        self._fields = ends_of(player.notes) | tuned_as(playing)
         self._child: Child | None = None
         self._name = ""
         self._problem = ""
@@ -77,7 +93,8 @@ class VoiceInput(Supervisor):
                 latency=self._output.latency,
                 channels=1,
                 transpose=math.nan if options.transpose is None else options.transpose,
-                ends=ends_of(self._player.notes),
+                correct=options.correct,
+                fields=self._fields,
             )
         elif kind == "ready":
             child.send("start")

@@ -73,10 +73,14 @@ def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Rec
     _check_rate(str(path), rate)
     check_duration(frames / rate, max_duration_h, f"{path}: the recording lasts")
 
+    size = round(BLOCK_S * rate)
+
     def blocks() -> Iterator[Array]:
         try:
             with open_regular(path) as data, soundfile.SoundFile(data) as file:
-                yield from file.blocks(round(BLOCK_S * rate), dtype="float32", always_2d=True)
+                # Not its own blocks(), which wants to know how long a sound is: some do not tell.
+                while len(block := file.read(size, dtype="float32", always_2d=True)):
+                    yield block
         except OSError as error:
             raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
         except soundfile.LibsndfileError as error:

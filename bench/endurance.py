@@ -159,6 +159,7 @@ class Playing:
                 if found := re.search(pattern, line):
                     return found[1]
             time.sleep(0.05)
+        self.process.kill()
         sys.exit("serve does not start:\n" + "\n".join(self.lines))
 
     def status(self) -> dict[str, float]:

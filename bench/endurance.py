@@ -135,31 +135,32 @@ def visited(url: str | None) -> Iterator[None]:
 class Playing:
     """``yehu-server serve`` as a command, its messages and metrics."""
 
-    def __init__(self, device: str, blocksize: int, *more: object, page: bool = False) -> None:
-        words = ["--audio-device", device, "--blocksize", str(blocksize), *map(str, more)]
+    def __init__(
+        self, device: str, blocksize: int, folder: Path, *, page: bool, parts: int
+    ) -> None:
+        words = ["--audio-device", device, "--blocksize", str(blocksize), "--parts", str(parts)]
         words += ["--osc", "127.0.0.1:0", "--http", "127.0.0.1:0"]
+        words += ["--record", str(folder / "take.wav"), "--capture", str(folder / "take.jsonl")]
         words += ["--panel-port", "0"] if page else ["--no-panel"]
         self.lines: list[str] = []
         self.process = subprocess.Popen(  # noqa: S603 - our own command
             [*report.COMMAND, "serve", *words], stderr=subprocess.PIPE, text=True
         )
         threading.Thread(target=self._read, args=(self.process.stderr,), daemon=True).start()
-        self.osc = int(self.said(r"OSC at [\d.]+:(\d+)"))
-        self.http = int(self.said(r"OSCQuery at http://[\d.]+:(\d+)"))
-        self.page = self.said(r"the page at (http://\S+)") if page else None
+        self.osc = int(self._said(r"OSC at [\d.]+:(\d+)"))
+        self.http = int(self._said(r"OSCQuery at http://[\d.]+:(\d+)"))
+        self.page = self._said(r"the page at (http://\S+)") if page else None
 
     def _read(self, pipe: IO[str]) -> None:
         self.lines.extend(line.rstrip() for line in pipe)
 
-    def said(self, pattern: str) -> str:
-        """Wait for a line that matches; return its first group."""
+    def _said(self, pattern: str) -> str:
         deadline = time.monotonic() + STARTED_WITHIN_S
         while time.monotonic() < deadline and self.process.poll() is None:
             for line in list(self.lines):
                 if found := re.search(pattern, line):
                     return found[1]
             time.sleep(0.05)
-        self.process.kill()
         sys.exit("serve does not start:\n" + "\n".join(self.lines))
 
     def status(self) -> dict[str, float]:
@@ -225,8 +226,7 @@ def play(
     """Play under load, replay the take, and return all counts."""
     with helper(play_idle, device, blocksize) as idle:
         idle.recv()
-        files = ("--record", folder / "take.wav", "--capture", folder / "take.jsonl")
-        playing = Playing(device, blocksize, "--parts", parts, *files, page=page)
+        playing = Playing(device, blocksize, folder, page=page, parts=parts)
         with (
             helper(listen, playing.http) as pages,
             visited(playing.page),

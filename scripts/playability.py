@@ -26,7 +26,7 @@ from measures.shares import Share, whole
 from measures.shuffled import WAYS, shuffled
 from measures.take import Setup
 from measures.transitions import clicks, legato
-from measures.tunes import tunes
+from measures.tunes import detached, tunes
 
 from yehu_server.core.physics.quantities import Quantities, read_quantities
 from yehu_server.errors import YehuError
@@ -36,7 +36,19 @@ from yehu_server.playing.practice_files import read_practice
 MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
     each.__name__: each
     for each in (
-        *(grid, isolated, chromatic, steady, quarters, legato, bends, tunes, hunting, life),
+        *(
+            grid,
+            isolated,
+            chromatic,
+            steady,
+            quarters,
+            legato,
+            bends,
+            tunes,
+            detached,
+            hunting,
+            life,
+        ),
         *(clicks, evenness, velocity, shuffled, strings, presets, phrases),
     )
 }

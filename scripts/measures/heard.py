@@ -100,8 +100,8 @@ class Figures:
     sounds : float
         The same as a share (%) of the note's length.
     strokes, stroke_rate, dip : float
-        Peaks of the level that stand out by STROKE_DB; how many come in a second; how deep the
-        level falls between them (dB).
+        Peaks of the level within LOUD_DB that stand out by STROKE_DB; how many come in a second;
+        how deep the level falls between them (dB).
     begins, ends, low, high : float
         Pitch at the beginning and before the end, and the 3rd and 97th of a hundred.
     arrives : float
@@ -156,6 +156,8 @@ def figures(track: Track, begin_s: float, length_s: float, pitch: float, may: Ar
     rise = int(np.argmax(early > early.max() - 3.0))
     sounding = float((level > loudest - SOUNDING_DB).sum())
     strokes, height = _peaks(np.maximum(level, loudest - 40.0), STROKE_DB)
+    struck = level[strokes] > loudest - LOUD_DB  # a beat in what rings is no stroke
+    strokes, height = strokes[struck], height[struck]
     steady = np.where(is_loud, tone, np.nan)
     beats, width = _peaks(_joined(steady), BEAT_SEMITONES)
     inside = steady[np.isfinite(steady)]

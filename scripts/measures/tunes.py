@@ -1,6 +1,7 @@
-"""`tunes`: fast tunes, slurred and in separate strokes: notes in tune in their second half.
+"""`tunes`, `detached`: fast tunes, slurred and in separate strokes: in tune in their second half.
 
-A note is slurred to the next unless that repeats it. Separate notes have no rest between them.
+A note is slurred to the next unless that repeats it. Separate notes have no rest between them;
+detached ones are lifted after a share of their time.
 
 The second half of a sixteenth is 62 ms at 120 quarters a minute, and 43 ms at 172. There what rings
 of the notes before is part of the sound, so the pitch is that of the harmonics (`intonation`). On
@@ -21,6 +22,7 @@ from measures.shares import Share
 from measures.take import Setup, Take, in_parallel
 
 SIXTEENTHS_S = (0.125, 0.087)
+DETACHED_S, HELD = (0.125, 0.087, 0.0625), (1.0, 0.6)  # sixteenths; share of each that is held
 OVERLAP_S = 0.01
 FILE = Path(__file__).parents[1] / "tunes" / "fast.toml"
 
@@ -54,15 +56,17 @@ def all_tunes() -> dict[str, list[Note]]:
     return {"Shi Bei Jiu": example, **own}
 
 
-def _errors(setup: Setup, notes: list[Note], slot_s: float, is_slurred: bool) -> list[float]:
-    """Play a tune; return the error (cents) of each note in its second half."""
+def _errors(
+    setup: Setup, notes: list[Note], slot_s: float, is_slurred: bool, held: float = 1.0
+) -> list[float]:
+    """Play a tune; return the error (cents) of each note in the second half of what is held."""
     take = Take(setup)
     before: Note | None = None
     for note in notes:
         start_s = note.start * slot_s
         overlap_s = OVERLAP_S if before and is_slurred and before.pitch != note.pitch else 0.0
         if before and not overlap_s:
-            take.off(start_s, before.pitch)
+            take.off((before.start + held * before.length) * slot_s, before.pitch)
         take.on(start_s, note.pitch)
         if before and overlap_s:
             take.off(start_s + overlap_s, before.pitch)
@@ -72,8 +76,8 @@ def _errors(setup: Setup, notes: list[Note], slot_s: float, is_slurred: bool) ->
         overtones_off_by(
             sound,
             setup.rate,
-            (note.start + 0.5 * note.length) * slot_s,
-            0.5 * note.length * slot_s,
+            (note.start + 0.5 * held * note.length) * slot_s,
+            0.5 * held * note.length * slot_s,
             note.pitch,
         )
         for note in notes
@@ -95,3 +99,18 @@ def tunes(setup: Setup) -> list[Share]:
         cases = [(note.pitch, number) for number, note in enumerate(notes, start=1)]
         parts.append(judged(f"{name}, {1e3 * slot_s:.0f} ms, {how}", cases, errors))
     return parts
+
+
+def detached(setup: Setup) -> list[Share]:
+    """Print the same of separate strokes alone, at three tempi, whole and lifted early."""
+    found = []
+    for slot_s in DETACHED_S:
+        for held in HELD:
+            jobs = [(notes, slot_s, False, held) for notes in all_tunes().values()]
+            errors = in_parallel(setup, _errors, jobs)
+            cases = [note.pitch for notes, *_ in jobs for note in notes]
+            what = f"{1.0 / slot_s:.1f} a second, held for {100.0 * held:.0f} %"
+            found.append(
+                judged(what, [(pitch,) for pitch in cases], [e for own in errors for e in own])
+            )
+    return found

@@ -9,6 +9,7 @@ import pytest
 from pitch import cents, pitch_of
 
 from yehu_server.core.player.note_range import YEHU
+from yehu_server.params.articulations import NUMBER
 from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
 from yehu_server.scores.written.mark_settings import harmonics_of
@@ -35,6 +36,14 @@ def test_a_harmonic_speaks_within_10_cents_of_its_pitch(pitch):
     samples, _ = sound((pitch, "harmonic"))
     heard = pitch_of(samples[int(0.5 * RATE) : int(0.9 * RATE)], RATE)
     assert abs(cents(heard, 440.0 * 2.0 ** ((pitch - 69.0) / 12.0))) < 10.0
+
+
+@pytest.mark.parametrize(("touched", "sounds"), [(77, 77), (84, 84), (79, 91)])
+def test_under_its_articulation_a_key_is_where_the_finger_touches(touched, sounds):
+    chosen = Sign(Fraction(0), "articulation", float(NUMBER["flageolet"]))
+    samples, _ = sound((touched,), signs=(chosen,))
+    heard = pitch_of(samples[int(0.5 * RATE) : int(0.9 * RATE)], RATE)
+    assert abs(cents(heard, 440.0 * 2.0 ** ((sounds - 69.0) / 12.0))) < 10.0
 
 
 def test_a_harmonic_has_none_of_the_stopped_notes_other_partials():

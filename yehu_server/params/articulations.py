@@ -96,6 +96,9 @@ class Articulation:
     tremolo, tremolo_depth : float
         Strokes a second; as `/playing/tremolo_depth`.
     is_plucked : bool
+    touches : bool
+        Whether a finger touches an open string at a node, where the note is one
+        (`core.player.harmonics`).
     """
 
     name: str
@@ -113,6 +116,7 @@ class Articulation:
     tremolo: float = 0.0
     tremolo_depth: float = 0.0
     is_plucked: bool = False
+    touches: bool = False
 
 
 ARTICULATIONS: tuple[Articulation, ...] = (
@@ -147,7 +151,7 @@ ARTICULATIONS: tuple[Articulation, ...] = (
         "tremolo", "颤弓", "many short strokes, growing",
         source="12 to 15 strokes a second in recordings; the growth by ear",
         bow=(BowStep(speed=0.7), BowStep(speed=1.1, ramp_share=0.9)),
-        tremolo=13.0, tremolo_depth=0.6, length_s=1.5,
+        tremolo=13.0, tremolo_depth=0.5, length_s=1.5,
     ),
     Articulation(
         "padded", "垫弓", "a light stroke the other way before the note ends",
@@ -247,6 +251,12 @@ ARTICULATIONS: tuple[Articulation, ...] = (
             FingerStep(-0.2, at_ms=230.0, glide_ms=170.0),
         ),
         again_ms=380.0,
+    ),
+    Articulation(
+        "flageolet", "泛音",
+        "a harmonic: the finger only touches the string at its half (F5, C6) or its third (G5, "
+        "which sounds G6), the bow near the bridge; other notes are light",
+        bow=(BowStep(speed=1.2, weight=0.5),), vibrato=Vibrato(0.0), touches=True,
     ),
 )  # fmt: skip
 

@@ -8,7 +8,17 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
-from yehu_server.core.controls.slots import DEPTH, ONSET, SIDE, SPEED, TREMOLO, UPWARD
+from yehu_server.core.controls.slots import (
+    DEPTH,
+    FINGER_POSITION,
+    FINGER_PRESS,
+    ONSET,
+    SHARE,
+    SIDE,
+    SPEED,
+    TREMOLO,
+    UPWARD,
+)
 from yehu_server.errors import ParameterError
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER, number_of
 
@@ -110,6 +120,24 @@ def test_a_slide_in_a_note_stays_on_one_string():
     assert wrong == []
 
 
+def test_a_trill_stays_on_one_string():
+    """Also near the inner string's end, where the trilling finger would not fit."""
+    wrong = []
+    for name in ("trill", "wide-trill", "mordent"):
+        for note in (71, 72, 73, 74, 75, 76):
+            playing = Playing(articulation=NUMBER[name], variation=0.0, listening=0.0)
+            strings = set()
+            for each in (70, note):
+                playing.on(each)
+                playing.play(0.1)
+            for _ in range(80):
+                playing.play(0.005)
+                strings.add(int(playing.player["string"]))
+            if len(strings) != 1:
+                wrong.append((name, note))
+    assert wrong == []
+
+
 def test_a_slide_goes_over_to_another_string_with_another_finger():
     for first, second in ((70, 79), (79, 70)):
         playing = Playing(portamento=1.0, portamento_time=200.0, variation=0.0, listening=0.0)
@@ -125,6 +153,48 @@ def test_a_slide_goes_over_to_another_string_with_another_finger():
         for (string, finger, _), (next_string, next_finger, _) in itertools.pairwise(held):
             assert (string != next_string) == (finger != next_finger)
         assert all(position > 0.0 for _, _, position in held)
+
+
+def test_a_finger_touches_the_node_of_a_harmonic_and_no_other_note():
+    lengths = {}
+    for note in (77, 84, 79, 74):
+        playing = Playing(articulation=NUMBER["flageolet"], variation=0.0, listening=0.0)
+        playing.on(71)
+        playing.play(0.1)
+        playing.on(note)
+        playing.play(0.05)
+        playing.wishes.write("/playing/speed", 0.15)
+        values = playing.play(0.1, "value")[0][-1]
+        down = np.flatnonzero(values[FINGER_PRESS] > 0.0)
+        assert len(down) == 1
+        press, place = values[FINGER_PRESS[down[0]]], values[FINGER_POSITION[down[0]]]
+        lengths[note] = (int(playing.player["string"]), round(press, 3), round(place, 3))
+        playing.on(76)
+        values = playing.play(0.1, "value")[0][-1]
+        assert (values[FINGER_PRESS] > 0.5).sum() == 1
+        assert np.count_nonzero(values[FINGER_PRESS]) == 1
+    half, third = round(0.2986 / 2, 3), round(0.2986 / 3, 3)
+    assert lengths[77] == (0, 0.02, half)
+    assert lengths[84] == (1, 0.02, half)
+    assert lengths[79] == (1, 0.02, third)
+    assert lengths[74][1] > 0.5
+
+
+def test_strokes_in_a_hurry_come_sooner_and_lighter():
+    wrong = []
+    for since, is_hurried in ((0.4, False), (0.2, False), (0.08, True)):
+        playing = Playing(variation=0.0, listening=0.0)
+        playing.on(74)
+        playing.play(since)
+        before = float(playing.controls["target"][SHARE])
+        playing.off(74)
+        playing.on(74)
+        speed = np.abs(playing.play(0.025, "value")[0][-1, SPEED])
+        arrived = speed > 0.95 * abs(float(playing.controls["target"][SPEED]))
+        lighter = float(playing.controls["target"][SHARE]) < 0.9 * before
+        if (arrived, lighter) != (is_hurried, is_hurried):
+            wrong.append((since, arrived, lighter))
+    assert wrong == []
 
 
 def test_the_level_goes_with_the_bow_of_a_swell():

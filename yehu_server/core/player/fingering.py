@@ -37,12 +37,18 @@ def wished_string(p: Any) -> int:
 
 
 @compiled_exactly
-def choose(p: Any, pitch: float, speed: float) -> tuple[int, float]:
+def choose(p: Any, pitch: float, beats: bool, speed: float) -> tuple[int, float]:
     """Choose the fingering of a pitch (fractional MIDI note) at a bow speed (m/s).
 
     Below the open outer string it is on the inner one; from there up on the outer, unless the
     finger is on the inner string and nearer to the pitch there, as far as that is stopped. A string
     that is wished for is taken wherever it has the pitch.
+
+    Parameters
+    ----------
+    beats : bool
+        Whether another finger beats above it, as in a trill, for which the inner string is too
+        short there.
 
     Returns
     -------
@@ -61,7 +67,7 @@ def choose(p: Any, pitch: float, speed: float) -> tuple[int, float]:
     if pitch < p.open_note[1] + OPEN_WITHIN:
         return 0, learnt_position(p, 0, pitch, speed)
     near = learnt_position(p, 1, pitch, speed)
-    if wish == 1 or p.string != 0 or p.position == OPEN or pitch > p.highest[0]:
+    if wish == 1 or p.string != 0 or p.position == OPEN or beats or pitch > p.highest[0]:
         return 1, near
     far = learnt_position(p, 0, pitch, speed)
     if abs(far - p.position) < abs(near - p.position):
@@ -70,18 +76,18 @@ def choose(p: Any, pitch: float, speed: float) -> tuple[int, float]:
 
 
 @compiled_exactly
-def stay(p: Any, pitch: float, speed: float) -> tuple[int, float]:
+def stay(p: Any, pitch: float, steps: bool, speed: float) -> tuple[int, float]:
     """Follow a bent pitch on the string that sounds, as far as that has it.
 
     Where the outer string has no finger it changes to the inner one, and above where that is
     stopped to the outer, unless the inner is wished for. An open string stays open within
-    OPEN_WITHIN. Returns as `choose` does.
+    OPEN_WITHIN, and is again where the finger `steps` and does not slide. Returns as `choose` does.
     """
     wish = wished_string(p)
     string = p.string if wish < 0 else wish
     if pitch < p.open_note[0]:
         return 0, OPEN
-    may_be_open = string == 0 or p.position == OPEN
+    may_be_open = string == 0 or p.position == OPEN or steps
     if abs(pitch - p.open_note[string]) < OPEN_WITHIN and may_be_open:
         return string, OPEN
     if string == 0 and pitch > p.highest[0] and wish != 0:
@@ -107,7 +113,7 @@ def choose_for_slide(
         return 0, OPEN if pitch < first + OPEN_WITHIN else learnt_position(p, 0, pitch, speed)
     if low > second and pitch > second + OPEN_WITHIN and wished_string(p) != 0:
         return 1, learnt_position(p, 1, pitch, speed)
-    return choose(p, pitch, speed) if is_new else stay(p, pitch, speed)
+    return choose(p, pitch, False, speed) if is_new else stay(p, pitch, False, speed)
 
 
 @compiled_exactly

@@ -14,7 +14,13 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SPEED as BOW_SPEED
-from yehu_server.core.player.phrasing import OWN_RATE, deviate, own_factor
+from yehu_server.core.player.harmonics import GAINS_DB, NODES, NONE, STRING_OF, node_of
+from yehu_server.core.player.phrasing import (
+    HURRIED_ATTACK_MS,
+    OWN_RATE,
+    deviate,
+    own_factor,
+)
 from yehu_server.core.player.rows import (
     ARTICULATION,
     NOTE_LENGTH,
@@ -100,6 +106,9 @@ def _reach(row: Articulation) -> tuple[float, float]:
 
 
 REACH = np.array([_reach(row) for row in _ROWS])
+# Whether another finger beats above the note's pitch.
+BEATS = np.array([any(step.semitones > 0.0 for step in row.fingers) for row in _ROWS])
+TOUCHES = np.array([row.touches for row in _ROWS])
 HAS_VIBRATO = np.array([row.vibrato is not None for row in _ROWS])
 VIBRATOS = np.array([
     (row.vibrato.cents, row.vibrato.hertz, row.vibrato.press, row.vibrato.upward,
@@ -125,6 +134,7 @@ GESTURE = np.dtype(
         ("gain_to", np.float64),  # where it goes (dB)
         ("gain_step", np.float64),  # by so much in each 5 ms
         ("is_off", np.int64),  # whether the hair is lifted
+        ("node", np.int64),  # of `harmonics.NODES`, that the finger touches; else NONE
         ("finger", TRACK),
         ("bend", np.float64),  # where the finger is from the note's pitch (semitones)
         # The slide it is in: ends (semitones), time after the note's beginning, duration (s).
@@ -140,6 +150,7 @@ GESTURE = np.dtype(
 RESTING = np.zeros(1, GESTURE)[0]  # as `rest` leaves it
 for _field in ("scale", "attack", "speed", "weight", "pace"):
     RESTING[_field] = 1.0
+RESTING["node"] = NONE
 
 
 @compiled_exactly
@@ -150,7 +161,7 @@ def rest(g: Any) -> None:
     g.bow.begins = g.finger.begins = 0.0
     g.speed = g.weight = g.pace = 1.0
     g.gain_db = g.gain_to = g.gain_step = 0.0
-    g.is_off, g.bend, g.slide_s = 0, 0.0, 0.0
+    g.is_off, g.bend, g.slide_s, g.node = 0, 0.0, 0.0, NONE
 
 
 @compiled_exactly
@@ -164,6 +175,8 @@ def begin_gesture(p: Any, c: Any, is_slur: bool) -> None:
         shape(p, c)
     g.attack *= SHAPES[g.row, ATTACK]
     g.pace = pace_of(p, g.row)
+    if TOUCHES[g.row]:
+        touch(p)
     if is_slur and SHAPES[g.row, STROKES] == 0.0:
         g.bow.step = BOW_COUNT[g.row]
     while g.bow.step < BOW_COUNT[g.row] and is_immediate(BOW_STEPS[g.row, g.bow.step]):
@@ -180,6 +193,21 @@ def begin_gesture(p: Any, c: Any, is_slur: bool) -> None:
         if first[AT] == first[AT_SHARE] == first[GLIDE] == 0.0:
             g.bend = within_reach(p, first[SEMITONES])
             g.finger.step = 1
+
+
+@compiled_exactly
+def touch(p: Any) -> None:
+    """Touch the open string at the node that the key is, if it is one: it is bowed as that."""
+    key = p.held_pitch[p.sounding]
+    p.gesture.node = node_of(p, key)
+    if p.gesture.node != NONE:
+        p.gesture.bend = p.open_note[touched_string(p)] - key
+
+
+@compiled_exactly
+def touched_string(p: Any) -> int:
+    """The string of the node that is touched."""
+    return int(NODES[p.gesture.node, STRING_OF])
 
 
 @compiled_exactly
@@ -242,9 +270,10 @@ def fitting(needed_ms: float, at_share: float, length_ms: float) -> float:
 @compiled_exactly
 def gain_of(g: Any) -> float:
     """Gain of the level (dB) at the bow's factor on its speed, beyond what the speed gives."""
+    own = GAINS_DB[int(NODES[g.node, STRING_OF])] if g.node != NONE else 0.0
     if g.is_off != 0 or g.speed <= LEAST_FACTOR:
-        return 0.0
-    return float(20.0 * LEVEL_EXPONENT * math.log10(g.speed))
+        return float(own)
+    return float(own + 20.0 * LEVEL_EXPONENT * math.log10(g.speed))
 
 
 @compiled_exactly
@@ -262,7 +291,8 @@ def scaled(g: Any, factor: float) -> float:
 @compiled_exactly
 def attack_ms(p: Any) -> float:
     """The time in which a lifted bow comes to its speed and force."""
-    return float(p.value[ATTACK_MS] * struck_attack(p) * p.gesture.attack)
+    usual = p.value[ATTACK_MS] * struck_attack(p) * p.gesture.attack
+    return float(usual + p.hurry * min(HURRIED_ATTACK_MS - usual, 0.0))
 
 
 @compiled_exactly

@@ -19,6 +19,7 @@ from yehu_server.core.player.gestures import (
     vibrato_rate,
     vibrato_upward,
 )
+from yehu_server.core.player.harmonics import NONE, TOUCH_N
 from yehu_server.core.player.ownership import USUAL_MS, forget, move, take_back
 from yehu_server.core.player.phrasing import (
     OWN_DELAY,
@@ -102,7 +103,7 @@ def press(p: Any, c: Any, least_press: float) -> None:
     """Set the wished finger force, or lift the finger where the string is open."""
     force = 0.0
     if p.string >= 0 and p.position != OPEN:
-        force = max(p.value[PRESS], least_press)
+        force = max(p.value[PRESS], least_press) if p.gesture.node == NONE else TOUCH_N
     if force != p.pressing or force > 0.0:
         landing_ms = varied_landing(p, LANDING_MS) if p.pressing == 0.0 else LANDING_MS
         move(p, c, FINGER_PRESS[p.finger], force, landing_ms if force > 0.0 else LIFTING_MS)

@@ -15,7 +15,7 @@ from yehu_server.core.player.articulating import articulate
 from yehu_server.core.player.bowing_by_ear import correct_pressure
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
 from yehu_server.core.player.ear import BEHIND, EAR_SAMPLES, hear
-from yehu_server.core.player.notes import reverse_bow_at_end, sounding_pitch
+from yehu_server.core.player.notes import is_touched, reverse_bow_at_end, sounding_pitch
 from yehu_server.core.player.record import Player
 from yehu_server.core.player.rows import LISTENING
 from yehu_server.core.player.tuning_by_ear import tune
@@ -34,6 +34,7 @@ def listen(p: Any, c: Any, heard: Any) -> None:
     """
     by_hand = p.by_hand != 0
     is_bowed = c.value[SIDE] != 0.0 if by_hand else p.sounding >= 0 and p.side != 0.0
+    is_bowed = is_bowed and not is_touched(p)  # a harmonic is where its node is
     if p.value[LISTENING] == 0.0 or not is_bowed or c.frame < p.settled_at:
         p.ear.certainty = 0.0
         return

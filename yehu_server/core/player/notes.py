@@ -16,14 +16,17 @@ from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import choose, choose_for_slide, stay
 from yehu_server.core.player.gestures import (
+    BEATS,
     IS_PLUCKED,
     REACH,
     SHAPES,
     attack_ms,
     begin_gesture,
     begin_slide,
+    touched_string,
     tremolo_of,
 )
+from yehu_server.core.player.harmonics import NONE, place_of
 from yehu_server.core.player.held_keys import NOT_HELD, add_key, find_key, remove_key
 from yehu_server.core.player.intonation import in_tables
 from yehu_server.core.player.left_hand import LIFTING_MS, side_of
@@ -35,7 +38,15 @@ from yehu_server.core.player.ownership import (
     take_back,
     write_directly,
 )
-from yehu_server.core.player.phrasing import slide_of_leap_ms, varied_semitones, vary_next_note
+from yehu_server.core.player.phrasing import (
+    HURRIED_RELEASE,
+    STEP_MS,
+    hurried,
+    hurry_of,
+    slide_of_leap_ms,
+    varied_semitones,
+    vary_next_note,
+)
 from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.right_hand import SLURRED_MS, wished_speed
 from yehu_server.core.player.rows import (
@@ -106,7 +117,7 @@ def end(p: Any, c: Any, channel: int, key: float, more_end: bool) -> None:
         sound_last(p, c, True, False)
     else:
         p.sounding = SILENT
-        right_hand.lift(p, c, p.value[RELEASE])
+        right_hand.lift(p, c, p.value[RELEASE] * hurried(p, HURRIED_RELEASE))
         left_hand.end_vibrato(p, c)
 
 
@@ -135,10 +146,14 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     p.sounding = p.held - 1
     vary_next_note(p)
     is_slur = is_legato and not at_once
+    if not at_once:
+        p.hurry = 0.0 if is_legato else hurry_of(p, c)
     p.pace = 1.0
     begin_gesture(p, c, is_slur)
     turns = plan_stroke(p, c, wished_speed(p), is_legato)
-    if at_once:
+    if is_touched(p):
+        slide_ms = STEP_MS
+    elif at_once:
         slide_ms = 0.0
     elif is_on(p, PORTAMENTO):
         slide_ms = p.value[PORTAMENTO_TIME]
@@ -148,6 +163,9 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     if slide_ms > 0.0 and p.string >= 0:
         string, position = begin_from_last(p, slide_ms)
         pitch = p.finger_pitch = note_pitch(p)
+    elif is_touched(p):
+        string, position = touched_string(p), place_of(p, p.gesture.node)
+        pitch = p.finger_pitch = note_pitch(p)
     else:
         pitch = p.finger_pitch = note_pitch(p)
         low, high = REACH[p.gesture.row, 0], REACH[p.gesture.row, 1]
@@ -156,7 +174,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
             low, high = aim + low, aim + high
             string, position = choose_for_slide(p, pitch, low, high, wished_speed(p), True)
         else:
-            string, position = choose(p, pitch, wished_speed(p))
+            string, position = choose(p, pitch, BEATS[p.gesture.row], wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
     begin_pressure_correction(p, pitch)
@@ -235,6 +253,12 @@ def is_plucked(p: Any) -> bool:
     return is_on(p, PIZZICATO) or bool(SHAPES[p.gesture.row, IS_PLUCKED])
 
 
+@compiled_exactly
+def is_touched(p: Any) -> bool:
+    """Whether the finger of the sounding note touches a node, from which it does not move."""
+    return bool(p.sounding >= 0 and p.gesture.node != NONE)
+
+
 # -- by hand ------------------------------------------------------------------------------------
 
 
@@ -249,7 +273,7 @@ def slide(p: Any, c: Any, pitch: float) -> None:
         follow_bend(p, c)
         return
     p.finger_pitch = pitch
-    string, position = choose(p, pitch, wished_speed(p))
+    string, position = choose(p, pitch, False, wished_speed(p))
     left_hand.stop(p, c, string, position, 0.0, BEND_RAMP_MS)
     if p.by_hand != 0:
         ramp_to(p, c, BOW_SIDE, side_of(p), USUAL_MS)
@@ -364,7 +388,10 @@ def follow_pitch(p: Any, c: Any, slide_ms: float) -> None:
         return
     pitch, before, was = note_pitch(p), p.string, p.finger_pitch
     p.finger_pitch = pitch
-    string, position = stay(p, pitch, wished_speed(p))
+    if is_touched(p):
+        even_out(p, c)
+        return
+    string, position = stay(p, pitch, slide_ms == STEP_MS, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     if string != before:
         begin_tuning(p, pitch)

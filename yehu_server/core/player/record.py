@@ -93,6 +93,7 @@ PLAYER = np.dtype(
         ("pace", np.float64),  # factor on the bow's speed, so that its hair lasts
         ("side", np.float64),  # /bow/side; 0 where the bow is lifted
         ("recipe", np.float64, RECIPE),  # how the sounding pitch is bowed
+        ("hurry", np.float64),  # of a stroke soon after another: 0 to 1
         ("balance", np.float64),  # dB
         # The variation: deviates of this note, and the random numbers drawn so far.
         ("speed_variation", np.float64),  # factor on the bow's speed

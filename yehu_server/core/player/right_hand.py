@@ -16,8 +16,10 @@ from yehu_server.core.player.bowing import (
     share,
 )
 from yehu_server.core.player.gestures import attack_ms, tremolo_depth_of, tremolo_of
+from yehu_server.core.player.harmonics import NONE, PLACE
 from yehu_server.core.player.intonation import in_tables
 from yehu_server.core.player.ownership import USUAL_MS, forget, move
+from yehu_server.core.player.phrasing import HURRIED_WEIGHT, hurried
 from yehu_server.core.player.rows import (
     BOW_POSITION,
     BOW_PRESSURE,
@@ -59,7 +61,13 @@ def recipe_of(p: Any, pitch: float, column: int) -> float:
     """One value of how a pitch is bowed on the string of the fingering; see `recipe_value`."""
     string = max(p.string, 0)
     stopped = in_tables(p, string, pitch)
-    return recipe_value(p.bowing, string, p.value[POSITION], stopped, column)
+    return recipe_value(p.bowing, string, wished_place(p), stopped, column)
+
+
+@compiled_exactly
+def wished_place(p: Any) -> float:
+    """The bow's place that the player wishes for, as a share of the sounding length."""
+    return float(p.value[POSITION] if p.gesture.node == NONE else PLACE)
 
 
 @compiled_exactly
@@ -80,7 +88,7 @@ def has_same_recipe(p: Any, pitch: float) -> bool:
 @compiled_exactly
 def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
     """Set bow pressure and position, as wished and adapted to the sounding pitch, if any."""
-    pressure = p.value[PRESSURE] * p.weight * p.gesture.weight
+    pressure = p.value[PRESSURE] * p.weight * p.gesture.weight * hurried(p, HURRIED_WEIGHT)
     if is_sounding:
         for column in range(RECIPE):
             p.recipe[column] = recipe_of(p, pitch, column)
@@ -88,7 +96,7 @@ def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
         pressure = share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, max(p.string, 0))
         pressure *= p.pressure_factor
     move(p, c, BOW_PRESSURE, pressure, USUAL_MS)
-    move(p, c, BOW_POSITION, p.value[POSITION] * p.recipe[DISTANCE_FACTOR], USUAL_MS)
+    move(p, c, BOW_POSITION, wished_place(p) * p.recipe[DISTANCE_FACTOR], USUAL_MS)
 
 
 @compiled_exactly

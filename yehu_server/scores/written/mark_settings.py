@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import NamedTuple
 
+from yehu_server.core.player.harmonics import SAME_PITCH, SPEAKING, sounding_above
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.params.articulations import NUMBER
 from yehu_server.params.table import find
@@ -22,14 +23,12 @@ ARTICULATION, TREMOLO_DEPTH = "/playing/articulation", "/playing/tremolo_depth"
 DIRECTION, STRING, TREMOLO = "/playing/direction", "/playing/string", "/playing/tremolo"
 PIZZICATO, PRESSURE, VIBRATO = "/playing/pizzicato", "/playing/pressure", "/playing/vibrato"
 BOW_POSITION, SPEED = "/playing/bow_position", "/playing/speed"
-ATTACK, RELEASE, LISTENING = "/playing/attack", "/playing/release", "/playing/listening"
+ATTACK, RELEASE = "/playing/attack", "/playing/release"
 GAIN = "/body/gain"
-FINGER_POSITION, FINGER_PRESS = "/finger/4/position", "/finger/4/press"
 
 DOWN, UP, INNER, OUTER = 1.0, -1.0, 1.0, 2.0
-SAME_PITCH = 0.3  # semitones
 QUICK_TREMOLO = 13.0  # strokes a second, unmeasured
-DEEP = 0.6  # of such a tremolo
+DEEP = 0.5  # of such a tremolo
 MEASURED = 2  # so many strokes through a stem are counted; more are as quick as hands go
 VIBRATO_CENTS = 30.0
 SNAP = 0.8  # pressure: a pluck twice as hard as usual
@@ -55,34 +54,23 @@ FORCED_GESTURE = "sforzando", 0.4
 
 
 class Node(NamedTuple):
-    """A harmonic: the open string under it (MIDI note), and where the finger touches (m)."""
+    """A harmonic: its string, and the note that a finger would stop where it touches."""
 
-    open_note: float
     string: float
-    place: float
-
-
-# Those that speak, of a yehu: a finger of 20 mN at a node of the open string, the bow near the
-# bridge. Of the third and fourth of the inner string and the fourth of the outer others come.
-# Measured (tests/scores/test_harmonics.py); the last is above the range of stopped notes.
-SOUNDING_LENGTH = 0.2986  # m
-SPEAKING = ((INNER, 12.0, 2.0), (OUTER, 12.0, 2.0), (OUTER, 19.0, 3.0))
+    touched: float
 
 
 @lru_cache(maxsize=16)
 def harmonics_of(within: NoteRange) -> Mapping[float, Node]:
-    """The harmonics of an instrument, by pitch (MIDI note)."""
-    length = SOUNDING_LENGTH * within.bridge_x / YEHU.bridge_x
-    opens = dict(zip((INNER, OUTER), map(float, within.open_notes), strict=True))
+    """The harmonics of an instrument, by the pitch that sounds (MIDI note)."""
     return {
-        opens[string] + above: Node(opens[string], string, length / parts)
-        for string, above, parts in SPEAKING
+        within.open_notes[string] + sounding_above(parts): Node(
+            (INNER, OUTER)[string], within.open_notes[string] + touched
+        )
+        for string, touched, parts in SPEAKING
     }
 
 
-TOUCH_N = 0.02
-HARMONIC_BOW: Values = {BOW_POSITION: 0.05, SPEED: 0.2, PRESSURE: 0.3, LISTENING: 0.0}
-OUTER_DB = 10.0  # its harmonics are some 14 dB softer than the open string
 PLUCKED_DB = -5.0  # beside bowed notes: the peaks of plucked ones are some 15 dB higher
 
 
@@ -180,9 +168,7 @@ def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = 
             values.pop(address, None)
     node = harmonic_of(note, within)
     if node is not None:
-        values |= {**HARMONIC_BOW, STRING: node.string}
-        if node.string == OUTER:
-            values[GAIN] = OUTER_DB
+        values |= {ARTICULATION: float(NUMBER["flageolet"]), STRING: node.string}
     elif note.marked("harmonic"):
         values |= PLACES["flautando"]
     return {address: find(address).accept(value) for address, value in values.items()}

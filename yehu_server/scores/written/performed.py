@@ -14,16 +14,13 @@ from functools import lru_cache
 
 import mido
 
+from yehu_server.core.player.harmonics import SAME_PITCH
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import BEND, Score, ScoreEvent, ScorePart, Setting
 from yehu_server.scores.written.dynamics import Loudness
 from yehu_server.scores.written.mark_settings import (
     DIRECTION,
-    FINGER_POSITION,
-    FINGER_PRESS,
-    SAME_PITCH,
-    TOUCH_N,
     Active,
     actives_of,
     harmonic_of,
@@ -111,7 +108,6 @@ class _Performer:
         self._set: dict[str, float] = {}  # by address, what marks have set
         self._ends: dict[int, int] = {}  # of sounding keys: places in `_timed`
         self._expression = 127
-        self._freed: set[str] = set()  # owned parameters to put back before the next note
 
     def events(self) -> list[Timed]:
         """All its events; not in order."""
@@ -138,7 +134,7 @@ class _Performer:
         if played.slide_s > 0.0:
             values |= {PORTAMENTO: 1.0, PORTAMENTO_TIME: 1e3 * played.slide_s}
         node = harmonic_of(note, self._within)
-        pitch = note.pitch if node is None else node.open_note
+        pitch = note.pitch if node is None else node.touched
         key = _key_of(pitch)
         curve = curve_of(note, begin_s, played.end_s) if node is None else []
         if abs(pitch - key) > 1e-6 or curve:
@@ -160,10 +156,6 @@ class _Performer:
             for address in (PORTAMENTO, PORTAMENTO_TIME):
                 self._setting(begin_s + AFTER_S, AFTER, note.beat, address, None)
                 del self._set[address]
-        if node is not None:
-            self._setting(begin_s, AFTER, note.beat, FINGER_POSITION, node.place)
-            self._setting(begin_s, AFTER, note.beat, FINGER_PRESS, TOUCH_N)
-            self._freed.add(FINGER_PRESS)
 
     def _touch(self, begin_s: float, end_s: float, key: int, velocity: int, note: Note) -> None:
         before = self._ends.get(key)
@@ -199,9 +191,6 @@ class _Performer:
 
     def _put_back(self, time_s: float, beat: Fraction, values: dict[str, float]) -> None:
         """Set what the next note wants, and put back what only the last one wanted."""
-        for address in sorted(self._freed):
-            self._setting(time_s, SET, beat, address, None)
-        self._freed.clear()
         for address in [address for address in self._set if address not in values]:
             self._setting(time_s, SET, beat, address, None)
             del self._set[address]

@@ -90,6 +90,10 @@ class Watched(Instrument):
             self._fulfil(frame, at, *wish)
         return True
 
+    def wait(self, seconds: float) -> None:
+        """Let time go by before what is posted next."""
+        self._controls["frame"] += round(seconds * RATE)
+
     def _fulfil(
         self, frame: int | None, at: int, kind: int, index: int, value: float, other: float
     ) -> None:

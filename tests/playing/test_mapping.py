@@ -265,13 +265,13 @@ def test_a_mapping_may_give_the_sustain_pedal_another_meaning(read, player, list
 def test_key_switches_choose_articulations_and_sound_no_notes(player, listener):
     midi = MidiPoster(player, load("keyboard-articulations"))
     chosen = []
-    for key in (36, 39, 59):
+    for key in (36, 39, 60):
         midi.receive(mido.Message("note_on", note=key, velocity=80))
         midi.receive(mido.Message("note_off", note=key))
         chosen.append(player.value("/playing/articulation"))
-    assert chosen == [0.0, 3.0, 23.0]
+    assert chosen == [0.0, 3.0, 24.0]
     assert listener.of("/bow/side") == []
-    midi.receive(mido.Message("note_on", note=60, velocity=80))  # the next key plays: C4, as C5
+    midi.receive(mido.Message("note_on", note=61, velocity=80))  # the next key plays: C♯4, as C♯5
     assert listener["/bow/side"] != 0.0
     midi.receive(mido.Message("control_change", control=32, value=5))
     assert player.value("/playing/articulation") == 5.0

@@ -338,6 +338,7 @@ def test_a_stroke_begins_and_ends_in_the_times_set_for_it(player, listener):
 def test_speed_pressure_and_press_reach_the_sounding_note(player, listener):
     player.note_on(key(74))
     player.note_off(key(74))
+    listener.wait(0.2)
     player.note_on(key(74))
     player.write("/playing/speed", 0.3)
     player.write("/playing/pressure", 0.5)
@@ -462,6 +463,7 @@ def phrase(variation: float, seed: int) -> list[Move]:
     for _ in range(4):
         player.note_on(key(75))
         player.note_off(key(75))
+        listener.wait(0.2)  # a stroke that comes sooner is hurried
     return listener.moves
 
 

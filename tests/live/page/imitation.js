@@ -52,6 +52,7 @@ export class Sound extends EventTarget {
       },
     };
     this.voice = {
+      follow: () => {},
       start: async () => {
         await globalThis.agreed;
         this.done.push("voice");

@@ -36,8 +36,9 @@ await run(async (browser, url) => {
   found.once = { done: await done(page), pressed: await pressed() };
   // Another sound takes its place: what was recorded is saved.
   const download = page.waitForEvent("download");
-  await page.evaluate(() => (globalThis.imitation.status.dropouts = 1)); // a larger buffer is offered
   await page.click("#tab-connect");
+  await page.locator("#panel-connect").getByText(" Hz").waitFor(); // the page counts from now on
+  await page.evaluate(() => (globalThis.imitation.status.dropouts += 1)); // a larger buffer is offered
   await page.getByRole("switch", { name: "Larger buffer" }).check();
   await download;
   found.replaced = { done: await done(page), pressed: await pressed() };

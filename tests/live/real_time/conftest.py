@@ -365,7 +365,7 @@ class Serve:
     def wait(self, within_s: float = 10.0) -> int:
         code = self.process.wait(within_s)
         self._listener.join()
-        until(lambda: not self.family(), 10.0, "all its processes to be gone")
+        until(lambda: not self.family(), 60.0, "all its processes to be gone")
         return code
 
     def close(self) -> None:

@@ -123,6 +123,7 @@ def _forked(
         "environment": {**(os.environ if environment is None else environment)},
         "folder": str(folder or Path.cwd()),
         "in_own_session": in_own_session,
+        "is_deaf": signal.getsignal(signal.SIGINT) is signal.SIG_IGN,  # as behind nohup
     }
     text = json.dumps(request).encode()
     adopt = functools.partial(ctypes.CDLL(None).prctl, PR_SET_CHILD_SUBREAPER)
@@ -179,14 +180,15 @@ def _be_prepared(link: socket.socket) -> str:
     gc.collect()
     gc.freeze()  # a fork shares what it never touches
     assert len([*Path("/proc/self/task").iterdir()]) == 1
-    interrupt = signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for pytest
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for pytest
     while True:
         header, files, *_ = socket.recv_fds(link, HEADER_BYTES, MOST_FILES)
         if not header:
             sys.exit()
         request = json.loads(_received(link, int.from_bytes(header, "big")))
         if _is_fork():
-            signal.signal(signal.SIGINT, interrupt)
+            if not request["is_deaf"]:
+                signal.signal(signal.SIGINT, signal.default_int_handler)
             return _begin(request, files, link)
         for file in files:
             os.close(file)

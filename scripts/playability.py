@@ -36,20 +36,8 @@ from yehu_server.playing.practice_files import read_practice
 MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
     each.__name__: each
     for each in (
-        *(
-            grid,
-            isolated,
-            chromatic,
-            steady,
-            quarters,
-            legato,
-            bends,
-            tunes,
-            detached,
-            hunting,
-            life,
-        ),
-        *(clicks, evenness, velocity, shuffled, strings, presets, phrases),
+        *(grid, isolated, chromatic, steady, quarters, legato, bends, tunes, detached),
+        *(hunting, life, clicks, evenness, velocity, shuffled, strings, presets, phrases),
     )
 }
 

@@ -14,10 +14,10 @@ from typing import Any
 
 import mido
 
+from yehu_server.core.midi.channels import PERCUSSION
 from yehu_server.scores.written.layout import page_bars
 from yehu_server.scores.written.notated import Note, Part, Written
 
-PERCUSSION = 9
 # In MIDI files: what is nearer counts as one place; parts of a quarter.
 GRID = 48
 # A bar that another program has elsewhere is found where so much of its notes agrees.

@@ -14,7 +14,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SPEED as BOW_SPEED
-from yehu_server.core.player.harmonics import GAINS_DB, NODES, NONE, STRING_OF, node_of
+from yehu_server.core.player.harmonics import GAINS_DB, NONE, node_of, string_of
 from yehu_server.core.player.phrasing import (
     HURRIED_ATTACK_MS,
     OWN_RATE,
@@ -201,13 +201,7 @@ def touch(p: Any) -> None:
     key = p.held_pitch[p.sounding]
     p.gesture.node = node_of(p, key)
     if p.gesture.node != NONE:
-        p.gesture.bend = p.open_note[touched_string(p)] - key
-
-
-@compiled_exactly
-def touched_string(p: Any) -> int:
-    """The string of the node that is touched."""
-    return int(NODES[p.gesture.node, STRING_OF])
+        p.gesture.bend = p.open_note[string_of(p.gesture.node)] - key
 
 
 @compiled_exactly
@@ -270,7 +264,7 @@ def fitting(needed_ms: float, at_share: float, length_ms: float) -> float:
 @compiled_exactly
 def gain_of(g: Any) -> float:
     """Gain of the level (dB) at the bow's factor on its speed, beyond what the speed gives."""
-    own = GAINS_DB[int(NODES[g.node, STRING_OF])] if g.node != NONE else 0.0
+    own = GAINS_DB[string_of(g.node)] if g.node != NONE else 0.0
     if g.is_off != 0 or g.speed <= LEAST_FACTOR:
         return float(own)
     return float(own + 20.0 * LEVEL_EXPONENT * math.log10(g.speed))

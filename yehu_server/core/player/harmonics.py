@@ -34,11 +34,17 @@ def sounding_above(parts: float) -> float:
 
 
 @compiled_exactly
+def string_of(node: int) -> int:
+    """The string of a row of NODES."""
+    return int(NODES[node, STRING_OF])
+
+
+@compiled_exactly
 def node_of(p: Any, pitch: float) -> int:
     """The row of NODES that a pitch (fractional MIDI note) is the touched note of, else NONE."""
     wish = wished_string(p)
     for i in range(len(NODES)):
-        string = int(NODES[i, STRING_OF])
+        string = string_of(i)
         above = pitch - p.open_note[string]
         if abs(above - NODES[i, TOUCHED]) <= SAME_PITCH and wish in (NONE, string):
             return i

@@ -23,20 +23,17 @@ from yehu_server.core.player.gestures import (
     attack_ms,
     begin_gesture,
     begin_slide,
-    touched_string,
     tremolo_of,
 )
-from yehu_server.core.player.harmonics import NONE, place_of
+from yehu_server.core.player.harmonics import NONE, place_of, string_of
 from yehu_server.core.player.held_keys import NOT_HELD, add_key, find_key, remove_key
 from yehu_server.core.player.intonation import in_tables
 from yehu_server.core.player.left_hand import LIFTING_MS, side_of
 from yehu_server.core.player.ownership import (
     USUAL_MS,
     move,
-    ramp_to,
     take_all_back,
     take_back,
-    write_directly,
 )
 from yehu_server.core.player.phrasing import (
     HURRIED_RELEASE,
@@ -54,7 +51,6 @@ from yehu_server.core.player.rows import (
     ATTACK,
     BEND,
     BOW_ASSIST,
-    BOW_FORCE,
     BOW_SIDE,
     BOW_SPEED,
     DYNAMICS,
@@ -164,7 +160,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
         string, position = begin_from_last(p, slide_ms)
         pitch = p.finger_pitch = note_pitch(p)
     elif is_touched(p):
-        string, position = touched_string(p), place_of(p, p.gesture.node)
+        string, position = string_of(p.gesture.node), place_of(p, p.gesture.node)
         pitch = p.finger_pitch = note_pitch(p)
     else:
         pitch = p.finger_pitch = note_pitch(p)
@@ -257,55 +253,6 @@ def is_plucked(p: Any) -> bool:
 def is_touched(p: Any) -> bool:
     """Whether the finger of the sounding note touches a node, from which it does not move."""
     return bool(p.sounding >= 0 and p.gesture.node != NONE)
-
-
-# -- by hand ------------------------------------------------------------------------------------
-
-
-@compiled_exactly
-def slide(p: Any, c: Any, pitch: float) -> None:
-    """Slide the finger to a pitch (fractional MIDI note) within range.
-
-    The sounding note slides; in silence, the finger waits there for the bow.
-    """
-    if p.sounding >= 0:
-        p.held_pitch[p.sounding] = pitch
-        follow_bend(p, c)
-        return
-    p.finger_pitch = pitch
-    string, position = choose(p, pitch, False, wished_speed(p))
-    left_hand.stop(p, c, string, position, 0.0, BEND_RAMP_MS)
-    if p.by_hand != 0:
-        ramp_to(p, c, BOW_SIDE, side_of(p), USUAL_MS)
-        even_out(p, c)
-
-
-@compiled_exactly
-def draw_by_hand(p: Any, c: Any, speed: float, force: float) -> None:
-    """Draw the bow at a speed (m/s) and force (N), on the string of the fingering.
-
-    Takes the bow over as direct writes do; 0 and 0 lift it.
-    """
-    write_directly(p, c, BOW_SPEED, speed, False)
-    write_directly(p, c, BOW_FORCE, force, False)
-    p.by_hand = 1 if speed != 0.0 or force != 0.0 else 0
-    side = 0.0
-    if p.by_hand != 0:
-        side = 1.0 if p.string < 0 else side_of(p)
-    write_directly(p, c, BOW_SIDE, side, False)
-    p.speed = abs(speed)
-    p.effort = force * p.value[POSITION] / c.schelleng[max(p.string, 0)]
-    even_out(p, c)
-
-
-@compiled_exactly
-def lift_by_hand(p: Any, c: Any) -> None:
-    """Lift a bow drawn by hand, and return it to the player."""
-    if p.by_hand != 0:
-        ramp_to(p, c, BOW_SPEED, 0.0, USUAL_MS)
-        ramp_to(p, c, BOW_SIDE, 0.0, USUAL_MS)
-    take_all_back(p)
-    p.by_hand = 0
 
 
 # -- what follows a parameter while a note sounds ---------------------------------------------

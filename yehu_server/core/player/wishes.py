@@ -25,7 +25,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.record import Controls
-from yehu_server.core.player import left_hand, notes
+from yehu_server.core.player import by_hand, left_hand, notes
 from yehu_server.core.player.ownership import USUAL_MS, forget, ramp_to, release, write_directly
 from yehu_server.core.player.phrasing import begin_sequence
 from yehu_server.core.player.record import Player
@@ -96,11 +96,11 @@ def fulfil(
     elif kind == END:
         notes.end(p, c, index, value, other != 0.0)
     elif kind == SLIDE:
-        notes.slide(p, c, playable(p, value))
+        by_hand.slide(p, c, playable(p, value))
     elif kind == DRAW:
-        notes.draw_by_hand(p, c, in_range(BOW_SPEED, value), in_range(BOW_FORCE, other))
+        by_hand.draw(p, c, in_range(BOW_SPEED, value), in_range(BOW_FORCE, other))
     elif kind == LIFT:
-        notes.lift_by_hand(p, c)
+        by_hand.lift(p, c)
     elif kind == STOP:
         notes.stop_sound(p, c, value != 0.0)
     elif kind == RELEASE:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.midi.tables import KEYS
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.notes import DYNAMICS_EXPONENT
 from yehu_server.core.player.right_hand import SOFTEST
@@ -50,8 +51,7 @@ STAYS = 0.2  # semitones by which another pitch of the tuning is nearer, before 
 ON_INNER, ON_OUTER = 2.5, 0.3
 INNER, EITHER = 1.0, 0.0
 VOICE = -2  # the channel of its notes
-KEYS = (0.0, 1.0)  # which it has in turn: of two that are slurred, both are held for a moment
-TUNED = 128  # keys of a tuning
+VOICE_KEYS = (0.0, 1.0)  # which it has in turn: of two that are slurred, both are held for a moment
 MOST_WISHES = 8
 
 
@@ -78,7 +78,7 @@ FOLLOWER = np.dtype(
         ("transpose", np.float64),  # semitones; NaN: by octaves, as the first note wants
         ("sharper", np.float64),  # how much 440 Hz is above the instrument's A4 (semitones)
         ("correct", np.float64),  # how far what is played is moved to the tuning: 0 to 1
-        ("tuning", np.float64, TUNED),  # pitches of its keys; NaN for a key without one
+        ("tuning", np.float64, KEYS),  # pitches of its keys; NaN for a key without one
         ("aim", np.float64),  # the pitch of the tuning that it is moved to
         ("is_open", np.int64),  # whether a note sounds
         ("agreed", np.int64),  # hearings
@@ -88,7 +88,7 @@ FOLLOWER = np.dtype(
         ("last", np.float64),  # pitch that was heard last, and the one that is followed
         ("heard", np.float64),
         ("octaves", np.float64),  # semitones, of this note
-        ("key", np.float64),  # of the note that sounds, of KEYS
+        ("key", np.float64),  # of the note that sounds, of VOICE_KEYS
         ("played", np.float64),  # its pitch
         ("string", np.float64),
         ("dynamics_db", np.float64),
@@ -127,7 +127,7 @@ def prepare_follower(f: Any, rate: float, transpose: float, correct: float) -> N
     prepare_hearing(f.hearing, rate)
     f.lowest, f.highest, f.on_inner, f.on_outer = OF_YEHU
     f.transpose, f.correct, f.aim = transpose, correct, math.nan
-    for key in range(TUNED):
+    for key in range(KEYS):
         f.tuning[key] = key
     f.noise_db, f.full_db = LEAST_DB, QUIETEST_FULL_DB
     f.dynamics_db = f.string = math.nan
@@ -195,7 +195,7 @@ def begin(f: Any, pitch: float) -> None:
     while played + f.octaves > f.highest + 0.5:
         f.octaves -= 12.0
     f.heard, f.agreed, f.note_age = pitch, 0, 0
-    f.key, f.played = KEYS[1] - f.key, playable(f, pitch)
+    f.key, f.played = VOICE_KEYS[1] - f.key, playable(f, pitch)
     choose_string(f)
     send(f, BEGIN, VOICE, f.key, f.played)
 
@@ -216,7 +216,7 @@ def playable(f: Any, pitch: float) -> float:
 def nearest_of(tuning: Any, pitch: float) -> float:
     """The pitch of a tuning that is nearest to another; that itself where there is none."""
     nearest, least = pitch, math.inf
-    for key in range(TUNED):
+    for key in range(KEYS):
         if abs(tuning[key] - pitch) < least:
             nearest, least = float(tuning[key]), abs(tuning[key] - pitch)
     return nearest

@@ -186,7 +186,8 @@ def write_page(result: Result, target: Path) -> None:
     note = f"{len(result)} strokes, by {result.meta['made_by']}."
     if result.meta["levels"]:
         note += " Where all strokes about were alike, those between were not computed."
-    note += f" A share of Helmholtz motion is {RATE_ERROR:g} points off with another sample rate."
+    off = f"may be some {RATE_ERROR:g} points off with another sample rate"
+    note += f" A share of Helmholtz motion {off}."
     data = json.dumps(facts_of(result, x, y)).replace("<", "\\u003c")
     page = read_text(TEMPLATE)
     for place, text in (

@@ -8,13 +8,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from yehu_server.core.voice.deciding import KEYS, VOICE, ends_of
+from yehu_server.core.voice.deciding import VOICE, VOICE_KEYS, ends_of
 from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.output import OutputOptions, SharedMemory
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.options import AS_IT_SINGS, PlayingOptions
-from yehu_server.playing.tuning import KEYS as TUNED
-from yehu_server.playing.tuning import STANDARD_A4
+from yehu_server.playing.tuning import KEYS, STANDARD_A4
 from yehu_server.playing.wishes import Key
 from yehu_server.util.processes import Child, Message, Supervisor
 
@@ -33,7 +32,7 @@ class FollowOptions:
 def tuned_as(playing: PlayingOptions) -> dict[str, Any]:
     """The fields of a follower for a tuning and a reference pitch."""
     a4 = playing.a4
-    pitches = [playing.tuning.pitch(key, a4) for key in TUNED]
+    pitches = [playing.tuning.pitch(key, a4) for key in KEYS]
     return {
         "sharper": 12.0 * math.log2(STANDARD_A4 / a4),
         "tuning": [math.nan if pitch is None else pitch for pitch in pitches],
@@ -109,6 +108,6 @@ class VoiceInput(Supervisor):
         """End the note that the input has begun."""
         player, name = self._player, self._name
         self._child, self._name = None, ""
-        player.end_keys([Key(VOICE, key) for key in KEYS], frame=player.frame_of())
+        player.end_keys([Key(VOICE, key) for key in VOICE_KEYS], frame=player.frame_of())
         if by_itself and name:
             self._on_message(f"{name} is gone; it is followed again once it is back")

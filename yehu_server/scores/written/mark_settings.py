@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from yehu_server.core.player.harmonics import SAME_PITCH, SPEAKING, sounding_above
 from yehu_server.core.player.note_range import YEHU, NoteRange
-from yehu_server.params.articulations import NUMBER
+from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 from yehu_server.params.table import find
 from yehu_server.scores.written.notated import FORCED, Note, Part, Sign
 
@@ -27,8 +27,9 @@ ATTACK, RELEASE = "/playing/attack", "/playing/release"
 GAIN = "/body/gain"
 
 DOWN, UP, INNER, OUTER = 1.0, -1.0, 1.0, 2.0
-QUICK_TREMOLO = 13.0  # strokes a second, unmeasured
-DEEP = 0.5  # of such a tremolo
+# Strokes a second of an unmeasured tremolo, and its depth: those of the gesture.
+_TREMOLO = ARTICULATIONS[NUMBER["tremolo"]]
+QUICK_TREMOLO, DEEP = _TREMOLO.tremolo, _TREMOLO.tremolo_depth
 MEASURED = 2  # so many strokes through a stem are counted; more are as quick as hands go
 VIBRATO_CENTS = 30.0
 SNAP = 0.8  # pressure: a pluck twice as hard as usual

@@ -1,0 +1,60 @@
+"""The bow drawn and the finger slid by hand, without a player's notes. Compiled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.player import left_hand
+from yehu_server.core.player.fingering import choose
+from yehu_server.core.player.left_hand import side_of
+from yehu_server.core.player.notes import BEND_RAMP_MS, even_out, follow_bend
+from yehu_server.core.player.ownership import USUAL_MS, ramp_to, take_all_back, write_directly
+from yehu_server.core.player.right_hand import wished_speed
+from yehu_server.core.player.rows import BOW_FORCE, BOW_SIDE, BOW_SPEED, POSITION
+
+
+@compiled_exactly
+def slide(p: Any, c: Any, pitch: float) -> None:
+    """Slide the finger to a pitch (fractional MIDI note) within range.
+
+    The sounding note slides; in silence, the finger waits there for the bow.
+    """
+    if p.sounding >= 0:
+        p.held_pitch[p.sounding] = pitch
+        follow_bend(p, c)
+        return
+    p.finger_pitch = pitch
+    string, position = choose(p, pitch, False, wished_speed(p))
+    left_hand.stop(p, c, string, position, 0.0, BEND_RAMP_MS)
+    if p.by_hand != 0:
+        ramp_to(p, c, BOW_SIDE, side_of(p), USUAL_MS)
+        even_out(p, c)
+
+
+@compiled_exactly
+def draw(p: Any, c: Any, speed: float, force: float) -> None:
+    """Draw the bow at a speed (m/s) and force (N), on the string of the fingering.
+
+    Takes the bow over as direct writes do; 0 and 0 lift it.
+    """
+    write_directly(p, c, BOW_SPEED, speed, False)
+    write_directly(p, c, BOW_FORCE, force, False)
+    p.by_hand = 1 if speed != 0.0 or force != 0.0 else 0
+    side = 0.0
+    if p.by_hand != 0:
+        side = 1.0 if p.string < 0 else side_of(p)
+    write_directly(p, c, BOW_SIDE, side, False)
+    p.speed = abs(speed)
+    p.effort = force * p.value[POSITION] / c.schelleng[max(p.string, 0)]
+    even_out(p, c)
+
+
+@compiled_exactly
+def lift(p: Any, c: Any) -> None:
+    """Lift a bow drawn by hand, and return it to the player."""
+    if p.by_hand != 0:
+        ramp_to(p, c, BOW_SPEED, 0.0, USUAL_MS)
+        ramp_to(p, c, BOW_SIDE, 0.0, USUAL_MS)
+    take_all_back(p)
+    p.by_hand = 0

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-import threading
 from collections import Counter
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 import soundfile
-from live.page.browser import drive, missing
+from live.page.browser import drive, missing, running
 from markdown_it import MarkdownIt
 from pages import PAGES, ROOT, Page
 
@@ -157,12 +156,8 @@ def test_what_would_be_loaded_from_elsewhere_is_warned_of(monkeypatch, caplog):
 @pytest.fixture
 def url(site):
     """The site, served to this machine."""
-    with server_of(site, 0) as server:
-        thread = threading.Thread(target=server.serve_forever, daemon=True)
-        thread.start()
+    with running(server := server_of(site, 0)):
         yield url_of(server)
-        server.shutdown()
-        thread.join()
 
 
 @pytest.mark.slow

@@ -236,14 +236,17 @@ def test_vibrato_of_a_bowed_string_is_no_new_stroke():
 
 
 def test_a_knock_on_the_microphone_deafens_nothing():
-    """Nor does a sample far beyond full scale: what is sung after it is as loud as without."""
+    """Nor does a sample far beyond full scale: what is sung after it is played as without."""
     quiet = sung(lambda t: np.full(len(t), 62.0), level=0.01)
-    loudest = {}
+    loudest, ends = {}, {}
     for name, knock in (("none", 0.0), ("full scale", 1.0), ("beyond", 1e30)):
         sound = quiet.copy()
         sound[2000:2010] = knock
-        loudest[name] = max(value for _, value in followed(sound).of(LOUDER))
+        heard = followed(sound)
+        loudest[name] = max(value for _, value in heard.of(LOUDER))
+        ends[name] = [time for kind in (BEGIN, END) for time, _ in heard.of(kind)]
     assert min(loudest.values()) > 0.9, loudest
+    assert ends["full scale"] == ends["beyond"] == pytest.approx(ends["none"], abs=0.01)
 
 
 def test_clipped_and_offset_voices_are_heard():

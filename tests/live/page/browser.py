@@ -51,6 +51,19 @@ class _Handler(http.server.SimpleHTTPRequestHandler):
 
 
 @contextmanager
+def running(server: http.server.ThreadingHTTPServer) -> Iterator[None]:
+    """A server at its work on a thread; it ends, whatever happens."""
+    thread = threading.Thread(target=server.serve_forever, daemon=True)
+    with server:
+        thread.start()
+        try:
+            yield
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+@contextmanager
 def served(generated: Path) -> Iterator[str]:
     """Serve the page on a free port of this machine.
 
@@ -69,14 +82,8 @@ def served(generated: Path) -> Iterator[str]:
     server = http.server.ThreadingHTTPServer(
         ("127.0.0.1", 0), lambda *args: handler(*args, directory=str(WEB))
     )
-    thread = threading.Thread(target=server.serve_forever, daemon=True)
-    thread.start()
-    try:
+    with running(server):
         yield f"http://127.0.0.1:{server.server_address[1]}/"
-    finally:
-        server.shutdown()
-        server.server_close()
-        thread.join()
 
 
 def drive(scenario: str, url: str, *words: str) -> Any:

@@ -20,6 +20,7 @@ await run(
     await page.getByRole("button", { name: "Keep", exact: true }).click();
     await page.getByRole("button", { name: "Record", exact: true }).click();
     await page.click("#tab-connect");
+    await page.getByRole("switch", { name: "In tune", exact: true }).check();
     await page.getByRole("button", { name: "Use the microphone" }).click();
     const word = page.getByText("Wear headphones");
     await word.waitFor();

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import gzip
-import threading
 from typing import Any
 
 import pytest
-from live.page.browser import drive, missing
+from live.page.browser import drive, missing, running
 
 from yehu_server.live.page.site import server_of, url_of, write_page
 
@@ -30,14 +29,8 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def found(folder) -> Any:
-    with server_of(folder, 0) as server:
-        thread = threading.Thread(target=server.serve_forever)
-        thread.start()
-        try:
-            yield drive("page_expression.mjs", url_of(server))
-        finally:
-            server.shutdown()
-            thread.join()
+    with running(server := server_of(folder, 0)):
+        yield drive("page_expression.mjs", url_of(server))
 
 
 def test_nothing_goes_wrong(found) -> None:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import threading
 from pathlib import Path
 
 import numpy as np
 import pytest
 import soundfile
-from live.page.browser import drive, missing
+from live.page.browser import drive, missing, running
 
 from yehu_server.cli import main
 from yehu_server.core.player.calibration import frequency_hz
@@ -24,12 +23,8 @@ def url(tmp_path_factory):
     """The page, written as static files and served."""
     folder = tmp_path_factory.mktemp("page")
     write_page(folder)
-    with server_of(folder, 0) as server:
-        thread = threading.Thread(target=server.serve_forever)
-        thread.start()
+    with running(server := server_of(folder, 0)):
         yield url_of(server)
-        server.shutdown()
-        thread.join()
 
 
 @pytest.fixture(scope="module")

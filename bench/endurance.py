@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 import os
 import re
 import signal
@@ -133,28 +134,24 @@ def visited(url: str | None) -> Iterator[None]:
 
 
 class Playing:
-    """``yehu-server serve`` as a command, its messages and metrics."""
+    """``yehu-server serve`` as a command, with more words of its own; its messages and metrics."""
 
-    def __init__(
-        self, device: str, blocksize: int, folder: Path, *, page: bool, parts: int
-    ) -> None:
-        words = ["--audio-device", device, "--blocksize", str(blocksize), "--parts", str(parts)]
-        words += ["--osc", "127.0.0.1:0", "--http", "127.0.0.1:0"]
-        words += ["--record", str(folder / "take.wav"), "--capture", str(folder / "take.jsonl")]
-        words += ["--panel-port", "0"] if page else ["--no-panel"]
+    def __init__(self, device: str, blocksize: int, *words: str) -> None:
+        card = ["--audio-device", device, "--blocksize", str(blocksize)]
+        ports = ["--osc", "127.0.0.1:0", "--http", "127.0.0.1:0"]
         self.lines: list[str] = []
         self.process = subprocess.Popen(  # noqa: S603 - our own command
-            [*report.COMMAND, "serve", *words], stderr=subprocess.PIPE, text=True
+            [*report.COMMAND, "serve", *card, *ports, *words], stderr=subprocess.PIPE, text=True
         )
         threading.Thread(target=self._read, args=(self.process.stderr,), daemon=True).start()
-        self.osc = int(self._said(r"OSC at [\d.]+:(\d+)"))
-        self.http = int(self._said(r"OSCQuery at http://[\d.]+:(\d+)"))
-        self.page = self._said(r"the page at (http://\S+)") if page else None
+        self.osc = int(self.said(r"OSC at [\d.]+:(\d+)"))
+        self.http = int(self.said(r"OSCQuery at http://[\d.]+:(\d+)"))
 
     def _read(self, pipe: IO[str]) -> None:
         self.lines.extend(line.rstrip() for line in pipe)
 
-    def _said(self, pattern: str) -> str:
+    def said(self, pattern: str) -> str:
+        """Wait for a message; return the group of the pattern."""
         deadline = time.monotonic() + STARTED_WITHIN_S
         while time.monotonic() < deadline and self.process.poll() is None:
             for line in list(self.lines):
@@ -171,6 +168,12 @@ class Playing:
         return {
             name.removeprefix("yehu_").removesuffix("_total"): float(value) for name, value in pairs
         }
+
+    def malformed(self) -> str:
+        """The last MIDI message that was none."""
+        url = f"http://127.0.0.1:{self.http}/yehu/status/midi_malformed_last"
+        with urlopen(url, timeout=10.0) as node:
+            return str(json.load(node)["VALUE"][0])
 
     def memory_mb(self) -> float | None:
         """Memory of the server and its helper processes, shared pages counted once; Linux only."""
@@ -226,10 +229,12 @@ def play(
     """Play under load, replay the take, and return all counts."""
     with helper(play_idle, device, blocksize) as idle:
         idle.recv()
-        playing = Playing(device, blocksize, folder, page=page, parts=parts)
+        words = ["--record", str(folder / "take.wav"), "--capture", str(folder / "take.jsonl")]
+        words += ["--panel-port", "0"] if page else ["--no-panel"]
+        playing = Playing(device, blocksize, "--parts", str(parts), *words)
         with (
             helper(listen, playing.http) as pages,
-            visited(playing.page),
+            visited(playing.said(r"the page at (http://\S+)") if page else None),
             loaded(playing.osc, parts),
         ):
             time.sleep(SETTLED_S)
@@ -244,7 +249,7 @@ def play(
             idle.send(True)
             idle_after, after = idle.recv(), playing.status()
             pages.send(None)
-            told = pages.recv()
+            told, malformed = pages.recv(), playing.malformed()
         code = playing.end()
         idle.send(False)
     frames, differing = replayed_equal(folder)
@@ -252,6 +257,7 @@ def play(
         "exit_code": code,
         "said": [line for line in playing.lines if "could not" in line or "so far" in line],
         "instrument": {what: int(after[what] - before[what]) for what in COUNTERS},
+        "midi_malformed_last": malformed,
         "load": after["load"],
         "worst_load": after["worst_load"],
         "idle_stream": {what: idle_after[what] - idle_before[what] for what in CALLBACKS},
@@ -278,6 +284,7 @@ def counts(figures: dict[str, Any]) -> dict[str, Any]:
 def tell(figures: dict[str, Any]) -> None:
     """Print what is beside the table."""
     print(", ".join(f"{what} {count}" for what, count in figures["instrument"].items()))
+    print(f"last malformed MIDI: {figures['midi_malformed_last'] or 'none'}")
     print(f"load {figures['load']:.3f}, worst {figures['worst_load']:.3f}")
     if None not in [mb for _, mb in figures["memory_mb"]]:
         shown = ", ".join(f"{mb:.0f}" for mb in quarters(figures["memory_mb"]))

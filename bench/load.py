@@ -34,12 +34,12 @@ def start(program: list[str], out: int = subprocess.DEVNULL) -> subprocess.Popen
 
 
 @contextlib.contextmanager
-def dummy_jack(period: int, rate: int = 48000) -> Iterator[None]:
+def dummy_jack(period: int, rate: int = 48000, *words: str) -> Iterator[None]:
     """A JACK server without a sound card, for every process started within the block."""
     os.environ |= {"JACK_DEFAULT_SERVER": JACK, "JACK_NO_AUDIO_RESERVATION": "1"}
     os.environ["JACK_NO_START_SERVER"] = "1"
     card = ["-d", "dummy", "-r", str(rate), "-p", str(period)]
-    program = ["jackd", "--no-realtime", "--no-mlock", "-p", "128", "-n", JACK, *card]
+    program = ["jackd", "--no-realtime", "--no-mlock", "-p", "128", "-n", JACK, *words, *card]
     jackd = start(program)
     deadline = time.monotonic() + 10.0
     try:

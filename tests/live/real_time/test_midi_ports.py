@@ -468,8 +468,10 @@ def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listenin
     chance = random.Random(8)
     hear_noise(heard, until, lambda: [chance.randrange(256)] * chance.randrange(4))
     hear_noise(heard, until, lambda: noise(chance))
+    hear_noise(heard, until, lambda: [0xD0, 0x4A, 0x11])
     heard.comes_to(None)
-    assert heard.malformed() > before
+    assert heard.malformed() >= before + 5000
+    assert heard.server.status()["midi_malformed_last"].startswith("d0 4a 11")
 
 
 # ---------------------------------------------------------------- names

@@ -75,7 +75,7 @@ def receive(m: Any, t: Any, frame: int, index: int) -> None:
     status, one, two = index & 0xFF, index >> BYTE & 0xFF, index >> 2 * BYTE & 0xFF
     m.messages += 1
     if not 0 <= port < PORTS or length == 0 or status < NOTE_OFF:
-        m.malformed += 1
+        count_malformed(m, index)
         return
     if status >= SYSTEM:
         if status == SYSTEM_RESET and length == 1:
@@ -84,7 +84,7 @@ def receive(m: Any, t: Any, frame: int, index: int) -> None:
     kind, channel = status & 0xF0, IN_PORT * port + (status & 0x0F)
     wanted = 2 if kind in (PROGRAM_CHANGE, CHANNEL_PRESSURE) else 3
     if length != wanted or one >= NOTE_OFF or (wanted == 3 and two >= NOTE_OFF):
-        m.malformed += 1
+        count_malformed(m, index)
         return
     is_strike = kind == NOTE_ON and two > 0
     if not plays(m, t, channel) and not passes(t, kind):
@@ -104,6 +104,13 @@ def receive(m: Any, t: Any, frame: int, index: int) -> None:
         change_control(m, t, frame, channel, one, two)
     else:
         change_program(m, t, frame, channel, one)
+
+
+@compiled_exactly
+def count_malformed(m: Any, index: int) -> None:
+    """Count what is no message, and keep it for `status` to tell."""
+    m.malformed += 1
+    m.malformed_last = index
 
 
 @compiled_exactly

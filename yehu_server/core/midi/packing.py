@@ -22,3 +22,9 @@ def packed(message: Sequence[int], port: int = 0) -> int:
     for place, byte in enumerate(message):
         index |= (byte & 0xFF) << BYTE * place
     return index
+
+
+def unpacked(index: int) -> tuple[bytes, int]:
+    """The bytes and the port of a packed message."""
+    length, port = index >> LENGTH_AT & 0xFF, index >> PORT_AT
+    return bytes(index >> BYTE * place & 0xFF for place in range(length)), port

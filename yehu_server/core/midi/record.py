@@ -95,6 +95,7 @@ MIDI = np.dtype(
         # Counts.
         ("messages", np.int64),
         ("malformed", np.int64),
+        ("malformed_last", np.int64),  # as ``packing.packed``
         ("notes", np.int64),
         ("out_of_range", np.int64),
         ("percussion", np.int64),

@@ -69,6 +69,10 @@ class MidiPorts(Supervisor):
         """Names of the open ports."""
         return list(self._connected)
 
+    def name_of(self, number: int) -> str:
+        """The name of the port that has or last had a number; empty for none."""
+        return next((name for name, of in self._numbers.items() if of == number), "")
+
     def attend(self, child: Child, gone: threading.Event) -> None:
         """See `Supervisor`."""
         options, routed = self._options, self._router.patterns

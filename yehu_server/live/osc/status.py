@@ -12,6 +12,8 @@ from enum import Enum
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from yehu_server.core.midi.packing import unpacked
+
 if TYPE_CHECKING:
     from yehu_server.core.engine.ensemble import Ensemble
     from yehu_server.core.engine.instrument import Instrument
@@ -165,6 +167,17 @@ def _count_of_midi(name: str) -> Callable[[StatusSources], int]:
     return lambda s: sum(int(part.instruments[0].midi[name]) for part in s.parts)
 
 
+def _last_malformed(s: StatusSources) -> str:
+    """The last damaged message of each part that has received one."""
+    told: dict[str, None] = {}
+    for part in s.parts:
+        midi = part.instruments[0].midi
+        if midi["malformed"]:
+            data, port = unpacked(int(midi["malformed_last"]))
+            told[f"{data.hex(' ')} {s.midi.name_of(port) if s.midi else ''}".strip()] = None
+    return "; ".join(told)
+
+
 STATUS: tuple[AnyValue, ...] = (
     _text("device", "Device that plays, or silent clock.",
         lambda s: s.output.device or "silent clock"),
@@ -230,6 +243,8 @@ STATUS: tuple[AnyValue, ...] = (
     _counter("midi_messages", "MIDI messages that parts received.", _count_of_midi("messages")),
     _counter("midi_malformed", "Damaged MIDI messages that parts received.",
         _count_of_midi("malformed")),
+    _text("midi_malformed_last", "The last of them, in hexadecimal, and the input that gave it.",
+        _last_malformed),
     _counter("http_requests", "HTTP requests received, with those for WebSockets.",
         lambda s: s.web.requests),
     _counter("http_refused", "Requests refused because they were not allowed, or too many.",

@@ -27,6 +27,7 @@ from measures.shuffled import WAYS, shuffled
 from measures.take import Setup
 from measures.transitions import clicks, legato
 from measures.tunes import detached, tunes
+from measures.vibrato import vibrato
 
 from yehu_server.core.physics.quantities import Quantities, read_quantities
 from yehu_server.errors import YehuError
@@ -37,7 +38,7 @@ MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
     each.__name__: each
     for each in (
         *(grid, isolated, chromatic, steady, quarters, legato, bends, tunes, detached),
-        *(hunting, life, clicks, evenness, velocity, shuffled, strings, presets, phrases),
+        *(hunting, life, clicks, evenness, velocity, shuffled, strings, presets, phrases, vibrato),
     )
 }
 

@@ -66,8 +66,9 @@ TABLE: tuple[Param, ...] = (
         "Depth of the vibrato to either side, of all fingers that are down.", smooth_ms=20.0),
     _owned("/vibrato/press", "", "1", 0.0, 1.0, 0.0,
         "Variation of the finger force with the vibrato, as a fraction of it.", smooth_ms=20.0),
-    _owned("/vibrato/upward", "", "1", 0.0, 1.0, 0.0,
-        "0: the vibrato goes to both sides of the pitch; 1: only up from it, twice as far.",
+    _owned("/vibrato/upward", "", "1", -1.0, 1.0, 0.0,
+        "Middle of the vibrato above the pitch, as a share of its depth: at 0 it goes to both "
+        "sides, at 1 only up, twice as far, at -1 only down.",
         smooth_ms=20.0),
     _owned("/vibrato/rate", "", "Hz", 0.5, 12.0, 5.5,
         "Rate of the vibrato.", smooth_ms=20.0),

@@ -16,7 +16,7 @@ def vibrato(playing: Playing, seconds: float) -> tuple[np.ndarray, np.ndarray]:
 
 def test_a_long_note_gets_a_vibrato_that_comes_late():
     playing = Playing(phrasing=0.5)
-    playing.on(74)
+    playing.on(79)
     depth, onset = vibrato(playing, 2.0)
     assert depth[-1] == 30.0
     assert onset[40] < 0.4 < onset[80]  # none after 0.2 s, some after 0.4 s

@@ -87,7 +87,7 @@ def advance_drifts(c: Any) -> None:
 def vibrato_at(c: Any, phase: float) -> float:
     """The value of the vibrato at a phase (turns), faded in by /vibrato/onset.
 
-    It is from -1 to 1, or from 0 to 2 where it goes upward.
+    It swings by 1 to either side of /vibrato/upward.
     """
     if c.value[ONSET] <= ONSET_FROM:
         return 0.0

@@ -17,16 +17,12 @@ from yehu_server.core.controls.slots import SPEED as BOW_SPEED
 from yehu_server.core.player.harmonics import GAINS_DB, NONE, node_of, string_of
 from yehu_server.core.player.phrasing import (
     HURRIED_ATTACK_MS,
-    OWN_RATE,
     deviate,
-    own_factor,
 )
 from yehu_server.core.player.rows import (
     ARTICULATION,
     NOTE_LENGTH,
     PHRASING,
-    PLAYING_VIBRATO_PRESS,
-    PLAYING_VIBRATO_RATE,
     TREMOLO,
     TREMOLO_DEPTH,
     VARIATION,
@@ -301,33 +297,6 @@ def tremolo_depth_of(p: Any) -> float:
     """How deep a tremolo is: as wished where there is a wish for one, else the gesture's."""
     wished = p.value[TREMOLO_DEPTH]
     return float(wished if p.value[TREMOLO] > 0.0 else SHAPES[p.gesture.row, DEPTH])
-
-
-@compiled_exactly
-def has_vibrato(p: Any) -> bool:
-    """Whether the gesture has a vibrato of its own."""
-    return bool(HAS_VIBRATO[p.gesture.row])
-
-
-@compiled_exactly
-def vibrato_rate(p: Any) -> float:
-    """Rate of the vibrato (Hz)."""
-    hertz = VIBRATOS[p.gesture.row, HERTZ] if has_vibrato(p) else p.value[PLAYING_VIBRATO_RATE]
-    return float(hertz * own_factor(p, 0, OWN_RATE))
-
-
-@compiled_exactly
-def vibrato_press(p: Any) -> float:
-    """Share of the finger's force that varies with the vibrato."""
-    if has_vibrato(p):
-        return float(VIBRATOS[p.gesture.row, PRESS])
-    return float(p.value[PLAYING_VIBRATO_PRESS])
-
-
-@compiled_exactly
-def vibrato_upward(p: Any) -> float:
-    """1 where the vibrato only goes up from the pitch."""
-    return float(VIBRATOS[p.gesture.row, UPWARD] if has_vibrato(p) else 0.0)
 
 
 @compiled_exactly

@@ -1,4 +1,4 @@
-"""The left hand: four fingers that stop the strings, step, slide, press and play vibrato. Compiled.
+"""The left hand: four fingers that stop the strings, step, slide and press. Compiled.
 
 A step puts the next finger down while the one before still holds, and then lifts that, so that
 the string is never open in between. A slide moves the finger that is down.
@@ -10,38 +10,14 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.fingering import OPEN
-from yehu_server.core.player.gestures import (
-    CENTS,
-    DELAY_MS,
-    VIBRATOS,
-    has_vibrato,
-    vibrato_press,
-    vibrato_rate,
-    vibrato_upward,
-)
 from yehu_server.core.player.harmonics import NONE, TOUCH_N
-from yehu_server.core.player.ownership import USUAL_MS, forget, move, take_back
-from yehu_server.core.player.phrasing import (
-    OWN_DELAY,
-    OWN_DEPTH,
-    STEP_MS,
-    own_factor,
-    own_phase,
-    varied_landing,
-    vibrato_cents,
-    vibrato_delay_ms,
-)
+from yehu_server.core.player.ownership import move, take_back
+from yehu_server.core.player.phrasing import STEP_MS, varied_landing
 from yehu_server.core.player.rows import (
     FINGER_COUNT,
     FINGER_POSITION,
     FINGER_PRESS,
     PRESS,
-    VARIATION,
-    VIBRATO_DEPTH,
-    VIBRATO_ONSET,
-    VIBRATO_PRESS,
-    VIBRATO_RATE,
-    VIBRATO_UPWARD,
 )
 
 # Ramps of finger force. Chosen by trying landings of 1 to 5 ms and lifts of 3 to 25 ms on 24 steps
@@ -51,7 +27,6 @@ LANDING_MS, LIFTING_MS = 3.0, 5.0
 # A position nearer than this is reached by a slide, as no second finger fits beside the first.
 NEAREST_STEP = 2e-3  # m
 SETTLING_MS = 8.0
-FADING_MS = 600.0  # of the vibrato, after the last note
 
 
 @compiled_exactly
@@ -117,35 +92,6 @@ def lift_all(p: Any, c: Any) -> None:
     for finger in range(FINGER_COUNT):
         take_back(p, FINGER_PRESS[finger])
         move(p, c, FINGER_PRESS[finger], 0.0, LIFTING_MS)
-
-
-@compiled_exactly
-def set_vibrato(p: Any, c: Any) -> None:
-    """Set depth and rate of the vibrato as wished."""
-    depth = VIBRATOS[p.gesture.row, CENTS] if has_vibrato(p) else vibrato_cents(p)
-    move(p, c, VIBRATO_DEPTH, depth * own_factor(p, 1, OWN_DEPTH), USUAL_MS)
-    move(p, c, VIBRATO_PRESS, vibrato_press(p), USUAL_MS)
-    move(p, c, VIBRATO_UPWARD, vibrato_upward(p), USUAL_MS)
-    move(p, c, VIBRATO_RATE, vibrato_rate(p), USUAL_MS)
-
-
-@compiled_exactly
-def begin_vibrato(p: Any, c: Any) -> None:
-    """Fade in the vibrato of a new note; people of a section begin at other phases of it."""
-    delay_ms = VIBRATOS[p.gesture.row, DELAY_MS] if has_vibrato(p) else vibrato_delay_ms(p)
-    delay_ms *= own_factor(p, 2, OWN_DELAY)
-    if p.person != 0 and p.value[VARIATION] > 0.0 and delay_ms > 0.0:
-        c.vibrato = own_phase(p, c)
-    move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
-    if delay_ms > 0.0:
-        move(p, c, VIBRATO_ONSET, 1.0, delay_ms)
-
-
-@compiled_exactly
-def end_vibrato(p: Any, c: Any) -> None:
-    """Let the vibrato fade with the last note, or the finger would rock the string on for ever."""
-    move(p, c, VIBRATO_ONSET, 0.0, FADING_MS)
-    forget(p, VIBRATO_ONSET)  # the next note may begin while it fades
 
 
 @compiled_exactly

@@ -11,7 +11,7 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.slots import SILENCE, SPEED
-from yehu_server.core.player import brilliance, left_hand, right_hand, velocity
+from yehu_server.core.player import brilliance, left_hand, right_hand, velocity, vibrato
 from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import choose, choose_for_slide, stay
@@ -114,7 +114,7 @@ def end(p: Any, c: Any, channel: int, key: float, more_end: bool) -> None:
     else:
         p.sounding = SILENT
         right_hand.lift(p, c, p.value[RELEASE] * hurried(p, HURRIED_RELEASE))
-        left_hand.end_vibrato(p, c)
+        vibrato.end_vibrato(p, c)
 
 
 @compiled_exactly
@@ -175,8 +175,8 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     begin_tuning(p, pitch)
     begin_pressure_correction(p, pitch)
     pause_listening(p, c, max(slide_ms, SLURRED_MS if is_slur else attack_ms(p)))
-    left_hand.set_vibrato(p, c)
-    left_hand.begin_vibrato(p, c)
+    vibrato.set_vibrato(p, c)
+    vibrato.begin_vibrato(p, c)
     set_assist(p, c)
     set_level(p, c)
     even_out(p, c)

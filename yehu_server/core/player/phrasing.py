@@ -15,9 +15,7 @@ from yehu_server.core.physics.elementary import chance
 from yehu_server.core.player.rows import (
     NOTE_LENGTH,
     PHRASING,
-    PLAYING_VIBRATO_DELAY,
     VARIATION,
-    VIBRATO,
 )
 
 # A sum of so many uniform numbers is all but normal.
@@ -26,10 +24,6 @@ ADDED = 12
 VARIED_FRACTION = 0.1  # of bow speed and pressure
 VARIED_CENTS = 6.0
 VARIED_LANDING, MOST_LANDING = 0.8, 2.0  # of the time of a landing; and its largest factor
-# How people of a section differ in rate, depth and delay of their vibrato, and its least factor.
-OWN_RATE, OWN_DEPTH, OWN_DELAY = 0.3, 0.9, 1.2
-LEAST_OWN = 0.4
-FRAMES_FROM = 3 << 30  # of the seed's numbers: those that frames have; `drift` has some before
 
 
 @compiled_exactly
@@ -59,29 +53,6 @@ def deviate(p: Any) -> float:
 
 
 @compiled_exactly
-def own_factor(p: Any, number: int, varied: float) -> float:
-    """A factor that a person of a section has for good; 1 for the first of them, or one alone.
-
-    Parameters
-    ----------
-    number : int
-        Of what it is a factor on: each has another one.
-    varied : float
-        Its standard deviation at full variation.
-    """
-    if p.person == 0:
-        return 1.0
-    differs = math.sqrt(3.0) * chance((p.person << 32) + number)
-    return float(max(1.0 + p.value[VARIATION] * varied * differs, LEAST_OWN))
-
-
-@compiled_exactly
-def own_phase(p: Any, c: Any) -> float:
-    """Where the vibrato of a note that begins now starts, of one of a section (turns)."""
-    return float(0.5 + 0.5 * chance((p.seed << 32) + FRAMES_FROM + c.frame))
-
-
-@compiled_exactly
 def varied_semitones(p: Any) -> float:
     """Deviation of the sounding note from its pitch."""
     return float(p.value[VARIATION] * p.detuned * VARIED_CENTS / 100.0)
@@ -97,7 +68,6 @@ def varied_landing(p: Any, landing_ms: float) -> float:
 
 
 # At full phrasing; by ear.
-VIBRATO_CENTS, LATE_MS = 60.0, 750.0
 SLIDE_MS, SHORTEST_SLIDE_MS = 130.0, 45.0
 STEP_MS = -1.0  # in place of the time of a slide
 # A leap asks for a slide where it is so wide (semitones), from a note and to a note so long.
@@ -125,22 +95,6 @@ def hurry_of(p: Any, c: Any) -> float:
 def hurried(p: Any, factor: float) -> float:
     """A factor as far as the stroke is hurried."""
     return float(1.0 + p.hurry * (factor - 1.0))
-
-
-@compiled_exactly
-def vibrato_cents(p: Any) -> float:
-    """Depth of the vibrato: as wished, else the player's own."""
-    if p.value[VIBRATO] > 0.0:
-        return float(p.value[VIBRATO])
-    return float(p.value[PHRASING] * VIBRATO_CENTS)
-
-
-@compiled_exactly
-def vibrato_delay_ms(p: Any) -> float:
-    """Time in which the vibrato of a new note comes: as wished; the player's own comes late."""
-    if p.value[VIBRATO] > 0.0 or p.value[PHRASING] == 0.0:
-        return float(p.value[PLAYING_VIBRATO_DELAY])
-    return float(max(p.value[PLAYING_VIBRATO_DELAY], LATE_MS))
 
 
 @compiled_exactly

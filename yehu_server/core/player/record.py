@@ -26,6 +26,7 @@ from yehu_server.core.player.rows import (
     ROWS,
     SLOT_OF,
 )
+from yehu_server.core.player.steepness import STEPS, vibrato_table
 from yehu_server.params.table import TABLE
 
 # Of what is learnt: half semitones, quarter octaves of bow position, half octaves of speed.
@@ -112,6 +113,7 @@ PLAYER = np.dtype(
         ("sharpening", np.float64, (STRINGS, NOTES, len(SPEEDS))),  # cents
         ("levels", np.float64, (STRINGS, NOTES + 1, len(SPEEDS))),  # dB
         ("bowing", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, RECIPE)),
+        ("vibrato_table", np.float64, (STEPS, 2)),  # `steepness.vibrato_table`
         ("open_strings", np.int64),  # number of the OpenStrings
     ],
     align=True,
@@ -181,6 +183,7 @@ def prepare_player(
         p["sharpening"] = calibration.sharpening
         if calibration.levels:
             p["levels"] = calibration.levels
+    p["vibrato_table"] = vibrato_table(quantities.body, float(p["a4"]), notes.lowest)
     p["bowing"] = default_recipes() if bowing is None else bowing
     p["open_strings"] = list(OpenStrings).index(open_strings)
     return player

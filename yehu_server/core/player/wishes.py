@@ -25,7 +25,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.record import Controls
-from yehu_server.core.player import by_hand, left_hand, notes
+from yehu_server.core.player import by_hand, left_hand, notes, vibrato
 from yehu_server.core.player.ownership import USUAL_MS, forget, ramp_to, release, write_directly
 from yehu_server.core.player.phrasing import begin_sequence
 from yehu_server.core.player.record import Player
@@ -181,7 +181,7 @@ def follow(p: Any, c: Any, row: int) -> None:
     elif row == TREMOLO:
         notes.draw(p, c, USUAL_MS)
     elif row in (VIBRATO, PLAYING_VIBRATO_PRESS, PLAYING_VIBRATO_RATE, PHRASING):
-        left_hand.set_vibrato(p, c)
+        vibrato.set_vibrato(p, c)
     elif row == ASSIST:
         notes.set_assist(p, c)
     elif row in (VOLUME, EXPRESSION):

@@ -1,0 +1,77 @@
+"""How wide a vibrato is, and where its middle is, where the body is steep and where it is not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from held_notes import Playing
+
+from yehu_server.core.controls.slots import DEPTH, UPWARD
+from yehu_server.core.physics.quantities import measured_body
+from yehu_server.core.player.steepness import LEANING, LEAST, NARROWED, USUAL, vibrato_table
+
+A4, LOWEST = 440.0, 65
+PEAK = 80.6  # MIDI note, between two rows
+SHARP = 0.999  # radius of the pole: some 14 Hz wide
+
+
+def row_of(pitch: float) -> int:
+    return round(2.0 * (pitch - LOWEST))
+
+
+def with_peak() -> np.ndarray:
+    """The table of a body that radiates at one frequency, and little else."""
+    rate = measured_body().radiation_rate
+    angle = 2.0 * math.pi * A4 * 2.0 ** ((PEAK - 69.0) / 12.0) / rate
+    section = (1.0, 0.0, -2.0 * SHARP * math.cos(angle), SHARP**2)
+    return vibrato_table(replace(measured_body(), sections=(section,), direct_gain=0.0), A4, LOWEST)
+
+
+def test_a_body_that_radiates_evenly_leaves_a_vibrato_alone():
+    body = replace(measured_body(), sections=measured_body().sections[:1], direct_gain=1e6)
+    table = vibrato_table(body, A4, LOWEST)
+    assert (table[:, NARROWED] == 1.0).all()
+    assert (table[:, LEANING] == 0.0).all()
+
+
+def test_on_the_flanks_of_a_peak_it_is_narrower_and_off_to_where_it_is_flatter():
+    table = with_peak()
+    below, above = table[row_of(80.0)], table[row_of(81.0)]
+    assert below[NARROWED] < 0.8
+    assert above[NARROWED] < 0.8
+    assert below[LEANING] < 0.0 < above[LEANING]
+    assert table[:, NARROWED].min() >= LEAST / USUAL
+
+
+def played(note: int, **values: float) -> tuple[float, float]:
+    """Depth (cents) of the vibrato of a note, and where its middle is."""
+    playing = Playing(variation=0.0, **values)
+    playing.on(note)
+    (found,) = playing.play(0.2, "value")
+    return found[-1, DEPTH], found[-1, UPWARD]
+
+
+def test_the_player_narrows_it_at_a5_alone_of_two_neighbours():
+    assert played(82, vibrato=30.0) == (30.0, 0.0)
+    depth, upward = played(81, vibrato=30.0)
+    assert depth == pytest.approx(15.0)
+    assert 0.3 < upward < 0.7
+
+
+def test_a_narrow_one_stays_and_a_wide_one_is_narrowed_alike():
+    assert played(81, vibrato=12.0)[0] == pytest.approx(12.0)
+    assert played(81, vibrato=60.0)[0] == pytest.approx(30.0)
+
+
+def test_one_that_presses_goes_only_up_as_everywhere():
+    depth, upward = played(81, articulation=12.0)
+    assert (depth, upward) == (pytest.approx(played(82, articulation=12.0)[0]), 1.0)
+
+
+def test_the_players_own_is_narrower_near_the_nut():
+    depths = [played(note, phrasing=0.5)[0] for note in (66, 70, 79)]
+    assert depths == pytest.approx([20.0, 28.0, 30.0])
+    assert played(66, vibrato=30.0)[0] == 30.0  # what is wished is not

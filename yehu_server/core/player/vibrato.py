@@ -1,0 +1,142 @@
+"""The vibrato of a note: as wished, as its articulation wants it, or the player's own. Compiled.
+
+It is narrower, and off the note's middle, where the body would swing its level (``steepness``).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.elementary import chance
+from yehu_server.core.player.gestures import CENTS, DELAY_MS, HAS_VIBRATO, HERTZ, VIBRATOS
+from yehu_server.core.player.gestures import PRESS as PRESS_SHARE
+from yehu_server.core.player.gestures import UPWARD as UPWARD_SHARE
+from yehu_server.core.player.ownership import USUAL_MS, forget, move
+from yehu_server.core.player.rows import (
+    BEND,
+    PHRASING,
+    PLAYING_VIBRATO_DELAY,
+    PLAYING_VIBRATO_PRESS,
+    PLAYING_VIBRATO_RATE,
+    VARIATION,
+    VIBRATO,
+    VIBRATO_DEPTH,
+    VIBRATO_ONSET,
+    VIBRATO_PRESS,
+    VIBRATO_RATE,
+    VIBRATO_UPWARD,
+)
+from yehu_server.core.player.steepness import LEANING, NARROWED, STEPS, USUAL
+
+# The player's own, at full phrasing; by ear.
+OWN_CENTS, LATE_MS = 60.0, 750.0
+# It is narrower near the nut [Pop]: its share there, and from where on it is whole.
+AT_NUT, WHOLE_FROM = 0.6, 6.0  # semitones above the open string
+FADING_MS = 600.0  # after the last note
+# How people of a section differ in rate, depth and delay of their vibrato, and its least factor.
+OTHER_RATE, OTHER_DEPTH, OTHER_DELAY = 0.3, 0.9, 1.2
+LEAST_OTHER = 0.4
+FRAMES_FROM = 3 << 30  # of the seed's numbers: those that frames have; `drift` has some before
+
+
+@compiled_exactly
+def set_vibrato(p: Any, c: Any) -> None:
+    """Set depth, middle and rate of the vibrato as wished."""
+    row = VIBRATOS[p.gesture.row]
+    own = has_vibrato(p)
+    cents, upward = row[CENTS] if own else wished_cents(p), row[UPWARD_SHARE] if own else 0.0
+    if upward == 0.0:
+        at = steep_row(p)
+        cents = min(cents, p.vibrato_table[at, NARROWED] * max(cents, USUAL))
+        upward = p.vibrato_table[at, LEANING]
+    hertz = row[HERTZ] if own else p.value[PLAYING_VIBRATO_RATE]
+    press = row[PRESS_SHARE] if own else p.value[PLAYING_VIBRATO_PRESS]
+    move(p, c, VIBRATO_DEPTH, cents * other_factor(p, 1, OTHER_DEPTH), USUAL_MS)
+    move(p, c, VIBRATO_PRESS, press, USUAL_MS)
+    move(p, c, VIBRATO_UPWARD, upward, USUAL_MS)
+    move(p, c, VIBRATO_RATE, hertz * other_factor(p, 0, OTHER_RATE), USUAL_MS)
+
+
+@compiled_exactly
+def begin_vibrato(p: Any, c: Any) -> None:
+    """Fade in the vibrato of a new note; people of a section begin at other phases of it."""
+    delay_ms = VIBRATOS[p.gesture.row, DELAY_MS] if has_vibrato(p) else wished_delay_ms(p)
+    delay_ms *= other_factor(p, 2, OTHER_DELAY)
+    if p.person != 0 and p.value[VARIATION] > 0.0 and delay_ms > 0.0:
+        c.vibrato = phase_of(p, c)
+    move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
+    if delay_ms > 0.0:
+        move(p, c, VIBRATO_ONSET, 1.0, delay_ms)
+
+
+@compiled_exactly
+def end_vibrato(p: Any, c: Any) -> None:
+    """Let the vibrato fade with the last note, or the finger would rock the string on for ever."""
+    move(p, c, VIBRATO_ONSET, 0.0, FADING_MS)
+    forget(p, VIBRATO_ONSET)  # the next note may begin while it fades
+
+
+@compiled_exactly
+def has_vibrato(p: Any) -> bool:
+    """Whether the note's articulation has a vibrato of its own."""
+    return bool(HAS_VIBRATO[p.gesture.row])
+
+
+@compiled_exactly
+def wished_cents(p: Any) -> float:
+    """Depth of the vibrato: as wished, else the player's own."""
+    if p.value[VIBRATO] > 0.0:
+        return float(p.value[VIBRATO])
+    above = vibrated_pitch(p) - p.open_note[max(p.string, 0)]
+    near = min(max(above / WHOLE_FROM, 0.0), 1.0)
+    return float(p.value[PHRASING] * OWN_CENTS * (AT_NUT + (1.0 - AT_NUT) * near))
+
+
+@compiled_exactly
+def wished_delay_ms(p: Any) -> float:
+    """Time in which the vibrato of a new note comes: as wished; the player's own comes late."""
+    if p.value[VIBRATO] > 0.0 or p.value[PHRASING] == 0.0:
+        return float(p.value[PLAYING_VIBRATO_DELAY])
+    return float(max(p.value[PLAYING_VIBRATO_DELAY], LATE_MS))
+
+
+@compiled_exactly
+def vibrated_pitch(p: Any) -> float:
+    """The pitch (fractional MIDI note) that the vibrato is about, also before a slide is there."""
+    if p.sounding < 0:
+        return float(p.finger_pitch)
+    return float(p.held_pitch[p.sounding] + p.value[BEND])
+
+
+@compiled_exactly
+def steep_row(p: Any) -> int:
+    """Row of ``steepness.vibrato_table`` for the note."""
+    row = int(np.rint(2.0 * (vibrated_pitch(p) - p.open_note[0])))
+    return min(max(row, 0), STEPS - 1)
+
+
+@compiled_exactly
+def other_factor(p: Any, number: int, varied: float) -> float:
+    """A factor that a person of a section has for good; 1 for the first of them, or one alone.
+
+    Parameters
+    ----------
+    number : int
+        Of what it is a factor on: each has another one.
+    varied : float
+        Its standard deviation at full variation.
+    """
+    if p.person == 0:
+        return 1.0
+    differs = math.sqrt(3.0) * chance((p.person << 32) + number)
+    return float(max(1.0 + p.value[VARIATION] * varied * differs, LEAST_OTHER))
+
+
+@compiled_exactly
+def phase_of(p: Any, c: Any) -> float:
+    """Where the vibrato of a note that begins now starts, of one of a section (turns)."""
+    return float(0.5 + 0.5 * chance((p.seed << 32) + FRAMES_FROM + c.frame))

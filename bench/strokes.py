@@ -2,7 +2,7 @@
 
     .venv/bin/python bench/strokes.py [--save bench/results/NAME.json]
 
-The strokes are a Schelleng diagram of 0.3 s each. The kernel's figure is `kernel.advance` over the
+The strokes are a Schelleng diagram of 0.3 s each. The kernel's figure is the kernel over the
 same controls, made in advance, without judging them. Times are medians of several runs.
 """
 
@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import report
 
-from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics import kernel, layout, time_loop
 from yehu_server.lab.regimes.strokes import find
 from yehu_server.lab.sweeps.running import sweep
 from yehu_server.lab.sweeps.study import Study, study_of
@@ -35,7 +35,7 @@ DATA = {
 
 
 def kernel_strokes(study: Study) -> list[Any]:
-    """Model, state and arrays of each stroke, as `kernel.advance` takes them."""
+    """Model, state and arrays of each stroke, as `time_loop.run` takes them."""
     strokes = []
     for number in range(study.coarse):
         place = np.unravel_index(number, study.shape)
@@ -50,7 +50,7 @@ def kernel_strokes(study: Study) -> list[Any]:
 def advance(stroke: Any) -> None:
     model, state, controls, probes = stroke
     state = state.copy()
-    kernel.advance(model, state, controls, probes, None)
+    time_loop.run(model, state, None, controls, probes)
 
 
 def paced(work: Callable[[], object], count: int) -> dict[str, Any]:

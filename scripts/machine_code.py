@@ -21,16 +21,18 @@ from yehu_server.util.sealed import read_sealed, write_sealed
 COMPILE = """
 from yehu_server.compile import machine_code
 from yehu_server.compile.cache_folder import cache_folder
-from yehu_server.core.engine.warming import warm_up
+from yehu_server.lab.warming import warm_up
 warm_up()
-print(machine_code.processor()[0], machine_code.file_in(cache_folder()), sep="\\n")
+print(machine_code.processor()[0])
+for what in (machine_code.PLAYING, machine_code.LAB):
+    print(machine_code.file_in(cache_folder(), what))
 """
 # numba's order of things follows Python's hashes; and no feature of this processor is wanted.
 SETTINGS = {"PYTHONHASHSEED": "0", "NUMBA_CPU_FEATURES": ""}
 
 
-def write(level: str, folder: Path) -> Path:
-    """Compile all for a level of processors, and write its file; return where."""
+def write(level: str, folder: Path) -> list[Path]:
+    """Compile all for a level of processors, and write its files; return where."""
     with tempfile.TemporaryDirectory() as empty:
         settings = {**SETTINGS, "NUMBA_CPU_NAME": level, "NUMBA_CACHE_DIR": empty}
         told = subprocess.run(  # noqa: S603 - our own
@@ -40,14 +42,16 @@ def write(level: str, folder: Path) -> Path:
             stdout=subprocess.PIPE,
             text=True,
         ).stdout
-        system, made = told.splitlines()
-        payload = read_sealed(Path(made))
-    if payload is None:
-        raise SystemExit(f"{level}: nothing was compiled")
+        system, *made = told.splitlines()
+        payloads = [read_sealed(Path(path)) for path in made]
     folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{system}-{level}.code"
-    write_sealed(path, payload)
-    return path
+    paths = []
+    for what, payload in zip((machine_code.PLAYING, machine_code.LAB), payloads, strict=True):
+        if payload is None:
+            raise SystemExit(f"{level}: nothing was compiled")
+        paths.append(folder / f"{system}-{level}{what}.code")
+        write_sealed(paths[-1], payload)
+    return paths
 
 
 def main() -> None:
@@ -60,8 +64,8 @@ def main() -> None:
     parser.add_argument("-o", metavar="FOLDER", type=Path, default=machine_code.SHIPPED)
     arguments = parser.parse_args()
     for level in arguments.levels or levels:
-        path = write(level, arguments.o)
-        print(f"{path}: {path.stat().st_size // 1000} kB")
+        for path in write(level, arguments.o):
+            print(f"{path}: {path.stat().st_size // 1000} kB")
 
 
 if __name__ == "__main__":

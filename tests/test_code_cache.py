@@ -179,5 +179,5 @@ def test_numba_calls_what_we_put_in_the_place_of_its_cache():
     jit.compiled(double)(3)
     again = jit.compiled(double)
     assert again(3) == 6
-    assert sum(again.stats.cache_hits.values()) == 1
+    assert sum(again._for_python.stats.cache_hits.values()) == 1
     assert isinstance(again.value, numba.core.registry.CPUDispatcher)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics import kernel, layout, time_loop
 from yehu_server.core.physics.quantities import Quantities
 
 SECONDS = 10.0
@@ -59,7 +59,7 @@ def one(rate: float, fingers: int, *, jumps: bool, seed: int) -> tuple[float, fl
     state = kernel.at_rest(model)
     probes = np.zeros((frames, layout.probe_columns(fingers)))
     ledger = np.zeros((frames, len(layout.LEDGER)))
-    kernel.advance(model, state, rows, probes, ledger)
+    time_loop.run(model, state, None, rows, probes, ledger)
     error = ledger[:, layout.LEDGER.index("energy_error")]
     power = ledger[:, layout.LEDGER.index("power_in")]
     return float(np.abs(error).max()), float(np.abs(power).max()), int(state["lost"][0])

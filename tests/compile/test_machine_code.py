@@ -17,7 +17,9 @@ import pytest
 from yehu_server.cli.terminal import warn_of_compiling
 from yehu_server.compile import cache_folder, machine_code
 from yehu_server.compile.cache_folder import source_hash
+from yehu_server.compile.jit import Native
 from yehu_server.core.engine.warming import all_functions, warm_up
+from yehu_server.core.physics.time_loop import advance
 from yehu_server.util.sealed import read_sealed, write_sealed
 
 ROOT = Path(__file__).parents[2]
@@ -133,20 +135,21 @@ def test_code_of_a_level_is_not_taken_for_that_of_a_processor_asked_for(monkeypa
     assert list(machine_code.shipped_files()) == []
 
 
-def told(capsys, **options) -> str:
-    warn_of_compiling(argparse.Namespace(quiet=False), **options)
+def told(capsys, *functions) -> str:
+    warn_of_compiling(argparse.Namespace(quiet=False), functions)
     return capsys.readouterr().err
 
 
-def test_commands_tell_that_something_is_compiled(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(cache_folder, "cache_folder", lambda: tmp_path)
-    assert "compiling for this machine, once" in told(capsys, plays=False)
-    (tmp_path / "of_before.code").touch()
-    assert told(capsys, plays=False) == ""
+def test_commands_tell_that_something_is_compiled(monkeypatch, capsys):
+    """Whether it is for playing, or for what else a command calls."""
     warm_up()
-    assert told(capsys) == ""
-    monkeypatch.setattr(machine_code, "loaded", cache(lambda *_: {}))
-    assert "compiling for this machine, once" in told(capsys)
+    for functions in ((), (advance,)):
+        assert told(capsys, *functions) == ""
+        with monkeypatch.context() as patched:
+            patched.setattr(machine_code, "loaded", cache(lambda *_: {}))
+            assert told(capsys, *functions) == ""  # it is in the cache, function by function
+            patched.setattr(Native, "is_cached", property(lambda self: self is not advance))
+            assert "compiling for this machine, once" in told(capsys, *functions)
 
 
 def test_a_release_takes_the_files_along():
@@ -168,10 +171,11 @@ def test_code_for_a_level_of_processors_plays_without_numba(tmp_path):
         tmp_path / "made",
     ]
     subprocess.run(script, check=True, stdout=subprocess.DEVNULL)
-    [made] = (tmp_path / "made").iterdir()
+    made = tmp_path / "made"
+    assert len(list(made.iterdir())) == 2
     of_level = f"""
 from yehu_server.compile import machine_code
-machine_code.SHIPPED = machine_code.Path({str(made.parent)!r})
+machine_code.SHIPPED = machine_code.Path({str(made)!r})
 {PLAY}"""
     found = []
     for script, settings in ((of_level, {"NUMBA_CACHE_DIR": str(tmp_path / "empty")}), (PLAY, {})):

@@ -5,14 +5,14 @@ from __future__ import annotations
 import logging
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
 from typing import Any, Literal
 
-from yehu_server.compile.cache_folder import cache_folder
-from yehu_server.compile.jit import IS_PLAIN
+from yehu_server.compile.jit import IS_PLAIN, Native
+from yehu_server.core.engine.warming import CALLED, warm_up
 from yehu_server.core.physics.grid import HIGHEST_RATE, LOWEST_RATE
 from yehu_server.core.physics.quantities import Quantities, override, read_quantities
 from yehu_server.errors import ParameterError
@@ -27,16 +27,14 @@ from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 log = logging.getLogger("yehu_server")
 
 
-def get_ready(*, plays: bool) -> None:
-    """Warn, by `logging`, where the model will be compiled; compile what playing needs.
+def get_ready(functions: Sequence[Native] = CALLED) -> None:
+    """Warn, by `logging`, where some functions will be compiled; compile what playing needs.
 
-    `plays`: whether the instrument is played; the model alone is compiled at its first use.
+    By default those that playing needs; others are compiled at their first use.
     """
-    if not IS_PLAIN and not any(cache_folder().glob("*.code")):
+    if not IS_PLAIN and not all(function.is_ready for function in functions):
         log.warning("compiling the model for this machine, once; it takes up to a minute")
-    if plays:
-        from yehu_server.core.engine.warming import warm_up
-
+    if functions is CALLED:
         warm_up()
 
 

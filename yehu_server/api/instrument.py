@@ -108,7 +108,7 @@ class Instrument:
             practice=practice,
             seed=seed,
         )
-        get_ready(plays=True)
+        get_ready()
         calibration = calibration_for(float(make.sample_rate), make.quantities, a4=make.playing.a4)
         spec = make.playing.spec(float(make.sample_rate), calibration, make.quantities)
         self._build(make.sample_rate, make.playing, spec, stereo=stereo)
@@ -143,7 +143,7 @@ class Instrument:
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         if state["version"] != __version__:
             raise YehuError(f"this instrument was pickled by version {state['version']}")
-        get_ready(plays=True)
+        get_ready()
         self._build(state["rate"], state["playing"], state["spec"], stereo=state["stereo"])
         self._wishes.pending = state["pending"]
         self._dropped = state["dropped"]

@@ -231,7 +231,7 @@ def render(
         read = score_of(score)
     score = phrased(read, share)
     options = replace(options, phrasing=0.0 if is_fingered(score) else share)
-    get_ready(plays=True)
+    get_ready()
     calibration = calibration_for(float(options.rate), options.quantities, a4=options.playing.a4)
     options = replace(options, calibration=calibration)
     sound, asked, summary = _played(score, replace(options, normalize=bool(normalize)), progress)

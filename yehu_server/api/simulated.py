@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from yehu_server.api.checks import PathLike, get_ready, number, path_of, whole
+from yehu_server.core.physics.time_loop import advance, advance_booked
 from yehu_server.errors import ParameterError
+from yehu_server.lab.regimes.strokes import bow_stroke
 from yehu_server.lab.simulation import Simulation
 from yehu_server.lab.simulation import simulate as run
 from yehu_server.lab.sweeps.result import Result as Sweep
@@ -70,7 +72,7 @@ def simulate(
     """
     found = gesture_of(gesture)
     every = whole(strings_every, "strings_every", 0, 2**31)
-    get_ready(plays=False)
+    get_ready([advance_booked if energy else advance])
     return run(found, energy=bool(energy), strings_every=every, progress=progress)
 
 
@@ -191,7 +193,7 @@ def sweep(
         data = dict(gesture_of(gesture).source)
     study = study_of({"gesture": data, "vary": axes})
     most = None if workers is None else whole(workers, "workers", 1, MOST_WORKERS)
-    get_ready(plays=False)
+    get_ready([bow_stroke])
     return run_all(study, workers=most, progress=progress)
 
 

@@ -52,6 +52,7 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.cli.report import simulate_report
+    from yehu_server.core.physics.time_loop import advance, advance_booked
     from yehu_server.lab.simulation import simulate
     from yehu_server.scores.gesture import read_gesture
 
@@ -64,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
             f"{arguments.output}: simulate writes arrays, not sound; name an .npz file"
         )
     start = time.perf_counter()
-    warn_of_compiling(arguments, plays=False)
+    warn_of_compiling(arguments, [advance_booked if arguments.energy else advance])
     with progress_bar(arguments, "simulating") as progress:
         result = simulate(
             gesture,

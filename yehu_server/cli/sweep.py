@@ -68,6 +68,7 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
+    from yehu_server.lab.regimes.strokes import bow_stroke
     from yehu_server.lab.sweeps.axes import axis_of
     from yehu_server.lab.sweeps.running import (
         check_free_result,
@@ -84,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.signals is not None:
         prepare_folder(study, arguments.signals, overwrite=arguments.overwrite)
     start = time.perf_counter()
-    warn_of_compiling(arguments, plays=False)
+    warn_of_compiling(arguments, [bow_stroke])
     with (
         cluster_of(arguments, warm_up) as cluster,
         progress_bar(arguments, "sweeping", "strokes") as progress,

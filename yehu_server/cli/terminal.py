@@ -11,11 +11,14 @@ import signal
 import socket
 import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from yehu_server.errors import one_line
+
+if TYPE_CHECKING:
+    from yehu_server.compile.jit import Native
 
 INTERRUPTED = 130  # exit code
 ENDING = (signal.SIGINT, signal.SIGTERM)
@@ -89,18 +92,18 @@ def ending_at_once() -> Iterator[None]:
         receiving.close()
 
 
-def warn_of_compiling(arguments: argparse.Namespace, *, plays: bool = True) -> None:
-    """Warn where the model will be compiled: at its first use, or always if it is not cached.
+def warn_of_compiling(arguments: argparse.Namespace, functions: Iterable[Native] = ()) -> None:
+    """Warn where some functions will be compiled: at their first use, or always if none is cached.
 
-    `plays`: whether the command plays the instrument, which is what code is made of in advance.
+    By default those that playing needs.
     """
     from yehu_server.compile.cache_folder import WHY_NOT_CACHED, cache_folder
-    from yehu_server.core.engine.warming import is_warm
+    from yehu_server.core.engine.warming import CALLED
 
     if arguments.quiet:
         return
-    is_ready = is_warm() if plays else any(cache_folder().glob("*.code"))
-    if WHY_NOT_CACHED and not (plays and is_ready):
+    is_ready = all(function.is_ready for function in functions or CALLED)
+    if WHY_NOT_CACHED and not is_ready:
         warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
     elif not is_ready:
         warn("compiling for this machine, once, for half a minute ...")

@@ -52,9 +52,9 @@ def payload_of(code: Any, rest: bytes) -> bytes:
 
 
 class CodeCache(NullCache):  # type: ignore[misc]
-    """The cache of one function, with the methods that numba calls."""
+    """The cache of one function, compiled as the text `how` says, with the methods numba calls."""
 
-    def __init__(self, folder: Path, function: Any) -> None:
+    def __init__(self, folder: Path, function: Any, how: str) -> None:
         self._folder = folder
         module = function.__module__.rpartition(".")[2]
         tag = sys.implementation.cache_tag
@@ -64,7 +64,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
         code = function.__code__
         constants = [value for value in code.co_consts if value != function.__doc__]
         cells = [cell.cell_contents for cell in function.__closure__ or ()]
-        self._own = (code.co_code, code.co_names, dumps((constants, cells)))
+        self._own = (how, code.co_code, code.co_names, dumps((constants, cells)))
 
     @property
     def cache_path(self) -> str:

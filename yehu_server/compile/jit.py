@@ -67,10 +67,25 @@ class Compiled(Deferred):
     """A function that is compiled when it is first called, or with the first that calls it."""
 
     def __init__(self, function: Callable[..., Any], **options: Any) -> None:
-        compiler = "yehu_server.compile.numba_compiler"
-        super().__init__(lambda: imported(compiler).dispatcher(function, **options))
+        super().__init__(lambda: self._dispatcher(no_cpython_wrapper=True, **options))
         update_wrapper(self, function)
         self.py_func = function
+        self._options = options
+
+    def _dispatcher(self, **options: Any) -> Any:
+        return imported("yehu_server.compile.numba_compiler").dispatcher(self.py_func, **options)
+
+    @cached_property
+    def _for_python(self) -> Any:
+        """numba's object with a wrapper for Python, which takes a third of the time to compile.
+
+        Few functions are called from Python, and then mostly by tests.
+        """
+        return self._dispatcher(**self._options)
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """Call it from Python, compiled once more."""
+        return self._for_python(*arguments, **named)
 
 
 def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
@@ -218,6 +233,20 @@ class Native:
         """Whether its code is in the cache, so that its first use takes no time."""
         return IS_CACHED and self.made._cache.holds(self.made._sig)  # noqa: SLF001
 
+    @property
+    def is_kept(self) -> bool:
+        """Whether its machine code is kept, or was shipped, so that it runs without numba."""
+        return self._kept is not None
+
+    @property
+    def _kept(self) -> int | None:
+        return machine_code.address_of(self.name, cache_folder(), source_hash())
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether nothing has to be compiled for its first use."""
+        return all(part.is_kept or part.is_cached for part in with_called([self]))
+
     def __call__(self, *arguments: Any) -> Any:
         """Run it as Python, as other functions do that are plain (`IS_PLAIN`)."""
         return self.function(*arguments)
@@ -250,7 +279,7 @@ class Native:
         """
         if IS_PLAIN:
             raise YehuError("NUMBA_DISABLE_JIT: plain Python has no address for C")
-        kept = machine_code.loaded(cache_folder(), source_hash()).get(self.name)
+        kept = self._kept
         return int(self.compiled.address) if kept is None else kept
 
 

@@ -1,5 +1,6 @@
 """Machine code of all functions that playing calls, kept in one file and loaded without numba.
 
+What simulations and sweeps call besides is in another one, which playing does not load.
 A file in the cache is for this very processor. Releases bring one for each of a few levels of
 processors, which is used where there is none in the cache, so that a first start compiles nothing.
 
@@ -26,6 +27,7 @@ from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 log = logging.getLogger(__name__)
 
 FORMAT = 1
+PLAYING, LAB = "", "-lab"  # what a file is for; the second one's functions call the first one's
 # What numba's wrappers call where a function raises or counts references. None of ours does.
 NEVER_CALLED = (
     "NRT_Free",
@@ -57,13 +59,13 @@ def processor() -> list[str]:
     return [binding.get_process_triple(), name, features]
 
 
-def file_in(folder: Path) -> Path:
+def file_in(folder: Path, what: str = PLAYING) -> Path:
     """The file of this processor in a cache folder."""
     key = zlib.crc32(json.dumps(processor()).encode())
-    return folder / f"machine-{key:08x}.code"
+    return folder / f"machine-{key:08x}{what}.code"
 
 
-def keep(folder: Path, sources: str, functions: Iterable[Any]) -> None:
+def keep(folder: Path, sources: str, functions: Iterable[Any], what: str = PLAYING) -> None:
     """Write the file, of functions that are in the cache.
 
     Parameters
@@ -92,7 +94,7 @@ def keep(folder: Path, sources: str, functions: Iterable[Any]) -> None:
         objects.append(parts[0])
     head = {"format": FORMAT, "made for": [*processor(), sources], "functions": sizes}
     body = zlib.compress(b"".join(objects), 1)
-    write_sealed(file_in(folder), json.dumps(head).encode() + b"\n" + body)
+    write_sealed(file_in(folder, what), json.dumps(head).encode() + b"\n" + body)
 
 
 SHIPPED = Path(__file__).parent / "shipped"
@@ -112,7 +114,7 @@ def levels() -> dict[str, set[str]]:
     return LEVELS.get(processor()[0].partition("-")[0], {})
 
 
-def shipped_files() -> Iterator[tuple[Path, list[str]]]:
+def shipped_files(what: str = PLAYING) -> Iterator[tuple[Path, list[str]]]:
     """The files of a release that this processor can run, and what each was made for."""
     from llvmlite import binding
 
@@ -121,11 +123,19 @@ def shipped_files() -> Iterator[tuple[Path, list[str]]]:
     triple, features = binding.get_process_triple(), binding.get_host_cpu_features()
     for level, needs in levels().items():
         if all(features.get(feature) for feature in needs):
-            yield SHIPPED / f"{triple}-{level}.code", [triple, level, ""]
+            yield SHIPPED / f"{triple}-{level}{what}.code", [triple, level, ""]
+
+
+def address_of(name: str, folder: Path, sources: str) -> int | None:
+    """The address of a function by its name, or None where it has to be compiled; as `loaded`."""
+    playing = loaded(folder, sources)
+    if name in playing or not playing:
+        return playing.get(name)
+    return loaded(folder, sources, LAB).get(name)
 
 
 @functools.cache
-def loaded(folder: Path, sources: str) -> dict[str, int]:
+def loaded(folder: Path, sources: str, what: str = PLAYING) -> dict[str, int]:
     """Load what is kept in a cache folder, or was shipped.
 
     Parameters
@@ -138,7 +148,7 @@ def loaded(folder: Path, sources: str) -> dict[str, int]:
     dict
         The functions' addresses by name; empty where they have to be compiled.
     """
-    for path, made_for in ((file_in(folder), processor()), *shipped_files()):
+    for path, made_for in ((file_in(folder, what), processor()), *shipped_files(what)):
         try:
             payload = read_sealed(path)
             if payload is None:

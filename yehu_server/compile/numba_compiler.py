@@ -55,7 +55,7 @@ def dispatcher(
     """
     if no_alias:
         options["pipeline_class"] = NoAliasCompiler
-    made = _cached(numba.njit(**OPTIONS, **options)(function), function)
+    made = _cached(numba.njit(**OPTIONS, **options)(function), function, repr(options))
     if one_version:
         versions = made.get_call_template
         made.get_call_template = lambda arguments, named: versions(
@@ -75,7 +75,7 @@ def c_function(native: jit.Native) -> Any:
     options = {"nopython": True, "error_model": "numpy", "fastmath": jit.FASTMATH}
     returned, *arguments = _types(native)
     made = CFunc(native.function, (tuple(arguments), returned), {}, options)
-    return _cached(made, native.function)
+    return _cached(made, native.function, "")
 
 
 def _types(native: jit.Native) -> list[Any]:
@@ -85,8 +85,9 @@ def _types(native: jit.Native) -> list[Any]:
     ]
 
 
-def _cached(made: Any, function: Callable[..., Any]) -> Any:
+def _cached(made: Any, function: Callable[..., Any], how: str) -> Any:
     """Give numba's object for a function our cache, before anything is compiled."""
     if IS_CACHED:
-        made._cache = CodeCache(cache_folder(), function)  # noqa: SLF001 - there is no other way
+        cache = CodeCache(cache_folder(), function, how)
+        made._cache = cache  # noqa: SLF001 - there is no other way
     return made

@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from yehu_server.core.physics import kernel, layout, refined
+from yehu_server.core.physics import kernel, layout, refined, time_loop
 from yehu_server.core.physics.bow import friction_bound
-from yehu_server.core.physics.energy import stored_energy
 from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
 from yehu_server.core.physics.pluck import pluck_string
 from yehu_server.core.physics.quantities import Quantities
@@ -178,7 +177,6 @@ def simulate(
     if gesture.pluck is not None:
         pluck = gesture.pluck
         pluck_string(model, state, pluck.string - 1, pluck.position, pluck.amplitude)
-    state["motion"]["stored"] = stored_energy(m, state[0]["motion"], 0, 2)
 
     controls = gesture.control_rows()
     probes = np.zeros((frames, layout.probe_columns(1)))
@@ -191,7 +189,7 @@ def simulate(
                 shaped[i].append(shape_of(m, state["motion"][0], i))
         part = slice(start, min(start + hop, frames))
         kept = ledger[part] if energy else None
-        refined.run(model, state, more, controls[part], probes[part], kept)
+        time_loop.run(model, state, more, controls[part], probes[part], kept)
         if progress is not None:
             progress(part.stop / gesture.sample_rate, gesture.duration)
 

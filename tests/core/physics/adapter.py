@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import reference as ref
 
-from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics import kernel, layout, time_loop
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.string import set_Delta_u
 
@@ -110,7 +110,7 @@ def step_kernel(model: Any, record: Any, controls: ref.RefControls, ledger: Any)
     """
     fingers = len(controls.x_f)
     probe = np.zeros((1, layout.probe_columns(fingers)))
-    kernel.advance(model, record, control_row(controls), probe, ledger)
+    time_loop.run(model, record, None, control_row(controls), probe, ledger)
     s = record[0]["motion"]
     now = int(s["level"])
     N = model["N"][0]

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics import kernel, layout, refined
-from yehu_server.core.physics.energy import stored_energy
+from yehu_server.core.physics import kernel, layout, refined, time_loop
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.string import set_Delta_u
 
@@ -99,11 +98,7 @@ def play(
     controls = rows(frames, fingers, curves)
     probes = np.zeros((frames, layout.probe_columns(fingers)))
     book = np.zeros((frames if ledger else 0, len(layout.LEDGER)))
-    level = int(state["motion"]["level"][0])
-    state["motion"]["stored"] = stored_energy(
-        model[0], state[0]["motion"], level, (level + 2) % layout.LEVELS
-    )
-    refined.run(model, state, more, controls, probes, book if ledger else None)
+    time_loop.run(model, state, more, controls, probes, book if ledger else None)
     return Run(rate, model, state, more, controls, probes, book)
 
 

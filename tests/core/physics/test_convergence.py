@@ -13,7 +13,7 @@ import pytest
 import scipy
 from core.physics.runs import bump, rows, shaped
 
-from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics import kernel, layout, time_loop
 from yehu_server.core.physics.quantities import Quantities
 
 # The finger out of reach: only strings and bridge move.
@@ -86,7 +86,7 @@ def simulated_shapes(rate):
         frames = round(time * rate) - done
         done += frames
         probes = np.zeros((frames, layout.probe_columns(1)))
-        kernel.advance(model, state, rows(frames, 1, {}), probes, None)
+        time_loop.run(model, state, None, rows(frames, 1, {}), probes)
         both = []
         for i in range(layout.STRINGS):
             N = int(model["N"][0, i])

@@ -8,7 +8,7 @@ import pytest
 from core.physics.runs import bump, play, rows, shaped
 from pitch import cents, pitch_of
 
-from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics import kernel, layout, time_loop
 from yehu_server.core.physics.finger import gradient, limited_gradient
 from yehu_server.core.physics.quantities import Quantities
 
@@ -163,7 +163,7 @@ def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
             if is_reminded:
                 state["motion"]["resting"] = 0
             part = slice(n, n + 1)
-            kernel.advance(model, state, table[part], probes[part], None)
+            time_loop.run(model, state, None, table[part], probes[part])
             was_still[n] = state["motion"]["resting"][0, :2]
         found.append((probes, was_still))
     (probes, was_still), (again, _) = found

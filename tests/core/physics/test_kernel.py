@@ -7,7 +7,7 @@ import pytest
 from core.physics.runs import bump, play, rows, shaped
 from pitch import cents, pitch_of
 
-from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics import kernel, layout, time_loop
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError
 from yehu_server.lab.simulation import simulate
@@ -93,7 +93,7 @@ def test_the_size_of_a_block_changes_nothing(fingers):
         for start in range(0, frames, block):
             part = slice(start, start + block)
             book = ledger[part] if block == 64 else None
-            kernel.advance(model, state, controls[part], probes[part], book)
+            time_loop.run(model, state, None, controls[part], probes[part], book)
         results.append(probes)
     assert results[0].any()
     for other in results[1:]:
@@ -193,7 +193,7 @@ def lost(request):
     PLACES[request.param](run.state)
     frames = round(0.05 * RATE)
     probes = np.zeros((frames, layout.probe_columns(2)))
-    kernel.advance(run.model, run.state, rows(frames, 2, PLAYING), probes, None)
+    time_loop.run(run.model, run.state, None, rows(frames, 2, PLAYING), probes)
     return run.state, probes
 
 
@@ -213,6 +213,34 @@ def test_a_nan_anywhere_is_noticed_counted_and_cleared(lost):
     assert not np.delete(probes[where], layout.ITERATIONS).any()
     for name in ("u", "q", "zeta", "z", "U", "Psi", "s_1", "s_2", "history"):
         assert np.isfinite(state["motion"][name]).all(), name
+
+
+def test_the_ledger_has_no_numbers_for_the_sample_that_lost_the_state():
+    """What comes after is booked from rest."""
+    model = kernel.prepare(YEHU, RATE)
+    state = shaped(model, 0, bump(0.02, 0.26, 1e9))
+    probes, ledger = np.zeros((200, layout.probe_columns(1))), np.zeros((200, len(layout.LEDGER)))
+    time_loop.run(model, state, None, rows(200, 1, {}), probes, ledger)
+    where = when_lost(probes)
+    assert np.isnan(ledger[where]).all()
+    assert np.abs(ledger[where + 1 :, layout.LEDGER.index("energy_error")]).max() < 1e-9
+
+
+def test_rows_of_another_shape_are_refused_and_leave_the_state_alone():
+    model = kernel.prepare(YEHU, RATE)
+    state = kernel.at_rest(model)
+    columns, wide = layout.probe_columns(1), rows(20, 2, {})
+    for controls, probes, ledger in (
+        (wide, np.zeros((20, columns)), None),
+        (wide[:, : layout.control_columns(1)], np.zeros((20, columns)), None),
+        (rows(20, 1, {}), np.zeros((19, columns)), None),
+        (rows(20, 1, {}), np.zeros((20, columns), order="F"), None),
+        (rows(20, 1, {}), np.zeros((20, columns)), np.zeros((19, len(layout.LEDGER)))),
+    ):
+        before = state.copy()
+        with pytest.raises(ValueError, match="expected 20 rows of"):
+            time_loop.run(model, state, None, controls, probes, ledger)
+        assert state == before
 
 
 def test_a_nan_never_reaches_the_sound(lost):
@@ -238,7 +266,7 @@ def test_a_state_that_blew_up_is_lost_too():
     model = kernel.prepare(YEHU, RATE)
     state = shaped(model, 0, bump(0.02, 0.26, 1e9))
     probes = np.zeros((200, layout.probe_columns(1)))
-    kernel.advance(model, state, rows(200, 1, {}), probes, None)
+    time_loop.run(model, state, None, rows(200, 1, {}), probes)
     assert state["lost"][0] == 1
     assert np.abs(probes[:, layout.BRIDGE_FORCE]).max() < 1e6
     # At rest from then on: every probe but the finger's height is zero.

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 
-from yehu_server.core.physics import kernel, layout, refined
+from yehu_server.core.physics import kernel, layout, refined, time_loop
 from yehu_server.core.physics.quantities import Quantities, override
 
 RATE = 44100.0
@@ -27,7 +27,7 @@ def step_through(quantities: Quantities) -> np.ndarray:
     controls[20:, layout.FINGER_CONTROLS] = 0.25  # under the bow: contacts are solved jointly
     probes = np.zeros((FRAMES, layout.probe_columns(3)))
     ledger = np.zeros((FRAMES, len(layout.LEDGER)))
-    refined.run(model, state, more, controls, probes, ledger)
+    time_loop.run(model, state, more, controls, probes, ledger)
     return np.hstack([probes, ledger])
 
 

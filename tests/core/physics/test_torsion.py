@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from core.physics.runs import play
 
-from yehu_server.core.physics import kernel, layout, refined
+from yehu_server.core.physics import kernel, layout, refined, time_loop
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.physics.torsion import place_twist
 from yehu_server.errors import ParameterError
@@ -27,7 +27,7 @@ def advanced(model, more, frames):
     rows = np.zeros((frames, layout.control_columns(1)))
     rows[:, layout.X_B] = 0.255
     state = kernel.at_rest(model)
-    refined.advance(model, state, more, rows, np.zeros((frames, layout.probe_columns(1))), None)
+    time_loop.run(model, state, more, rows, np.zeros((frames, layout.probe_columns(1))))
     return int(state["motion"]["level"][0])
 
 

@@ -8,7 +8,7 @@ from parts import Kernel
 from pitch import cents, pitch_of
 from yardstick import FORCE, RATE, Yardstick
 
-from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics import kernel, layout, time_loop
 from yehu_server.core.physics.quantities import Quantities
 
 SECONDS = 1.0
@@ -26,7 +26,7 @@ def plain(tmp_path_factory):
 def by_kernel(**changes):
     model = kernel.prepare(replace(Quantities(), **changes), RATE)
     rows, probes = Kernel(1, 1, FORCE, is_idle=True).rows(round(SECONDS * RATE))
-    kernel.advance(model, kernel.at_rest(model), rows, probes, None)
+    time_loop.run(model, kernel.at_rest(model), None, rows, probes)
     return probes[:, layout.PRESSURE]
 
 

@@ -13,7 +13,6 @@ from yehu_server.core.engine import native
 from yehu_server.core.engine.intake import interpret_events
 from yehu_server.core.engine.mailbox import LIVE_BUDGET, RING, SERVER, repair
 from yehu_server.core.engine.output import prepare_output, rest_output
-from yehu_server.core.engine.refining import refine
 from yehu_server.core.engine.rig import RIG, RIG_BYTES, memory_bytes
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.telemetry import METERS
@@ -22,7 +21,8 @@ from yehu_server.core.midi.tables import plain_tables
 from yehu_server.core.physics import kernel, refined
 from yehu_server.core.physics.bow import friction_bound
 from yehu_server.core.physics.grid import check_rate
-from yehu_server.core.physics.layout import MAX_FINGERS, new_record
+from yehu_server.core.physics.layout import MAX_FINGERS, REFINED, new_record
+from yehu_server.core.physics.time_loop import kernel_of
 from yehu_server.core.player.record import end_all, prepare_player
 from yehu_server.core.player.wishes import RAMP, WISH
 from yehu_server.core.stage.record import STAGE, prepare_stage, rest_stage
@@ -95,7 +95,8 @@ class Instrument:
             raise ParameterError(
                 "torsion, wide hair, hyperbolic and viscous friction are not played live"
             )
-        refine(rig, made)
+        rig["kernel"][0, 0] = kernel_of(made)
+        rig["refined"] = np.zeros(1, REFINED) if made is None else made
         rig["controls"] = prepare_controls(spec.quantities, self.rate, values)
         rig["player"] = prepare_player(
             spec.quantities,

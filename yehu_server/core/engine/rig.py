@@ -53,7 +53,7 @@ RIG = lined_up(
         ("heap", WAITING, HEAP),  # wishes to come
         ("reports", WISH, RING),
         ("seat", SEAT),
-        ("kernel", np.int64, LINE),  # the address of the kernel, 0 for the plain one (refining.py)
+        ("kernel", np.int64, LINE),  # the address of the kernel, 0 for the plain one (time_loop.py)
         ("refined", REFINED),
     ]
 )
@@ -76,6 +76,7 @@ PARTS_AT = _offset("parts")
 MODEL_AT, STATE_AT, CONTROLS_AT = _offset("model"), _offset("state"), _offset("controls")
 PLAYER_AT, EAR_BUFFER_AT = _offset("player"), _offset("ear_buffer")
 OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
+MODEL_CONTROLS_AT, PROBES_AT = _offset("output", "controls"), _offset("output", "probes")
 SOUNDED_AT = _offset("output", "sounded")
 VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
 RINGS_AT = np.array([_offset(f"{of}ring") for of in ("", "midi_", "page_", "sound_")])  # by writer

@@ -47,7 +47,6 @@ from yehu_server.core.engine.output import (
     output_sample,
 )
 from yehu_server.core.engine.processor import flush_denormals, restore_denormals
-from yehu_server.core.engine.refining import advance_at
 from yehu_server.core.engine.rig import (
     CONTROLS_AT,
     EAR_BUFFER_AT,
@@ -56,8 +55,10 @@ from yehu_server.core.engine.rig import (
     MAIL_AT,
     METERS_AT,
     MODEL_AT,
+    MODEL_CONTROLS_AT,
     OUTPUT_AT,
     PLAYER_AT,
+    PROBES_AT,
     READ_AT,
     REFINED_AT,
     REPORTED_AT,
@@ -67,6 +68,7 @@ from yehu_server.core.engine.rig import (
 from yehu_server.core.engine.telemetry import METERS, close_window, hear
 from yehu_server.core.physics import kernel, refined
 from yehu_server.core.physics.layout import MODEL, REFINED, RELATIVE_VELOCITY, STATE, STRINGS
+from yehu_server.core.physics.time_loop import advance_by
 from yehu_server.core.player.ear import EAR_SAMPLES, remember
 from yehu_server.core.player.listening import attend
 from yehu_server.core.player.record import PLAYER
@@ -133,7 +135,7 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
     mail = record_at(rig, MAIL_AT, MAIL)
     t = record_at(rig, METERS_AT, METERS)
     p = record_at(rig, PLAYER_AT, PLAYER)
-    wanted, refining = min(wanted, CHUNK), carray(at(rig, KERNEL_AT), (1,), np.int64)[0]
+    wanted, which = min(wanted, CHUNK), carray(at(rig, KERNEL_AT), (1,), np.int64)[0]
     sounded.silenced_at = NOT_SILENCED
     done = 0
     while done < wanted:
@@ -160,16 +162,16 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
             retuned = has_new_strings(c)
             c.frame += 1
             done += 1
-        # Strings are retuned at the very sample. One call of the kernel, since it is inlined.
+        # Strings are retuned at the very sample.
         begin, end = start, done - 1 if retuned else done
         while begin < done:
             if begin == end:
                 retune(model, state, c)
                 end = done
-            if refining != 0:
-                advance_at(refining, rig, begin, end)
-            else:
-                kernel.advance(model, state, o.controls[begin:end], o.probes[begin:end], None)
+            advance_by(
+                which, at(rig, MODEL_AT), at(rig, STATE_AT), at(rig, REFINED_AT),
+                at(rig, MODEL_CONTROLS_AT), at(rig, PROBES_AT), begin, end,
+            )  # fmt: skip
             begin = end
         write_output(rig, sounded.dry, first, start, done)
         if silenced:

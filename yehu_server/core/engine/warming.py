@@ -69,8 +69,7 @@ def warm_up() -> None:
 
 def is_warm() -> bool:
     """Whether all functions that playing needs are kept, ready to be called."""
-    kept = machine_code.loaded(cache_folder(), source_hash())
-    return all(function.name in kept for function in CALLED)
+    return all(function.is_kept for function in CALLED)
 
 
 if __name__ == "__main__":

@@ -109,8 +109,13 @@ def stored_energy(model: Model, s: Motion, next_: int, now: int) -> float:
 
 
 @compiled
-def book(model: Model, s: Motion, c: Contacts, w: Work, control: Array, row: Array) -> None:
-    """Write one row of the ledger (columns: ``layout.LEDGER``) after a step is complete."""
+def book(
+    model: Model, s: Motion, c: Contacts, w: Work, control: Array, before: float, row: Array
+) -> float:
+    """Write one row of the ledger (columns: ``layout.LEDGER``) after a step is complete.
+
+    `before` is what was stored half a step before it (J); returns what is stored half a step after.
+    """
     k = model.k
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     # Read back from the grid, not taken from the solver.
@@ -152,7 +157,7 @@ def book(model: Model, s: Motion, c: Contacts, w: Work, control: Array, row: Arr
     row[LOSS_STRINGS], row[LOSS_BRIDGE], row[LOSS_FINGER] = strings, bridge, finger
     row[LOSS_HAIR], row[LOSS_FRICTION] = hair, friction
     row[LOSS_BOW_LIFT], row[LOSS_CONTACT_RESET] = lifted, reset
-    row[ENERGY_ERROR] = (stored - s.stored) / k - power + losses
+    row[ENERGY_ERROR] = (stored - before) / k - power + losses
     row[V_R_RESIDUAL] = abs(v_r - s.v_r) if abs(control[F_N]) >= model.lift_force else 0.0
     row[CONSTRAINT_RESIDUAL] = residual
-    s.stored = stored
+    return stored

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
+import numpy as np
+
 from yehu_server.compile.jit import compiled, native
 from yehu_server.core.physics.bow import (
     advance_hair,
@@ -42,7 +44,6 @@ from yehu_server.core.physics.elimination import (
     find_shared_nodes,
     find_travel,
 )
-from yehu_server.core.physics.energy import book
 from yehu_server.core.physics.finger import advance_fingers, limit_gradients, prepare_fingers
 from yehu_server.core.physics.friction import Tangent, solve_friction
 from yehu_server.core.physics.grid import read
@@ -163,7 +164,7 @@ def come_to_rest(model: Model, state: State) -> None:
     s.u[:], s.q[:], s.zeta[:], s.z[:], s.w[:] = 0.0, 0.0, 0.0, 0.0, 0.0
     s.grain, s.rough[:] = 0, 0.0
     s.U[:], s.Psi[:] = model.rest_height, 0.0
-    s.v_r, s.f_b, s.stored = 0.0, 0.0, 0.0
+    s.v_r, s.f_b = 0.0, 0.0
     s.s_1[:], s.s_2[:], s.history[:] = 0.0, 0.0, 0.0
     s.Delta_u[:], s.tangent[:], s.resting[:] = 0.0, 0.0, 0
     c.placed, c.x[:] = 0, 0.0
@@ -172,9 +173,7 @@ def come_to_rest(model: Model, state: State) -> None:
 
 
 @compiled
-def advance(
-    model: Records, state: Records, controls: Array, probes: Array, ledger: Array | None
-) -> None:
+def advance(model: Records, state: Records, controls: Array, probes: Array) -> None:
     """Run the model over one row of controls a sample.
 
     Parameters
@@ -187,8 +186,6 @@ def advance(
         of each finger. Finite: a caller checks what comes from outside.
     probes : ndarray [shape=(frames, probe_columns)]
         Written: columns as named in ``layout``.
-    ledger : ndarray [shape=(frames, len(LEDGER))] or None
-        Written where it has rows. Without it, what keeps it is not compiled.
 
     A state that is lost (not finite) comes back at rest at the next sample, and is
     counted in ``state.lost``; the sample that lost it reads -1 iterations, and zeros.
@@ -197,13 +194,11 @@ def advance(
     Source: [Yehu] section 3.7.
     """
     m, s = model[0], state[0]
-    now = int(s.motion.level)
+    now = int(np.int64(s.motion.level))  # else `step` would be compiled for 8 bits, too
     next_, prev = (now + 1) % LEVELS, (now + 2) % LEVELS
     for n in range(controls.shape[0]):
         step(m, s, controls[n], next_, now, prev)
         s.motion.level = next_
-        if ledger is not None and n < ledger.shape[0]:
-            book(m, s.motion, s.contacts, s.work, controls[n], ledger[n])
         measure(m, s, probes[n])
         next_, now, prev = prev, next_, now
 

@@ -174,8 +174,6 @@ MOTION = lined_up(
         ("s_1", np.float64, MAX_SECTIONS),
         ("s_2", np.float64, MAX_SECTIONS),
         ("history", np.float64, MAX_TAPS),
-        # the energy ledger
-        ("stored", np.float64),
     ]
 )
 
@@ -283,7 +281,6 @@ REFINED = lined_up(
         ("v_r", np.float64, MAX_POINTS),
         ("tangent", np.float64, (MAX_POINTS, 3)),
         ("twist", np.float64, (LEVELS, STRINGS, MAX_TWISTS)),
-        ("stored", np.float64),
         # shapes of the torsional modes under a finger on each string, and under each point
         ("twist_x", np.float64, STRINGS + MAX_POINTS),
         ("twist_shapes", np.float64, (STRINGS + MAX_POINTS, MAX_TWISTS)),

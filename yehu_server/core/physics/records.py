@@ -117,7 +117,6 @@ class Motion(Protocol):
     s_1: Array
     s_2: Array
     history: Array
-    stored: float
 
 
 class Contacts(Protocol):
@@ -212,7 +211,6 @@ class Refined(Protocol):
     v_r: Array
     tangent: Array
     twist: Array
-    stored: float
     twist_x: Array
     twist_shapes: Array
     responses: Array

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics.bow import (
@@ -35,7 +37,6 @@ from yehu_server.core.physics.elimination import (
     back_substitute_jointly,
     find_travel,
 )
-from yehu_server.core.physics.energy import book
 from yehu_server.core.physics.finger import advance_fingers, limit_gradients
 from yehu_server.core.physics.friction_curve import prepare_friction
 from yehu_server.core.physics.grid import read, spread
@@ -114,53 +115,27 @@ def prepare(quantities: Quantities, rate: float) -> Any:
 def come_to_rest(t: Refined) -> None:
     """Put torsion, hair and rosin to rest. Real time: safe."""
     t.zeta[:], t.z[:], t.w[:], t.f_b[:], t.v_r[:] = 0.0, 0.0, 0.0, 0.0, 0.0
-    t.tangent[:], t.twist[:], t.stored = 0.0, 0.0, 0.0
+    t.tangent[:], t.twist[:] = 0.0, 0.0
 
 
 @compiled
 def advance(
-    model: Records,
-    state: Records,
-    refined: Records,
-    controls: Array,
-    probes: Array,
-    ledger: Array | None,
+    model: Records, state: Records, refined: Records, controls: Array, probes: Array
 ) -> None:
     """As ``kernel.advance``, with what `prepare` made; `state` and `refined` are changed.
 
     Friction force and relative velocity in the probes are the sum and the mean over the points.
     """
     m, s, t = model[0], state[0], refined[0]
-    now = int(s.motion.level)
+    now = int(np.int64(s.motion.level))
     next_, prev = (now + 1) % LEVELS, (now + 2) % LEVELS
     for n in range(controls.shape[0]):
         step(m, s, t, controls[n], next_, now, prev)
         s.motion.level = next_
-        if ledger is not None and n < ledger.shape[0]:
-            book(m, s.motion, s.contacts, s.work, controls[n], ledger[n])
-            book_points(m, s, t, controls[n], ledger[n])
         kernel.measure(m, s, probes[n])
         if probes[n, ITERATIONS] < 0.0:  # lost
             come_to_rest(t)
         next_, now, prev = prev, next_, now
-
-
-def run(
-    model: Records,
-    state: Records,
-    refined: Records | None,
-    controls: Array,
-    probes: Array,
-    ledger: Array | None,
-) -> None:
-    """Advance by the kernel that an instrument has: `refined` is what `prepare` returned.
-
-    Not compiled, so that the other kernel is not compiled either.
-    """
-    if refined is None:
-        kernel.advance(model, state, controls, probes, ledger)
-    else:
-        advance(model, state, refined, controls, probes, ledger)
 
 
 @compiled
@@ -298,14 +273,24 @@ def back_substitute_fingers(m: Model, state: State, t: Refined, next_: int) -> N
 
 
 @compiled
-def book_points(m: Model, state: State, t: Refined, control: Array, row: Array) -> None:
-    """Put torsion, hair and friction of all points into a row of the ledger."""
-    s, c = state.motion, state.contacts
-    next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
+def stored_energy(m: Model, t: Refined, next_: int, now: int) -> float:
+    """The energy of torsion, hair and bristles at n + 1/2 (J)."""
     stored = hair_energy(m, t, next_, now)
-    strings, finger, friction, residual = 0.0, 0.0, 0.0, 0.0
     for i in range(STRINGS):
         stored += torsion_energy(m, t, i, next_, now)
+    return stored
+
+
+@compiled
+def book_points(
+    m: Model, state: State, t: Refined, control: Array, before: float, row: Array
+) -> float:
+    """Put torsion, hair and friction of all points into a row of the ledger, as ``energy.book``."""
+    s, c = state.motion, state.contacts
+    next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
+    stored = stored_energy(m, t, next_, now)
+    strings, finger, friction, residual = 0.0, 0.0, 0.0, 0.0
+    for i in range(STRINGS):
         strings += torsion_loss(m, t, i, next_, prev)
         finger += skin_loss(m, t, i, next_)
     for e in range(t.points):
@@ -315,9 +300,9 @@ def book_points(m: Model, state: State, t: Refined, control: Array, row: Array) 
             residual = max(residual, abs(v_r - t.v_r[e]))
     hair = hair_loss(m, t, next_, prev)
     losses = strings + finger + hair + friction - row[LOSS_FRICTION]
-    row[ENERGY_ERROR] += (stored - t.stored) * m.rate + losses
+    row[ENERGY_ERROR] += (stored - before) * m.rate + losses
     row[ENERGY] += stored
     row[LOSS_STRINGS] += strings
     row[LOSS_FINGER] += finger
     row[LOSS_HAIR], row[LOSS_FRICTION], row[V_R_RESIDUAL] = hair, friction, residual
-    t.stored = stored
+    return stored

@@ -10,9 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import IS_PLAIN
-from yehu_server.compile.memory import with_attributes
-
 # The hair is off the string; it moves hardly, or under a hair that slides steadily; one slip a
 # period; several; one in a part of a period; it repeats after more than a period only; it does not
 # repeat, with at most one slip a period; the same with more.
@@ -59,8 +56,3 @@ class Finding:
         """A record of dtype FINDING, for Python."""
         names = cls.__dataclass_fields__.keys() - {"regime"}
         return cls(REGIMES[int(row["regime"])], **{name: float(row[name]) for name in names})
-
-
-def new_findings(count: int) -> Any:
-    """Room for findings [shape=(count,), dtype=FINDING]."""
-    return np.zeros(count, with_attributes(FINDING) if IS_PLAIN else FINDING)

@@ -8,23 +8,24 @@ meet. docs/sweep.md defines the regimes, and tells how the rule was checked.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled_exactly
+from yehu_server.compile.jit import compiled_exactly, native
+from yehu_server.compile.memory import carray
 from yehu_server.core.player.ear import SEARCHED, STICKING, count_slips
 from yehu_server.errors import ParameterError
 from yehu_server.lab.regimes.columns import (
     ANOMALOUS_LOW,
     APERIODIC,
+    FINDING,
     HELMHOLTZ,
     MULTIPLE_SLIP,
     OCTAVE,
     RAUCOUS,
     SILENT,
     Finding,
-    new_findings,
 )
 from yehu_server.lab.regimes.periods import (
     NOWHERE,
@@ -172,6 +173,31 @@ def judge_stroke(
     out.brightness_hz = centroid_hz(pressure, frames, rate, rest)
 
 
+# Rows of what a whole stroke is judged by, and worked in.
+RELATIVE, BOW, SOUND, WORK = range(4)
+SIGNALS = WORK + 3
+
+
+@native
+def judge_signals(
+    signals: Any,
+    room: int,
+    frames: int,
+    rate: float,
+    frequency_hz: float,
+    out: Annotated[Any, FINDING],
+) -> None:
+    """Judge a stroke as `judge_stroke` does.
+
+    `signals` is a pointer to an array [shape=(SIGNALS, room)]: velocities of string on hair and of
+    the bow, pressure, and rows to work in.
+    """
+    rows = carray(signals, (SIGNALS, room), np.float64)
+    judge_stroke(
+        rows[RELATIVE], rows[BOW], rows[SOUND], frames, rate, frequency_hz, rows[WORK:], out
+    )
+
+
 @compiled_exactly
 def window_frames(rate: float, frames: int) -> int:
     """Samples of the spectrum: a power of two, at least WINDOW_S where there are so many."""
@@ -263,13 +289,11 @@ def judge(
     that is fingered, which may be off by 6 %. Raises ParameterError where the stroke has less than
     LEAST_PERIODS.
     """
-    velocity = np.ascontiguousarray(relative_velocity, np.float64)
-    check_length(len(velocity), rate, frequency_hz)
-    bow = np.ascontiguousarray(np.broadcast_to(bow_velocity, velocity.shape), np.float64)
-    sound = np.ascontiguousarray(pressure, np.float64)
-    found = new_findings(1)
-    work = np.zeros((3, len(velocity)))
-    judge_stroke(velocity, bow, sound, len(velocity), rate, frequency_hz, work, found[0])
+    frames = len(relative_velocity)
+    check_length(frames, rate, frequency_hz)
+    signals, found = np.zeros((SIGNALS, frames)), np.zeros(1, FINDING)
+    signals[RELATIVE], signals[BOW], signals[SOUND] = relative_velocity, bow_velocity, pressure
+    judge_signals.call(signals.ctypes.data, frames, frames, rate, frequency_hz, found.ctypes.data)
     return Finding.of(found[0])
 
 

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from yehu_server.compile.jit import IS_PLAIN, compiled_exactly, compiled_with_aliasing
-from yehu_server.compile.memory import with_attributes
+from yehu_server.compile.jit import compiled_exactly, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.engine.atomics import at
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics import refined as refined_kernel
 from yehu_server.core.physics.layout import (
@@ -31,14 +32,24 @@ from yehu_server.core.physics.layout import (
 )
 from yehu_server.core.physics.pluck import pluck_string
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.lab.regimes.columns import FINDING, UNBOWED, new_findings
-from yehu_server.lab.regimes.judge import judge_stroke
+from yehu_server.core.physics.time_loop import advance_by, kernel_of
+from yehu_server.lab.regimes.columns import FINDING, UNBOWED
+from yehu_server.lab.regimes.judge import BOW, RELATIVE, SIGNALS, SOUND, judge_signals
 
 Array = Any
 
 BLOCK = 128  # frames computed at a time, so that controls and probes stay in the cache
 MOST_FAULTS = 255
-PROBES = probe_columns(1)
+BLOCKS = np.dtype(
+    [
+        ("controls", np.float64, (BLOCK, control_columns(1))),
+        ("probes", np.float64, (BLOCK, probe_columns(1))),
+        ("come", np.int64, control_columns(1)),  # the point that each control's curve has come to
+    ],
+    align=True,
+)
+_FIELDS: Any = BLOCKS.fields
+PROBES_AT = int(_FIELDS["probes"][1])
 
 # What a stroke does with the curve of one control: value = scale * curve((time - start) * pace).
 MOVE = np.dtype([("scale", np.float64), ("start", np.float64), ("pace", np.float64)])
@@ -145,63 +156,64 @@ def write_controls(
         control[column] = move["scale"] * value_at(times, values, point, last, time)
 
 
-@compiled_with_aliasing
-def bow_strokes(
-    models: Array,
-    rests: Array,
-    refined: Array,
-    strokes: Array,
-    first: Array,
-    times: Array,
-    values: Array,
-    model: Array,
-    state: Array,
-    more: Array,
-    signals: Array,
-    findings: Array,
+@native
+def bow_stroke(
+    kernel: int,
+    model: Any,
+    state: Any,
+    more: Any,
+    stroke: Annotated[Any, STROKE],
+    first: Any,
+    times: Any,
+    values: Any,
+    block: Any,
+    signals: Any,
+    room: int,
+    out: Annotated[Any, FINDING],
 ) -> None:
-    """Bow strokes one after another, and judge each.
+    """Bow a stroke from rest, and judge it.
 
-    Each model begins from its state in `rests`; curves are those of `ControlCurves`. `refined` is
-    None where all strokes are of plain instruments: the other kernel is not compiled then. It works
-    in `model`, `state`, `more` [shape=(1,)] and `signals` [shape=(6, most frames)], and writes
-    `findings` [shape=(strokes,), dtype=FINDING].
+    The first four are as of ``time_loop.advance_by``; `first`, `times` and `values` are pointers to
+    the arrays of `ControlCurves`. It works in `block`, and in `signals` as ``judge.judge_signals``
+    has them [shape=(SIGNALS, room)].
     """
-    columns = first.shape[0] - 1
-    controls = np.zeros((BLOCK, columns))
-    probes = np.zeros((BLOCK, PROBES))
-    at = np.zeros(columns, np.int64)
-    relative, bow, pressure, work = signals[0], signals[1], signals[2], signals[3:]
-    for i in range(strokes.shape[0]):
-        stroke = strokes[i]
-        model[0] = models[stroke.model]
-        model[0].hair = stroke.hair
-        state[0] = rests[stroke.model]
-        if refined is not None:
-            more[0] = refined[stroke.model]
-        rate, place, force = model[0].rate, 0.0, 0.0
-        at[:] = first[:columns]
-        for begin in range(0, stroke.frames, BLOCK):
-            count = min(BLOCK, stroke.frames - begin)
-            for n in range(count):
-                write_controls(stroke.moves, first, times, values, at, begin + n, rate, controls[n])
-                place += controls[n, V_B] / rate
-                controls[n, Y_B] = place
-            if refined is None:
-                kernel.advance(model, state, controls[:count], probes[:count], None)
-            else:
-                refined_kernel.advance(model, state, more, controls[:count], probes[:count], None)
-            for n in range(count):
-                relative[begin + n] = probes[n, RELATIVE_VELOCITY]
-                pressure[begin + n] = probes[n, PRESSURE]
-                bow[begin + n] = controls[n, V_B]
-            force = controls[count - 1, F_N]
-        out = findings[i]
-        frequency = stroke.frequency_hz
-        judge_stroke(relative, bow, pressure, stroke.frames, rate, frequency, work, out)
-        if abs(force) < model[0].lift_force:
-            out.regime = UNBOWED
-        out.faults = min(MOST_FAULTS, state[0].unconverged + state[0].lost)
+    m, s = carray(model, (1,), MODEL)[0], carray(state, (1,), STATE)[0]
+    work = carray(block, (1,), BLOCKS)[0]
+    controls, probes, come = work.controls, work.probes, work.come
+    columns = len(come)
+    begins = carray(first, (columns + 1,), np.int64)
+    points = begins[columns]
+    curve_times = carray(times, (points,), np.float64)
+    curve_values = carray(values, (points,), np.float64)
+    rows = carray(signals, (SIGNALS, room), np.float64)
+    rate, place, force = m.rate, 0.0, 0.0
+    for column in range(columns):
+        come[column] = begins[column]
+    for begin in range(0, stroke.frames, BLOCK):
+        count = min(BLOCK, stroke.frames - begin)
+        for n in range(count):
+            write_controls(
+                stroke.moves,
+                begins,
+                curve_times,
+                curve_values,
+                come,
+                begin + n,
+                m.rate,
+                controls[n],
+            )
+            place += controls[n, V_B] / rate
+            controls[n, Y_B] = place
+        advance_by(kernel, model, state, more, block, at(block, PROBES_AT), 0, count)
+        for n in range(count):
+            rows[RELATIVE, begin + n] = probes[n, RELATIVE_VELOCITY]
+            rows[SOUND, begin + n] = probes[n, PRESSURE]
+            rows[BOW, begin + n] = controls[n, V_B]
+        force = controls[count - 1, F_N]
+    judge_signals(signals, room, stroke.frames, rate, stroke.frequency_hz, out)
+    if abs(force) < m.lift_force:
+        out.regime = UNBOWED
+    out.faults = min(MOST_FAULTS, s.unconverged + s.lost)
 
 
 def find(instruments: Instruments, strokes: Array, hands: ControlCurves) -> Array:
@@ -210,25 +222,20 @@ def find(instruments: Instruments, strokes: Array, hands: ControlCurves) -> Arra
     The strokes do not touch each other: any order of them, in any number of calls, finds the same.
     The instruments are not changed.
     """
-    findings = new_findings(len(strokes))
+    findings = np.zeros(len(strokes), FINDING)
     strokes = np.ascontiguousarray(strokes)
-    if len(strokes) == 0:
-        return findings.view(FINDING)
-    models, rests, refined = instruments
-    is_refined = refined["points"][strokes["model"]] > 0
-    signals = np.zeros((6, int(strokes["frames"].max())))
-    model, state = new_record(MODEL), new_record(STATE)
-    for which, own, more in (
-        (~is_refined, None, None),
-        (is_refined, refined, new_record(REFINED)),
-    ):
-        bowed, found = strokes[which], findings[which]
-        if IS_PLAIN:
-            bowed = bowed.view(with_attributes(STROKE))
-        if len(bowed):
-            bow_strokes(
-                models, rests, own, bowed, hands.first, hands.times, hands.values, model, state,
-                more, signals, found,
-            )  # fmt: skip
-            findings[which] = found
-    return findings.view(FINDING)
+    model, state, more = new_record(MODEL), new_record(STATE), new_record(REFINED)
+    block = np.zeros(1, BLOCKS)
+    signals = np.zeros((SIGNALS, int(strokes["frames"].max(initial=0))))
+    own = [array.ctypes.data for array in (model, state, more)]
+    curves = [array.ctypes.data for array in (hands.first, hands.times, hands.values)]
+    for i, stroke in enumerate(strokes):
+        which = stroke["model"]
+        model[0], state[0], more[0] = (array[which] for array in instruments)
+        model["hair"] = stroke["hair"]
+        kernel = kernel_of(more if more["points"][0] else None)
+        bow_stroke.call(
+            kernel, *own, strokes[i:].ctypes.data, *curves, block.ctypes.data, signals.ctypes.data,
+            signals.shape[1], findings[i:].ctypes.data,
+        )  # fmt: skip
+    return findings

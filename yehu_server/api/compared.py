@@ -154,7 +154,8 @@ def compare(
     --------
     >>> import numpy as np, yehu_server as yehu
     >>> time = np.arange(22050) / 44100
-    >>> tone = 0.3 * sum(np.sin(2 * np.pi * 440.0 * n * time) / n for n in (1, 2, 3))
+    >>> partials = [np.sin(2 * np.pi * 440.0 * n * time) / n for n in (1, 2, 3)]
+    >>> tone = 0.3 * np.sum(partials, axis=0)
     >>> yehu.compare(tone, 0.5 * tone, 44100)
     <yehu_server.Comparison of 0.50 s: spectrum 0.0 dB, level 0.0 dB, pitch +0 cents>
     """

@@ -116,7 +116,8 @@ def follow(
     --------
     >>> import numpy as np, yehu_server as yehu
     >>> time = np.arange(24000) / 16000
-    >>> hum = sum(np.sin(2 * np.pi * 220.0 * n * time) / n for n in (1, 2, 3)) / 4
+    >>> partials = [np.sin(2 * np.pi * 220.0 * n * time) / n for n in (1, 2, 3)]
+    >>> hum = 0.25 * np.sum(partials, axis=0)
     >>> heard = yehu.follow(hum, 16000)
     >>> len(heard.onsets), heard.transposed, round(float(np.nanmedian(heard.pitch)), 1)
     (1, 12.0, 57.0)

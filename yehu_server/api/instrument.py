@@ -335,8 +335,10 @@ class Instrument:
         --------
         >>> import numpy as np, yehu_server as yehu
         >>> fiddle = yehu.Instrument()
-        >>> bow = {"/bow/side": 1.0, "/bow/speed": np.linspace(0.0, 0.3, 50), "/bow/force": 0.7}
-        >>> sound = fiddle.play(0.5, controls=bow)
+        >>> speed = np.linspace(0.0, 0.3, 50)
+        >>> sound = fiddle.play(
+        ...     0.5, controls={"/bow/side": 1.0, "/bow/speed": speed, "/bow/force": 0.7}
+        ... )
         >>> bool(np.abs(sound).max() > 0.01)
         True
         """

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from yehu_server.errors import ParameterError
 from yehu_server.lab.labels import as_data, as_json, hash_of, label_of
@@ -26,7 +27,7 @@ from yehu_server.util.files import anything, replacing
 if TYPE_CHECKING:
     import xarray
 
-Array = Any
+Array = NDArray[Any]
 
 FORMAT, VERSION = "yehu-server sweep", 1
 COLUMNS = tuple(FINDING.names or ())
@@ -91,7 +92,8 @@ class Result:
         if name not in self.columns:
             raise ParameterError(f"unknown column {name!r} (known: {', '.join(self.columns)})")
         refine, levels = self.meta["refine"], self.meta["levels"]
-        return fill(self.shape, refine, levels, self.numbers, self.columns[name])
+        found: Array = fill(self.shape, refine, levels, self.numbers, self.columns[name])
+        return found
 
     def onset_periods(self) -> Array:
         """Periods from the first slip to lasting Helmholtz motion, on the grid; NaN for never.

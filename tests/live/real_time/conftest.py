@@ -79,11 +79,10 @@ class Jackd:
         return self._process.pid
 
     def start(self, period: int = 128, *, rate: int = RATE, channels: int = 2) -> None:
-        """Start the server, or restart it with another card."""
+        """Start the server, or restart it with another card or where it does not answer."""
         card = {"-p": period, "-r": rate, "-P": channels, "-C": 1}
-        if self._process is not None and self._process.poll() is None and card == self._card:
-            return
-        self.stop()
+        if card != self._card:
+            self.stop()
         self._card = card
         words = [str(word) for option in card.items() for word in option]
         safe = ("--no-realtime", "--no-mlock", "-p", "128")
@@ -102,7 +101,7 @@ class Jackd:
                 )
             try:
                 return "system:playback_1" in self.ports(3.0)
-            except subprocess.TimeoutExpired:  # JACK sometimes hangs as it begins, too
+            except subprocess.TimeoutExpired:  # JACK sometimes hangs
                 self._process.kill()
                 self._process.wait()
                 return False
@@ -120,7 +119,7 @@ class Jackd:
         self._process.send_signal(number)
         try:
             self._process.wait(3.0)
-        except subprocess.TimeoutExpired:  # JACK sometimes hangs as it ends
+        except subprocess.TimeoutExpired:  # it sometimes hangs as it ends, too
             self._process.kill()
             self._process.wait()
 

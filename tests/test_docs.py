@@ -63,6 +63,9 @@ def test_every_call_is_described():
 # ---------------------------------------------------------------- commands
 
 
+all_commands = cache(_parser)
+
+
 def commands_of(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
@@ -82,7 +85,7 @@ def check_command(line: str) -> None:
     tool = words[0].removeprefix(".venv/bin/")
     if tool in OURS:
         try:
-            _parser().parse_args(words[1:])
+            all_commands().parse_args(words[1:])
         except SystemExit as error:
             raise AssertionError(line) from error
     elif tool in {"python", "pytest", "scripts/test"}:
@@ -165,10 +168,10 @@ def words() -> set[str]:
 
 
 def is_option(word: str, command: str) -> bool:
-    parser = commands_of(_parser()).get(command)
+    parser = commands_of(all_commands()).get(command)
     if parser is not None:
         return word in options_of(parser)
-    return word in options_of(_parser()) or word in words()
+    return word in options_of(all_commands()) or word in words()
 
 
 def is_file(name: str, page: Page) -> bool:
@@ -224,7 +227,7 @@ def missing(code: str, page: Page) -> Iterator[str]:
     """What a piece of code in a sentence names that is not there."""
     first, *rest = code.split()
     command = rest[0] if first in OURS and rest else first
-    if first != command and command[0] != "-" and command not in commands_of(_parser()):
+    if first != command and command[0] != "-" and command not in commands_of(all_commands()):
         yield command
     for word in code.split() if first not in FOREIGN else ():
         name = re.sub(r"=\S*$|[/,]+$", "", word)

@@ -43,7 +43,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
         try:
-            arguments = parse(sys.argv[1:] if argv is None else argv, _parser())
+            words = sys.argv[1:] if argv is None else argv
+            arguments = parse(words, _parser(*words[:1]))
             code: int = arguments.run(arguments)
         finally:
             with contextlib.suppress(BrokenPipeError):
@@ -71,7 +72,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     return code
 
 
-def _parser() -> Parser:
+def _parser(command: str = "") -> Parser:
+    """The parser of one command, for which no other is imported; where it is none, of all."""
     parser = Parser(
         prog="yehu-server",
         description="A virtual yehu, the Chinese two-stringed fiddle: its physics, simulated.",
@@ -83,6 +85,6 @@ def _parser() -> Parser:
     commands = parser.add_subparsers(
         title="commands", metavar="COMMAND", required=True, prog=parser.prog
     )
-    for name in COMMANDS:
+    for name in (command,) if command in COMMANDS else COMMANDS:
         importlib.import_module(f"yehu_server.cli.{name}").add_to(commands)
     return parser

@@ -170,7 +170,7 @@ def test_a_sound_that_is_gone_or_changed_is_made_again(made, command, tmp_path):
     "signum", [pytest.param(signal.SIGTERM, marks=pytest.mark.slow), signal.SIGKILL]
 )
 def test_an_interrupted_data_set_goes_on_where_it_was(command, tmp_path, signum):
-    (tmp_path / "d.toml").write_text(TEXT.replace("duration = 0.1", "duration = 1.0"))
+    (tmp_path / "d.toml").write_text(TEXT.replace("duration = 0.1", "duration = 0.3"))
     words = (tmp_path / "d.toml", "-o", tmp_path / "out")
     process = start("dataset", *words, "--jobs", 1)
     hidden = tmp_path / "out" / ".yehu-server"

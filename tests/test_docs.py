@@ -1,6 +1,6 @@
 """The documentation holds: what it names is there, commands can be given, programs run.
 
-MkDocs checks the links (tests/documentation/).
+Links are those of Markdown; how the site shows the pages is in tests/documentation/.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from pages import PACKAGE, PAGES, ROOT, Page, page
+from pages import FENCED, PACKAGE, PAGES, ROOT, Page, page
 
 import yehu_server
 from yehu_server.cli import _parser, main
@@ -244,6 +244,27 @@ def missing(code: str, page: Page) -> Iterator[str]:
             is_name = not rest or re.search(r"[_.@(]", name)  # else an English word, or a value
             if is_name and not name.endswith(OWN) and not is_symbol(name.strip("@()")):
                 yield word
+
+
+def anchors(path: Path) -> set[str]:
+    """What a link may name of a page: its headings as GitHub and MkDocs spell them, and IDs."""
+    text = path.read_text(encoding="utf-8")
+    headings = re.findall(r"^#+ (.*)$", FENCED.sub("", text), re.MULTILINE)
+    slugs = {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    return slugs.union(re.findall(r'id="([^"]+)"', text))
+
+
+@each_page
+def test_a_link_leads_to_what_is_there(page: Page):
+    broken = []
+    for link in re.findall(r"\]\(([^)\s]+)\)", page.prose):
+        name, _, anchor = link.partition("#")
+        path = page.path.parent / name if name else page.path
+        if not urlsplit(link).scheme and not (
+            path.exists() and (not anchor or anchor in anchors(path))
+        ):
+            broken.append(link)
+    assert broken == []
 
 
 @each_page

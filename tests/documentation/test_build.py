@@ -60,7 +60,13 @@ def test_what_others_have_put_into_a_folder_is_not_lost(build, tmp_path):
     assert (tmp_path / "site" / "CNAME").read_text() == "example.org"
 
 
-@pytest.mark.parametrize("link", ["none.md", "index.md#none", "#none", "none.png"])
+@pytest.mark.parametrize(
+    "link",
+    [
+        "none.md",
+        *(pytest.param(link, marks=pytest.mark.slow) for link in ("index.md#none", "#none")),
+    ],
+)
 def test_a_site_with_a_broken_link_is_not_written(build, tmp_path, capsys, link):
     build(tmp_path / "site", "whole")
     with pytest.raises(YehuError, match="MkDocs did not build"):
@@ -123,6 +129,7 @@ def test_a_notebook_becomes_a_page_with_its_code_and_what_it_shows(notebooks):
     assert files == {"note_1.png": b"hello", "note_2.wav": b"sound"}
 
 
+@pytest.mark.slow
 def test_notebooks_are_run_and_their_outputs_shown(notebooks, tmp_path, monkeypatch, capfd):
     module, written = notebooks
     path = written(TITLE, code("print(20 + 22)"))

@@ -77,6 +77,7 @@ def place():
         return lambda page: hooks.place(page.name).replace("README.md", "index.md")[:-3] + ".html"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PROSE, ids=lambda page: page.name)
 def test_a_page_reads_on_the_site_as_on_github(content, place, page: Page):
     github = Elements(MarkdownIt("commonmark").enable("table").render(page.text))
@@ -98,6 +99,7 @@ def test_a_page_begins_with_its_one_title_and_says_what_it_is_for(page: Page):
         assert re.match(r"[A-Z0-9`一-鿿][^|]*[.:]", first.lstrip(), re.DOTALL), first
 
 
+@pytest.mark.slow
 def test_links_out_of_the_docs_lead_to_pages_of_the_site(site, content):
     assert "mappings.html" in content("playing.html").all("a", "href")
     assert "begin.html#layers" in content("architecture.html").all("a", "href")
@@ -111,6 +113,7 @@ def test_links_out_of_the_docs_lead_to_pages_of_the_site(site, content):
     assert "smith" in content("references.html").all("a", "id")
 
 
+@pytest.mark.slow
 def test_a_figure_opens_large(content):
     page = content("playability.html")
     figures = [name for name in page.all("img", "src") if name and name.endswith(".png")]
@@ -118,6 +121,7 @@ def test_a_figure_opens_large(content):
     assert set(figures) <= set(page.all("a", "href"))
 
 
+@pytest.mark.slow
 def test_links_to_sounds_have_players_below(site, content):
     links = re.findall(r"\((\S+\.flac)\)", (ROOT / "docs" / "playing.md").read_text("utf-8"))
     page = content("playing.html")
@@ -128,6 +132,7 @@ def test_links_to_sounds_have_players_below(site, content):
         assert (site / link).read_bytes() == (ROOT / "docs" / link).read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", [yehu, body, plot])
 def test_every_public_name_has_a_place_on_the_pages_of_the_interface(content, site, module):
     names = {f"{module.__name__}.{name}" for name in module.__all__ if not name.startswith("_")}

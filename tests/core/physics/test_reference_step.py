@@ -128,11 +128,11 @@ def friction_regime(params, controls, outputs):
 
 @pytest.fixture(scope="module")
 def compared():
-    """400 random steps by both: problem, reference (before and after), kernel."""
+    """200 random steps by both: problem, reference (before and after), kernel."""
     rng = np.random.default_rng(9)
     steps = []
     # A thousandfold tension modulation shows its coupling with the contacts.
-    for case in [(22050.0, 1.0), (44100.0, 0.0), (44100.0, 1000.0), (96000.0, 1.0)] * 100:
+    for case in [(22050.0, 1.0), (44100.0, 0.0), (44100.0, 1000.0), (96000.0, 1.0)] * 50:
         params, prepared = models(*case)
         state, controls = random_problem(params, rng)
         try:
@@ -161,8 +161,8 @@ def test_random_steps_meet_every_kind_of_contact(compared):
         h = params.strings[max(outputs.bowed, 0)].h
         met["bow at the bridge"] += controls.x_b > params.x_c - 2.0 * h
         met["finger at the bow"] += bool((np.abs(controls.x_f - controls.x_b) < 2.0 * h).any())
-    assert met["all"] >= 380
-    assert min(met.values()) >= 20, met
+    assert met["all"] >= 190
+    assert min(met.values()) >= 10, met
 
 
 def test_one_step_from_any_state_is_the_references_to_rounding(compared):

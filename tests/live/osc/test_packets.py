@@ -255,13 +255,13 @@ def test_garbage_is_refused_and_nothing_else_happens(garbage):
         unpack(b"x" + garbage)
 
 
-@settings(max_examples=400)
+@settings(max_examples=150)
 @given(st.sampled_from([b"/", b"#bundle\0", b"/a\0\0,", b"#bundle\0\0\0\0\0\0\0\0\1"]), st.binary())
 def test_garbage_that_begins_well_is_read_or_refused(start, garbage):
     is_read_or_refused(start + garbage)
 
 
-@settings(max_examples=400)
+@settings(max_examples=150)
 @given(bundled, st.data())
 def test_a_packet_with_a_byte_changed_is_read_or_refused(wire, thing, data):
     packet = bytearray(wired(wire, thing))

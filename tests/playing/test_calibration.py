@@ -18,7 +18,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
 from yehu_server.core.player.intonation import position_of
 from yehu_server.playing import calibration_store
-from yehu_server.playing.calibration import calibration_key
+from yehu_server.playing.calibration import _completed, calibration_key
 from yehu_server.playing.calibration_store import SHIPPED, calibration_for
 from yehu_server.playing.mapping import load
 from yehu_server.playing.midi_poster import MidiPoster
@@ -42,6 +42,16 @@ def test_a_calibration_is_of_its_rate_its_instrument_and_its_pitch():
         for a4 in (440.0, 442.0)
     }
     assert len(keys) == 12
+
+
+def test_a_note_that_could_not_be_measured_is_between_its_neighbours_at_each_speed():
+    gone = np.nan
+    table = np.array([[-20.0, -14.0], [gone, gone], [-26.0, -18.0], [gone, -11.0]])
+    filled = np.array(_completed(table, -60.0))
+    assert filled[1].tolist() == [-23.0, -16.0]
+    assert filled[3].tolist() == [-11.0, -11.0]  # one that was, is as at its other speed
+    assert np.isnan(table).sum() == 3
+    assert _completed(np.full((2, 2), gone), -60.0) == ((-60.0, -60.0), (-60.0, -60.0))
 
 
 MEASURED = Quantities()

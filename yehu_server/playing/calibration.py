@@ -244,15 +244,16 @@ def _search(
 
 def _completed(table: Any, usual: float) -> tuple[tuple[float, ...], ...]:
     """Fill gaps from the note's other speeds, or by interpolation between its neighbours."""
+    known = ~np.isnan(table)
+    full = table.copy()
     for column in range(table.shape[1]):
-        missing = np.isnan(table[:, column])
-        known = np.flatnonzero(~missing)
+        measured = np.flatnonzero(known[:, column])
         between = (
-            np.interp(np.arange(len(table)), known, table[known, column])
-            if len(known)
+            np.interp(np.arange(len(table)), measured, table[measured, column])
+            if len(measured)
             else np.full(len(table), usual)
         )
-        for row in np.flatnonzero(missing):
-            others = table[row][~np.isnan(table[row])]
-            table[row, column] = others[-1] if len(others) else between[row]
-    return tuple(tuple(round(float(value), 2) for value in row) for row in table)
+        for row in np.flatnonzero(~known[:, column]):
+            others = table[row][known[row]]
+            full[row, column] = others[-1] if len(others) else between[row]
+    return tuple(tuple(round(float(value), 2) for value in row) for row in full)

@@ -56,8 +56,9 @@ def test_a_note_is_on_the_string_where_the_player_has_it(pitch, marks, string):
 
 def test_a_score_is_drawn_and_drawn_the_same_again(command, refused, tmp_path):
     pytest.importorskip("matplotlib")
-    target = tmp_path / "score.png"
-    words = ("score", "show", EXAMPLES / "marks.musicxml", "--plot", target)
+    tune, target = tmp_path / "t.jianpu", tmp_path / "score.png"
+    tune.write_text("title=短\n1=F 4/4,4 1 3[ q1 q2 q3 ] R*1 5' - - -\nNextPart\n0 0\n", "utf-8")
+    words = ("score", "show", tune, "--plot", target)
     assert command(*words)[0] == 0
     data = target.read_bytes()
     assert data.startswith(b"\x89PNG")
@@ -65,7 +66,7 @@ def test_a_score_is_drawn_and_drawn_the_same_again(command, refused, tmp_path):
     assert target.read_bytes() == data
     assert "a picture is a .png file" in refused(*words[:-1], tmp_path / "score.pdf")
     assert "has no part Flute" in refused(*words, "--part", "Flute")
-    tuplets = tmp_path / "t.jianpu"
-    tuplets.write_text("title=短\n1=F 4/4,4 1 3[ q1 q2 q3 ] R*1 5' - - -\nNextPart\n0 0\n", "utf-8")
-    write_bowed_score(read_written(tuplets), 0, tmp_path / "b.png")
+    other = tmp_path / "other.jianpu"
+    other.write_text(tune.read_text("utf-8").replace("q3", "q5"), "utf-8")
+    write_bowed_score(read_written(other), 0, tmp_path / "b.png")
     assert (tmp_path / "b.png").read_bytes() != data

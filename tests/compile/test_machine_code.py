@@ -20,6 +20,7 @@ from yehu_server.compile.cache_folder import source_hash
 from yehu_server.compile.jit import Native
 from yehu_server.core.engine.warming import all_functions, warm_up
 from yehu_server.core.physics.time_loop import advance
+from yehu_server.lab import warming as lab
 from yehu_server.util.sealed import read_sealed, write_sealed
 
 ROOT = Path(__file__).parents[2]
@@ -38,6 +39,22 @@ instrument.process(block)
 print("numba" in sys.modules, np.sqrt(np.mean(np.square(block[44100:]))), block[:64].tolist())
 """
 """Plays a note; prints whether numba was there, and how loud it was."""
+
+
+STUDY = """
+import sys
+from yehu_server.lab.simulation import simulate
+from yehu_server.lab.sweeps.running import sweep
+from yehu_server.lab.sweeps.study import study_of
+from yehu_server.scores.gesture import gesture_from
+pluck = {"string": 1, "position": 0.1, "amplitude": 0.001}
+for instrument in ({}, {"torsion": "on"}):
+    data = {"duration": 0.02, "instrument": instrument, "pluck": pluck}
+    simulate(gesture_from(data), energy=True)
+    sweep(study_of({"vary": {"force": [0.5]}, "duration": 0.06, "instrument": instrument}))
+print("numba" in sys.modules)
+"""
+"""Simulates and sweeps, by both kernels; prints whether numba was there."""
 
 
 @pytest.fixture(scope="module")
@@ -74,6 +91,21 @@ def test_a_note_from_what_is_kept_needs_no_numba():
         [sys.executable, "-c", PLAY], check=True, capture_output=True, text=True
     )
     assert played.stdout.split()[0] == "False"
+
+
+def test_simulations_and_sweeps_from_what_is_kept_need_no_numba():
+    lab.warm_up()
+    ran = subprocess.run([sys.executable, "-c", STUDY], check=True, capture_output=True, text=True)
+    assert ran.stdout.split() == ["False"]
+
+
+def test_what_playing_needs_is_kept_apart_from_what_studies_need_besides(kept, tmp_path):
+    lab.warm_up()
+    assert not {function.name for function in lab.all_functions()} & set(written(tmp_path, kept))
+    assert all(function.is_kept for function in lab.all_functions())
+    machine_code.file_in(tmp_path).unlink()
+    machine_code.loaded.cache_clear()  # without the first file the second one is not loaded
+    assert machine_code.address_of(lab.CALLED[0].name, tmp_path, source_hash()) is None
 
 
 def test_all_that_playing_needs_is_in_one_file(kept, tmp_path):

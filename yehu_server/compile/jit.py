@@ -7,6 +7,7 @@ import dis
 import importlib
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextvars import ContextVar
 from functools import cached_property, update_wrapper
 from pathlib import Path
 from types import ModuleType, NoneType
@@ -28,9 +29,24 @@ R = TypeVar("R")
 FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
 
 
+_is_uncompiled = ContextVar("_is_uncompiled", default=False)
+
+
 def uncompiled(function: Callable[P, R]) -> Callable[P, R]:
-    """The Python function that a compiled one was made of, for use without numba."""
-    return cast("Callable[P, R]", getattr(function, "py_func", function))
+    """The Python function that a compiled one was made of, for use without numba.
+
+    What it calls runs as Python, too. Records have their fields as attributes
+    (``memory.with_attributes``).
+    """
+
+    def plain(*arguments: P.args, **named: P.kwargs) -> R:
+        before = _is_uncompiled.set(True)
+        try:
+            return function(*arguments, **named)
+        finally:
+            _is_uncompiled.reset(before)
+
+    return plain
 
 
 class Deferred:
@@ -84,8 +100,8 @@ class Compiled(Deferred):
         return self._dispatcher(**self._options)
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
-        """Call it from Python, compiled once more."""
-        return self._for_python(*arguments, **named)
+        """Call it from Python, compiled once more; as Python within `uncompiled`."""
+        return (self.py_func if _is_uncompiled.get() else self._for_python)(*arguments, **named)
 
 
 def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:

@@ -43,6 +43,11 @@ def with_attributes(kind: np.dtype[Any]) -> np.dtype[Any]:
     return np.dtype((Record, np.dtype(spec)))
 
 
+def with_fields(record: Any) -> Any:
+    """View a record, for code that runs as Python, with its fields as attributes."""
+    return np.asarray(record).view(with_attributes(record.dtype))[()]
+
+
 if IS_PLAIN:
     np.seterr(over="ignore")  # integers wrap around, as they do in compiled code
 

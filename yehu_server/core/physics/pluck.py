@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled
+from yehu_server.compile.jit import compiled, uncompiled
 from yehu_server.core.physics.grid import place_cubic, read, spread
 from yehu_server.core.physics.layout import F_PLUCK, GHOST, POINTS, X_PLUCK
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion, Work
@@ -61,8 +61,8 @@ def pluck_string(model: Any, state: Any, i: int, position: float, amplitude: flo
     u = np.zeros(POINTS)
     u[GHOST : GHOST + intervals + 1] = shape
     first, weights = int(m["bridge_first"][i]), m["bridge_weights"][i]
-    at_bridge = read(u, first, weights) / float(weights @ weights)
+    at_bridge = uncompiled(read)(u, first, weights) / float(weights @ weights)
     u[GHOST + first : GHOST + first + len(weights)] -= weights * at_bridge
-    support(u, intervals)
+    uncompiled(support)(u, intervals)
     s["u"][:, i, :] = u
     set_Delta_u(m, s)

@@ -3,7 +3,7 @@
     .venv/bin/python scripts/machine_code.py [LEVEL ...]
 
 For systems of this kind, numba as installed here, and the sources as they are. Run it before a
-wheel is built. Takes half a minute for each level of processors.
+wheel is built. Takes a minute for each level of processors.
 """
 
 from __future__ import annotations

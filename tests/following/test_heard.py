@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 import soundfile
@@ -10,7 +12,7 @@ from voices import tune, vibrato, voice
 from yehu_server.errors import YehuError
 from yehu_server.following.heard import hear
 from yehu_server.following.notes import midi_of, strokes_of
-from yehu_server.following.recording import recording_of_file, recording_of_samples
+from yehu_server.following.recording import Recording, recording_of_file, recording_of_samples
 
 RATE = 22050
 REST = np.nan
@@ -133,3 +135,16 @@ def test_the_form_of_a_recording_does_not_matter(tmp_path):
         if abs(pitch - 57.0) > 0.05 or found.is_voiced.sum() < 100:
             wrong[name] = pitch
     assert not wrong
+
+
+def test_of_a_long_recording_less_is_kept_than_its_sound():
+    """Some numbers for each 5 ms, whatever its rate and channels."""
+    rate, channels, lengths, peaks = 48000, 8, (4, 24), []
+    block = np.tile(voice(tune([(REST, 0.4), (57.0, 1.6)], rate), rate)[:, None], channels)
+    block = block.astype(np.float32)
+    for blocks in lengths:
+        tracemalloc.start()
+        hear(Recording("long", rate, lambda count=blocks: (block.copy() for _ in range(count))))
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert np.diff(peaks) < 0.1 * np.diff(lengths) * block.nbytes, peaks

@@ -171,6 +171,14 @@ def test_the_same_note_sung_again_is_a_new_stroke():
     assert len(swelled.of(BEGIN)) == 1
 
 
+def test_a_note_that_rings_until_it_is_sung_again_louder_is_a_new_stroke():
+    """It stays like itself, and what has rung for long is soon as loud as before."""
+    sound = sung(lambda t: np.full(len(t), 60.0), 2.0)
+    time = np.arange(len(sound)) / RATE - 0.3
+    level_db = np.interp(time, [0.8, 1.0, 1.04], [-5.0, -22.0, 0.0])
+    assert len(followed(sound * 10.0 ** (level_db / 20.0)).of(BEGIN)) == 2
+
+
 def test_dynamics_follow_the_level_but_not_that_of_the_microphone():
     time = np.arange(int(2.6 * RATE)) / RATE
     swell = 10.0 ** (-np.abs(time - 1.3) / 1.0)  # 20 dB a second

@@ -96,6 +96,7 @@ FOLLOWER = np.dtype(
         ("full_db", np.float64),
         ("peak_db", np.float64),
         ("valley_db", np.float64),  # NaN: the level has not fallen
+        ("before_db", np.float64),  # the level of the last hearing since it fell
         ("least", np.float64),  # certainty since it fell
         # What it has come to, in this hearing.
         ("wishes", np.int64),
@@ -285,8 +286,10 @@ def is_struck_again(f: Any, level_db: float, certainty: float) -> bool:
     if rise >= (RISE_DB if f.least < ALIKE else ALIKE_RISE_DB):
         f.valley_db, f.peak_db = math.nan, level_db
         return bool(f.age >= STROKE)
-    if level_db >= f.peak_db and rise >= RISE_DB:  # as loud as before
+    # As loud as before, and it rises no more.
+    if rise >= RISE_DB and f.peak_db - FALL_DB < level_db < f.before_db:
         f.valley_db = math.nan
+    f.before_db = level_db
     return False
 
 

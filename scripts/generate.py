@@ -230,7 +230,19 @@ def followed_live() -> str:
                 f"{row['later, ms']:.0f} ms",
                 f"{row['onsets F1']:.2f}",
             ]
-            for name, row in measured("following_live").items()
+            for name, row in measured("following_live")["heard"].items()
+        ),
+    )
+
+
+def followed_soon() -> str:
+    parts, shares = ("bow", "heard", "half"), ("median", "95 %")
+    columns = [f"{part}, {share}" for part in parts for share in shares]
+    return table(
+        "sung to, bow: median, 95 %, heard: median, 95 %, half as loud: median, 95 %",
+        (
+            [name, *(f"{row[column]:.0f} ms" for column in columns)]
+            for name, row in measured("following_live")["soon"].items()
         ),
     )
 
@@ -251,6 +263,7 @@ MADE: dict[str, Callable[[], str]] = {
     "followed": followed,
     "followed-again": followed_again,
     "followed-live": followed_live,
+    "followed-soon": followed_soon,
     "controls-of-gestures": lambda: table(
         "control, unit, range, default, what",
         (

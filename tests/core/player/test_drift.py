@@ -139,3 +139,36 @@ def test_fingers_land_at_different_speeds():
 
     assert len(landing_s(0.0)) == 1
     assert len(landing_s(0.5)) > 2
+
+
+def tracks(sound: np.ndarray, note: int) -> tuple[np.ndarray, np.ndarray]:
+    """Pitch (cents) and level (dB) of a note's fundamental, every HOP frames, from 0.3 s on."""
+    f = 440.0 * 2.0 ** ((note - 69.0) / 12.0)
+    window = np.hanning(round(0.03 * RATE))
+    turned = sound * np.exp(-2j * np.pi * f * np.arange(len(sound)) / RATE)
+    steady = np.convolve(turned, window, "same")[round(0.3 * RATE) : -round(0.05 * RATE)]
+    phase = np.unwrap(np.angle(steady))
+    cents = 1200.0 * np.log2(1.0 + np.gradient(phase) * RATE / (2.0 * np.pi * f))
+    return cents[::HOP], 20.0 * np.log10(np.abs(steady[::HOP]))
+
+
+def strokes(note: int, seed: int) -> list[np.ndarray]:
+    """Three separate strokes on one note."""
+    playing, found = Playing(seed=seed, variation=0.25), []
+    for _ in range(3):
+        playing.on(note)
+        found.append(playing.sound(0.9))
+        playing.off(note)
+        playing.sound(0.15)
+    return found
+
+
+def test_a_note_played_again_differs_as_two_strokes_do_and_the_seed_gives_both_again():
+    note = 74
+    first, again = strokes(note, 1), strokes(note, 1)
+    assert all(np.array_equal(one, other) for one, other in zip(first, again, strict=True))
+    heard = [tracks(stroke, note) for stroke in first]
+    assert min(cents.std() for cents, _ in heard) > 0.5
+    for track in (0, 1):
+        alike = np.corrcoef([each[track] for each in heard])[np.triu_indices(3, 1)]
+        assert np.abs(alike).max() < 0.8

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from yehu_server.core.physics.quantities import read_quantities
+
 SCRIPTS = Path(__file__).parents[1] / "scripts"
 RATES = (44100.0, 48000.0, 96000.0)
 SIXTEENTHS_S = (0.0435, 0.0625)  # their second halves
@@ -144,3 +146,11 @@ def test_what_is_heard_of_a_note_is_what_it_does():
             if abs(getattr(found, name) - value) > within:
                 wrong.append((name, getattr(found, name), value))
     assert wrong == []
+
+
+def test_the_notes_that_are_measured_are_those_of_the_instrument():
+    from measures.take import NOTES, Setup
+
+    erhu = read_quantities(SCRIPTS.parent / "examples" / "erhu.toml")
+    assert Setup(RATES[0]).notes == NOTES
+    assert Setup(RATES[0], own=erhu).notes == range(62, 94)  # D4 to A6

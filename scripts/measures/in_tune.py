@@ -28,7 +28,7 @@ from measures.intonation import (
 )
 from measures.loudness import centroid_hz
 from measures.shares import Share, share
-from measures.take import NOTES, Setup, Take, held, in_parallel
+from measures.take import Setup, Take, held, in_parallel
 from yehu_server.cli.sound_options import is_of_room
 from yehu_server.core.physics.quantities import Quantities, measured_body
 from yehu_server.core.player.calibration import OPEN_NOTES
@@ -80,7 +80,7 @@ def _mark(setup: Setup, note: int, wheel: int | None, velocity: int) -> str:
 
 def grid(setup: Setup) -> list[Share]:
     """Print the marks of all notes at five velocities and four places of the wheel."""
-    jobs = [(n, w, v) for n in NOTES for w in WHEELS for v in VELOCITIES]
+    jobs = [(n, w, v) for n in setup.notes for w in WHEELS for v in VELOCITIES]
     marks = in_parallel(setup, _mark, jobs)
     print("note   wheel untouched       wheel 0               wheel 64              wheel 127")
     per_note = len(WHEELS) * len(VELOCITIES)
@@ -100,7 +100,7 @@ def _alone(setup: Setup, note: int) -> float:
 
 def isolated(setup: Setup) -> list[Share]:
     """Print the notes that are out of tune when each is played alone."""
-    notes = [(note,) for note in NOTES]
+    notes = [(note,) for note in setup.notes]
     return [judged("alone", notes, in_parallel(setup, _alone, notes))]
 
 
@@ -122,7 +122,7 @@ def _scale(setup: Setup, notes: list[int], is_slurred: bool) -> list[float]:
 
 def chromatic(setup: Setup) -> list[Share]:
     """Print the notes that are out of tune in a chromatic scale up and down."""
-    notes = [*NOTES, *reversed(NOTES[:-1])]
+    notes = [*setup.notes, *reversed(setup.notes[:-1])]
     found = in_parallel(setup, _scale, [(notes, False), (notes, True)])
     cases = [(note,) for note in notes]
     return [
@@ -143,11 +143,11 @@ def _sustained(
 def steady(setup: Setup) -> list[Share]:
     """Print the largest steady-state error of each note, from 0.45 s on."""
     start_s = setup.steady_s(STEADY_S)
-    jobs: list[Any] = [(note, *case, start_s, {}) for note in NOTES for case in STEADY_CASES]
+    jobs: list[Any] = [(note, *case, start_s, {}) for note in setup.notes for case in STEADY_CASES]
     errors = [error for error, _ in in_parallel(setup, _sustained, jobs)]
-    table = np.abs(np.array(errors)).reshape(len(NOTES), len(STEADY_CASES))
-    right = table <= np.array([[bound(note, CLOSE_CENTS)] for note in NOTES])
-    for note, row, is_right in zip(NOTES, table, right, strict=True):
+    table = np.abs(np.array(errors)).reshape(len(setup.notes), len(STEADY_CASES))
+    right = table <= np.array([[bound(note, CLOSE_CENTS)] for note in setup.notes])
+    for note, row, is_right in zip(setup.notes, table, right, strict=True):
         print(
             f"{note}: {row.max():6.1f} cents at most, "
             f"{(~is_right).sum():2} over {bound(note, CLOSE_CENTS):g}"
@@ -162,7 +162,7 @@ def quarters(setup: Setup) -> list[Share]:
     near to the nut as it can be are apart: no finger reaches them on the string that the player
     chose.
     """
-    cases = [(note + 0.5, *case) for note in NOTES[:-1] for case in STEADY_CASES]
+    cases = [(note + 0.5, *case) for note in setup.notes[:-1] for case in STEADY_CASES]
     found = in_parallel(setup, _sustained, [(*case, SETTLED_S, {}) for case in cases])
     parts: dict[bool, list[tuple[Any, float]]] = {False: [], True: []}
     for case, (error, is_at_nut) in zip(cases, found, strict=True):
@@ -181,7 +181,9 @@ def quarters(setup: Setup) -> list[Share]:
 
 def strings(setup: Setup) -> list[Share]:
     """Print the share of stopped notes in tune on each instrument, and the others."""
-    cases = [(note, velocity) for note in NOTES if note not in OPEN_NOTES for velocity in (50, 100)]
+    cases = [
+        (note, velocity) for note in setup.notes if note not in OPEN_NOTES for velocity in (50, 100)
+    ]
     parts = []
     for name, how in OTHERS.items():
         jobs = [(note, -1, velocity, SETTLED_S, how) for note, velocity in cases]
@@ -203,7 +205,7 @@ def _in_preset(setup: Setup, preset: str, note: int, velocity: int) -> tuple[flo
 
 def presets(setup: Setup) -> list[Share]:
     """Print the results of each preset of a way to play, and its notes that are out of tune."""
-    cases = [(note, velocity) for note in NOTES for velocity in (30, 64, 110)]
+    cases = [(note, velocity) for note in setup.notes for velocity in (30, 64, 110)]
     parts = []
     shipped = Presets(Path(os.devnull))
     for name in shipped.names():

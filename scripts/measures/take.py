@@ -22,6 +22,7 @@ from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import Presets
+from yehu_server.playing.stringing import notes_of
 from yehu_server.playing.wishes import Key
 
 NOTES = range(65, 90)  # F4 to F6
@@ -59,6 +60,12 @@ class Setup:
     own: Quantities = field(default_factory=Quantities)
     bowing: Any = None
     phrasing: float = 0.0
+
+    @property
+    def notes(self) -> range:
+        """The notes that the instrument has, such as F4 to F6 of a yehu."""
+        lowest, highest = notes_of(self.own).ends
+        return range(lowest, highest + 1)
 
     def steady_s(self, usual_s: float) -> float:
         """Return when the steady state begins (s): under variation the mean from 0.4 s counts."""

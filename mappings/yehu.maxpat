@@ -9495,7 +9495,7 @@
       "valueof": {
        "parameter_longname": "/vibrato/upward",
        "parameter_shortname": "upward",
-       "parameter_mmin": 0.0,
+       "parameter_mmin": -1.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
@@ -9516,7 +9516,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "-1 to 1",
      "presentation": 1,
      "presentation_rect": [
       240,

@@ -148,12 +148,13 @@ def free_name() -> Iterator[str]:
     import fcntl
 
     for number in range(6):
-        with Path(tempfile.gettempdir(), f"yehu-tests-jack-{number}").open("a") as lock:
+        name = f"yehu-tests-{os.getuid()}-{number}"  # a user cannot take up another one's
+        with Path(tempfile.gettempdir(), name).open("a") as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 continue
-            yield f"yehu-tests-{number}"
+            yield name
             return
     pytest.skip("six other runs of the tests have a JACK server each")
 

@@ -25,6 +25,7 @@ settings.load_profile("yehu")
 
 CHANGED_S = 60.0  # how long tests of a change begin
 NEED_THE_PAGE = {"ahead", "documentation", "page"}  # folders; it is compiled beside the others
+PAGE_FROM, PAGE_TO = 0.35, 0.92  # of all files: when it is compiled, and before the end
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -54,7 +55,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in items:
             if item.get_closest_marker("slow"):
                 item.add_marker(pytest.mark.skip(reason="slow: run with --all"))
-    items.sort(key=lambda item: item.path.parent.name in NEED_THE_PAGE)
+    place = places(list(dict.fromkeys(item.path for item in items)))
+    items.sort(key=lambda item: place[item.path])
     if revision := config.getoption("--changed"):
         from changed import changed_files, distances
 
@@ -63,6 +65,15 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items[:] = sorted(
             (item for item in items if item.path in near), key=lambda item: near[item.path]
         )
+
+
+def places(files: list[Path]) -> dict[Path, float]:
+    """When each file begins: those that mostly wait for a browser are spread among the others."""
+    waiting = [file for file in files if file.parent.name in NEED_THE_PAGE]
+    others = [file for file in files if file.parent.name not in NEED_THE_PAGE]
+    step = (PAGE_TO - PAGE_FROM) / max(len(waiting), 1)
+    spread = {file: PAGE_FROM + step * number for number, file in enumerate(waiting)}
+    return {file: number / len(others) for number, file in enumerate(others)} | spread
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -9,6 +9,7 @@ import threading
 import time
 
 import pytest
+from clusters import wait_until
 
 from yehu_server.cli import main
 from yehu_server.live.audio.output import OutputOptions
@@ -145,9 +146,13 @@ def test_the_end_of_input_ends_the_questions(monkeypatch, capsys):
 
 def test_the_bindings_of_a_server_are_shown_with_where_they_are(server, at, capsys):
     server.player.note_on(70.0, 127.0, frame=server.player.frame_of())
-    assert main(["mappings", "show", "--live", "--json", *at]) == 0
-    rows = {row["source"]: row for row in json.loads(capsys.readouterr().out)}
-    assert rows["velocity"]["place"] == 1.0
+
+    def shown() -> dict:
+        assert main(["mappings", "show", "--live", "--json", *at]) == 0
+        return {row["source"]: row for row in json.loads(capsys.readouterr().out)}
+
+    wait_until(lambda: shown()["velocity"]["place"] == 1.0, 10.0)  # once it is struck
+    rows = shown()
     assert rows["cc 16"]["target"] == "/yehu/playing/speed"
     assert main(["mappings", "show", "--live", *at]) == 0
     out = capsys.readouterr().out

@@ -60,12 +60,11 @@ def test_what_others_have_put_into_a_folder_is_not_lost(build, tmp_path):
     assert (tmp_path / "site" / "CNAME").read_text() == "example.org"
 
 
+NIGHTLY = ("index.md#none", "#none", "none.png")
+
+
 @pytest.mark.parametrize(
-    "link",
-    [
-        "none.md",
-        *(pytest.param(link, marks=pytest.mark.slow) for link in ("index.md#none", "#none")),
-    ],
+    "link", ["none.md", *(pytest.param(link, marks=pytest.mark.slow) for link in NIGHTLY)]
 )
 def test_a_site_with_a_broken_link_is_not_written(build, tmp_path, capsys, link):
     build(tmp_path / "site", "whole")

@@ -209,47 +209,28 @@ def test_a_terminal_gets_a_progress_bar_and_a_pipe_its_summary(tmp_path, out):
 # ---------------------------------------------------------------- bad input
 
 
-def test_what_is_no_midi_file_is_refused_in_one_line(refused, tmp_path, out):
-    (tmp_path / "empty.mid").write_bytes(b"")
+def test_what_is_no_midi_file_among_good_ones_is_refused_in_one_line(refused, tune, tmp_path, out):
     (tmp_path / "text.mid").write_text("O Yehu, play!")
-    (tmp_path / "noise.mid").write_bytes(bytes(range(256)))
     for name, wrong in (
         ("none.mid", "none.mid"),
-        ("none\nsuch.mid", "such.mid"),
         (".", str(tmp_path)),
-        ("empty.mid", "empty"),
         ("text.mid", "not a MIDI file"),
-        ("noise.mid", "not a MIDI file"),
     ):
-        assert wrong in refused("render", tmp_path / name, "-o", out / "x.wav")
+        assert wrong in refused("render", tune, tmp_path / name, tune, "-o", out / "x.wav")
         assert not list(out.iterdir())
-
-
-def test_one_bad_file_among_good_ones_is_named(refused, tune, tmp_path, out):
-    assert "none.mid" in refused("render", tune, tmp_path / "none.mid", tune, "-o", out / "x.wav")
-    assert not list(out.iterdir())
 
 
 @pytest.mark.parametrize(
     ("words", "wrong"),
     [
-        (("--rate", "0"), "0 Hz"),
         (("--rate", "8000"), "8000"),
-        (("--rate", "-44100"), "44100"),
         (("--rate", "1000000000"), "22050 to 192000"),
         (("--rate", "1e9"), "1e9"),
-        (("--rate", "nan"), "nan"),
-        (("--rate", "fast"), "fast"),
-        (("--rate", "1" + "0" * 400), "rate"),
         (("--rate", "1" + "0" * 5000), "rate"),
         (("--rate",), "--rate"),
         (("--tail", "-1"), "--tail"),
         (("--tail", "nan"), "--tail"),
-        (("--tail", "inf"), "--tail"),
-        (("--tail", "1e9"), "--tail"),
-        (("--gain-db", "nan"), "--gain-db"),
         (("--gain-db", "25"), "--gain-db"),
-        (("--gain-db", "loud"), "--gain-db"),
         (("--channel", "0"), "--channel"),
         (("--channel", "17"), "--channel"),
         (("--channel", "x"), "--channel"),
@@ -262,17 +243,11 @@ def test_one_bad_file_among_good_ones_is_named(refused, tune, tmp_path, out):
         (("--norm",), "--norm"),
         (("--set", "/bow/sped=0.1"), "/bow/speed"),
         (("--set", "/bow/position"), "ADDRESS=VALUE"),
-        (("--set", "/bow/position=x"), "/bow/position"),
-        (("--set", "/bow/position=nan"), "/bow/position"),
-        (("--set", "/bow/position=inf"), "/bow/position"),
         (("--set", "/bow/position=0.9"), "0.04 to 0.5"),
         (("--a4", 389), "390 to 480 Hz"),
         (("--a4", 481), "390 to 480 Hz"),
-        (("--set", "/bow/position=1" + "0" * 400), "/bow/position"),
         (("--set", "bow\nposition=0.1"), "position"),
         (("--mapping", "none"), "none"),
-        (("--mapping", "none.toml"), "none.toml"),
-        (("--instrument", "none.toml"), "none.toml"),
     ],
 )
 def test_a_wrong_option_of_render_gets_one_line_and_no_file(refused, tune, out, words, wrong):
@@ -284,33 +259,18 @@ def test_a_wrong_option_of_render_gets_one_line_and_no_file(refused, tune, out, 
     ("name", "content", "wrong"),
     [
         ("x.toml", "T = ", "not an instrument file"),
-        ("x.json", "{", "not an instrument file"),
-        ("x.toml", b"\xff\xfe", "not an instrument file"),
-        pytest.param("x.json", "[" * 100_000, "not an instrument file", id="deep json"),
-        pytest.param("x.toml", "a = " + "[" * 20_000, "not an instrument file", id="deep toml"),
         ("x.json", "[]", "instrument"),
         ("x.toml", "tension = 1", "x.toml:1: tension: unknown entry"),
-        ("x.toml", "[string_1]\nT = nan", "T"),
-        ("x.toml", "[string_1]\nT = 1e9", "T"),
-        ("x.toml", '[string_1]\nT = "tight"', "T"),
-        ("x.toml", "bridge_x = 0.38", "bridge_x"),
-        ("x.toml", "[bow]\nmu_S = 0.1", "mu_S"),
         ("x.toml", 'body = "none.json"', "none.json"),
+        # A stiff rod.
+        ("x.toml", "[string_1]\nr = 1.47e-3\nrho = 100\nE = 1e12", "grid"),
     ],
 )
 def test_a_wrong_instrument_file_gets_one_line(refused, tune, tmp_path, out, name, content, wrong):
     path = tmp_path / name
-    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    path.write_text(content)
     err = refused("render", tune, "-o", out / "x.wav", "--instrument", path)
     assert wrong in err
-    assert name in err
-    assert not list(out.iterdir())
-
-
-def test_an_instrument_the_grid_cannot_hold_gets_one_line(refused, tune, tmp_path, out):
-    path = tmp_path / "x.toml"
-    path.write_text("[string_1]\nr = 1.47e-3\nrho = 100\nE = 1e12")  # a stiff rod
-    assert "grid" in refused("render", tune, "-o", out / "x.wav", "--instrument", path)
     assert not list(out.iterdir())
 
 
@@ -319,16 +279,7 @@ def test_an_instrument_the_grid_cannot_hold_gets_one_line(refused, tune, tmp_pat
     [
         (None, "gesture.json"),
         ("a folder", "gesture.json"),
-        (b"", "not a gesture file"),
         (b"MThd", "not a gesture file"),
-        (b"[" * 100_000, "not a gesture file"),
-        (b'{"duration": NaN}', "duration"),
-        (b'{"duration": 0}', "duration"),
-        (b'{"duration": 1e9}', "duration"),
-        (b'{"sample_rate": 8000}', "rate"),
-        (b'{"controls": {"bow_force": [[0, NaN]]}}', "bow_force"),
-        (b'{"controls": {"bow_force": [[0, 1e999]]}}', "bow_force"),
-        (b'{"controls": {"bow_farce": 1}}', "bow_farce"),
         (b'{"controls": {"bow\\nforce": 1}}', "force"),
         (b'{"instrument": {"string_1": {"r": 5e-3, "E": 1e12}}}', "grid"),
         (b'{"duration": 3600}', "GiB"),

@@ -130,14 +130,10 @@ def test_an_array_of_another_length_is_refused(controls, duration, names):
     [
         ("/no/such.json", "such.json"),
         (7, "gesture"),
-        ({"durations": 1.0}, "durations"),
         ({"controls": {"bow_forse": 1.0}}, "bow_forse"),
         ({"controls": {"bow_force": np.zeros((3, 3))}}, "bow_force"),
         ({"controls": {"bow_force": np.array([0.0, np.nan])}}, "bow_force"),
-        ({"controls": {"bow_force": 1e6}}, "bow_force"),
         ({"controls": 5}, "controls"),
-        ({"duration": -1.0}, "duration"),
-        ({"instrument": {"bow": {"mu_X": 1.0}}}, "mu_X"),
     ],
 )
 def test_a_wrong_gesture_is_told_in_one_line(gesture, names):

@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import contextlib
-import itertools
 import json
 import tomllib
 from dataclasses import replace
 
 import pytest
-from curves import from_unit
-from hypothesis import example, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from yehu_server.errors import MappingError
 from yehu_server.params.spec import Curve
 from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping import load, mapping_folder, shipped_mappings, user_mappings
-from yehu_server.playing.mapping_file import (
-    document_of,
-    mapping_file_from,
-    read_mapping_file,
-)
+from yehu_server.playing.mapping_file import read_mapping_file
 from yehu_server.playing.mapping_writer import as_toml, canonical
-from yehu_server.util.documents import MOST_ERRORS, Fields
+from yehu_server.util.documents import MOST_ERRORS
 from yehu_server.util.parsing import lines_of
 
 BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'
@@ -108,16 +101,13 @@ def test_a_file_says_all_that_a_bind_has(read):
 @pytest.mark.parametrize(
     ("old", "new", "error"),
     [
-        ('"mine"', "3", "2: name: expected a line of text, got 3"),
         ('"mine"', '"a\\nb"', "2: name: expected a line of text"),
         (
             'name = "mine"',
             'nome = "mine"',
             "2: nome: unknown entry; did you mean name?",
         ),
-        ('name = "mine"', "about = 1", "2: about: expected a line of text"),
         ('name = "mine"', "mpe = 1", "2: mpe: expected true or false, got 1"),
-        ('name = "mine"', "base = 1", "2: base: expected a line of text"),
         ('name = "mine"', 'base = "keybord"', "2: base: no mapping 'keybord'"),
         ('name = "mine"', 'base = "../keyboard"', "2: base: no mapping '../keyboard'"),
         ('name = "mine"', 'base = ""', "2: base: no mapping ''"),
@@ -137,34 +127,23 @@ def test_a_file_says_all_that_a_bind_has(read):
         ("[0.5, 0.2]", "[0.5, 1.2]", "12: bind 1: curve: 1.2 is not within 0 to 1"),
         ("[0.5, 0.2]", "[0, 0.2]", "12: bind 1: curve: each point has to lie beyond"),
         ("[0.5, 0.2]", "[0.5]", "12: bind 1: curve: expected points [from, to], got [0.5]"),
-        ("[0.5, 0.2]", "[0.5, nan]", "12: bind 1: curve: nan is not finite"),
         ("[1, 1]", "[0.9, 1]", "12: bind 1: curve: the points have to begin at 0 and end at 1"),
         ('curve = "s"', "curve = []", "32: bind 3: curve: the points have to begin"),
         ('curve = "s"', 'curve = "exp"', "32: bind 3: curve: an exp curve needs a span above zero"),
-        ("= true\n\n", "= 1\n\n", "17: bind 1: invert: expected true or false, got 1"),
         (
             "smoothing = 50",
             "smoothing = -1",
             "22: bind 2: smoothing: -1 is not within",
         ),
-        ("smoothing = 50", "smoothing = inf", "22: bind 2: smoothing: inf is not finite"),
-        (
-            "smoothing = 50",
-            "smoothing = true",
-            "22: bind 2: smoothing: expected a number, got True",
-        ),
         ("[2, 1]", "[2, 0]", "23: bind 2: channel: expected a whole number from 1"),
         ("[2, 1]", "17", "23: bind 2: channel: expected a whole number from 1 to 16"),
         ("[2, 1]", "[]", "23: bind 2: channel: expected a channel or several"),
-        ("[2, 1]", "1.0", "23: bind 2: channel: expected a whole number from 1 to 16"),
         ("soft = true", 'soft = "yes"', "24: bind 2: soft: expected true or false, got 'yes'"),
         ("nrpn 2/44", "velocity", "24: bind 2: soft: velocity cannot wait for the target"),
         ("nrpn 2/44", "note", "24: bind 2: soft: note cannot wait"),
         ("nrpn 2/44", "poly-pressure", "24: bind 2: soft: poly-pressure cannot wait"),
-        ("global = true", "global = 1", "25: bind 2: global: expected true or false, got 1"),
         ("nrpn 2/44", "note", "25: bind 2: global: note belongs to one note"),
         ("[0, 127]", "[1, 1]", "31: bind 3: input: expected two different numbers"),
-        ("[0, 127]", "[0, inf]", "31: bind 3: input: inf is not finite"),
         ("[0, 127]", "127", "31: bind 3: input: expected [from, to], got 127"),
         ("[0, 127]", "[0, 1]\nglobal = true", "32: bind 3: global: an OSC address always is"),
         ("/fader1", "cc 9", "31: bind 3: input: only OSC addresses have an input range"),
@@ -257,66 +236,6 @@ def _ways(data, way=()):
             for place, table in enumerate(value):
                 yield (*way, name, place)
                 yield from _ways(table, (*way, name, place))
-
-
-@given(st.binary(max_size=200))
-@example(
-    b"bind = [{source = 'cc 1', target = '/playing/volume', span = [0x" + b"f" * 9000 + b", 1]}]"
-)
-@example(b"[start]\n'/playing/volume' = 0x" + b"f" * 9000)
-@example(b"mpe = 0x" + b"f" * 9000)
-@example(b"a = " + b"1" * 9000)
-@example(b"[[bind]]\nsource='note'\ntarget='/playing/volume'\nsmoothing=0x" + b"f" * 9000)
-@example(b"[[bind]]\nsource='note'\ntarget='/playing/volume'\nchannel=0x" + b"f" * 9000)
-@example(b"[[bind]]\nsource='note'\ntarget='/playing/volume'\ncurve=[[0x" + b"f" * 9000 + b",1]]")
-def test_no_bytes_do_more_than_be_refused(tmp_path_factory, data):
-    path = tmp_path_factory.getbasetemp() / "bytes.toml"
-    path.write_bytes(data)
-    with contextlib.suppress(MappingError):
-        load(str(path))
-
-
-scalars = st.one_of(
-    st.integers(), st.floats(), st.booleans(), st.text(max_size=5), st.just(1e-320),
-    st.sampled_from(["cc 1", "note", "bend", "/f", "exp", "s", "/playing/volume", "/bow/side"]),
-)  # fmt: skip
-anything = st.recursive(scalars, lambda inner: st.lists(inner, max_size=3), max_leaves=6)
-entries = st.fixed_dictionaries(
-    {},
-    optional={
-        "source": st.sampled_from(["cc 1", "cc 1/33", "nrpn 5", "note", "bend", "/f"]) | scalars,
-        "target": st.sampled_from(["/playing/volume", "/playing/bend", "/playing/speed"]) | scalars,
-        "span": st.lists(st.floats(0.05, 0.6), min_size=2, max_size=2) | anything,
-        "curve": st.sampled_from(["exp", "s", [[0, 1], [1, 0]]]) | anything,
-        "invert": st.booleans() | anything,
-        "smoothing": st.integers(0, 5000) | anything,
-        "channel": st.integers(1, 16) | st.lists(st.integers(1, 16), min_size=1) | anything,
-        "soft": st.booleans() | anything,
-        "input": st.lists(st.integers(0, 9), min_size=2, max_size=2) | anything,
-    },
-)
-files = st.fixed_dictionaries(
-    {"bind": st.lists(entries, max_size=3) | anything},
-    optional={"name": anything, "about": anything, "mpe": anything, "base": anything}
-    | {"start": anything | st.dictionaries(st.sampled_from(["/playing/volume", "x"]), anything)},
-)
-
-
-@given(files)
-def test_any_entries_are_read_or_refused_and_what_is_read_is_written_and_read_again(
-    tmp_path_factory, data
-):
-    path = tmp_path_factory.getbasetemp() / "any.toml"
-    try:
-        contents = mapping_file_from(Fields(data, document_of(path)))
-    except MappingError as error:
-        lines = (str(error), *error.more)
-    else:
-        lines = ()
-        assert read_mapping_file(path, as_toml(contents)) == contents
-        for bind, position in itertools.product(contents.binds, (0.0, 0.3, 1.0)):
-            assert min(bind.ends) - 1e-9 <= from_unit(bind, position) <= max(bind.ends) + 1e-9
-    assert all(line.isprintable() for line in lines)
 
 
 # ---------------------------------------------------------------- bases

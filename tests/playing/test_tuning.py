@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-import tempfile
 from pathlib import Path
 
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
 
 from yehu_server.errors import ParameterError
 from yehu_server.playing.tuning import EQUAL, Tuning, read_tuning
@@ -309,38 +306,6 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path):
     ]:
         with pytest.raises(ParameterError, match=says):
             read_tuning(path)
-
-
-LINES = st.lists(
-    st.one_of(
-        st.sampled_from([*TWELVE, *MAJOR, "x", "!", "", "0", "7", "12", "60", "127", "440.0"]),
-        st.integers(-200, 2000).map(str),
-        st.text(alphabet="0123456789./-+eE x!,", max_size=12),
-    ),
-    max_size=24,
-).map("\n".join)
-FILES = st.one_of(
-    st.binary(max_size=100), LINES.map(str.encode), st.text(max_size=60).map(str.encode)
-)
-
-
-@settings(max_examples=300, deadline=None)
-@given(scale=FILES, keyboard=st.none() | FILES, a4=st.floats(300.0, 600.0))
-@example(scale=scl(*MAJOR).encode(), keyboard=kbm(*WHITE, octave=7).encode(), a4=440.0)
-def test_any_file_is_a_tuning_of_finite_pitches_or_a_clear_refusal(scale, keyboard, a4):
-    with tempfile.TemporaryDirectory() as folder:
-        paths = [Path(folder, "a.scl"), Path(folder, "a.kbm")]
-        for path, data in zip(paths, (scale, keyboard), strict=True):
-            path.write_bytes(data or b"")
-        try:
-            tuning = read_tuning(paths[0], None if keyboard is None else paths[1])
-        except ParameterError as error:
-            assert "\n" not in str(error)  # noqa: PT017 (one clear line)
-            return
-    pitches = [tuning.pitch(step / 2, a4) for step in range(255)]
-    assert any(pitch is not None for pitch in pitches)
-    for pitch in pitches:
-        assert pitch is None or math.isfinite(a4 * 2 ** ((pitch - 69) / 12))
 
 
 # ---------------------------------------------------------------- what ships

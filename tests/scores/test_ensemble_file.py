@@ -7,8 +7,6 @@ from pathlib import Path
 
 import pytest
 from commands import is_one_line
-from hypothesis import given
-from hypothesis import strategies as st
 
 from yehu_server.errors import EnsembleError
 from yehu_server.scores.ensemble_file import read_ensemble
@@ -64,23 +62,18 @@ def test_a_room_has_values_or_a_name(read):
             2,
             "part 1: channel: expected a whole number from 1 to",
         ),
-        ("[[part]]\nchannel = 0\n", 2, "channel: expected a whole number from 1 to 16"),
         (f"{PART}track = 1.5\n", 3, "track: expected a whole number from 1 to"),
         (f"{PART}\n[[part]]\nname = 'x'\n", 4, "part 2: needs a channel or a track"),
         (f"[room]\ndecay = 2.0\n{PART}", 1, "room: needs a size in metres"),
         (f"[room]\nsize = 0.1\n{PART}", 2, "room.size: 0.1 is not within"),
         (f"[room]\nsize = 9\npan = 1\n{PART}", 3, "room.pan: unknown entry"),
-        (f"room = 3\n{PART}", 1, "room: expected a table"),
         (f"rooms = 3\n{PART}", 1, "rooms: unknown entry; did you mean room?"),
         (f"{PART}place = 3\n", 3, "part 1: place: unknown entry"),
-        (f"{PART}pan = 2\n", 3, "part 1: pan: 2 is not within"),
-        (f"{PART}distance = 'far'\n", 3, "distance: expected a number"),
         (f"{PART}gain = 60\n", 3, "gain: 60 is not within"),
         (f"{PART}section = 17\n", 3, "section: expected a whole number from 1 to 16, got 17"),
         (f"{PART}seed = -1\n", 3, "seed: expected a whole number from 0 to 65535"),
         (f'{PART}set = {{ "/no" = 1 }}\n', 3, "set: "),
         (f'{PART}set = {{ "/finger/1/press" = 1 }}\n', 3, "moved by the player"),
-        (f"{PART}set = 3\n", 3, "set: expected a table"),
         (PART * 17, 33, "part: expected 1 to 16 of [[part]], got 17"),
         ("part = []\n", 1, "part: expected 1 to 16 of [[part]], got 0"),
         ("part = 3\n", 1, "write each as [[part]]"),
@@ -98,25 +91,3 @@ def test_what_is_wrong_is_told_with_its_line(read, text, line, error):
 def test_a_file_without_parts_is_refused(read, text):
     with pytest.raises(EnsembleError):
         read(text)
-
-
-VALUES = st.one_of(
-    st.integers(), st.floats(), st.text(max_size=5).map(repr), st.just("[]"), st.just("{}")
-)
-
-
-@given(
-    st.lists(
-        st.tuples(st.sampled_from(["channel", "track", "pan", "set", "seed", "name"]), VALUES),
-        max_size=6,
-    )
-)
-def test_any_values_give_parts_or_one_line(tmp_path_factory, pairs):
-    path = tmp_path_factory.getbasetemp() / "any.toml"
-    lines = "".join(f"{name} = {value}\n" for name, value in pairs)
-    path.write_text(f"[[part]]\n{lines}", encoding="utf-8", errors="replace")
-    try:
-        told = f"{len(read_ensemble(path).parts)} part"
-    except EnsembleError as error:
-        told = str(error)
-    assert told == "1 part" or (path.name in told and is_one_line(f"{told}\n"))

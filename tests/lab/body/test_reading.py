@@ -6,8 +6,6 @@ from itertools import cycle
 import numpy as np
 import pytest
 import soundfile
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from lab.body.bodies import admittance, off_db, radiation, rms
 
 from yehu_server.errors import MeasurementError
@@ -217,20 +215,6 @@ def test_missing_and_foreign_files_are_told(tmp_path, name):
     (tmp_path / name).mkdir()
     with pytest.raises(MeasurementError, match="x"):
         read([tmp_path / name])
-
-
-@pytest.mark.parametrize("name", ["x.wav", "x.csv", "x.uff"])
-@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(
-    head=st.sampled_from([b"", b"RIFF\x40\0\0\0WAVEfmt ", b"f,real mobility,imag\n",
-                          b"    -1\n    58\n", b"t,force,velocity\n"]),
-    data=st.binary(max_size=400),
-)  # fmt: skip
-def test_any_bytes_are_refused_in_one_line(tmp_path, name, head, data):
-    (tmp_path / name).write_bytes(head + data)
-    with pytest.raises(MeasurementError) as error:
-        read([tmp_path / name], channels="force=1,velocity=1")
-    assert len(str(error.value)) < 400
 
 
 def test_a_line_without_a_response_is_told(tmp_path):

@@ -1,12 +1,11 @@
 """Garbage over the wire neither stops the server nor leaves a note nor makes it grow.
 
-tests/fuzz fuzzes single packets.
+tests/fuzz makes the packets, and fuzzes them one by one.
 """
 
 from __future__ import annotations
 
 import contextlib
-import math
 import os
 import random
 import struct
@@ -14,53 +13,11 @@ import time
 from pathlib import Path
 
 import pytest
-
-from yehu_server.params.table import TABLE
+from fuzz.target import Program
+from fuzz.targets.osc_calls import packet
 
 PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 GROWTH_BYTES = 64 << 20
-
-PARAMS = ["/yehu" + param.address for param in TABLE]
-PLAYING = [
-    f"/yehu{call}"
-    for call in ("/note", "/note/off", "/pitch", "/bend", "/press", "/bow", "/release", "/panic")
-]
-ASKING = [
-    f"/yehu{call}"
-    for call in ("/reset", "/get", "/params", "/status", "/subscribe", "/unsubscribe", "/ping")
-]
-ODD = ["/yehu/*", "/yehu/*/*", "/yehu/bow/[a-z", "/*/note", "/", "/yehu/record/start", "/yehu/{,}"]
-
-
-def garbage(wire, chance: random.Random, now_s: float) -> bytes:
-    """Bytes that may be a packet."""
-    kind = chance.randrange(8)
-    address = chance.choice(PARAMS + PLAYING + ASKING + ODD)
-    if kind == 0:
-        return chance.randbytes(chance.randrange(200))
-    if kind == 1:
-        return b"/" + chance.randbytes(chance.randrange(100))
-    if kind == 2:
-        return wire.message(
-            address, *(chance.uniform(-200.0, 200.0) for _ in range(chance.randrange(4)))
-        )
-    if kind == 3:
-        return wire.message(
-            address, chance.choice(["x" * 1000, None, b"\0" * 5000, math.nan, 2**40])
-        )
-    if kind == 4:
-        deep = wire.message("/yehu/note", chance.uniform(60, 90), 90.0)
-        for _ in range(chance.randrange(40)):
-            deep = wire.bundle(now_s + chance.uniform(-0.1, 0.1), deep)
-        return deep
-    packet = bytearray(wire.bundle(now_s, wire.message(address, 67.0, 90.0)))
-    if kind == 5:
-        packet[chance.randrange(len(packet))] = chance.randrange(256)
-    elif kind == 6:
-        del packet[chance.randrange(len(packet)) :]
-    else:
-        packet = bytearray(wire.message(address, b"\xff" * chance.choice([60_000, 20_000, 0])))
-    return bytes(packet)
 
 
 def resident_bytes() -> int:
@@ -68,7 +25,7 @@ def resident_bytes() -> int:
 
 
 @pytest.mark.parametrize("kind", ["udp", "prefixed", "slip"])
-def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(live, wire, until, kind):
+def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(live, until, kind):
     chance = random.Random(f"garbage by {kind}")
     sender = live.client() if kind == "udp" else live.stream(slip=kind == "slip")
     listener = live.client()
@@ -76,7 +33,7 @@ def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(live, wire, unt
     for _ in range(4):
         for number in range(300):
             try:
-                sender.take(garbage(wire, chance, time.time()))
+                sender.take(packet(Program(chance.randbytes(200)), time.time()))
             except ConnectionError:  # what begins as no OSC does ends a stream
                 sender = live.stream(slip=kind == "slip")
             if number % 50 == 49:

@@ -559,38 +559,25 @@ NO_FRAMES = [
     "\x00",
 ]
 NO_RAMPS = [
-    f'[{2**63 - 1}, "/bow/speed", 0.1, 0]',
-    f'[{2**80}, "/bow/speed", 0.1, 0]',
-    '[1e3, "/bow/speed", 0.1, 0]',
     '[-1, "/bow/speed", 0.1, 0]',
     '[0, "/bow/speed", 9e18, 441]',
-    '[0, "/bow/speed", NaN, 0]',
-    '[0, "/bow/speed", -Infinity, 0]',
-    f'[0, "/bow/speed", {HUGE}, 0]',
-    '[0, "/bow/speed", {}, 0]',
     f'[0, "/bow/speed", 0.1, {2**63}]',
-    '[0, "/bow/speed", 0.1, -5]',
     '[0, "silence", 1.0, 0]',
     '[0, ["/bow/speed"], 0.1, 0]',
 ]
 NO_WISHES = [
     f'[{2**63 - 1}, 1, "ramp", "/bow/speed", 0.1, 0]',
-    f'[{2**80}, 1, "ramp", "/bow/speed", 0.1, 0]',
     '[1e3, 1, "ramp", "/bow/speed", 0.1, 0]',
     '[-1, 1, "ramp", "/bow/speed", 0.1, 0]',
     "nonsense",
     '[1, 1, "ramp", "/bow/speed", 0.1]',
     '[1, 1, "ramp", "/no/such", 0.1, 0]',
-    '[1e300, 1, "ramp", "/bow/speed", 0.0, 0]',
     '[1, "ramp", "/bow/speed", 0.1, 0]',  # as in version 2
-    '[1, 0, "ramp", "/bow/speed", 0.1, 0]',
     '[1, 2, "ramp", "/bow/speed", 0.1, 0]',  # a player who is not there
     '[1, "/bow/speed", 0.1, 0]',  # as in version 1
     '[0, 1, "ramp", "/bow/speed", 9e18, 441]',
     '[0, 1, "ramp", "/bow/speed", NaN, 0]',
-    '[0, 1, "ramp", "/bow/speed", -Infinity, 0]',
     f'[0, 1, "ramp", "/bow/speed", {HUGE}, 0]',
-    '[0, 1, "ramp", "/bow/speed", {}, 0]',
     f'[0, 1, "ramp", "/bow/speed", 0.1, {2**63}]',
     '[0, 1, "ramp", "/bow/speed", 0.1, -5]',
     '[0, 1, "ramp", "silence", 1.0, 0]',
@@ -601,19 +588,15 @@ NO_WISHES = [
     "[0, 1, 4]",
     '[0, 0, "lift"]',
     '[0, 2, "lift"]',
-    '[0, 1.0, "lift"]',
     '[0, true, "lift"]',
-    '[0, null, "lift"]',
     '[0, 1, ["lift"]]',
     '[0, 1, "jump"]',
     '[0, 1, "ramp", "/playing/speed", 0.1, 0]',  # which the player has
     '[0, 1, "write", "/playing/speed", 0.1]',
     '[0, 1, "write", "/playing/speed", 9e9, 0]',
     '[0, 1, "write", "/playing/speed", 0.1, -1]',
-    '[0, 1, "write", "/playing/speed", 0.1, NaN]',
     '[0, 1, "write", "/playing/speed", 0.1, 1e9]',
     '[0, 1, "hold", "/no/such", 0.1, 0]',
-    '[0, 1, "hold", 7, 0.1, 0]',
     '[0, 1, "express", "/playing/speed", NaN]',
     '[0, 1, "express", "/playing/speed", 0.1, 0]',
     '[0, 1, "begin", 0, 69]',
@@ -622,22 +605,17 @@ NO_WISHES = [
     f'[0, 1, "begin", {2**63}, 69, 69]',
     '[0, 1, "begin", 0, NaN, 69]',
     '[0, 1, "begin", 0, 69, 127.5]',
-    '[0, 1, "begin", 0, 69, -1]',
     '[0, 1, "begin", 0, 69, "A4"]',
     '[0, 1, "end", 0, 69, 2]',
-    '[0, 1, "end", 0, 69, true]',
     '[0, 1, "end", 0, 69]',
     '[0, 1, "slide"]',
     '[0, 1, "slide", Infinity]',
-    '[0, 1, "slide", null]',
     '[0, 1, "draw", 0.1]',
     '[0, 1, "draw", 99, 0.1]',
     '[0, 1, "draw", 0.1, -1]',
     '[0, 1, "lift", 0]',
     '[0, 1, "stop"]',
     '[0, 1, "stop", 2]',
-    '[0, 1, "stop", -1]',
-    '[0, 1, "stop", NaN]',
     '[0, 1, "stop", 0, 0]',
     '[0, 1, "release", 0]',
 ]
@@ -748,15 +726,11 @@ def bowing_with(value: object) -> list:
 
 
 BODY = {item.name: getattr(USUAL, item.name) for item in fields(USUAL)}
-NO_BODIES = [
+NO_BODIES = [  # more of their kind are in tests/core/physics/test_quantities.py
     *({name: value} for name in BODY if name != "radiation_rate" for value in (None, "x", NAN)),
-    *({name: []} for name in ("frequency_hz", "mass", "damping")),
     {"mass": [*USUAL.mass, 0.1]},
-    {"mass": [-1.0, *USUAL.mass[1:]]},
-    {"frequency_hz": [0.0, *USUAL.frequency_hz[1:]]},
     {"damping": [-1e-9, *USUAL.damping[1:]]},
     {"sections": [[1.0, 1.0, 0.0, 1.1], *USUAL.sections[1:]]},
-    {"sections": [[1.0, 1.0, 1.9, 0.1], *USUAL.sections[1:]]},
     {"sections": [*USUAL.sections] * 3},
 ]
 
@@ -784,7 +758,7 @@ def no_beginnings():
         *({"room": room} for room in (0, 1, None, "yes")),
         *({"body": body} for body in (-1, 0.5, "x", None, 2**60)),
         *({"quantities": of} for of in (None, [], 3, {"": 1}, {"string_1": 3}, {"body": 3})),
-        *({"quantities": {"string_1": {"T": of}}} for of in (0, -50, 1e9, NAN, "x", None, [50])),
+        {"quantities": {"string_1": {"T": 0}}},
         *({"quantities": {"body": {**BODY, **part}}} for part in NO_BODIES),
         *({"calibration": number} for number in (0, 1, 2, -1, 10**400)),
         *({"bowing": number} for number in (0, 1, 2, -1)),
@@ -799,20 +773,17 @@ def no_beginnings():
         ),
         *({"bowing": bowing} for bowing in (None, 1.0, [], BOWING[1:], [*BOWING, BOWING[0]], "x")),
         {"bowing": [[row[1:] for row in rows] for rows in BOWING]},
-        {"bowing": [*BOWING[1:], BOWING[0][1:]]},
         {"bowing": [*BOWING[1:], [*BOWING[0][1:], BOWING[0][0][1:]]]},
         *({"bowing": bowing_with(value)} for value in (NAN, INFINITY, "a", None, 10**400)),
         {"bowing": BOWING[0][0]},  # of one place
         *({"calibration": calibration} for calibration in (0, [], {}, "x", True)),
         *({"calibration": {**CALIBRATION, "a4": a4}} for a4 in (0.0, -440.0, NAN, INFINITY, "x")),
-        *({"calibration": {**CALIBRATION, "a4": a4}} for a4 in (None, 1e9, 1e-300, 10**400)),
         *(
             {"calibration": {**CALIBRATION, name: value}}
             for name in ("tensions", "sharpening", "levels")
             for value in (None, [], 1.0, [1.0], [[], []], "x", CALIBRATION["tensions"][:1])
         ),
         {"calibration": {**CALIBRATION, "tensions": [NAN, NAN]}},
-        {"calibration": {**CALIBRATION, "tensions": [-50.0, 64.0]}},
         {"calibration": {**CALIBRATION, "tensions": [1e6, 64.0]}},
         {"calibration": {**CALIBRATION, "levels": CALIBRATION["sharpening"]}},
         {"calibration": {**CALIBRATION, "sharpening": [[[NAN] * 4] * 18, [[0.0] * 4] * 18]}},

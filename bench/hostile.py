@@ -117,10 +117,7 @@ class Served:
 class Playing:
     """Two players: one by UDP, who pings, too, and measures how long answers take; one by MIDI.
 
-    Parameters
-    ----------
-    midi : MidiOut, optional
-        Without it, nobody plays by MIDI.
+    `midi`: without it, nobody plays by MIDI.
     """
 
     def __init__(self, port: int, midi: Any = None) -> None:

@@ -54,16 +54,10 @@ REFINED: dict[str, dict[str, Any]] = {
 class Kernel:
     """The kernel after half a second of playing.
 
-    Parameters
-    ----------
-    fingers, down : int
-        Number of fingers, and of those that are down; others are up, near the loop.
-    force : float
-        Of the bow (N).
-    vibrato : bool
-        Whether the fingers move.
-    changes : dict
-        Of the instrument.
+    `fingers`, `down`: number of fingers, and of those that are down; others are up, near the loop.
+    `force`: of the bow (N).
+    `vibrato`: whether the fingers move.
+    `changes`: of the instrument.
     """
 
     def __init__(

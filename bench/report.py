@@ -48,12 +48,8 @@ def run(
 ) -> None:
     """Parse the command line, measure, print a table and write the figures where wanted.
 
-    Parameters
-    ----------
-    measure : callable
-        Returns the rows of the table by their names, each of values by columns.
-    more : tuple
-        Options by name: the default, and what it is.
+    `measure`: returns the rows of the table by their names, each of values by columns.
+    `more`: options by name: the default, and what it is.
     """
     parser = options(doc or "")
     for name, (default, about) in more.items():

@@ -20,12 +20,9 @@ PARAMETER, STEPS = "/playing/variation", 10_000  # whose values tell wishes apar
 def visit(url: str, listeners: int, seconds: float | None, results: Any) -> None:
     """Look, play and listen.
 
-    Parameters
-    ----------
-    seconds : float or None
-        For so long; None is until it is killed.
-    results : Queue
-        Gets the values wished and the times, and of one listener the frames heard and the times.
+    `seconds` (float or None): for so long; None is until it is killed.
+    `results`: gets the values wished and the times, and of one listener the frames heard and the
+    times.
     """
     sent: list[tuple[float, float]] = []
     heard: list[list[tuple[int, float]]] = [[] for _ in range(listeners)]

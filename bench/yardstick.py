@@ -56,10 +56,7 @@ class Run:
 class Yardstick:
     """The compiled yardstick.
 
-    Raises
-    ------
-    FileNotFoundError
-        Where no C++ compiler is found.
+    Raises FileNotFoundError where no C++ compiler is found.
     """
 
     def __init__(self, folder: Path) -> None:

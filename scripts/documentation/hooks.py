@@ -187,10 +187,7 @@ def page_of_code(path: str) -> str:
 def _instrument() -> list[str]:
     """Write the page of the instrument, once; its files.
 
-    Raises
-    ------
-    PluginError
-        Where there is no module for it, and nothing to compile it with.
+    Raises PluginError where there is no module for it, and nothing to compile it with.
     """
     try:
         return [path.as_posix() for path in write_page(Path(_scratch.name))]

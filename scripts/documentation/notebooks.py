@@ -24,11 +24,8 @@ _PLAYER = re.compile(r'<audio[^>]* src="data:audio/wav;base64,([^"]+)"')
 def shown(path: Path) -> tuple[str, dict[str, bytes]]:
     """Return a notebook as Markdown, and the pictures and sounds that it links to, by name.
 
-    Parameters
-    ----------
-    path : Path
-        The notebook (nbformat 4), whose first cell begins with its title. What it shows is taken
-        from where notebooks were run, or else from its kept outputs.
+    `path`: the notebook (nbformat 4), whose first cell begins with its title. What it shows is
+    taken from where notebooks were run, or else from its kept outputs.
     """
     if run := os.environ.get(RUN):
         path = Path(run) / path.name
@@ -50,10 +47,7 @@ def shown(path: Path) -> tuple[str, dict[str, bytes]]:
 def run_all(folder: Path) -> None:
     """Run the notebooks, and keep them with their outputs in a new folder.
 
-    Raises
-    ------
-    YehuError
-        Where one fails; what it says goes to stderr.
+    Raises YehuError where one fails; what it says goes to stderr.
     """
     folder.mkdir(parents=True)
     for path in sorted(FOLDER.glob("*.ipynb")):

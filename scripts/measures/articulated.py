@@ -29,14 +29,9 @@ Range = tuple[float, float, float]  # lowest, highest, and the shortest notes (s
 class Stated:
     """What an articulation should come to.
 
-    Attributes
-    ----------
-    may : (float, float)
-        Between which pitches (semitones) it may be.
-    ranges : dict
-        By the names of `Figures`: what their median lies in.
-    source : str
-        Where that is from.
+    `may`: between which pitches (semitones) it may be.
+    `ranges`: by the names of `Figures`: what their median lies in.
+    `source`: where that is from.
     """
 
     ranges: dict[str, Range]

@@ -91,32 +91,22 @@ def _not_too_low(frames: Array, found_hz: Array) -> Array:
 class Figures:
     """How one note moved. Pitches in semitones from its own; times in ms.
 
-    Attributes
-    ----------
-    rise : float
-        Until the level is within 3 dB of its highest in the first 0.3 s.
-    lasts : float
-        How long the level is within SOUNDING_DB of the loudest moment.
-    sounds : float
-        The same as a share (%) of the note's length.
-    strokes, stroke_rate, dip : float
-        Peaks of the level within LOUD_DB that stand out by STROKE_DB; how many come in a second;
-        how deep the level falls between them (dB).
-    begins, ends, low, high : float
-        Pitch at the beginning and before the end, and the 3rd and 97th of a hundred.
-    arrives : float
-        From when on the first half of the note is on its pitch; NaN if never.
-    beats, beat_rate, width : float
-        The same of the pitch: peaks, how many in a second, their height (cents).
-    swell, loudest : float
-        Level of the loudest moment over those of both ends (dB); when it is (share of the length).
-    fade : float
-        Level of the first 60 ms that sound over the last 60 ms of the note (dB).
-    off : float
-        Of the loud time from 30 ms on, the share (%) without a pitch or outside of where it may be,
-        for LASTING_S or longer: a window on the step to another pitch has both, and so none.
-    level : float
-        Of all of the note (dB).
+    `rise`: until the level is within 3 dB of its highest in the first 0.3 s.
+    `lasts`: how long the level is within SOUNDING_DB of the loudest moment.
+    `sounds`: the same as a share (%) of the note's length.
+    `strokes`, `stroke_rate`, `dip`: peaks of the level within LOUD_DB that stand out by STROKE_DB;
+    how many come in a second; how deep the level falls between them (dB).
+    `begins`, `ends`, `low`, `high`: pitch at the beginning and before the end, and the 3rd and 97th
+    of a hundred.
+    `arrives`: from when on the first half of the note is on its pitch; NaN if never.
+    `beats`, `beat_rate`, `width`: the same of the pitch: peaks, how many in a second, their height
+    (cents).
+    `swell`, `loudest`: level of the loudest moment over those of both ends (dB); when it is (share
+    of the length).
+    `fade`: level of the first 60 ms that sound over the last 60 ms of the note (dB).
+    `off`: of the loud time from 30 ms on, the share (%) without a pitch or outside of where it may
+    be, for LASTING_S or longer: a window on the step to another pitch has both, and so none.
+    `level`: of all of the note (dB).
     """
 
     rise: float
@@ -143,10 +133,7 @@ class Figures:
 def figures(track: Track, begin_s: float, length_s: float, pitch: float, may: Array) -> Figures:
     """Return the figures of a note.
 
-    Parameters
-    ----------
-    may : (float, float)
-        Between which pitches (semitones from its own) it may be.
+    `may`: between which pitches (semitones from its own) it may be.
     """
     note = track.part(begin_s, begin_s + length_s)
     level, tone = note.level_db, note.pitch - pitch

@@ -11,10 +11,7 @@ from typing import Any
 class Share:
     """The cases that are right, of one part of a measure.
 
-    Attributes
-    ----------
-    counts : bool
-        Whether the part counts for the whole measure; others are there to compare with.
+    `counts`: whether the part counts for the whole measure; others are there to compare with.
     """
 
     what: str

@@ -35,22 +35,13 @@ Sound = Any
 class Setup:
     """What all takes of a measure have in common.
 
-    Attributes
-    ----------
-    rate : float
-        Sample rate (Hz).
-    variation : float
-        `/playing/variation`.
-    seed : int
-        Of all that is left to chance.
-    way : str, optional
-        The only way of bowing that is measured (`shuffled`).
-    own : Quantities
-        The instrument before it is tuned.
-    bowing : ndarray, optional
-        A practice; by default that which comes with the program.
-    phrasing : float
-        `/playing/phrasing`.
+    `rate`: sample rate (Hz).
+    `variation`: `/playing/variation`.
+    `seed`: of all that is left to chance.
+    `way`: the only way of bowing that is measured (`shuffled`).
+    `own`: the instrument before it is tuned.
+    `bowing`: A practice; by default that which comes with the program.
+    `phrasing`: `/playing/phrasing`.
     """
 
     rate: float
@@ -91,14 +82,10 @@ def _believe(instrument: Instrument, quantities: Quantities) -> None:
 class Take:
     """One performance on one instrument.
 
-    Parameters
-    ----------
-    settings : mapping
-        Held values of parameters, by address.
-    quantities : Quantities
-        Another instrument before it is tuned; it has the calibration of that of the setup.
-    tension : float
-        Factor on the tension of both strings, of which the player does not know.
+    `settings`: held values of parameters, by address.
+    `quantities`: another instrument before it is tuned; it has the calibration of that of the
+    setup.
+    `tension`: factor on the tension of both strings, of which the player does not know.
     """
 
     def __init__(

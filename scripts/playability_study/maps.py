@@ -24,11 +24,8 @@ LEAST_RUN = 3  # cells of Helmholtz motion that count as a band
 class Maps:
     """The maps of one study: notes (or bows), force, and place or acceleration.
 
-    Attributes
-    ----------
-    regime, periods : ndarray [shape=(maps, forces, places)]
-    lower, upper : ndarray [shape=(maps, places)]
-        Schelleng's limits (N).
+    `regime`, `periods` (ndarray [shape=(maps, forces, places)]): what is found.
+    `lower`, `upper` (ndarray [shape=(maps, places)]): Schelleng's limits (N).
     """
 
     facts: dict[str, Any]

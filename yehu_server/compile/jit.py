@@ -53,11 +53,6 @@ class Deferred:
     """Stands for something of numba's, made when it is first needed.
 
     Where machine code is kept nothing is, and numba is not even imported.
-
-    Parameters
-    ----------
-    make : callable
-        Makes it.
     """
 
     def __init__(self, make: Callable[[], Any]) -> None:
@@ -184,14 +179,10 @@ UInt64 = Annotated[Any, "uint64"]
 class Native:
     """A function compiled apart: compiled code calls it by its name, C and ctypes by its address.
 
-    Parameters
-    ----------
-    function : callable
-        Its annotations are its types: int, float, None, Any for an address, and what is in
-        ``Annotated``, a name of `C_TYPES` or the dtype of a record, which is passed by address. A
-        bool is passed as an int, since WebAssembly and numba pass bits in different ways.
-    calls : sequence of Native, optional
-        Those that it calls, where that is not what its code names.
+    `function`: its annotations are its types: int, float, None, Any for an address, and what is in
+    ``Annotated``, a name of `C_TYPES` or the dtype of a record, which is passed by address. A bool
+    is passed as an int, since WebAssembly and numba pass bits in different ways.
+    `calls` (sequence of Native): those that it calls, where that is not what its code names.
     """
 
     def __init__(self, function: Callable[..., Any], calls: Sequence[Native] | None = None) -> None:
@@ -288,10 +279,7 @@ class Native:
     def address(self) -> int:
         """The function's address, for C.
 
-        Raises
-        ------
-        YehuError
-            Where nothing is compiled.
+        Raises YehuError where nothing is compiled.
         """
         if IS_PLAIN:
             raise YehuError("NUMBA_DISABLE_JIT: plain Python has no address for C")

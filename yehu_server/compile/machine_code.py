@@ -68,16 +68,9 @@ def file_in(folder: Path, what: str = PLAYING) -> Path:
 def keep(folder: Path, sources: str, functions: Iterable[Any], what: str = PLAYING) -> None:
     """Write the file, of functions that are in the cache.
 
-    Parameters
-    ----------
-    functions : iterable of jit.Native, each after those that it calls
+    `functions` (iterable of jit.Native): each after those that it calls.
 
-    Raises
-    ------
-    OSError
-        Where it cannot be written.
-    SealError
-        Where the cache is damaged.
+    Raises OSError where it cannot be written; SealError where the cache is damaged.
     """
     sizes, objects = [], []
     for function in functions:

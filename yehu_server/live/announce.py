@@ -34,11 +34,7 @@ class Service:
 def announced(osc: OscPorts, web: WebServer | None, wanted: bool | None) -> list[Service]:
     """The services to announce: by default those that other machines can reach.
 
-    Parameters
-    ----------
-    wanted : bool, optional
-        Announce all of them (True), or none (False).
-
+    `wanted`: announce all of them (True), or none (False).
     A port that listens at all addresses is announced at the machine's address on its network.
     """
     services = [Service(OSC, _reached(osc.host), osc.port)]

@@ -15,16 +15,10 @@ from yehu_server.errors import ParameterError, did_you_mean
 class BowStep:
     """What the bow does from a time on in a note: `at_ms` and a share of the note's length.
 
-    Attributes
-    ----------
-    speed, weight : float
-        Factors on the bow's speed and on its pressure.
-    ramp_ms, ramp_share : float
-        Time in which it comes to that: ms, and a share of the note's length.
-    is_on : bool
-        Whether the hair lies on the string.
-    turns : bool
-        Whether the bow changes its direction.
+    `speed`, `weight`: factors on the bow's speed and on its pressure.
+    `ramp_ms`, `ramp_share`: time in which it comes to that: ms, and a share of the note's length.
+    `is_on`: whether the hair lies on the string.
+    `turns`: whether the bow changes its direction.
     """
 
     at_ms: float = 0.0
@@ -41,10 +35,7 @@ class BowStep:
 class FingerStep:
     """Where a finger goes at a time of a note: semitones from the note's pitch.
 
-    Attributes
-    ----------
-    glide_ms : float
-        The time in which it slides there; 0: the next finger is put down there.
+    `glide_ms`: the time in which it slides there; 0: the next finger is put down there.
     """
 
     semitones: float
@@ -57,14 +48,9 @@ class FingerStep:
 class Vibrato:
     """A vibrato of an articulation's own.
 
-    Attributes
-    ----------
-    cents : float
-        To either side, or where it goes `upward` from the pitch to twice as much.
-    press : float
-        Share of the finger's force that varies with it.
-    delay_ms : float
-        As `/playing/vibrato_delay`.
+    `cents`: to either side, or where it goes `upward` from the pitch to twice as much.
+    `press`: share of the finger's force that varies with it.
+    `delay_ms`: as `/playing/vibrato_delay`.
     """
 
     cents: float
@@ -78,27 +64,16 @@ class Vibrato:
 class Articulation:
     """One articulation.
 
-    Attributes
-    ----------
-    name, chinese, about : str
-        As players call it, and what the hands do.
-    source : str
-        Where its figures are from.
-    attack : float
-        Factor on the time of the bow's attack.
-    length_s : float
-        The length assumed of a note whose length is not known.
-    again_ms, sooner : float
-        The finger's steps, or the bow's where the fingers have none, come again so long after they
-        began, and each time sooner by this share of it; at 0 ms they do not.
-    times : int
-        How often they come; 0: while the note sounds.
-    tremolo, tremolo_depth : float
-        Strokes a second; as `/playing/tremolo_depth`.
-    is_plucked : bool
-    touches : bool
-        Whether a finger touches an open string at a node, where the note is one
-        (`core.player.harmonics`).
+    `name`, `chinese`, `about`: as players call it, and what the hands do.
+    `source`: where its figures are from.
+    `attack`: factor on the time of the bow's attack.
+    `length_s`: the length assumed of a note whose length is not known.
+    `again_ms`, `sooner`: the finger's steps, or the bow's where the fingers have none, come again
+    so long after they began, and each time sooner by this share of it; at 0 ms they do not.
+    `times`: how often they come; 0: while the note sounds.
+    `tremolo`, `tremolo_depth`: strokes a second; as `/playing/tremolo_depth`.
+    `touches`: whether a finger touches an open string at a node, where the note is one
+    (`core.player.harmonics`).
     """
 
     name: str
@@ -267,10 +242,7 @@ LAST = 127  # the range has room for what is yet to come, and is a controller's
 def number_of(name: str) -> int:
     """The value of `/playing/articulation` for a name, English or Chinese.
 
-    Raises
-    ------
-    ParameterError
-        Where there is none; with a similar name if there is one.
+    Raises ParameterError where there is none; with a similar name if there is one.
     """
     for number, articulation in enumerate(ARTICULATIONS):
         if name in (articulation.name, articulation.chinese):

@@ -62,10 +62,8 @@ def document_of(name: Path | str, text: str = "") -> Document:
 def preset_from(document: Document, name: str) -> Preset:
     """Check and convert the entries of a preset file.
 
-    Raises
-    ------
-    PresetError
-        Where it is no preset, is of a newer version, or has wrong values; it names all of them.
+    Raises PresetError where it is no preset, is of a newer version, or has wrong values; it names
+    all of them.
     """
     table = document.toml()
     version = table.data.get("version")

@@ -75,10 +75,7 @@ class Param:
     def accept(self, value: float) -> float:
         """Clamp a value to the range.
 
-        Raises
-        ------
-        ParameterError
-            Where the value is no finite number.
+        Raises ParameterError where the value is no finite number.
         """
         try:
             return min(max(number(value), self.lo), self.hi)
@@ -88,10 +85,7 @@ class Param:
     def within(self, value: Any) -> float:
         """A value within the range.
 
-        Raises
-        ------
-        ParameterError
-            Where it is none, without the address.
+        Raises ParameterError where it is none, without the address.
         """
         return number(value, self.lo, self.hi, self.unit)
 

@@ -211,10 +211,7 @@ SLOT = {param.address: slot for slot, param in enumerate(ENGINE)}
 def find(address: str) -> Param:
     """Find the row of an address.
 
-    Raises
-    ------
-    ParameterError
-        Where there is none; with a similar address if there is one.
+    Raises ParameterError where there is none; with a similar address if there is one.
     """
     try:
         return BY_ADDRESS[address]
@@ -235,10 +232,8 @@ def read(values: Mapping[str, float], address: str) -> float:
 def assignment(text: str) -> tuple[str, float]:
     """Read ``ADDRESS=VALUE``.
 
-    Raises
-    ------
-    ParameterError
-        Where the text has another form, the address is unknown, or the value is out of range.
+    Raises ParameterError where the text has another form, the address is unknown, or the value is
+    out of range.
     """
     address, equals, value = text.partition("=")
     if not equals:

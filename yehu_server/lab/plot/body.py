@@ -36,10 +36,7 @@ def write_picture(fit: Fit, target: Path, *, overwrite: bool = False) -> None:
 def draw(fit: Fit, figure: Figure | None = None) -> Figure:
     """Draw a fit into a figure, by default a new one.
 
-    Raises
-    ------
-    ParameterError
-        Where matplotlib is missing.
+    Raises ParameterError where matplotlib is missing.
     """
     figure = figure_of(figure, *SIZE)
     _draw(figure, fit)

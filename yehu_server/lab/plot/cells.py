@@ -57,10 +57,7 @@ LIMITS = {"upper": ("k-", "Schelleng's upper limit"), "lower": ("k--", "Schellen
 def axes_of(ax: Any) -> Axes:
     """Return the axes to draw into: those given, or matplotlib's current ones.
 
-    Raises
-    ------
-    ParameterError
-        Where matplotlib is missing, or `ax` is something else.
+    Raises ParameterError where matplotlib is missing, or `ax` is something else.
     """
     need("matplotlib", "yehu.plot", "plots")
     from matplotlib.axes import Axes

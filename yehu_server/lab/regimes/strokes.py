@@ -89,13 +89,10 @@ def control_curves_of(curves: dict[int, list[tuple[float, float]]]) -> ControlCu
 class Instruments(NamedTuple):
     """What `find` bows.
 
-    Attributes
-    ----------
-    models : ndarray [dtype=layout.MODEL]
-    rests : ndarray [dtype=layout.STATE]
-        The state from which each model begins.
-    refined : ndarray [dtype=layout.REFINED]
-        What each has besides; one with no points has nothing.
+    `models` (ndarray [dtype=layout.MODEL]): what is bowed.
+    `rests` (ndarray [dtype=layout.STATE]): the state from which each model begins.
+    `refined` (ndarray [dtype=layout.REFINED]): what each has besides; one with no points has
+    nothing.
     """
 
     models: Array

@@ -86,14 +86,9 @@ ENTRIES = {
 class Tuned:
     """An instrument that is tuned.
 
-    Attributes
-    ----------
-    calibration : Calibration
-        By which fingers are placed.
-    quantities : Quantities
-        As it is bowed.
-    measured : Quantities
-        The instrument that was calibrated, before it was tuned.
+    `calibration`: by which fingers are placed.
+    `quantities`: as it is bowed.
+    `measured`: the instrument that was calibrated, before it was tuned.
     """
 
     calibration: Calibration

@@ -15,8 +15,14 @@ from sound import run, run_for
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
-from yehu_server.core.player.intonation import position_of
+from yehu_server.core.player.calibration import (
+    OPEN_NOTES,
+    PITCHES,
+    ROWS_OF_A_YEHU,
+    SPEEDS,
+    Calibration,
+)
+from yehu_server.core.player.intonation import balance_db, position_of
 from yehu_server.playing import calibration_store
 from yehu_server.playing.calibration import _completed, calibration_key
 from yehu_server.playing.calibration_store import SHIPPED, calibration_for
@@ -90,7 +96,19 @@ def test_the_sharpening_is_read_at_its_notes_and_speeds():
     for pitch in (67.5, 67.7, 75.3):  # among quarter tones, between them, among semitones
         assert sharpening(0, pitch, SPEEDS[3]) == pytest.approx(10.0 * pitch + 3.0)
     assert sharpening(0, 60.0, 0.01) == pytest.approx(660.0)
-    assert sharpening(1, 99.0, 9.0) == pytest.approx(893.0)
+    assert sharpening(1, 99.0, 9.0) == pytest.approx(963.0)
+
+
+def test_notes_that_a_yehu_lacks_do_not_count_in_the_average_loudness():
+    usual = calibration_for(44100.0)
+    louder = tuple(
+        (*rows[: ROWS_OF_A_YEHU + 1], *(((20.0,) * 4,) * (len(rows) - ROWS_OF_A_YEHU - 1)))
+        for rows in usual.levels
+    )
+    players = [calibrated_player(each) for each in (usual, replace(usual, levels=louder))]
+    for string, pitch, is_same in ((0, 70.0, True), (1, 89.0, True), (1, 94.0, False)):
+        one, other = (balance_db(player, string, pitch, 0.2) for player in players)
+        assert (one == other) == is_same
 
 
 def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 440.0) -> float:

@@ -16,10 +16,16 @@ from sound import alone, bow, rms, run
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.player.bowing import default_recipes
-from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration
+from yehu_server.core.player.calibration import (
+    PITCHES,
+    ROWS_OF_A_YEHU,
+    SPEEDS,
+    Calibration,
+)
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import (
@@ -389,6 +395,17 @@ def test_wishes_of_several_players_are_read_in_the_order_of_frames(tmp_path):
     assert read.beginning.has_room
 
 
+def test_a_stage_of_players_who_have_nothing_in_common_is_read_again(tmp_path):
+    players = tuple(
+        InstrumentSpec(RATE, calibration=measured(i), bowing=default_recipes() * (1.0 + i / 97.0))
+        for i in range(MOST_PARTS)
+    )
+    CaptureWriter(tmp_path / "c", beginning=SessionStart(players)).close(9)
+    again = read_capture(tmp_path / "c").beginning.players
+    assert [each.calibration for each in again] == [each.calibration for each in players]
+    np.testing.assert_array_equal([each.bowing for each in again], [e.bowing for e in players])
+
+
 def test_what_players_have_in_common_is_written_once(tmp_path):
     of = measured()
     players = [InstrumentSpec(RATE, calibration=of, seed=seed, body=seed) for seed in range(3)]
@@ -743,6 +760,21 @@ def test_the_header_that_is_changed_below_is_one(tmp_path, write):
 def test_a_table_of_a_time_when_both_strings_had_one_counts_for_both(tmp_path, write):
     path = with_header(write(tmp_path / "c", end=5), calibration=CALIBRATION, bowing=BOWING[0])
     assert read_capture(path).beginning.players[0].bowing.tolist() == [BOWING[0]] * 2
+
+
+def test_tables_of_a_time_when_they_had_fewer_high_notes_go_on_as_they_end(tmp_path, write):
+    former = {
+        name: [rows[: ROWS_OF_A_YEHU + more] for rows in CALIBRATION[name]]
+        for name, more in (("sharpening", 0), ("levels", 1))
+    }
+    path = with_header(
+        write(tmp_path / "c", end=5), calibration={**CALIBRATION, **former}, bowing=BOWING
+    )
+    found = read_capture(path).beginning.players[0].calibration
+    for name, tables in former.items():
+        for table, rows in zip(getattr(found, name), tables, strict=True):
+            assert table == (*rows, *[rows[-1]] * (len(table) - len(rows)))
+    assert {len(table) for table in found.sharpening} == {len(PITCHES[0])}
 
 
 def no_beginnings():

@@ -120,6 +120,7 @@ def calibrate(
         (string, pitch + untuned.above(string))
         for string, pitches in enumerate(PITCHES)
         for pitch in pitches
+        if pitch <= OPEN_NOTES[string] + math.ceil(quantities.strings[string].reach)
     ]
     rows: list[Any] = []
     with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
@@ -132,7 +133,9 @@ def calibrate(
                 progress(done, len(jobs))
     sharpening, levels = [], []
     for string, note in enumerate(open_notes):
-        own = np.array([row for (on, _), row in zip(jobs, rows, strict=True) if on == string])
+        stopped = [row for (on, _), row in zip(jobs, rows, strict=True) if on == string]
+        own = np.full((len(PITCHES[string]), len(SPEEDS), 2), np.nan)
+        own[: len(stopped)] = stopped
         open_levels = [_bow(tuned, string, note, speed, None)[1] for speed in SPEEDS]
         sharpening.append(_completed(own[:, :, 0], USUAL_CENTS[string]))
         levels.append(_completed(np.vstack([open_levels, own[:, :, 1]]), SILENCE_DB))

@@ -18,7 +18,14 @@ import numpy as np
 
 from yehu_server.compile.cache_folder import data_folder
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration, Tables
+from yehu_server.core.player.calibration import (
+    OPEN_NOTES,
+    PITCHES,
+    ROWS_OF_A_YEHU,
+    SPEEDS,
+    Calibration,
+    Tables,
+)
 from yehu_server.errors import ParameterError
 from yehu_server.playing.calibration import (
     PLAUSIBLE_CENTS,
@@ -115,6 +122,10 @@ def _tables(data: Any, more_rows: int, lo: float, hi: float) -> Tables:
     tables = []
     for rows, pitches in zip(data, PITCHES, strict=True):
         table = np.array(rows, np.float64)
+        if len(table) == ROWS_OF_A_YEHU + more_rows:  # of captures made when tables ended there
+            table = np.concatenate(
+                [table, table[-1:].repeat(len(pitches) - ROWS_OF_A_YEHU, axis=0)]
+            )
         if table.shape != (len(pitches) + more_rows, len(SPEEDS)):
             raise ValueError("shape")
         if not np.all((table >= lo) & (table <= hi)):  # also refuses NaN

@@ -19,7 +19,7 @@ from yehu_server.util import PACKAGE
 
 MAX_TEXT_BYTES = 64 * 2**20
 PIECE_BYTES = 2**20
-MAX_LINE_BYTES = 64 * 1024
+MAX_LINE_BYTES = 1 << 20  # the first of a capture tells how each player of a stage bows each note
 MAX_SETTINGS_BYTES = 2**20  # for files that are read while the instrument plays
 # Names that come over the network: no path, no hidden file.
 PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")

@@ -13,10 +13,12 @@ OPEN_NOTES = (65, 72)  # F4 and C5, of a yehu
 SPEEDS = (0.12, 0.16, 0.2, 0.26)  # m/s
 # The stopped pitches measured on each string: semitones, and quarter tones where the body's mode
 # at 439 Hz bends pitches most, and at 850 Hz, where the body radiates 9 dB more than beside it.
+# A yehu is stopped in the first ROWS_OF_A_YEHU; other fiddles may reach higher.
 PITCHES = (
-    (*(66.0 + 0.5 * step for step in range(13)), *(float(note) for note in range(73, 78))),
-    (*(float(note) for note in range(73, 81)), 80.5, *(float(note) for note in range(81, 90))),
+    (*(66.0 + 0.5 * step for step in range(13)), *(float(note) for note in range(73, 85))),
+    (*(float(note) for note in range(73, 81)), 80.5, *(float(note) for note in range(81, 97))),
 )
+ROWS_OF_A_YEHU = 18
 
 
 @dataclass(frozen=True)

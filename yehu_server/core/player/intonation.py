@@ -9,7 +9,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.layout import STRINGS
-from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS
+from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, ROWS_OF_A_YEHU, SPEEDS
 from yehu_server.core.player.rows import CALIBRATION
 
 Array = Any
@@ -46,14 +46,14 @@ def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float)
 def balance_db(p: Any, string: int, pitch: float, speed: float) -> float:
     """Gain (dB) that makes a note as loud as the average note, at a wished `speed` (m/s).
 
-    The pitch of an open string is that of its note.
+    The pitch of an open string is that of its note. The average is of the notes of a yehu.
     """
     total = 0.0
     for on in range(STRINGS):
-        for row in range(len(p.levels[on])):
+        for row in range(ROWS_OF_A_YEHU + 1):
             total += at_speed(p.levels[on, row], speed)
     own = read(p.levels[string], ALL[string], in_tables(p, string, pitch), speed)
-    return float(total / (STRINGS * len(p.levels[0])) - own)
+    return float(total / (STRINGS * (ROWS_OF_A_YEHU + 1)) - own)
 
 
 @compiled_exactly

@@ -1,25 +1,45 @@
 """Wide hair, torsion, other friction: the energy ledger, and the plain motion at no width."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from core.physics.runs import play
 from core.physics.test_energy import balanced, performance
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
+from yehu_server.core.physics import layout
 from yehu_server.core.physics.quantities import Quantities, override
 
 YEHU = Quantities()
-WIDE = {"bow": {"width": 0.008}}
-KINDS = {
-    "torsion": {"torsion": "on"},
-    "width": WIDE,
-    "both": WIDE | {"torsion": "on"},
-    "hyperbolic": {"bow": {"friction": "hyperbolic"}},
-    "both, viscous": {"torsion": "on", "bow": {"width": 0.008, "epsilon_2": 0.4}},
-    "both, thermal": {
-        "torsion": "on",
-        "bow": {"width": 0.008, "points": 3, "friction": "thermal"},
-    },
-}
+BOTH = {"torsion": "on", "bow": {"width": 0.008}}
+FRAMES = 20_000
+BOWS = st.fixed_dictionaries(
+    {
+        "width": st.just(0.0) | st.floats(1e-3, 0.03),
+        "points": st.integers(2, layout.MAX_POINTS),
+        "friction": st.sampled_from(("elasto-plastic", "thermal")),
+        "epsilon_2": st.just(0.0) | st.floats(0.0, 2.0),
+    }
+) | st.just({"friction": "hyperbolic"})  # which has no width
+KINDS = st.fixed_dictionaries(
+    {
+        "torsion": st.sampled_from(("off", "on")),
+        "tension_modulation": st.floats(0.0, 1.0),
+        "felt_loss": st.floats(0.0, 3e3),
+        "bow": BOWS,
+    }
+)
+
+
+def of_modes(count, seed):
+    """The body's radiation with modes anywhere, none undamped."""
+    chance = np.random.default_rng(seed)
+    hertz = np.sort(chance.uniform(150.0, 6000.0, count))
+    mass = chance.uniform(0.02, 0.5, count)
+    damping = mass * 2.0 * np.pi * hertz * chance.uniform(0.01, 0.05, count)
+    return replace(YEHU.body, frequency_hz=tuple(hertz), mass=tuple(mass), damping=tuple(damping))
 
 
 def jumps(t):
@@ -37,13 +57,24 @@ def jumps(t):
     }
 
 
-@pytest.mark.parametrize("rate", [44100.0, 88200.0, 352800.0])
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_ledger_closes_with_torsion_width_and_other_friction(kind, rate):
-    quantities = override(YEHU, KINDS[kind])
-    seconds = 0.4 if rate < 1e5 else 0.1
+@settings(max_examples=10)
+@given(
+    kind=KINDS,
+    modes=st.integers(1, layout.MAX_MODES),
+    rate=st.floats(44.1e3, 352.8e3),
+    seed=st.integers(0, 99),
+)
+@example(
+    kind={"torsion": "on", "bow": {"width": 0.008, "points": 3, "friction": "thermal"}},
+    modes=layout.MAX_MODES,
+    rate=44.1e3,
+    seed=0,
+)
+@example(kind=BOTH, modes=11, rate=352.8e3, seed=1)
+def test_the_ledger_closes_with_torsion_width_other_friction_and_any_body(kind, modes, rate, seed):
+    quantities = replace(override(YEHU, kind), body=of_modes(modes, seed))
     for curves, fingers in ((performance, 1), (jumps, 2)):
-        run = play(curves, seconds, rate, quantities=quantities, fingers=fingers)
+        run = play(curves, FRAMES / rate, rate, quantities=quantities, fingers=fingers)
         balanced(run)
         assert run["loss_friction"].max() > 1e-3
         assert np.abs(run["f_b"]).max() > 0.1
@@ -71,6 +102,6 @@ def test_each_strip_of_wide_hair_slips_by_itself():
 def test_a_light_bow_that_always_slips_feels_the_law_of_the_whole_hair():
     bow = YEHU.bow
     mu = bow.mu_C + (bow.mu_S - bow.mu_C) * np.exp(-((1.0 / bow.v_s) ** 2))
-    wide = override(YEHU, KINDS["both"])
+    wide = override(YEHU, BOTH)
     run = play({"F_N": 0.01, "v_b": 1.0}, 0.05, quantities=wide)
     assert np.abs(run["f_b"][-100:]).mean() == pytest.approx(0.01 * mu, rel=0.02)

@@ -6,9 +6,9 @@
  */
 
 import { writeFileSync } from "node:fs";
-import { FLAGS, open, run } from "../tests/live/page/browser.mjs";
+import { contextOf, launch, open } from "../tests/live/page/browser.mjs";
 
-const [, , , , song, seconds, recorded] = process.argv;
+const [url, program, song, seconds, recorded] = process.argv.slice(2);
 const MICROPHONE = [
   "--use-fake-device-for-media-stream",
   "--use-fake-ui-for-media-stream",
@@ -61,21 +61,20 @@ function recordBoth() {
   };
 }
 
-await run(
-  async (browser, url) => {
-    await browser.addInitScript(recordBoth);
-    const { page, errors } = await open(browser, url);
-    await page.click("#play");
-    await page.click("#tab-connect");
-    await page.getByRole("button", { name: "Use the microphone" }).click();
-    await page.getByText("Wear headphones").waitFor();
-    await page.waitForTimeout(1000 * Number(seconds));
-    const text = await page.evaluate(() => globalThis.recordedText());
-    writeFileSync(recorded, Buffer.from(text, "base64"));
-    return page.evaluate(
-      (found) => ({ ...globalThis.measured, output: globalThis.measured.output(), errors: found }),
-      errors,
-    );
-  },
-  { args: [...FLAGS, ...MICROPHONE] },
+const browser = await launch(program, MICROPHONE);
+const context = await contextOf(browser);
+await context.addInitScript(recordBoth);
+const { page, errors } = await open(context, url);
+await page.click("#play");
+await page.click("#tab-connect");
+await page.getByRole("button", { name: "Use the microphone" }).click();
+await page.getByText("Wear headphones").waitFor();
+await page.waitForTimeout(1000 * Number(seconds));
+const text = await page.evaluate(() => globalThis.recordedText());
+writeFileSync(recorded, Buffer.from(text, "base64"));
+const measured = await page.evaluate(
+  (found) => ({ ...globalThis.measured, output: globalThis.measured.output(), errors: found }),
+  errors,
 );
+console.log(JSON.stringify(measured));
+await browser.close();

@@ -3,9 +3,9 @@
 //   scripts/yehu page --port 8010 &
 //   node scripts/page_figures.mjs http://127.0.0.1:8010/ /usr/bin/chromium docs/figures
 
-import { FLAGS, READY, SIZES, open, run } from "../tests/live/page/browser.mjs";
+import { READY, SIZES, contextOf, launch, open } from "../tests/live/page/browser.mjs";
 
-const [, , folder] = process.argv.slice(2);
+const [url, program, folder] = process.argv.slice(2);
 const PICTURES = [
   { name: "desk", size: SIZES.desk, colorScheme: "light", view: "see", key: "KeyR" },
   { name: "tablet", size: SIZES.tablet, colorScheme: "dark", view: "sound", key: "KeyW" },
@@ -14,28 +14,26 @@ const PICTURES = [
 ];
 const SETTLED_MS = 4000;
 
-await run(
-  async (browser, url) => {
-    for (const { name, size, colorScheme, view, key } of PICTURES) {
-      const { page } = await open(browser, url);
-      await page.emulateMedia({ colorScheme });
-      await page.setViewportSize(size);
-      await page.evaluate(() => (localStorage.yehu = '{"isTaught":true}'));
-      await page.reload();
-      await page.waitForSelector(READY);
-      if (view) await page.click(`#tab-${view}`);
-      await page.click("#start");
-      if (key) await page.keyboard.down(key);
-      else await page.locator(".tune", { hasText: "Song Bie" }).locator("button").first().click();
-      await page.waitForTimeout(SETTLED_MS);
-      await page.evaluate(() => {
-        document.activeElement.blur();
-        scrollTo(0, 0);
-      });
-      await page.screenshot({ path: `${folder}/page_${name}.png` });
-      if (key) await page.keyboard.up(key);
-      await page.close();
-    }
-  },
-  { args: FLAGS },
-);
+const browser = await launch(program);
+const context = await contextOf(browser);
+for (const { name, size, colorScheme, view, key } of PICTURES) {
+  const { page } = await open(context, url);
+  await page.emulateMedia({ colorScheme });
+  await page.setViewportSize(size);
+  await page.evaluate(() => (localStorage.yehu = '{"isTaught":true}'));
+  await page.reload();
+  await page.waitForSelector(READY);
+  if (view) await page.click(`#tab-${view}`);
+  await page.click("#start");
+  if (key) await page.keyboard.down(key);
+  else await page.locator(".tune", { hasText: "Song Bie" }).locator("button").first().click();
+  await page.waitForTimeout(SETTLED_MS);
+  await page.evaluate(() => {
+    document.activeElement.blur();
+    scrollTo(0, 0);
+  });
+  await page.screenshot({ path: `${folder}/page_${name}.png` });
+  if (key) await page.keyboard.up(key);
+  await page.close();
+}
+await browser.close();

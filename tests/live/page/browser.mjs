@@ -1,11 +1,11 @@
-/** Opens the page in a Chromium of its own, and does with it what a person would. */
+/** Opens the page in a Chromium, and does with it what a person would. */
 
-import { mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import { chromium } from "playwright-core";
 
-export const FLAGS = [
+/** A name of this machine that makes no secure context. */
+export const UNTRUSTED = "page.example";
+
+const FLAGS = [
   "--no-sandbox",
   "--disable-gpu",
   "--disable-quic",
@@ -13,6 +13,7 @@ export const FLAGS = [
   "--disable-background-networking",
   "--disable-component-update",
   "--disable-sync",
+  `--host-resolver-rules=MAP ${UNTRUSTED} 127.0.0.1`,
 ];
 
 /** What a browser calls requests that it drops itself, such as an icon's when the page is left. */
@@ -28,28 +29,24 @@ export const SIZES = {
 };
 
 /**
- * Run a scenario in a browser, and print what it returns as JSON.
- * @param {(browser: import("playwright-core").BrowserContext, url: string) => Promise<unknown>} scenario
- * @param {object} options of the context
+ * A Chromium without a window.
+ * @param {string} program
+ * @param {string[]} flags
  */
-export async function run(scenario, options = {}) {
-  const [url, program] = process.argv.slice(2);
-  const folder = mkdtempSync(join(tmpdir(), "yehu-browser-"));
-  const browser = await chromium.launchPersistentContext(folder, {
-    executablePath: program,
-    args: FLAGS,
-    headless: true,
-    viewport: SIZES.desk,
-    hasTouch: true,
-    locale: "en-GB",
-    ...options,
-  });
-  try {
-    console.log(JSON.stringify((await scenario(browser, url)) ?? null));
-  } finally {
-    await browser.close();
-    rmSync(folder, { recursive: true, force: true });
-  }
+export const launch = (program, flags = []) =>
+  chromium.launch({ executablePath: program, args: [...FLAGS, ...flags] });
+
+/**
+ * A context that remembers nothing.
+ * @param {import("playwright-core").Browser} browser
+ */
+export const contextOf = (browser) =>
+  browser.newContext({ viewport: SIZES.desk, hasTouch: true, locale: "en-GB" });
+
+/** Draws ten times a second instead of sixty, which would take most of a processor; runs in the page. */
+export function drawSeldom() {
+  globalThis.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 100);
+  globalThis.cancelAnimationFrame = clearTimeout;
 }
 
 /**

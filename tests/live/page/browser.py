@@ -1,4 +1,4 @@
-"""Serves the page to a browser, with an imitation of its sound, and drives it by Node."""
+"""Serves the page to a browser, with an imitation of its sound, and plays scenarios in it."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ import json
 import shutil
 import subprocess
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
+
+import pytest
 
 from yehu_server.ahead.build import page_linker, page_module
 from yehu_server.live.page import facts
@@ -86,11 +88,48 @@ def served(generated: Path) -> Iterator[str]:
         yield f"http://127.0.0.1:{server.server_address[1]}/"
 
 
-def drive(scenario: str, url: str, *words: str) -> Any:
-    """Run a scenario of this folder in a browser; return what it found."""
-    done = subprocess.run(
-        [str(NODE), str(HERE / scenario), url, str(CHROMIUM), *words],
-        capture_output=True, text=True, timeout=LIMIT_S, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+class Driver:
+    """Node with a browser, which plays one scenario after another; begun when it is needed."""
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[str] | None = None
+
+    def _lines(self) -> tuple[IO[str], IO[str]]:
+        if self._process is None or self._process.poll() is not None:
+            # It ends by itself when its input ends, and that ends with this process.
+            self._process = subprocess.Popen(
+                [str(NODE), str(HERE / "driver.mjs"), str(CHROMIUM)],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+            )  # fmt: skip
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        return self._process.stdin, self._process.stdout
+
+    def _stop(self) -> None:
+        if self._process is not None:
+            self._process.kill()
+
+    def play(
+        self, scenario: str, url: str, *words: str, reach: Callable[[str], Any] | None = None
+    ) -> Any:
+        """Play a scenario; do something at each step that it reaches; return what it found."""
+        requests, answers = self._lines()
+        limit = threading.Timer(LIMIT_S, self._stop)
+        limit.start()
+        try:
+            asked = {"scenario": str(HERE / scenario), "url": url, "words": words}
+            print(json.dumps(asked), file=requests, flush=True)
+            for line in answers:
+                answer = json.loads(line)
+                if "step" not in answer:
+                    assert "found" in answer, answer["failed"]
+                    return answer["found"]
+                if reach is not None:
+                    reach(answer["step"])
+                print("go", file=requests, flush=True)
+        finally:
+            limit.cancel()
+        pytest.fail(f"{scenario} did not end within {LIMIT_S:.0f} s, or Node broke off")
+
+
+drive = Driver().play

@@ -3,7 +3,7 @@
 
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { SIZES, open, run } from "./browser.mjs";
+import { SIZES, open } from "./browser.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core"), "utf8");
 const VIEWS = ["see", "sound", "tunes", "keep", "connect", "all"];
@@ -15,15 +15,17 @@ function teach() {
 }
 
 const BOTH = ["light", "dark"];
-const SCHEMES =
-  process.argv[4] === "all" ? { phone: BOTH, desk: BOTH } : { phone: ["light"], desk: ["dark"] };
+const SCHEMES = {
+  all: { phone: BOTH, desk: BOTH },
+  some: { phone: ["light"], desk: ["dark"] },
+};
 
-await run(async (browser, url) => {
+export default async function (browser, url, { words: [which] }) {
   await browser.addInitScript(teach);
   const found = [];
   for (const size of /** @type {const} */ (["phone", "desk"])) {
     const viewport = SIZES[size];
-    for (const colorScheme of SCHEMES[size]) {
+    for (const colorScheme of SCHEMES[which][size]) {
       const { page } = await open(browser, url);
       await page.emulateMedia({ colorScheme });
       await page.setViewportSize(viewport);
@@ -41,4 +43,4 @@ await run(async (browser, url) => {
     }
   }
   return found;
-});
+}

@@ -1,16 +1,14 @@
 /**
  * Puts the sounding page behind another tab, and brings it back.
  *
- *   node page_behind.mjs URL CHROMIUM FOLDER
- *
- * What is recorded goes to FOLDER. A Chromium without a window takes the focus from a page behind, but
- * does not hide it. So what hidden pages are told is told to this one, and its tasks are stopped as a
- * browser stops those of a page that it freezes, which is more than it does to one that sounds.
+ * What is recorded goes to a folder, which is the word that is given. A Chromium without a window takes
+ * the focus from a page behind, but does not hide it. So what hidden pages are told is told to this one,
+ * and its tasks are stopped as a browser stops those of a page that it freezes, which is more than it
+ * does to one that sounds.
  */
 
-import { keepAnalysers, open, pretendMidi, run, sendMidi } from "./browser.mjs";
+import { keepAnalysers, open, pretendMidi, sendMidi } from "./browser.mjs";
 
-const [, , folder] = process.argv.slice(2);
 const KEY = "KeyV"; // B4
 const AWAY = 2000; // ms
 const NOTE = 76; // E5
@@ -67,67 +65,66 @@ function tellHidden(page, isHidden) {
   }, isHidden);
 }
 
-await run(
-  async (browser, url) => {
-    await browser.addInitScript(keepAnalysers);
-    await browser.addInitScript(keepTimes);
-    await browser.addInitScript(pretendMidi);
-    const { page, errors } = await open(browser, url);
-    const other = await browser.newPage();
-    for (const one of [page, other]) {
-      const session = await browser.newCDPSession(one);
-      await session.send("Emulation.setFocusEmulationEnabled", { enabled: false });
-    }
-    await page.bringToFront();
-    const found = {};
+export const isDrawnInFull = true;
 
-    // A key that is held as the focus goes ends, though nobody tells of its release.
-    await page.click("#start");
-    await page.keyboard.down(KEY);
-    await until(page, true);
-    await other.bringToFront();
-    found.hasFocus = await page.evaluate(() => document.hasFocus());
-    found.keyEnded = Boolean(await until(page, false));
-    await page.bringToFront();
-    await page.keyboard.up(KEY);
+export default async function (browser, url, { words: [folder] }) {
+  await browser.addInitScript(keepAnalysers);
+  await browser.addInitScript(keepTimes);
+  await browser.addInitScript(pretendMidi);
+  const { page, errors } = await open(browser, url);
+  const other = await browser.newPage();
+  for (const one of [page, other]) {
+    const session = await browser.newCDPSession(one);
+    await session.send("Emulation.setFocusEmulationEnabled", { enabled: false });
+  }
+  await page.bringToFront();
+  const found = {};
 
-    // A key of a MIDI keyboard is held: it sounds on behind the other tab.
-    await page.click("#tab-connect");
-    await page.getByRole("button", { name: "Use MIDI keyboards" }).click();
-    await page.waitForFunction(() => globalThis.pretended.input.onmidimessage);
-    await page.click("#tab-keep");
-    await sendMidi(page, 0x90, NOTE, 90);
-    await until(page, true);
-    await page.waitForTimeout(500);
-    await page.getByRole("button", { name: "Record", exact: true }).click();
-    const before = await lag(page);
-    const session = await browser.newCDPSession(page);
-    await other.bringToFront();
-    await tellHidden(page, true);
-    await session.send("Page.setWebLifecycleState", { state: "frozen" });
-    const left = await page.evaluate(() => performance.now());
-    await new Promise((resolve) => setTimeout(resolve, AWAY));
-    const back = await page.evaluate(() => performance.now());
-    await session.send("Page.setWebLifecycleState", { state: "active" });
-    await tellHidden(page, false);
-    await page.bringToFront();
-    await page.waitForTimeout(1000);
-    found.lag = (await lag(page)) - before;
-    found.away = (back - left) / 1e3;
-    found.drawn = await page.evaluate(
-      ([from, to]) => ({
-        before: globalThis.drawn.filter((time) => time < from && time > from - 1000).length,
-        away: globalThis.drawn.filter((time) => time > from + 100 && time < to).length,
-        after: globalThis.drawn.filter((time) => time > to).length,
-      }),
-      [left, back],
-    );
-    const download = page.waitForEvent("download");
-    await page.locator("#panel-keep button[aria-pressed=true]").click();
-    await (await download).saveAs(`${folder}/behind.wav`);
-    await sendMidi(page, 0x80, NOTE, 0);
-    found.noteEnded = Boolean(await until(page, false));
-    return { ...found, errors };
-  },
-  { acceptDownloads: true },
-);
+  // A key that is held as the focus goes ends, though nobody tells of its release.
+  await page.click("#start");
+  await page.keyboard.down(KEY);
+  await until(page, true);
+  await other.bringToFront();
+  found.hasFocus = await page.evaluate(() => document.hasFocus());
+  found.keyEnded = Boolean(await until(page, false));
+  await page.bringToFront();
+  await page.keyboard.up(KEY);
+
+  // A key of a MIDI keyboard is held: it sounds on behind the other tab.
+  await page.click("#tab-connect");
+  await page.getByRole("button", { name: "Use MIDI keyboards" }).click();
+  await page.waitForFunction(() => globalThis.pretended.input.onmidimessage);
+  await page.click("#tab-keep");
+  await sendMidi(page, 0x90, NOTE, 90);
+  await until(page, true);
+  await page.waitForTimeout(500);
+  await page.getByRole("button", { name: "Record", exact: true }).click();
+  const before = await lag(page);
+  const session = await browser.newCDPSession(page);
+  await other.bringToFront();
+  await tellHidden(page, true);
+  await session.send("Page.setWebLifecycleState", { state: "frozen" });
+  const left = await page.evaluate(() => performance.now());
+  await new Promise((resolve) => setTimeout(resolve, AWAY));
+  const back = await page.evaluate(() => performance.now());
+  await session.send("Page.setWebLifecycleState", { state: "active" });
+  await tellHidden(page, false);
+  await page.bringToFront();
+  await page.waitForTimeout(1000);
+  found.lag = (await lag(page)) - before;
+  found.away = (back - left) / 1e3;
+  found.drawn = await page.evaluate(
+    ([from, to]) => ({
+      before: globalThis.drawn.filter((time) => time < from && time > from - 1000).length,
+      away: globalThis.drawn.filter((time) => time > from + 100 && time < to).length,
+      after: globalThis.drawn.filter((time) => time > to).length,
+    }),
+    [left, back],
+  );
+  const download = page.waitForEvent("download");
+  await page.locator("#panel-keep button[aria-pressed=true]").click();
+  await (await download).saveAs(`${folder}/behind.wav`);
+  await sendMidi(page, 0x80, NOTE, 0);
+  found.noteEnded = Boolean(await until(page, false));
+  return { ...found, errors };
+}

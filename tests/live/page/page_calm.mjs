@@ -3,7 +3,7 @@
  * diagram on a narrow phone.
  */
 
-import { READY, SIZES, fingersOf, open, run, wishes } from "./browser.mjs";
+import { READY, SIZES, fingersOf, open, wishes } from "./browser.mjs";
 
 const SECOND = 1000;
 
@@ -148,9 +148,11 @@ async function drag(browser, url) {
   return found;
 }
 
-await run(async (browser, url) => {
+export const isDrawnInFull = true;
+
+export default async function (browser, url) {
   await browser.addInitScript(countDrawings);
   const calm = await look(browser, url, "reduce"); // first: nothing is remembered yet
   const lively = await look(browser, url, "no-preference");
   return { calm, lively, drag: await drag(browser, url) };
-});
+}

@@ -1,20 +1,10 @@
 /** Uses the page of a server: there, listening, here, and while the server is away. */
 
-import { createInterface } from "node:readline";
-
-import { fingersOf, keepAnalysers, open, run } from "./browser.mjs";
+import { fingersOf, keepAnalysers, open } from "./browser.mjs";
 
 const STEADY_MS = 2000;
 const PATIENCE_MS = 40_000;
 const LOUD = 0.01;
-
-const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
-
-/** Tell the test where the scenario is, and wait until it answers. @param {string} step */
-async function reach(step) {
-  console.error(step);
-  return (await lines.next()).value;
-}
 
 /** Wait until something is heard. @param {import("playwright-core").Page} page */
 function heard(page) {
@@ -99,7 +89,7 @@ async function isHeardSteadily(page) {
   return false;
 }
 
-await run(async (browser, url) => {
+export default async function (browser, url, { reach }) {
   await browser.addInitScript(keepAnalysers);
   const { page, errors } = await open(browser, url);
   const touch = await fingersOf(page);
@@ -166,6 +156,5 @@ await run(async (browser, url) => {
   await touch("touchStart", [finger]);
   await reach("holds again");
   await touch("touchEnd", []);
-  process.stdin.destroy(); // else Node waits for more
   return found;
-});
+}

@@ -3,7 +3,7 @@
  * a network.
  */
 
-import { fingersOf, keepAnalysers, open, run } from "./browser.mjs";
+import { fingersOf, keepAnalysers, open } from "./browser.mjs";
 
 const SHARES = [0.03, 0.35, 0.65, 0.97];
 const PITCHES = [67, 74, 81];
@@ -83,7 +83,9 @@ async function load(browser, seconds) {
   return ((await total()) - before) / seconds;
 }
 
-await run(async (browser, url) => {
+export const isDrawnInFull = true;
+
+export default async function (browser, url) {
   await browser.addInitScript(keepAnalysers);
   const { page, errors } = await open(browser, url);
   await page.waitForTimeout(1500);
@@ -146,4 +148,4 @@ await run(async (browser, url) => {
     async () => (await (await fetch("/texts/zh.json")).json()).title,
   );
   return { ...found, errors: [...errors, ...others] };
-});
+}

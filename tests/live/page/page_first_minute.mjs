@@ -1,6 +1,6 @@
 /** Plays the first minute: an invitation, three gestures; keeps a performance as a link, and opens it. */
 
-import { drawn, fingersOf, held, open, run, wished, wishes } from "./browser.mjs";
+import { drawn, fingersOf, held, open, wished, wishes } from "./browser.mjs";
 
 const SIZES = [
   [1920, 1080],
@@ -20,7 +20,7 @@ function cut() {
     .map((element) => element.outerHTML.slice(0, 100));
 }
 
-await run(async (browser, url) => {
+export default async function (browser, url) {
   const { page, errors } = await open(browser, url);
   const found = { cut: {}, said: [] };
   for (const [width, height] of SIZES) {
@@ -124,4 +124,4 @@ await run(async (browser, url) => {
   found.let = await held(third);
   found.errors = [...errors, ...others];
   return found;
-});
+}

@@ -1,10 +1,10 @@
 /** Opens the page of a server as a guest: without a PIN, and with one. */
 
-import { open, run } from "./browser.mjs";
+import { open } from "./browser.mjs";
 
 const NO_PIN = 4401;
 
-await run(async (browser, url) => {
+export default async function (browser, url) {
   const found = { asked: [] };
   await browser.routeWebSocket(/socket/, (socket) => {
     found.asked.push(new URL(socket.url()).search);
@@ -27,4 +27,4 @@ await run(async (browser, url) => {
   found.formIsShown = await page.locator("#panel-connect form").isVisible();
   found.errors = errors;
   return found;
-});
+}

@@ -1,6 +1,6 @@
 /** Plays the page with fingers, mouse and keys; prints the wishes that followed. */
 
-import { fingersOf, held, open, run, wishes } from "./browser.mjs";
+import { fingersOf, held, open, wishes } from "./browser.mjs";
 
 /** @param {import("playwright-core").Locator} locator */
 async function boxOf(locator) {
@@ -9,7 +9,7 @@ async function boxOf(locator) {
   return box;
 }
 
-await run(async (browser, url) => {
+export default async function (browser, url) {
   const { page, errors } = await open(browser, url);
   const touch = await fingersOf(page);
   const board = await boxOf(page.locator("#fingerboard"));
@@ -140,4 +140,4 @@ await run(async (browser, url) => {
   await page.keyboard.press("Escape");
   found.errors = errors;
   return found;
-});
+}

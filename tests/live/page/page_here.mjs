@@ -1,16 +1,6 @@
 /** Chooses to sound here, of the page of a server that others have set. */
 
-import { createInterface } from "node:readline";
-
-import { fingersOf, open, run } from "./browser.mjs";
-
-const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
-
-/** Tell the test where the scenario is, and wait until it answers. @param {string} step */
-async function reach(step) {
-  console.error(step);
-  return (await lines.next()).value;
-}
+import { fingersOf, open } from "./browser.mjs";
 
 /** The value that the page shows. @param {import("playwright-core").Page} page @param {string} address */
 async function shown(page, address) {
@@ -25,7 +15,7 @@ async function shown(page, address) {
   return value;
 }
 
-await run(async (browser, url) => {
+export default async function (browser, url, { reach }) {
   const { page, errors } = await open(browser, url);
   const touch = await fingersOf(page);
   await page.click("#tab-connect");
@@ -57,6 +47,5 @@ await run(async (browser, url) => {
   await page.waitForSelector("#way-here[aria-pressed=true]", { timeout: 120000 });
   await here("after a reload");
   found.errors = errors;
-  process.stdin.destroy(); // else Node waits for more
   return found;
-});
+}

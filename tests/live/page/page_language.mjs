@@ -1,6 +1,6 @@
 /** Changes the page's language while it sounds; prints what was said before, after, and after loading it anew. */
 
-import { READY, held, open, pretendMidi, run, sendMidi } from "./browser.mjs";
+import { READY, held, open, pretendMidi, sendMidi } from "./browser.mjs";
 
 /** All that the page says, by element, without the numbers that move; runs in the page. */
 function said() {
@@ -13,7 +13,7 @@ function said() {
   });
 }
 
-await run(async (browser, url) => {
+export default async function (browser, url) {
   await browser.addInitScript(pretendMidi);
   const { page, errors } = await open(browser, url);
   const found = {};
@@ -60,4 +60,4 @@ await run(async (browser, url) => {
   found.anew = await end();
   found.errors = errors;
   return found;
-});
+}

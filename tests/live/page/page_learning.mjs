@@ -1,7 +1,7 @@
 /** Teaches the page's MIDI keyboard what its knobs move, by keys alone; prints what followed. */
 
 import { readFileSync } from "node:fs";
-import { READY, open, pretendMidi, run, sendMidi, wishes } from "./browser.mjs";
+import { READY, open, pretendMidi, sendMidi, wishes } from "./browser.mjs";
 
 const KNOB = 0xb0;
 const WHEEL = 0xe0;
@@ -27,7 +27,7 @@ async function saved(page) {
   return { name: offered.suggestedFilename(), text: readFileSync(await offered.path(), "utf8") };
 }
 
-await run(async (browser, url) => {
+export default async function (browser, url) {
   await browser.addInitScript(pretendMidi);
   const { page, errors } = await open(browser, url);
   const found = {};
@@ -150,4 +150,4 @@ await run(async (browser, url) => {
   found.backToMapping = await written(page); // of which CC 74 moves the bow's place
   found.errors = errors;
   return found;
-});
+}

@@ -1,6 +1,6 @@
 /** Opens the page while a server prepares the instrument, and where there is none; prints what it says. */
 
-import { READY, held, open, run } from "./browser.mjs";
+import { READY, held, open } from "./browser.mjs";
 
 const WASM = "**/yehu.wasm";
 const TEXT = "text/plain; charset=utf-8";
@@ -23,7 +23,7 @@ async function plays(page) {
   return isHeld;
 }
 
-/** How often the strings are drawn in half a second. @param {import("playwright-core").Page} page */
+/** How often the strings are drawn in a second. @param {import("playwright-core").Page} page */
 const drawings = (page) =>
   page.evaluate(async () => {
     let count = 0;
@@ -32,11 +32,11 @@ const drawings = (page) =>
       if (this.canvas.id === "yehu") count += 1;
       return clearRect.apply(this, box);
     };
-    await new Promise((resolve) => setTimeout(resolve, 500));
+    await new Promise((resolve) => setTimeout(resolve, 1000));
     return count;
   });
 
-await run(async (browser, url) => {
+export default async function (browser, url) {
   const found = {};
   let answers = 0;
   await browser.route(WASM, (route) => {
@@ -64,4 +64,4 @@ await run(async (browser, url) => {
   found.lackingInChinese = await notice(without);
   found.without = { plays: await plays(without), drawings: await drawings(without) };
   return found;
-});
+}

@@ -1,16 +1,6 @@
 /** Pages that play several parts of one server. */
 
-import { createInterface } from "node:readline";
-
-import { fingersOf, open, run } from "./browser.mjs";
-
-const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
-
-/** Tell the test where the scenario is, and wait until it answers. @param {string} step */
-async function reach(step) {
-  console.error(step);
-  return (await lines.next()).value;
-}
+import { fingersOf, open } from "./browser.mjs";
 
 /**
  * What the page shows of its part.
@@ -35,8 +25,9 @@ async function shown(page) {
  * Touch the fingerboard while the test looks who plays.
  * @param {import("playwright-core").Page} page
  * @param {string} step
+ * @param {(step: string) => Promise<void>} reach
  */
-async function play(page, step) {
+async function play(page, step, reach) {
   const touch = await fingersOf(page);
   const board = await page.locator("#fingerboard").boundingBox();
   await touch("touchStart", [{ x: board.x + board.width / 2, y: board.y + 20, id: 1 }]);
@@ -45,7 +36,7 @@ async function play(page, step) {
   await reach("let go");
 }
 
-await run(async (browser, url) => {
+export default async function (browser, url, { reach }) {
   const { page, errors } = await open(browser, `${url}?part=2`);
   const found = {};
   await page.click("#tab-connect");
@@ -53,7 +44,7 @@ await run(async (browser, url) => {
   await page.click("#way-there");
   found.second = await shown(page);
   found.about = await page.locator("#panel-connect").textContent();
-  await play(page, "holds in 2");
+  await play(page, "holds in 2", reach);
 
   await page.click("#tab-sound");
   await page.locator("#room input[type=range]").nth(1).focus();
@@ -62,17 +53,16 @@ await run(async (browser, url) => {
 
   await Promise.all([page.waitForURL(/part=3/), page.selectOption("#part", "3")]);
   found.third = await shown(page);
-  await play(page, "holds in 3");
+  await play(page, "holds in 3", reach);
 
   await page.goto(`${url}?part=9`);
   found.none = await shown(page);
-  await play(page, "holds in 1");
+  await play(page, "holds in 1", reach);
   await page.setViewportSize({ width: 360, height: 740 });
   found.narrow = await page.evaluate(() => ({
     isThere: document.querySelector("#part").checkVisibility(),
     over: document.documentElement.scrollWidth - innerWidth,
   }));
   found.errors = errors;
-  process.stdin.destroy(); // else Node waits for more
   return found;
-});
+}

@@ -1,11 +1,11 @@
 /** Presses buttons that begin something, and again before it has begun; prints what was begun and ended. */
 
-import { open, run } from "./browser.mjs";
+import { open } from "./browser.mjs";
 
 /** What has been begun and ended since the last call. @param {import("playwright-core").Page} page */
 const done = (page) => page.evaluate(() => globalThis.done.splice(0));
 
-await run(async (browser, url) => {
+export default async function (browser, url) {
   await browser.addInitScript(() => {
     globalThis.agreed = new Promise((resolve) => (globalThis.agree = resolve));
   });
@@ -54,4 +54,4 @@ await run(async (browser, url) => {
   found.hums = { done: await done(page), isOn: await isOn() };
   found.errors = errors;
   return found;
-});
+}

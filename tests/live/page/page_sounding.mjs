@@ -2,15 +2,12 @@
  * Plays the page itself, with its WebAssembly, as a static site: over https's stand-in, loopback, and
  * over plain http under a name that browsers don't trust.
  *
- *   node page_sounding.mjs URL CHROMIUM FOLDER [TUNE]
- *
- * Downloads go to FOLDER. With a TUNE that tune is played to its end, and nothing else.
+ * Words: a folder for downloads, and a tune or none. With a tune that tune is played to its end, and
+ * nothing else.
  */
 
-import { FLAGS, keepAnalysers, open, run } from "./browser.mjs";
+import { UNTRUSTED, keepAnalysers, open } from "./browser.mjs";
 
-const NAME = "page.example"; // not a secure context; Chromium is told that it is this machine
-const [, , folder, tune] = process.argv.slice(2);
 const KEY = "KeyV"; // B4
 const DEPRECATED = "ScriptProcessorNode is deprecated"; // but there is nothing else there
 
@@ -35,16 +32,16 @@ async function start(page) {
  * Press a button and save what it offers.
  * @param {import("playwright-core").Page} page
  * @param {import("playwright-core").Locator} button
- * @param {string} name
+ * @param {string} path
  */
-async function save(page, button, name) {
+async function save(page, button, path) {
   const download = page.waitForEvent("download");
   await button.click();
-  await (await download).saveAs(`${folder}/${name}`);
+  await (await download).saveAs(path);
 }
 
-/** @param {import("playwright-core").Page} page */
-async function playAndKeep(page) {
+/** @param {import("playwright-core").Page} page @param {string} folder */
+async function playAndKeep(page, folder) {
   await page.click("#tab-keep");
   await page.getByRole("button", { name: "Record", exact: true }).click();
   await page.getByRole("button", { name: "Keep", exact: true }).click();
@@ -55,47 +52,44 @@ async function playAndKeep(page) {
   await page.waitForTimeout(300);
   const pressed = page.locator("#panel-keep button[aria-pressed=true]");
   await pressed.first().click();
-  await save(page, page.getByRole("button", { name: "Save as a file" }), "kept.jsonl");
-  await save(page, pressed.first(), "recorded.wav");
+  await save(page, page.getByRole("button", { name: "Save as a file" }), `${folder}/kept.jsonl`);
+  await save(page, pressed.first(), `${folder}/recorded.wav`);
   return status;
 }
 
-await run(
-  async (browser, url) => {
-    await browser.addInitScript(keepAnalysers);
-    let asked = 0;
-    browser.on("request", (request) => {
-      if (request.url().endsWith("yehu.wasm") && !request.serviceWorker()) asked += 1;
-    });
-    const { page, errors } = await open(browser, url);
-    const found = { seconds: (await start(page)) / 1e3, asked };
-    await page.keyboard.up(KEY);
-    if (tune) {
-      await page.click("#tab-tunes");
-      await page.getByRole("button", { name: `Listen: ${tune}` }).click();
-      await page.waitForTimeout(5000);
-      const stop = page.locator("#panel-tunes").getByRole("button", { name: `Stop: ${tune}` });
-      found.pressed = await stop.getAttribute("aria-pressed");
-      await page.waitForFunction(
-        () => !document.querySelector("#panel-tunes [aria-pressed=true]"),
-        undefined,
-        { timeout: 90_000 },
-      );
-      return { ...found, errors };
-    }
-    found.status = await playAndKeep(page);
-    const untrusted = await open(browser, url.replace("127.0.0.1", NAME));
-    found.secure = await untrusted.page.evaluate(() => isSecureContext);
-    await start(untrusted.page);
-    await untrusted.page.keyboard.up(KEY);
-    await untrusted.page.click("#tab-keep");
-    await untrusted.page.getByRole("button", { name: "Record", exact: true }).click();
-    await untrusted.page.keyboard.down(KEY);
-    await untrusted.page.waitForTimeout(1000);
-    const pressed = untrusted.page.locator("#panel-keep button[aria-pressed=true]");
-    await save(untrusted.page, pressed.first(), "script.wav");
-    const told = untrusted.errors.filter((error) => !error.includes(DEPRECATED));
-    return { ...found, errors: [...errors, ...told] };
-  },
-  { args: [...FLAGS, `--host-resolver-rules=MAP ${NAME} 127.0.0.1`], acceptDownloads: true },
-);
+export default async function (browser, url, { words: [folder, tune] }) {
+  await browser.addInitScript(keepAnalysers);
+  let asked = 0;
+  browser.on("request", (request) => {
+    if (request.url().endsWith("yehu.wasm") && !request.serviceWorker()) asked += 1;
+  });
+  const { page, errors } = await open(browser, url);
+  const found = { seconds: (await start(page)) / 1e3, asked };
+  await page.keyboard.up(KEY);
+  if (tune) {
+    await page.click("#tab-tunes");
+    await page.getByRole("button", { name: `Listen: ${tune}` }).click();
+    await page.waitForTimeout(5000);
+    const stop = page.locator("#panel-tunes").getByRole("button", { name: `Stop: ${tune}` });
+    found.pressed = await stop.getAttribute("aria-pressed");
+    await page.waitForFunction(
+      () => !document.querySelector("#panel-tunes [aria-pressed=true]"),
+      undefined,
+      { timeout: 90_000 },
+    );
+    return { ...found, errors };
+  }
+  found.status = await playAndKeep(page, folder);
+  const untrusted = await open(browser, url.replace("127.0.0.1", UNTRUSTED));
+  found.secure = await untrusted.page.evaluate(() => isSecureContext);
+  await start(untrusted.page);
+  await untrusted.page.keyboard.up(KEY);
+  await untrusted.page.click("#tab-keep");
+  await untrusted.page.getByRole("button", { name: "Record", exact: true }).click();
+  await untrusted.page.keyboard.down(KEY);
+  await untrusted.page.waitForTimeout(1000);
+  const pressed = untrusted.page.locator("#panel-keep button[aria-pressed=true]");
+  await save(untrusted.page, pressed.first(), `${folder}/script.wav`);
+  const told = untrusted.errors.filter((error) => !error.includes(DEPRECATED));
+  return { ...found, errors: [...errors, ...told] };
+}

@@ -1,18 +1,9 @@
 /** Two pages of one server, which both sound by themselves: what is played in one sounds in the other. */
 
-import { createInterface } from "node:readline";
-
-import { fingersOf, keepAnalysers, open, run } from "./browser.mjs";
+import { fingersOf, keepAnalysers, open } from "./browser.mjs";
 
 const QUIET = 0.003;
 const LOUD = 0.02;
-const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
-
-/** Tell the test where the scenario is, and wait until it answers. @param {string} step */
-async function reach(step) {
-  console.error(step);
-  return (await lines.next()).value;
-}
 
 /**
  * Wait until a page is heard, or silent; return its pitch in Hz, by the spectrum's greatest value.
@@ -52,7 +43,7 @@ async function fingerAt(page, pitch) {
   return { x: box.x + ((pitch - 65 + 0.6) / 25.2) * box.width, y: box.y + box.height / 2, id: 1 };
 }
 
-await run(async (browser, url) => {
+export default async function (browser, url, { reach }) {
   await browser.addInitScript(keepAnalysers);
   const players = [await open(browser, url), await open(browser, url)];
   for (const { page } of players) {
@@ -87,6 +78,5 @@ await run(async (browser, url) => {
   await players[1].page.close();
   await until(players[0].page, "quiet");
   await reach("let go 69");
-  process.stdin.destroy(); // else Node waits for more
   return { notes, errors: players.flatMap(({ errors }) => errors) };
-});
+}

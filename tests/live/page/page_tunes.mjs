@@ -1,6 +1,6 @@
 /** A newcomer comes to an easy tune, plays it with a mistake, and is told how it went; prints what was seen. */
 
-import { drawn, open, run, wished, wishes } from "./browser.mjs";
+import { drawn, open, wished, wishes } from "./browser.mjs";
 
 const SIZES = [
   [320, 568],
@@ -30,7 +30,7 @@ function overlaps() {
   return found;
 }
 
-await run(async (browser, url) => {
+export default async function (browser, url) {
   const found = { overlaps: {}, boards: {} };
   const { page, errors } = await open(browser, url);
   const look = async (/** @type {string} */ what) => {
@@ -91,4 +91,4 @@ await run(async (browser, url) => {
   await page.click("#stop");
   found.errors = errors;
   return found;
-});
+}

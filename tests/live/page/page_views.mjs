@@ -1,17 +1,18 @@
 /** Looks at the page in every size, theme and language; prints what it finds. */
 
-import { READY, SIZES, drawn, held, open, pretendMidi, run, wished, wishes } from "./browser.mjs";
+import { READY, SIZES, drawn, held, open, pretendMidi, wished, wishes } from "./browser.mjs";
 
 /** Elements that a finger should be able to touch, and their sizes. */
 const TARGETS = "button:not([hidden]), select, input, summary, canvas[tabindex]";
 
-await run(async (browser, url) => {
+export default async function (browser, url) {
   await browser.addInitScript(pretendMidi);
   /** @type {Record<string, any>} */
   const found = { layouts: {}, errors: [] };
+  const { page, errors } = await open(browser, url);
   for (const [size, viewport] of Object.entries(SIZES)) {
-    const { page, errors } = await open(browser, url);
     await page.setViewportSize(viewport);
+    await drawn(page);
     const layout = {};
     for (const panel of ["see", "sound", "tunes", "keep", "connect", "all"]) {
       await page.click(`#tab-${panel}`);
@@ -45,22 +46,20 @@ await run(async (browser, url) => {
       height: viewport.height,
       hands: Math.max(await bottom("#fingerboard"), await bottom("#bow")),
     };
-    found.errors.push(...errors);
-    await page.close();
   }
 
   // A panel beside the instrument, on a laptop.
-  const { page: laptop } = await open(browser, url);
-  await laptop.setViewportSize({ width: 1280, height: 720 });
-  await laptop.click("#tab-sound");
-  await drawn(laptop);
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.click("#tab-sound");
+  await drawn(page);
   found.beside = {
-    more: await laptop.isVisible("#more"),
-    shift: await laptop.isVisible("#higher"),
+    more: await page.isVisible("#more"),
+    shift: await page.isVisible("#higher"),
   };
-  await laptop.close();
 
-  const { page, errors } = await open(browser, url);
+  await page.setViewportSize(SIZES.desk);
+  await page.reload();
+  await page.waitForSelector(READY);
   // The way through the page by the tab key, from its beginning to the tabs.
   found.focus = [];
   for (let i = 0; i < 14; i++) {
@@ -211,4 +210,4 @@ await run(async (browser, url) => {
   }));
   found.errors.push(...errors);
   return found;
-});
+}

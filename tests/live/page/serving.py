@@ -1,15 +1,11 @@
-"""A server for pages, and a talk between a test and what drives the browser."""
+"""A server for pages."""
 
 from __future__ import annotations
 
-import json
 import socket
-import subprocess
 import time
 from collections.abc import Callable
 from typing import Any
-
-from live.page.browser import CHROMIUM, HERE, NODE
 
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.options import PartOptions, ServeOptions
@@ -55,33 +51,3 @@ def free_port() -> int:
     """A port that is free now."""
     with socket.create_server((HOST, 0)) as probe:
         return int(probe.getsockname()[1])
-
-
-def converse(scenario: str, port: int, reach: Callable[[str], Any]) -> Any:
-    """Drive the page of a server; do something at each step that the scenario reaches.
-
-    Returns
-    -------
-    found
-        What the scenario found.
-    """
-    command = [str(NODE), str(HERE / scenario), f"http://{HOST}:{port}/", str(CHROMIUM)]
-    with subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
-        assert process.stdin is not None
-        assert process.stderr is not None
-        assert process.stdout is not None
-        said = []
-        for line in process.stderr:
-            said.append(line)
-            reach(line.strip())
-            if process.poll() is None:
-                try:
-                    process.stdin.write("go\n")
-                    process.stdin.flush()
-                except BrokenPipeError:
-                    break
-        out = process.stdout.read()
-    assert process.returncode == 0, "".join(said)
-    return json.loads(out)

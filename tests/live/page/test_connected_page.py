@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from live.page.browser import missing
-from live.page.serving import converse, free_port, start, stop, until
+from live.page.browser import drive, missing
+from live.page.serving import HOST, free_port, start, stop, until
 
 pytestmark = [
     pytest.mark.slow,  # it hears a server in real time
@@ -48,7 +48,7 @@ def seen() -> tuple[dict[str, Any], dict[str, bool]]:
     """What the page found, and what the server found at each step."""
     port = free_port()
     stage = Stage(port)
-    found = converse("page_connected.mjs", port, stage.reach)
+    found = drive("page_connected.mjs", f"http://{HOST}:{port}/", reach=stage.reach)
     stop(stage.server)
     return found, stage.found
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from live.page.browser import missing
-from live.page.serving import converse, free_port, start, stop
+from live.page.browser import drive, missing
+from live.page.serving import HOST, free_port, start, stop
 
 pytestmark = [
     pytest.mark.slow,  # it starts a browser
@@ -19,7 +19,7 @@ def seen() -> dict[str, Any]:
     """What the page found."""
     port = free_port()
     server = start(port)
-    found = converse("page_guests.mjs", port, lambda _step: None)
+    found = drive("page_guests.mjs", f"http://{HOST}:{port}/")
     stop(server)
     return found
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from live.page.browser import missing
-from live.page.serving import converse, free_port, start, stop, until
+from live.page.browser import drive, missing
+from live.page.serving import HOST, free_port, start, stop, until
 
 pytestmark = [
     pytest.mark.slow,  # it plays a server in real time
@@ -35,7 +35,7 @@ def seen() -> tuple[dict[str, Any], dict[str, float]]:
             assert until(lambda: (player.pitch is None) == (what == "played"))
         values[step] = player.value(PLACE)
 
-    found = converse("page_here.mjs", port, reach)
+    found = drive("page_here.mjs", f"http://{HOST}:{port}/", reach=reach)
     stop(server)
     return found, values
 

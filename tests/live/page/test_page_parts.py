@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from live.page.browser import missing
-from live.page.serving import converse, free_port, start, stop, until
+from live.page.browser import drive, missing
+from live.page.serving import HOST, free_port, start, stop, until
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
@@ -35,7 +35,7 @@ def seen() -> tuple[dict[str, Any], dict[str, Any]]:
             told[step] = until(lambda: server.players[0].value("/room/size") == LARGEST)
 
     try:
-        found = converse("page_parts.mjs", port, reach)
+        found = drive("page_parts.mjs", f"http://{HOST}:{port}/", reach=reach)
     finally:
         stop(server)
     return found, told

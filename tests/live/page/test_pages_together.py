@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from live.page.browser import missing
-from live.page.serving import converse, free_port, start, stop, until
+from live.page.browser import drive, missing
+from live.page.serving import HOST, free_port, start, stop, until
 
 pytestmark = [
     pytest.mark.slow,
@@ -29,7 +29,7 @@ def seen() -> tuple[dict[str, Any], dict[str, Any]]:
         elif step.startswith("let go"):
             told[step] = until(lambda: player.pitch is None)
 
-    found = converse("page_together.mjs", port, reach)
+    found = drive("page_together.mjs", f"http://{HOST}:{port}/", reach=reach)
     stop(server)
     return found, told
 

@@ -7,13 +7,13 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 
 import forks
 import pytest
+from waiting import LONG_S, until
 
 TESTS = Path(__file__).resolve().parent
 PYTHONPATH = f"{TESTS}:{TESTS.parent}"
@@ -34,7 +34,11 @@ class Processes:
         self.log = folder / "log"
         self.environment = {**os.environ, "PYTHONPATH": PYTHONPATH, **environment}
         self.scheduler = self._start("dask_scheduler", "--port", "0", "--scheduler-file", self.file)
-        wait_until(lambda: self.file.exists() and self.file.read_text().endswith("}"))
+        until(
+            lambda: self.file.exists() and self.file.read_text().endswith("}"),
+            "a scheduler",
+            LONG_S,
+        )
         self.workers: list[subprocess.Popen] = []
 
     def add_worker(self, **environment: str) -> subprocess.Popen:
@@ -68,10 +72,3 @@ def cluster_in(folder: Path, workers: int = 2, **environment: str) -> Iterator[P
         yield processes
     finally:
         processes.end()
-
-
-def wait_until(is_so, seconds: float = 120.0) -> None:
-    deadline = time.monotonic() + seconds
-    while not is_so():
-        assert time.monotonic() < deadline
-        time.sleep(0.05)

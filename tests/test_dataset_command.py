@@ -12,9 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import soundfile
-from clusters import cluster_in, wait_until
+from clusters import cluster_in
 from commands import results_in
 from forks import start
+from waiting import LONG_S, until
 
 from yehu_server.errors import OutputError, ParameterError
 from yehu_server.lab.dataset import making
@@ -174,7 +175,7 @@ def test_an_interrupted_data_set_goes_on_where_it_was(command, tmp_path, signum)
     words = (tmp_path / "d.toml", "-o", tmp_path / "out")
     process = start("dataset", *words, "--jobs", 1)
     hidden = tmp_path / "out" / ".yehu-server"
-    wait_until(lambda: process.poll() is not None or list(hidden.glob("sounds-*.json")))
+    until(lambda: process.poll() is not None or list(hidden.glob("sounds-*.json")), within_s=LONG_S)
     process.send_signal(signum)
     _, err = process.communicate(timeout=60)
     if signum == signal.SIGTERM:

@@ -9,7 +9,7 @@ import threading
 import time
 
 import pytest
-from clusters import wait_until
+from waiting import until
 
 from yehu_server.cli import main
 from yehu_server.live.audio.output import OutputOptions
@@ -151,7 +151,7 @@ def test_the_bindings_of_a_server_are_shown_with_where_they_are(server, at, caps
         assert main(["mappings", "show", "--live", "--json", *at]) == 0
         return {row["source"]: row for row in json.loads(capsys.readouterr().out)}
 
-    wait_until(lambda: shown()["velocity"]["place"] == 1.0, 10.0)  # once it is struck
+    until(lambda: shown()["velocity"]["place"] == 1.0)  # once it is struck
     rows = shown()
     assert rows["cc 16"]["target"] == "/yehu/playing/speed"
     assert main(["mappings", "show", "--live", *at]) == 0

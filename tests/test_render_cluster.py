@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Self
 
 import pytest
-from clusters import cluster_in, needs_distributed, wait_until
+from clusters import cluster_in, needs_distributed
 from commands import is_one_line, results_in
 from forks import start
 from midi_files import midi_file, notes
+from waiting import LONG_S, until
 
 from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.workers import Event
@@ -57,10 +58,13 @@ def alone(songs, command) -> dict[str, bytes]:
 def test_a_worker_that_is_killed_changes_nothing_of_the_results(songs, alone, tmp_path):
     tune(songs / "in" / "0" / "long.mid", 70, seconds=20.0)
     with cluster_in(tmp_path) as processes:
-        wait_until(lambda: processes.log.read_text().count("Registered to") == 2)
+        until(lambda: processes.log.read_text().count("Registered to") == 2, within_s=LONG_S)
         run = start("render", songs / "in", "-o", songs / "out", *DRY, "--dask", processes.file)
         records = songs / "out"
-        wait_until(lambda: run.poll() is not None or len(list(records.rglob("*.wav.json"))) > 1)
+        until(
+            lambda: run.poll() is not None or len(list(records.rglob("*.wav.json"))) > 1,
+            within_s=LONG_S,
+        )
         processes.workers[0].kill()
         _, err = run.communicate(timeout=300)
         assert processes.workers[1].poll() is None

@@ -10,7 +10,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -18,6 +17,7 @@ import soundfile
 from commands import COMMAND, is_one_line
 from forks import start
 from midi_files import midi_file, notes
+from waiting import LONG_S, until
 
 from yehu_server.cli import _parser, folder_tasks, render_folder, render_one
 from yehu_server.core.player.bowing import default_recipes
@@ -243,13 +243,6 @@ def test_a_failure_that_is_not_the_scores_is_tried_again(folder, command):
 # ---------------------------------------------------------------- interrupted
 
 
-def wait_until(is_so) -> None:
-    deadline = time.monotonic() + 120.0
-    while not is_so():
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
-
-
 def children(process: subprocess.Popen) -> list[int]:
     """The processes that render."""
     all_of_them = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
@@ -282,10 +275,10 @@ def test_an_interrupted_folder_goes_on_where_it_was(long, command, signum):
     handled = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);" + COMMAND
     words = ("render", long / "in", "-o", long / "out", *DRY, "--jobs", 1)
     process = start(*words, code=handled)
-    wait_until(lambda: is_at_second(process, long / "out"))
+    until(lambda: is_at_second(process, long / "out"), within_s=LONG_S)
     process.send_signal(signum)
     _, err = process.communicate(timeout=60)
-    wait_until(lambda: not leavings(long / "out"))
+    until(lambda: not leavings(long / "out"), within_s=LONG_S)
     if signum != signal.SIGKILL:
         assert process.returncode == 130
         assert is_one_line(err)
@@ -303,10 +296,10 @@ def test_an_interrupted_folder_goes_on_where_it_was(long, command, signum):
 def test_a_process_that_is_killed_takes_no_other_score_with_it(long):
     process = start("render", long / "in", "-o", long / "out", *DRY, "--jobs", 1)
     for _ in range(2):
-        wait_until(lambda: is_at_second(process, long / "out"))
+        until(lambda: is_at_second(process, long / "out"), within_s=LONG_S)
         before = leavings(long / "out")
         os.kill(children(process)[0], signal.SIGKILL)
-        wait_until(lambda before=before: leavings(long / "out") != before)
+        until(lambda before=before: leavings(long / "out") != before, within_s=LONG_S)
     _, err = process.communicate(timeout=120)
     assert process.returncode == 1
     assert err == "yehu-server: b.mid: the process that rendered it was killed by signal 9\n"

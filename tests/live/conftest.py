@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import pytest
 from moves import Moves
+from waiting import PATIENCE_S, until
 from wire import FakePeer, Message, StillTime, Wire
 
 from yehu_server.core.engine.instrument import Instrument
@@ -37,17 +38,7 @@ from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 
 HOST = "127.0.0.1"
-PATIENCE_S = 20.0  # for other threads, on a busy machine
 QUIET_S = 0.15  # silence after which nothing more is expected
-
-
-def until(condition: Callable[[], Any], what: str, within_s: float = PATIENCE_S) -> Any:
-    """Wait for something to be true, and return it."""
-    deadline = time.monotonic() + within_s
-    while not (value := condition()):
-        assert time.monotonic() < deadline, f"not within {within_s} s: {what}"
-        time.sleep(0.002)
-    return value
 
 
 def target_of(instrument: Instrument, address: str) -> float:

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 import some_jobs
-from clusters import Processes, cluster_in, needs_distributed, wait_until
+from clusters import Processes, cluster_in, needs_distributed
+from waiting import LONG_S, until
 
 import yehu_server
 from yehu_server.errors import YehuError
@@ -77,7 +78,7 @@ def test_tasks_are_taken_as_workers_are_free(processes):
 def test_a_job_whose_worker_dies_is_done_by_another(own, tmp_path):
     own.add_worker()
     own.add_worker()
-    wait_until(lambda: workers_of(own) == 2)
+    until(lambda: workers_of(own) == 2, within_s=LONG_S)
     with Cluster(str(own.file)) as cluster:
         found = ends(cluster, some_jobs.fall, [tmp_path / "tried", *range(10)])
     left = [worker.pid for worker in own.workers if worker.poll() is None]
@@ -94,7 +95,7 @@ def workers_of(processes: Processes) -> int:
 def test_a_job_that_kills_every_worker_is_given_up(tmp_path):
     few = {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}
     with cluster_in(tmp_path, 2, **few) as processes:
-        wait_until(lambda: workers_of(processes) == 2)
+        until(lambda: workers_of(processes) == 2, within_s=LONG_S)
         with Cluster(str(processes.file)) as cluster:
             [event] = cluster.perform_all(some_jobs.fall, [-1])
     assert event.died == "killed on 1 workers"
@@ -110,7 +111,7 @@ def test_a_job_that_raises_is_told(processes):
 def test_what_is_set_up_is_set_up_once_in_each_process_and_by_one_at_a_time(own, tmp_path):
     own.add_worker()
     own.add_worker()
-    wait_until(lambda: workers_of(own) == 2)
+    until(lambda: workers_of(own) == 2, within_s=LONG_S)
     with Cluster(str(own.file), some_jobs.SetUp(tmp_path)) as cluster:
         where = ends(cluster, some_jobs.slow, [0.05] * 40)
     pids = {event.result for event in where.values()}
@@ -216,7 +217,7 @@ def test_no_scheduler_is_told(monkeypatch):
 def test_a_scheduler_that_is_lost_is_told(own, monkeypatch):
     monkeypatch.setattr(clusters, "CONNECT_S", 1.0)
     own.add_worker()
-    wait_until(lambda: workers_of(own) == 1)
+    until(lambda: workers_of(own) == 1, within_s=LONG_S)
     with Cluster(str(own.file)) as cluster:
         events = cluster.perform_all(some_jobs.slow, [0.05] * 1000)
         next(events)
@@ -271,7 +272,7 @@ def test_a_lock_keeps_processes_apart(tmp_path, monkeypatch):
     )
     with machine_lock():
         other = subprocess.Popen([sys.executable, "-c", program, str(tmp_path)])
-        wait_until((tmp_path / "wants").exists)
+        until((tmp_path / "wants").exists, within_s=LONG_S)
         time.sleep(0.2)
         assert not (tmp_path / "has").exists()
     assert other.wait(timeout=60) == 0

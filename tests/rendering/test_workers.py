@@ -3,11 +3,11 @@
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 import some_jobs
+from waiting import LONG_S, until
 
 from yehu_server.rendering.workers import perform_all
 
@@ -17,13 +17,6 @@ TESTS = Path(__file__).resolve().parents[1]
 def ends(perform, tasks, workers=2) -> dict:
     """What became of each task."""
     return {event.job: event for event in perform_all(perform, tasks, workers) if event.is_end}
-
-
-def wait_until(is_so) -> None:
-    deadline = time.monotonic() + 60.0
-    while not is_so():
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
 
 
 @pytest.mark.parametrize("workers", [1, 2])
@@ -57,7 +50,7 @@ def test_processes_put_away_what_they_make_when_their_parent_is_killed(tmp_path)
         "list(perform_all(some_jobs.hold, [Path(sys.argv[2])], 1))"
     )
     parent = subprocess.Popen([sys.executable, "-c", program, str(TESTS), str(held)])
-    wait_until(held.exists)
+    until(held.exists, within_s=LONG_S)
     parent.kill()
     parent.wait()
-    wait_until(lambda: not held.exists())
+    until(lambda: not held.exists(), within_s=LONG_S)

@@ -18,6 +18,7 @@ import mido
 import numpy as np
 import pytest
 from midi_input import receive
+from waiting import PATIENCE_S, until
 from web_client import Refused, WebSocket
 
 from yehu_server.ahead.interpreter import look_layout, look_length
@@ -35,17 +36,8 @@ from yehu_server.params.table import TABLE
 
 PROCESSES = Path("/proc")
 HOST = "127.0.0.1"
-PATIENCE_S = 20.0
 PRESSURE = "/playing/pressure"
 IDENTITY = {"Accept-Encoding": "identity"}
-
-
-def until(condition: Callable[[], Any], what: str) -> Any:
-    deadline = time.monotonic() + PATIENCE_S
-    while not (value := condition()):
-        assert time.monotonic() < deadline, what
-        time.sleep(0.005)
-    return value
 
 
 @pytest.fixture(scope="module")

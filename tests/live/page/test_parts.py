@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import json
-import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import aiohttp
 import numpy as np
 import pytest
+from waiting import PATIENCE_S, until
 
 from yehu_server.ahead.interpreter import look_layout, look_length
 from yehu_server.core.player.rows import ROW
@@ -23,16 +23,8 @@ from yehu_server.live.server import Server
 from yehu_server.playing.options import PlayingOptions
 
 HOST = "127.0.0.1"
-PATIENCE_S = 20.0
 PRESSURE, SIZE, PAN = "/playing/pressure", "/room/size", "/room/pan"
 SECTION = 3  # players of the second part
-
-
-def until(condition: Callable[[], Any], what: str) -> None:
-    deadline = time.monotonic() + PATIENCE_S
-    while not condition():
-        assert time.monotonic() < deadline, what
-        time.sleep(0.005)
 
 
 @pytest.fixture(scope="module")

@@ -180,36 +180,6 @@ def ports(player, mapping) -> MidiPoster:
     return MidiPoster(player, mapping)
 
 
-def test_the_same_key_on_two_ports_is_two_notes(ports, player, listener):
-    on(ports, 67, port=0)
-    on(ports, 67, port=1)
-    ports.receive(mido.Message("note_off", note=67), port=1)
-    assert Key(0, 67) in player.held()
-    assert listener["/bow/speed"] != 0.0
-
-
-def test_a_port_that_is_gone_leaves_no_note_and_no_pedal(ports, player, listener):
-    on(ports, 67, port=1)
-    ports.receive(mido.Message("control_change", control=64, value=127), port=1)
-    ports.receive(mido.Message("note_off", note=67), port=1)
-    assert listener["/bow/speed"] != 0.0
-    ports.end_port_notes(1)
-    assert player.sounding is None
-    assert listener["/bow/speed"] == 0.0
-
-
-def test_a_port_that_is_gone_leaves_the_others_alone(ports, player):
-    on(ports, 69, port=0)
-    on(ports, 67, port=1)
-    ports.end_port_notes(1)
-    assert player.sounding == Key(0, 69)
-
-
-def test_percussion_is_left_out_on_every_port(ports, player):
-    ports.receive(mido.Message("note_on", note=67, velocity=80, channel=9), port=2)
-    assert player.sounding is None
-
-
 # ---------------------------------------------------------------- direct writes among controllers
 
 

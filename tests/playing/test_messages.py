@@ -115,30 +115,12 @@ def test_a_skipped_note_leaves_the_sounding_one_alone(listener, mapping):
 # ---------------------------------------------------------------- the pedal
 
 
-def test_the_pedal_holds_a_note_until_it_comes_up(midi, listener, player):
-    midi.cc(64, 127)
-    midi.on(75)
-    midi.off(75)
-    assert player.sounding == Key(0, 75)
-    midi.cc(64, 0)
-    assert silent(listener, player)
-
-
 @pytest.mark.parametrize(("value", "down"), [(0, False), (63, False), (64, True), (127, True)])
 def test_the_pedal_is_down_from_64(midi, player, value, down):
     midi.cc(64, value)
     midi.on(75)
     midi.off(75)
     assert (player.sounding is not None) == down
-
-
-def test_the_pedal_does_not_end_a_key_that_is_still_down(midi, player):
-    midi.cc(64, 127)
-    midi.on(75)
-    midi.on(77)
-    midi.off(77)
-    midi.cc(64, 0)
-    assert player.sounding == Key(0, 75)
 
 
 def test_a_key_pressed_again_under_the_pedal_is_held_by_the_hand(midi, player, listener):
@@ -151,56 +133,6 @@ def test_a_key_pressed_again_under_the_pedal_is_held_by_the_hand(midi, player, l
     assert player.sounding == Key(0, 75)
     midi.off(75)
     assert player.sounding is None
-
-
-def test_a_key_let_go_twice_and_pressed_again_under_the_pedal_is_held_by_the_hand(midi, player):
-    midi.cc(64, 127)
-    midi.on(75)
-    midi.off(75)
-    midi.off(75)
-    midi.on(75)
-    midi.cc(64, 0)
-    assert player.sounding == Key(0, 75)
-
-
-def test_a_pedal_pressed_again_does_not_bring_notes_back(midi, player):
-    midi.cc(64, 127)
-    midi.on(75)
-    midi.off(75)
-    midi.cc(64, 0)
-    midi.cc(64, 127)
-    assert player.sounding is None
-
-
-def test_a_pedal_told_twice_that_it_is_down_still_holds(midi, player):
-    midi.cc(64, 127)
-    midi.on(75)
-    midi.off(75)
-    midi.cc(64, 100)
-    assert player.sounding == Key(0, 75)
-
-
-def test_each_channel_has_its_own_pedal(midi, player):
-    midi.cc(64, 127, channel=2)
-    midi.on(75, channel=1)
-    midi.off(75, channel=1)
-    assert player.sounding is None
-    midi.on(77, channel=2)
-    midi.off(77, channel=2)
-    midi.cc(64, 0, channel=1)
-    assert player.sounding == Key(1, 77)
-    midi.cc(64, 0, channel=2)
-    assert player.sounding is None
-
-
-def test_many_notes_under_the_pedal_all_end_with_it(midi, player, listener):
-    midi.cc(64, 127)
-    for note in (66, 70, 75, 80, 70):
-        midi.on(note)
-        midi.off(note)
-    assert player.sounding == Key(0, 70)
-    midi.cc(64, 0)
-    assert silent(listener, player)
 
 
 # ---------------------------------------------------------------- channel modes

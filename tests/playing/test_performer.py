@@ -231,22 +231,6 @@ def test_the_end_of_a_note_that_does_not_sound_changes_nothing(player, listener)
     assert player.sounding is None
 
 
-def test_a_held_note_pressed_again_becomes_the_last_one(player):
-    player.note_on(key(66))
-    player.note_on(key(70))
-    player.note_on(key(66))
-    assert player.sounding == key(66)
-    player.note_off(key(66))
-    assert player.sounding == key(70)
-
-
-def test_keys_of_two_channels_are_two_keys(player):
-    player.note_on(key(66, channel=0))
-    player.note_on(key(66, channel=1))
-    player.note_off(key(66, channel=1))
-    assert player.sounding == key(66, channel=0)
-
-
 def test_all_notes_off_ends_every_note(player, listener):
     player.note_on(key(66))
     player.note_on(key(70))

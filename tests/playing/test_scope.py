@@ -148,29 +148,6 @@ def test_a_wheel_without_keys_bends_by_its_own_range(studio, player):
     assert player.pitch == pytest.approx(81.0, abs=1e-3)
 
 
-def test_a_pedal_without_keys_holds_the_keyboards_notes(studio, player):
-    studio.cc(64, 127)
-    studio.on(75)
-    studio.off(75)
-    assert player.sounding == Key(0, 75)
-    studio.on(75)  # held by hand again
-    studio.cc(64, 0)
-    assert player.sounding == Key(0, 75)
-    studio.off(75)
-    assert player.sounding is None
-
-
-def test_two_pedals_hold_a_note_until_the_second_is_up(studio, player):
-    studio.cc(64, 127, KEYS)
-    studio.cc(64, 127)
-    studio.on(75)
-    studio.off(75)
-    studio.cc(64, 0, KEYS)
-    assert player.sounding == Key(0, 75)
-    studio.cc(64, 0)
-    assert player.sounding is None
-
-
 @pytest.mark.parametrize("control", [120, 121])
 def test_a_pedal_that_is_told_to_end_its_sound_lets_go_of_the_keyboards_notes(
     studio, player, control

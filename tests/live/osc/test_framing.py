@@ -50,12 +50,6 @@ def test_a_stream_cut_anywhere_gives_the_same_packets(frame):
 
 
 @pytest.mark.parametrize("frame", FRAMINGS)
-def test_a_stream_that_comes_byte_by_byte_gives_the_same_packets(frame):
-    stream = frame(SOME)
-    assert read(Framing(), *(stream[at : at + 1] for at in range(len(stream)))) == SOME
-
-
-@pytest.mark.parametrize("frame", FRAMINGS)
 @given(packets, st.lists(st.integers(0, 400)))
 def test_what_is_framed_comes_out_again_however_it_is_cut(frame, packets, cuts):
     stream = frame(packets)
@@ -184,9 +178,3 @@ def test_any_bytes_are_packets_or_refused(pieces):
     except FramingError:
         return
     assert sum(map(len, got)) <= sum(map(len, pieces))
-
-
-def test_nothing_at_all_decides_nothing():
-    framing = Framing()
-    assert read(framing, b"", b"") == []
-    assert read(framing, prefixed(SOME)) == SOME

@@ -76,32 +76,6 @@ def test_what_no_parameter_can_take_is_answered_and_changes_nothing(still):
     assert still.player.values() == before
 
 
-@pytest.mark.parametrize(("value", "tags"), NUMBERS)
-def test_a_number_of_any_type_comes_over_the_wire(shared_server, value, tags):
-    client = shared_server.client()
-    accepted = f32(min(max(value, 0.0), 5.0))
-    # None of them: who sets what is there already is told nothing.
-    shared_server.player.write("/bow/force", 2.5, frame=0)
-    client.tell("/bow/force", value, tags=tags)
-    assert client.wait_for("/bow/force") == [accepted]
-    assert client.value("/bow/force") == accepted
-    assert client.value("/bow/force/unit") == pytest.approx(accepted / 5.0)
-    shared_server.settle()
-    assert shared_server.target("/bow/force") == pytest.approx(accepted, rel=1e-6)
-    assert shared_server.is_well()
-
-
-@pytest.mark.parametrize(("arguments", "tags"), NO_NUMBERS)
-def test_what_is_no_number_is_refused_over_the_wire(shared_server, arguments, tags):
-    client = shared_server.client()
-    before = shared_server.player.values()
-    client.tell("/bow/force", *arguments, tags=tags)
-    assert client.wait_for("/error")[0] == "/yehu/bow/force"
-    client.sync()
-    assert shared_server.player.values() == before
-    assert shared_server.is_well()
-
-
 def test_reset_puts_every_parameter_back_and_tells(still):
     for param in TABLE:
         still.tell(param.address, param.lo)

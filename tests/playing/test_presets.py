@@ -39,7 +39,7 @@ SHIPPED = Presets(Path(os.devnull)).names()
 DEFAULTS = {param.address: param.default for param in TABLE}
 NAMES = [
     "", ".", "..", "../x", "..\\x", "a/b", "a\\b", "C:\\x", "/etc/passwd", "a\0b", ".hidden",
-    "-x", " x", "x" * 101, "x\n", "ä", "a:b", "*",
+    "-x", " x", "x" * 101, "x\n", "a\tb", "ä", "a:b", "*", "~/x", "$(x)",
 ]  # fmt: skip
 bad_names = pytest.mark.parametrize("name", NAMES)
 

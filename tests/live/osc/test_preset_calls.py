@@ -200,9 +200,8 @@ def test_nothing_of_a_file_with_a_wrong_value_is_set(still, own):
 
 
 @pytest.mark.parametrize("call", ["/preset/load", "/preset/save", "/preset/delete"])
-@pytest.mark.parametrize("name", ["../x", "a/b", "C:\\x", ".hidden", "x" * 5000, "", "é"])
-def test_a_name_that_is_a_path_is_refused(still, own, call, name):
-    (refused,) = still.ask(call, name)
+def test_a_name_that_is_a_path_is_refused(still, own, call):
+    (refused,) = still.ask(call, "../x")
     assert refused.address == "/yehu/error"
     assert "is not a plain name" in refused.arguments[1]
     assert list(own.parent.rglob("*")) == [own]

@@ -32,30 +32,7 @@ def test_what_is_recorded_is_a_file_when_it_ends(live):
     assert [path.name for path in folder.iterdir()] == ["take 1.wav"]
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "",
-        ".",
-        "..",
-        "../evil",
-        "..\\evil",
-        "/tmp/evil",  # noqa: S108 - that is the point
-        "a/b",
-        "a\\b",
-        "C:evil",
-        ".hidden",
-        "-rf",
-        "~/evil",
-        "evil\n",
-        "evil\nname",
-        "x" * 101,
-        "é",
-        "$(evil)",
-        "a\tb",
-        " a",
-    ],
-)
+@pytest.mark.parametrize("name", ["", "../evil", "/evil", "evil\n"])
 def test_a_name_that_is_more_than_a_name_records_nothing(shared_server, name):
     client = shared_server.client()
     client.tell("/record/start", name)

@@ -231,17 +231,7 @@ def test_only_reading_is_allowed(port, method):
     assert ask(port, "/yehu/bow/force", method).status == 405
 
 
-@pytest.mark.parametrize(
-    "headers",
-    [
-        {"Origin": "http://evil.example"},
-        {"Origin": f"http://{HOST}:1"},  # any program may serve pages there
-        {"Origin": f"http://{HOST}"},
-        {"Origin": "null"},
-        {"Host": "evil.example"},
-        {"Host": "evil.example", "Origin": "http://evil.example"},
-    ],
-)
+@pytest.mark.parametrize("headers", [{"Origin": f"http://{HOST}:1"}, {"Host": "evil.example"}])
 def test_a_page_from_elsewhere_is_refused_and_counted(shared_web, port, headers):
     before = shared_web.server.status()["http_refused"]
     answer = ask(port, "/yehu/bow/force", **headers)

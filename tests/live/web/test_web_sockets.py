@@ -215,18 +215,7 @@ def test_all_are_told_that_the_tree_changed(connect, shared_web):
 # ---------------------------------------------------------------- who is not let in
 
 
-@pytest.mark.parametrize(
-    "headers",
-    [
-        {"Origin": "http://evil.example"},
-        {"Origin": f"http://{HOST}:1"},  # any program may serve pages there
-        {"Origin": f"http://{HOST}"},
-        {"Origin": "null"},
-        {"Origin": "http://localhost"},
-        {"Host": "evil.example"},
-        {"Host": "evil.example", "Origin": "http://evil.example"},
-    ],
-)
+@pytest.mark.parametrize("headers", [{"Origin": f"http://{HOST}:1"}, {"Host": "evil.example"}])
 def test_a_page_from_elsewhere_gets_no_web_socket(connect, headers):
     with pytest.raises(Refused) as refused:
         connect(**headers)

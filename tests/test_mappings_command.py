@@ -54,19 +54,6 @@ def test_the_bend_is_shown_as_its_range_says(mappings):
     assert "bend range" in mappings("show", "keyboard")[1]
 
 
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [("about = 3\n", "about: expected a line"), ("[[bind]]\n", "needs a source")],
-)
-def test_a_wrong_file_is_named_with_the_reason(mappings, tmp_path, text, reason):
-    path = tmp_path / "wrong"
-    path.write_text(text, encoding="utf-8")
-    code, _, err = mappings("check", path)
-    assert code == 2
-    assert str(path) in err
-    assert reason in err
-
-
 def test_a_name_that_is_no_preset_lists_them(mappings):
     code, _, err = mappings("show", "winds")
     assert code == 2

@@ -87,12 +87,3 @@ def test_a_replay_does_not_go_over_its_capture(refused, tmp_path):
     (tmp_path / "c").write_text("{}")
     err = refused("replay", "c", "-o", "c", "--overwrite")
     assert "-o would overwrite an input" in err
-
-
-def test_a_mapping_is_converted_into_a_new_file(mappings, refused, tmp_path):
-    (tmp_path / "mine.toml").write_text("# what I made\n")
-    err = refused("mappings", "convert", "wind", "-o", "mine.toml")
-    assert "mine.toml: exists; --overwrite replaces it" in err
-    assert (tmp_path / "mine.toml").read_text() == "# what I made\n"
-    assert mappings("convert", "wind", "-o", "mine.toml", "--overwrite")[0] == 0
-    assert "[[bind]]" in (tmp_path / "mine.toml").read_text()

@@ -26,10 +26,9 @@ from yehu_server.playing.tuning import STANDARD_A4
 from yehu_server.scores.gesture import CONTROLS, played_rate
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import PLAIN_NAME
-from yehu_server.util.values import brief, choice, choices, number, whole
+from yehu_server.util.values import choice, choices, line, number, whole
 
 LICENCE = "MIT"  # where none is told: that of this program, and of the body it was measured with
-LONGEST_LINE = 1000
 KINDS = ("strokes", "notes")
 MOST_SOUNDS = 10_000_000
 LONGEST_S = 60.0  # of one sound
@@ -131,19 +130,13 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
         signals=tuple(keep.read("signals", choices, [], SIGNALS)),
         quantities=quantities,
         key=hashlib.sha256(f"{text}{body}".encode()).hexdigest(),
-        about=table.read("about", _line, ""),
-        license=table.read("license", _line, LICENCE),
+        about=table.read("about", line, ""),
+        license=table.read("license", line, LICENCE),
         data=table.data,
     )
     keep.only()
     table.only()
     return description
-
-
-def _line(value: Any) -> str:
-    if not isinstance(value, str) or len(value) > LONGEST_LINE or not value.isprintable():
-        raise ParameterError(f"expected a line of text, got {brief(value)}")
-    return value
 
 
 def _draws(table: Fields, kind: str, quantities: Quantities) -> dict[str, Distribution]:

@@ -2,11 +2,13 @@
 
 import gc
 import os
+import pickle
 import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import forks
 import pytest
@@ -92,6 +94,26 @@ def _within_a_minute(request, _began) -> None:
 def everything(request) -> bool:
     """Whether what is long is wanted as well: ``--all``."""
     return bool(request.config.getoption("--all"))
+
+
+@pytest.fixture(scope="session")
+def once(tmp_path_factory) -> Callable[[str, Callable[[Path], Any]], Any]:
+    """What takes long to make is made by one worker, in a folder; the others read it."""
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if os.environ.get("PYTEST_XDIST_WORKER") else base
+
+    def made(name: str, make: Callable[[Path], Any]) -> Any:
+        from yehu_server.util.processes import machine_lock
+
+        folder = shared / name
+        result = folder / "result.pickle"
+        with machine_lock(f"-{name}"):
+            if not result.exists():
+                folder.mkdir(exist_ok=True)
+                result.write_bytes(pickle.dumps(make(folder)))
+        return pickle.loads(result.read_bytes())  # noqa: S301 (written above)
+
+    return made
 
 
 @pytest.fixture(scope="session", autouse=True)

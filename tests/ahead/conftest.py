@@ -25,11 +25,14 @@ def wasm() -> Path:
 
 
 @pytest.fixture(scope="session")
-def library(tmp_path_factory) -> Path:
+def library(once) -> Path:
     """A folder with the library and its header."""
-    folder = tmp_path_factory.mktemp("library")
-    build("library", folder)
-    return folder
+
+    def built(folder: Path) -> Path:
+        build("library", folder)
+        return folder
+
+    return once("library", built)
 
 
 @pytest.fixture(scope="session")
@@ -39,9 +42,12 @@ def here() -> dict[str, np.ndarray]:
 
 
 @pytest.fixture(scope="session")
-def by_any_processor(tmp_path_factory) -> dict[str, np.ndarray]:
+def by_any_processor(once) -> dict[str, np.ndarray]:
     """The samples of each phrase, with instructions that any processor has."""
-    folder = tmp_path_factory.mktemp("any")
+    return once("by_any_processor", _by_any_processor)
+
+
+def _by_any_processor(folder: Path) -> dict[str, np.ndarray]:
     environment = {
         **os.environ,
         "NUMBA_CPU_NAME": "generic",

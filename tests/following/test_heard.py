@@ -139,7 +139,7 @@ def test_the_form_of_a_recording_does_not_matter(tmp_path):
 
 def test_of_a_long_recording_less_is_kept_than_its_sound():
     """Some numbers for each 5 ms, whatever its rate and channels."""
-    rate, channels, lengths, peaks = 48000, 8, (4, 24), []
+    rate, channels, lengths, peaks = 48000, 8, (2, 10), []
     block = np.tile(voice(tune([(REST, 0.4), (57.0, 1.6)], rate), rate)[:, None], channels)
     block = block.astype(np.float32)
     for blocks in lengths:

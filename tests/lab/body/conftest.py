@@ -13,16 +13,20 @@ def taps():
 
 
 @pytest.fixture(scope="session")
-def whole_fit():
+def whole_fit(once):
     """Admittance and radiation of five taps with noise 40 dB below."""
-    return fit(average(made_taps(noise_db=40.0)))
+    return once("whole_fit", lambda _: fit(average(made_taps(noise_db=40.0))))
 
 
 @pytest.fixture(scope="session", params=[40.0, 30.0], ids=lambda db: f"{db:g}dB")
-def fitted(request, whole_fit):
+def fitted(request, whole_fit, once):
     """The noise below the signals (dB), and what is fitted to five such taps."""
     if request.param == 40.0:
         return request.param, whole_fit
-    taps = made_taps(noise_db=request.param, seconds=0.4, seed=1)
-    measured = average([with_velocity_only(tap) for tap in taps])
-    return request.param, fit(measured, band_hz=(150.0, 5500.0))
+
+    def noisier(_):
+        taps = made_taps(noise_db=request.param, seconds=0.4, seed=1)
+        measured = average([with_velocity_only(tap) for tap in taps])
+        return fit(measured, band_hz=(150.0, 5500.0))
+
+    return request.param, once("noisier_fit", noisier)

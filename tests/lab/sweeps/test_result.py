@@ -60,7 +60,7 @@ def test_a_damaged_file_is_told_in_a_line(tmp_path, result, cut):
 
 
 def test_a_small_file_that_claims_much_is_refused_before_it_is_read(tmp_path, result):
-    count = 2**24
+    count = 2**22
     arrays = result.arrays()
     same = {name: np.zeros(count, arrays[name].dtype) for name in COLUMNS}
     huge = {"numbers": np.zeros(count, np.int64)} | same

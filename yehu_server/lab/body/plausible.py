@@ -7,6 +7,7 @@ is of another kind, the wrong way round, or was measured at two points.
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -104,14 +105,16 @@ def _likeliest(curve: Curve, kind: str) -> tuple[float, str, float]:
     relative = np.hypot(curve.deviation[at] / np.abs(values), MATTERS)
     columns = mode_columns(hz, *_lattice(hz))
     measured = to_mobility(hz, values, kind, back=True)
-    errors = {
-        (name, sign): _misfit(columns, sign * to_mobility(hz, measured, name), relative)
-        for name in KINDS
-        for sign in (1.0, -1.0)
-    }
-    own = errors[kind, 1.0]
+
+    def error(name: str, sign: float) -> float:
+        return _misfit(columns, sign * to_mobility(hz, measured, name), relative)
+
+    own = error(kind, 1.0)
+    if own <= PLAIN:
+        return own, kind, 1.0
+    errors = {other: error(*other) for other in product(KINDS, (1.0, -1.0)) if other != (kind, 1.0)}
     name, sign = min(errors, key=lambda other: errors[other])
-    is_other = own > PLAIN and errors[name, sign] < min(SURE, SMALLER * own)
+    is_other = errors[name, sign] < min(SURE, SMALLER * own)
     return (own, name, sign) if is_other else (own, kind, 1.0)
 
 

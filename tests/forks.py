@@ -21,6 +21,7 @@ import importlib
 import inspect
 import json
 import os
+import pkgutil
 import signal
 import socket
 import subprocess
@@ -34,10 +35,18 @@ from typing import Any
 from commands import COMMAND
 
 PREPARED = (
+    "multiprocessing.spawn",
+    "numpy.random",
+    "rich.console",
     "yehu_server.cli",
     "yehu_server.lab.simulation",
     "yehu_server.live.server",
+    "yehu_server.rendering.replay",
     "yehu_server.rendering.to_files",
+    "yehu_server.rendering.workers",
+    "yehu_server.scores.reading",
+    "yehu_server.scores.smf",
+    "yehu_server.scores.written",
 )
 HERE = Path(__file__).resolve().parent
 # As it is before any test changes it; without the threads that a fork would lack.
@@ -174,8 +183,12 @@ def _received(link: socket.socket, count: int) -> bytes:
 
 def _be_prepared(link: socket.socket) -> str:
     """Fork at each request, until nobody can ask any more; in a fork, return the code to run."""
+    atexit.register(_leave)  # before what is imported does so: it comes last
     for module in PREPARED:
         importlib.import_module(module)
+    for module in pkgutil.iter_modules(sys.modules["yehu_server.cli"].__path__):
+        if module.name != "__main__":
+            importlib.import_module(f"yehu_server.cli.{module.name}")
     importlib.import_module("yehu_server.core.engine.warming").warm_up()
     gc.collect()
     gc.freeze()  # a fork shares what it never touches
@@ -192,6 +205,13 @@ def _be_prepared(link: socket.socket) -> str:
             return _begin(request, files, link)
         for file in files:
             os.close(file)
+
+
+def _leave() -> None:
+    """Let Python end without taking every module apart, which copies all memory of the fork."""
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object([*sys.modules.values()]))
+    for name in {*sys.modules} - {"builtins", "sys", "__main__"}:
+        del sys.modules[name]
 
 
 def _is_fork() -> bool:

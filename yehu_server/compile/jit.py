@@ -252,7 +252,8 @@ class Native:
     @property
     def is_ready(self) -> bool:
         """Whether nothing has to be compiled for its first use."""
-        return all(part.is_kept or part.is_cached for part in with_called([self]))
+        # Kept code has all that it calls; to find that out takes a while.
+        return self.is_kept or all(part.is_kept or part.is_cached for part in with_called([self]))
 
     def __call__(self, *arguments: Any) -> Any:
         """Run it as Python, as other functions do that are plain (`IS_PLAIN`)."""

@@ -7,6 +7,7 @@ Text seeds, and those that once broke something, are written by hand.
 
 from __future__ import annotations
 
+import functools
 import io
 import pickle
 import struct
@@ -21,36 +22,24 @@ import numpy as np
 sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
 
 from fuzz.target import SEEDS
+from midi_bytes import END, midi, off, on, riff, tempo
+from wire import SINCE_1900_S, Wire
 
-
-def chunk(tag: bytes, body: bytes) -> bytes:
-    return tag + struct.pack(">I", len(body)) + body
-
-
-def midi_file(*tracks: bytes, form: int = 0, division: int = 96) -> bytes:
-    head = chunk(b"MThd", struct.pack(">HHH", form, len(tracks), division))
-    return head + b"".join(chunk(b"MTrk", track) for track in tracks)
-
-
-NOTE = b"\x00\x90\x43\x5a\x60\x80\x43\x00"
-END = b"\x00\xff\x2f\x00"
-TEMPO = b"\x00\xff\x51\x03\x07\xa1\x20"
+midi_file = functools.partial(midi, kind=0, division=96)
+NOTE = on(0, 67, 90) + off(96, 67)
+TEMPO = tempo(0, 500_000)
 
 MIDI_FILES = {
     "one-note": midi_file(NOTE + END),
     "running-status": midi_file(b"\x00\x90\x43\x5a\x30\x43\x00\x00\x45\x5a\x30\x45\x00" + END),
-    "two-tracks": midi_file(TEMPO + END, NOTE + b"\x00\xb0\x01\x40" + END, form=1),
-    "one-after-another": midi_file(NOTE + END, TEMPO + NOTE + END, form=2),
+    "two-tracks": midi_file(TEMPO + END, NOTE + b"\x00\xb0\x01\x40" + END, kind=1),
+    "one-after-another": midi_file(NOTE + END, TEMPO + NOTE + END, kind=2),
     "smpte-time": midi_file(NOTE + END, division=0xE728),
     "sysex-and-escape": midi_file(b"\x00\xf0\x03\x7e\x00\xf7\x00\xf7\x01\xf8" + NOTE + END),
     "all-kinds-of-messages": midi_file(
         NOTE + b"\x00\xe0\x00\x40\x00\xd0\x30\x00\xa0\x43\x30\x00\xc0\x05\x00\xb0\x40\x7f" + END
     ),
-    "in-riff": b"RIFF"
-    + struct.pack("<I", 100)
-    + b"RMIDdata"
-    + struct.pack("<I", len(midi_file(NOTE + END)))
-    + midi_file(NOTE + END),
+    "in-riff": riff(midi_file(NOTE + END)),
     "cut-short": midi_file(NOTE + NOTE)[:-3],
     "velocity-above-127": midi_file(b"\x00\x90\x43\xff" + NOTE + END),
     "division-0": midi_file(NOTE + END, division=0),
@@ -105,49 +94,31 @@ MIDI_MESSAGES = {
 }
 
 
-def text(words: str) -> bytes:
-    data = words.encode()
-    return data + b"\0" * (4 - len(data) % 4)
-
-
-def message(address: str, tags: str, data: bytes = b"") -> bytes:
-    return text(address) + text("," + tags) + data
-
-
-def bundle(*elements: bytes, tag: int = 1) -> bytes:
-    sized = (struct.pack(">I", len(element)) + element for element in elements)
-    return b"#bundle\0" + struct.pack(">Q", tag) + b"".join(sized)
-
-
-OSC_NOTE = message("/yehu/note", "ff", struct.pack(">ff", 67.0, 90.0))
-BLOB = message("/a", "b", b"\0\0\0\3abc\0")
+OSC_NOTE = Wire.message("/yehu/note", 67.0, 90.0)
+BLOB = Wire.message("/a", b"abc")
 DEEP = OSC_NOTE
 for _ in range(40):
-    DEEP = bundle(DEEP)
+    DEEP = Wire.bundle(None, DEEP)
+IN_1968, IN_2019 = (0x80000000 - SINCE_1900_S, 0xE0000000 - SINCE_1900_S)  # s
 
 OSC_PACKETS = {
     "a-note": OSC_NOTE,
     "no-tags": b"/yehu/panic\0",
-    "all-types": message(
+    "all-types": Wire.message(
         "/all",
-        "ifsSbhdtcrmTFNI",
-        struct.pack(">if", -5, 0.5)
-        + text("word")
-        + text("symbol")
-        + b"\0\0\0\1x\0\0\0"
-        + struct.pack(">qdQ", -1, 2.5, 1)
-        + b"\0\0\0c\1\2\3\4\0\x90\x43\x5a",
+        *(-5, 0.5, "word", "symbol", b"x", -1, 2.5, 1, ord("c"), 0x01020304, b"\0\x90\x43\x5a"),
+        tags="ifsSbhdtcrmTFNI",
     ),
-    "lists-in-lists": message("/lists", "[f[i]s]", struct.pack(">fi", 1.0, 2) + text("x")),
-    "a-bundle-for-now": bundle(OSC_NOTE, OSC_NOTE),
-    "a-bundle-for-later": bundle(OSC_NOTE, bundle(BLOB, tag=1 << 63), tag=0xE0000000 << 32),
+    "lists-in-lists": Wire.message("/lists", 1.0, 2, "x", tags="[f[i]s]"),
+    "a-bundle-for-now": Wire.bundle(None, OSC_NOTE, OSC_NOTE),
+    "a-bundle-for-later": Wire.bundle(IN_2019, OSC_NOTE, Wire.bundle(IN_1968, BLOB)),
     "bundles-too-deep": DEEP,
-    "an-element-of-no-length": b"#bundle\0" + struct.pack(">QI", 1, 0),
-    "a-blob-longer-than-the-packet": message("/a", "b", b"\x7f\xff\xff\xff"),
-    "a-blob-of-negative-length": message("/a", "b", b"\xff\xff\xff\xff"),
-    "a-list-never-closed": message("/a", "[[[["),
+    "an-element-of-no-length": Wire.bundle(None, b""),
+    "a-blob-longer-than-the-packet": b"/a\0\0,b\0\0\x7f\xff\xff\xff",
+    "a-blob-of-negative-length": b"/a\0\0,b\0\0\xff\xff\xff\xff",
+    "a-list-never-closed": Wire.message("/a", tags="[[[["),
     "text-that-is-none": b"/\xff\xfe\0,\0\0\0",
-    "not-a-number": message("/a", "fd", struct.pack(">fd", float("nan"), float("inf"))),
+    "not-a-number": Wire.message("/a", float("nan"), float("inf"), tags="fd"),
 }
 
 

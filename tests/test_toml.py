@@ -33,8 +33,3 @@ def test_a_key_of_very_many_parts_is_refused_before_it_takes_time(part, around):
 def test_looking_for_such_keys_takes_no_time_itself(text):
     with pytest.raises(ValueError, match=r"at (line|end)"):
         parse_toml(text)
-
-
-def test_what_is_nested_too_deep_is_refused():
-    with pytest.raises(ValueError, match="too deep"):
-        parse_toml(f"a = {'[' * 5000}{']' * 5000}")

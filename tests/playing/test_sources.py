@@ -70,6 +70,7 @@ def test_each_source_has_one_name(text, name):
 @pytest.mark.parametrize(
     "text",
     [
+        "cc", "CC 1", "cc 01", "cc \uff11", "breath",
         "cc 120", "cc 128", "cc 1/34", "cc 1/1", "cc 32/64", "cc 33/1", "cc 6/38", "cc 6", "cc 98",
         "cc 1/", "cc 1/033", "cc  1", "nrpn", "nrpn 16383", "nrpn 127/127", "nrpn 128/0",
         "nrpn 0/128", "nrpn 300/1", "nrpn 99999", "rpn 0", "note 3", "", "/", "//a", "/a/", "/a b",

@@ -207,31 +207,15 @@ def test_a_device_that_is_not_there_is_refused(jackd, tmp_path):
     assert line == f"yehu-server: no audio output matches 'hifi' (there are: {DEVICE})"
 
 
-@pytest.fixture(scope="module")
-def refused_rate(jackd, tmp_path_factory) -> tuple[int, list[str], list[Path]]:
-    """Exit code, lines and files of a call with a rate that the named device does not have."""
+def test_a_rate_the_named_device_does_not_have_is_refused_once_and_no_file_left(jackd, tmp_path):
     jackd.start(512, rate=RATE)
-    folder = tmp_path_factory.mktemp("refused")
     words = ("--audio-device", "JACK", "--rate", 44100, "--osc", "127.0.0.1:0", "--no-http")
-    run = command(jackd, "serve", *words, *files(folder))
-    return run.returncode, run.stderr.splitlines(), list(folder.iterdir())
-
-
-@pytest.mark.slow
-def test_a_rate_the_named_device_does_not_have_is_refused(refused_rate):
-    code, (*_, line), _ = refused_rate
-    assert code == 2
+    run = command(jackd, "serve", *words, *files(tmp_path))
+    assert run.returncode == 2
+    *others, line = run.stderr.splitlines()
     assert line == f"yehu-server: {DEVICE} does not run at 44100 Hz (its own rate is 48000 Hz)"
-
-
-def test_a_rate_the_named_device_does_not_have_is_said_once(refused_rate):
-    _, lines, _ = refused_rate
-    assert len([line for line in lines if "44100 Hz" in line]) == 1
-
-
-def test_where_the_named_device_cannot_be_opened_no_file_is_left(refused_rate):
-    _, _, left = refused_rate
-    assert left == []
+    assert not any("44100 Hz" in other for other in others)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.slow

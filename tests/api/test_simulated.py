@@ -172,13 +172,6 @@ def test_a_bow_that_hardly_touches_makes_no_helmholtz_motion(swept):
     assert (swept.grid("level_db")[0] < swept.grid("level_db")[1]).all()
 
 
-def test_it_is_the_same_for_any_number_of_workers(swept):
-    gesture, vary = swept.meta["gesture"], swept.axes
-    again = yehu.sweep(gesture, vary, workers=1)
-    for name, column in swept.columns.items():
-        np.testing.assert_array_equal(again.columns[name], column)
-
-
 def test_a_labelled_dataset_has_names_values_and_units(swept):
     xarray = pytest.importorskip("xarray")
     found = swept.to_xarray()

@@ -112,12 +112,6 @@ def test_a_note_ends_as_late_as_the_next_begins():
     assert timing.release(HALF_A_SECOND) == ends  # asked for after the next note has begun
 
 
-def test_without_variation_all_begin_together():
-    timing = Together(8, RATE, seed=0)
-    timing.variation = 0.0
-    assert onsets(timing, 50).max() == 0.0
-
-
 def test_a_seed_gives_the_same_onsets_again():
     timing = Together(4, RATE, seed=7)
     first = onsets(timing, 20)

@@ -448,20 +448,6 @@ def hear_noise(heard: Witness, until: Callable, data: Callable[[], list[int]]) -
     until(all_is_taken, SOON_S, "the end of both ports to be taken")
 
 
-def test_whatever_is_played_leaves_no_note(listening, until):
-    heard = listening
-    chance = random.Random(8)
-    hear_noise(heard, until, lambda: [*noise(chance), 0, 0][:3])
-    sides = [1.0]
-
-    def is_lifted() -> bool:
-        sides.extend(move[1] for address, move in heard.applied().items() if address == "/bow/side")
-        return sides[-1] == 0.0
-
-    until(is_lifted, 5.0, "the bow to be lifted")
-    heard.comes_to(None)
-
-
 def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listening, until):
     heard = listening
     before = heard.malformed()
@@ -614,38 +600,6 @@ def test_a_missing_name_is_said_once_however_often_the_midi_system_begins_anew()
     for _ in range(2):
         ports.on_event({"event": "missing", "pattern": "breath", "present": ["keys", "synth"]})
     assert said == ["MIDI: no input matches 'breath' yet (there are: keys, synth)"]
-
-
-def test_a_breath_controller_on_a_port_of_its_own_plays_the_keyboards_note(
-    jack, serve, sender, until
-):
-    server = serve(
-        *("--midi-api", "jack", "--midi-in", "keystep", "--midi-in", "breath"),
-        *("--mapping", "wind", "--audio-device", "null"),
-    )
-    osc = server.osc()
-    server.said("no input matches 'breath' yet")
-    for box in ("keystep", "breath"):
-        sender.tell(f"open {box} out")
-        server.said(f"MIDI: {box}:out is connected", SOON_S)
-    time.sleep(LISTENS_AFTER_S)
-
-    def bows(order: str, *, bowed: bool) -> None:
-        """Send until the bow is drawn, or lifted: on a busy machine JACK loses messages."""
-
-        def is_so() -> bool:
-            sender.tell(order)
-            time.sleep(0.1)
-            status = osc.status()
-            return abs(status["note"] - 69.0) < 0.5 and (status["bow_speed"] != 0.0) is bowed
-
-        until(is_so, 5.0, order)
-
-    bows("send keystep 90 45 60", bowed=True)
-    bows("send breath b0 02 00", bowed=False)
-    bows("send breath b0 02 50", bowed=True)
-    assert jack.pid
-    assert server.end() == 0
 
 
 # ---------------------------------------------------------------- without a MIDI system

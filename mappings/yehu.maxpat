@@ -12454,17 +12454,17 @@
       104,
       48
      ],
-     "varname": "/body/evenness",
+     "varname": "/body/brilliance_frequency",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/body/evenness",
-       "parameter_shortname": "evenness",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/body/brilliance_frequency",
+       "parameter_shortname": "brilliance frequency",
+       "parameter_mmin": 200.0,
+       "parameter_mmax": 8000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f Hz"
       }
      }
     }
@@ -12481,7 +12481,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "200 to 8000 Hz",
      "presentation": 1,
      "presentation_rect": [
       464,
@@ -12520,14 +12520,14 @@
      "patching_rect": [
       117.0,
       5916,
-      189,
+      273,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/body/evenness"
+     "text": "route /yehu/body/brilliance_frequency"
     }
    },
    {
@@ -12537,7 +12537,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      330.0,
+      414.0,
       5916,
       91,
       22
@@ -12557,13 +12557,13 @@
      "patching_rect": [
       16.0,
       5946,
-      126,
+      133,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.9"
+     "text": "loadmess set 1300"
     }
    },
    {
@@ -12573,15 +12573,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      173.0,
       5946,
-      203,
+      287,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/evenness"
+     "text": "prepend /yehu/body/brilliance_frequency"
     }
    },
    {
@@ -12591,7 +12591,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      484.0,
       5946,
       98,
       22
@@ -12603,6 +12603,175 @@
    {
     "box": {
      "id": "obj-597",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      576,
+      1136,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      1136,
+      104,
+      48
+     ],
+     "varname": "/body/evenness",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/body/evenness",
+       "parameter_shortname": "evenness",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-598",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      576,
+      1186,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      1186,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-599",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5976,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-600",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5976,
+      189,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/body/evenness"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-601",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      330.0,
+      5976,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-602",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6006,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.9"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-603",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      6006,
+      203,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/evenness"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-604",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      6006,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-605",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12625,7 +12794,7 @@
    },
    {
     "box": {
-     "id": "obj-598",
+     "id": "obj-606",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12663,7 +12832,7 @@
    },
    {
     "box": {
-     "id": "obj-599",
+     "id": "obj-607",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12687,13 +12856,13 @@
    },
    {
     "box": {
-     "id": "obj-600",
+     "id": "obj-608",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5976,
+      6036,
       77,
       22
      ],
@@ -12705,13 +12874,13 @@
    },
    {
     "box": {
-     "id": "obj-601",
+     "id": "obj-609",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5976,
+      6036,
       161,
       22
      ],
@@ -12724,13 +12893,13 @@
    },
    {
     "box": {
-     "id": "obj-602",
+     "id": "obj-610",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      5976,
+      6036,
       91,
       22
      ],
@@ -12742,13 +12911,13 @@
    },
    {
     "box": {
-     "id": "obj-603",
+     "id": "obj-611",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6006,
+      6066,
       112,
       22
      ],
@@ -12760,13 +12929,13 @@
    },
    {
     "box": {
-     "id": "obj-604",
+     "id": "obj-612",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6006,
+      6066,
       175,
       22
      ],
@@ -12778,13 +12947,13 @@
    },
    {
     "box": {
-     "id": "obj-605",
+     "id": "obj-613",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       351.0,
-      6006,
+      6066,
       98,
       22
      ],
@@ -12794,7 +12963,7 @@
    },
    {
     "box": {
-     "id": "obj-606",
+     "id": "obj-614",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12832,7 +13001,7 @@
    },
    {
     "box": {
-     "id": "obj-607",
+     "id": "obj-615",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12846,175 +13015,6 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      1284,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-608",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      6036,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-609",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      6036,
-      168,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/room/decay"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-610",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      309.0,
-      6036,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-611",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      6066,
-      126,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0.4"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-612",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      166.0,
-      6066,
-      182,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/decay"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-613",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      372.0,
-      6066,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-614",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      240,
-      1234,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1234,
-      104,
-      48
-     ],
-     "varname": "/room/damping",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/room/damping",
-       "parameter_shortname": "damping",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-615",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      240,
-      1284,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      240,
       1284,
       104,
       22
@@ -13050,14 +13050,14 @@
      "patching_rect": [
       117.0,
       6096,
-      182,
+      168,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/room/damping"
+     "text": "route /yehu/room/decay"
     }
    },
    {
@@ -13067,7 +13067,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      323.0,
+      309.0,
       6096,
       91,
       22
@@ -13105,13 +13105,13 @@
      "patching_rect": [
       166.0,
       6126,
-      196,
+      182,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/room/damping"
+     "text": "prepend /yehu/room/decay"
     }
    },
    {
@@ -13121,7 +13121,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      372.0,
       6126,
       98,
       22
@@ -13133,6 +13133,175 @@
    {
     "box": {
      "id": "obj-622",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      1234,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1234,
+      104,
+      48
+     ],
+     "varname": "/room/damping",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/damping",
+       "parameter_shortname": "damping",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-623",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      1284,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1284,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-624",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6156,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-625",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      6156,
+      182,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-626",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      323.0,
+      6156,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-627",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6186,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.4"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-628",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      6186,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-629",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      6186,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-630",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13170,7 +13339,7 @@
    },
    {
     "box": {
-     "id": "obj-623",
+     "id": "obj-631",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13194,13 +13363,13 @@
    },
    {
     "box": {
-     "id": "obj-624",
+     "id": "obj-632",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6156,
+      6216,
       77,
       22
      ],
@@ -13212,13 +13381,13 @@
    },
    {
     "box": {
-     "id": "obj-625",
+     "id": "obj-633",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6156,
+      6216,
       168,
       22
      ],
@@ -13231,13 +13400,13 @@
    },
    {
     "box": {
-     "id": "obj-626",
+     "id": "obj-634",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      6156,
+      6216,
       91,
       22
      ],
@@ -13249,13 +13418,13 @@
    },
    {
     "box": {
-     "id": "obj-627",
+     "id": "obj-635",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6186,
+      6246,
       133,
       22
      ],
@@ -13267,13 +13436,13 @@
    },
    {
     "box": {
-     "id": "obj-628",
+     "id": "obj-636",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      6186,
+      6246,
       182,
       22
      ],
@@ -13285,13 +13454,13 @@
    },
    {
     "box": {
-     "id": "obj-629",
+     "id": "obj-637",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      6186,
+      6246,
       98,
       22
      ],
@@ -13301,7 +13470,7 @@
    },
    {
     "box": {
-     "id": "obj-630",
+     "id": "obj-638",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13339,7 +13508,7 @@
    },
    {
     "box": {
-     "id": "obj-631",
+     "id": "obj-639",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13363,13 +13532,13 @@
    },
    {
     "box": {
-     "id": "obj-632",
+     "id": "obj-640",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6216,
+      6276,
       77,
       22
      ],
@@ -13381,13 +13550,13 @@
    },
    {
     "box": {
-     "id": "obj-633",
+     "id": "obj-641",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6216,
+      6276,
       189,
       22
      ],
@@ -13400,13 +13569,13 @@
    },
    {
     "box": {
-     "id": "obj-634",
+     "id": "obj-642",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      6216,
+      6276,
       91,
       22
      ],
@@ -13418,13 +13587,13 @@
    },
    {
     "box": {
-     "id": "obj-635",
+     "id": "obj-643",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6246,
+      6306,
       112,
       22
      ],
@@ -13436,13 +13605,13 @@
    },
    {
     "box": {
-     "id": "obj-636",
+     "id": "obj-644",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6246,
+      6306,
       203,
       22
      ],
@@ -13454,13 +13623,13 @@
    },
    {
     "box": {
-     "id": "obj-637",
+     "id": "obj-645",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      6246,
+      6306,
       98,
       22
      ],
@@ -13470,7 +13639,7 @@
    },
    {
     "box": {
-     "id": "obj-638",
+     "id": "obj-646",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13508,7 +13677,7 @@
    },
    {
     "box": {
-     "id": "obj-639",
+     "id": "obj-647",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13532,13 +13701,13 @@
    },
    {
     "box": {
-     "id": "obj-640",
+     "id": "obj-648",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6276,
+      6336,
       77,
       22
      ],
@@ -13550,13 +13719,13 @@
    },
    {
     "box": {
-     "id": "obj-641",
+     "id": "obj-649",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6276,
+      6336,
       154,
       22
      ],
@@ -13569,13 +13738,13 @@
    },
    {
     "box": {
-     "id": "obj-642",
+     "id": "obj-650",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       295.0,
-      6276,
+      6336,
       91,
       22
      ],
@@ -13587,13 +13756,13 @@
    },
    {
     "box": {
-     "id": "obj-643",
+     "id": "obj-651",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6306,
+      6366,
       112,
       22
      ],
@@ -13605,13 +13774,13 @@
    },
    {
     "box": {
-     "id": "obj-644",
+     "id": "obj-652",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6306,
+      6366,
       168,
       22
      ],
@@ -13623,13 +13792,13 @@
    },
    {
     "box": {
-     "id": "obj-645",
+     "id": "obj-653",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       344.0,
-      6306,
+      6366,
       98,
       22
      ],
@@ -13639,7 +13808,7 @@
    },
    {
     "box": {
-     "id": "obj-646",
+     "id": "obj-654",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13662,7 +13831,7 @@
    },
    {
     "box": {
-     "id": "obj-647",
+     "id": "obj-655",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13700,7 +13869,7 @@
    },
    {
     "box": {
-     "id": "obj-648",
+     "id": "obj-656",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13724,13 +13893,13 @@
    },
    {
     "box": {
-     "id": "obj-649",
+     "id": "obj-657",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6336,
+      6396,
       77,
       22
      ],
@@ -13742,13 +13911,13 @@
    },
    {
     "box": {
-     "id": "obj-650",
+     "id": "obj-658",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6336,
+      6396,
       224,
       22
      ],
@@ -13761,13 +13930,13 @@
    },
    {
     "box": {
-     "id": "obj-651",
+     "id": "obj-659",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       365.0,
-      6336,
+      6396,
       91,
       22
      ],
@@ -13779,13 +13948,13 @@
    },
    {
     "box": {
-     "id": "obj-652",
+     "id": "obj-660",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6366,
+      6426,
       112,
       22
      ],
@@ -13797,13 +13966,13 @@
    },
    {
     "box": {
-     "id": "obj-653",
+     "id": "obj-661",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6366,
+      6426,
       238,
       22
      ],
@@ -13815,13 +13984,13 @@
    },
    {
     "box": {
-     "id": "obj-654",
+     "id": "obj-662",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       414.0,
-      6366,
+      6426,
       98,
       22
      ],
@@ -13831,7 +14000,7 @@
    },
    {
     "box": {
-     "id": "obj-655",
+     "id": "obj-663",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13869,7 +14038,7 @@
    },
    {
     "box": {
-     "id": "obj-656",
+     "id": "obj-664",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13893,13 +14062,13 @@
    },
    {
     "box": {
-     "id": "obj-657",
+     "id": "obj-665",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6396,
+      6456,
       77,
       22
      ],
@@ -13911,13 +14080,13 @@
    },
    {
     "box": {
-     "id": "obj-658",
+     "id": "obj-666",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6396,
+      6456,
       175,
       22
      ],
@@ -13930,13 +14099,13 @@
    },
    {
     "box": {
-     "id": "obj-659",
+     "id": "obj-667",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      6396,
+      6456,
       91,
       22
      ],
@@ -13948,13 +14117,13 @@
    },
    {
     "box": {
-     "id": "obj-660",
+     "id": "obj-668",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6426,
+      6486,
       112,
       22
      ],
@@ -13966,13 +14135,13 @@
    },
    {
     "box": {
-     "id": "obj-661",
+     "id": "obj-669",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6426,
+      6486,
       189,
       22
      ],
@@ -13984,13 +14153,13 @@
    },
    {
     "box": {
-     "id": "obj-662",
+     "id": "obj-670",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      6426,
+      6486,
       98,
       22
      ],
@@ -19866,6 +20035,19 @@
    {
     "patchline": {
      "source": [
+      "obj-599",
+      0
+     ],
+     "destination": [
+      "obj-600",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-600",
       0
      ],
@@ -19883,7 +20065,7 @@
       0
      ],
      "destination": [
-      "obj-602",
+      "obj-597",
       0
      ],
      "order": 0
@@ -19896,7 +20078,20 @@
       0
      ],
      "destination": [
-      "obj-598",
+      "obj-597",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-597",
+      0
+     ],
+     "destination": [
+      "obj-603",
       0
      ],
      "order": 0
@@ -19909,33 +20104,7 @@
       0
      ],
      "destination": [
-      "obj-598",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-598",
-      0
-     ],
-     "destination": [
       "obj-604",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-604",
-      0
-     ],
-     "destination": [
-      "obj-605",
       0
      ],
      "order": 0
@@ -20334,6 +20503,19 @@
    {
     "patchline": {
      "source": [
+      "obj-648",
+      0
+     ],
+     "destination": [
+      "obj-649",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-649",
       0
      ],
@@ -20351,7 +20533,7 @@
       0
      ],
      "destination": [
-      "obj-651",
+      "obj-646",
       0
      ],
      "order": 0
@@ -20364,7 +20546,20 @@
       0
      ],
      "destination": [
-      "obj-647",
+      "obj-646",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-646",
+      0
+     ],
+     "destination": [
+      "obj-652",
       0
      ],
      "order": 0
@@ -20377,33 +20572,7 @@
       0
      ],
      "destination": [
-      "obj-647",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-647",
-      0
-     ],
-     "destination": [
       "obj-653",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-653",
-      0
-     ],
-     "destination": [
-      "obj-654",
       0
      ],
      "order": 0
@@ -20482,6 +20651,84 @@
      ],
      "destination": [
       "obj-662",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-665",
+      0
+     ],
+     "destination": [
+      "obj-666",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-666",
+      0
+     ],
+     "destination": [
+      "obj-667",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-667",
+      0
+     ],
+     "destination": [
+      "obj-663",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-668",
+      0
+     ],
+     "destination": [
+      "obj-663",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-663",
+      0
+     ],
+     "destination": [
+      "obj-669",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-669",
+      0
+     ],
+     "destination": [
+      "obj-670",
       0
      ],
      "order": 0

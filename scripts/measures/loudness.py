@@ -20,6 +20,7 @@ EVEN_DB = 2.0
 STRUCK = (1, 20, 50, 80, 110, 127)
 SOFT, MEDIUM, HARD = STRUCK.index(20), STRUCK.index(80), STRUCK.index(127)
 LEAST_RISE_DB, MOST_RISE_DB, LEAST_ABOVE_DB = 16.0, 24.0, 3.0
+BRIGHTER = 1.25  # the centroid of a hard note, as a factor on that of a soft one
 LIMITER = 10.0 ** (find("/output/limiter").default / 20.0)  # amplitude above which it acts
 
 
@@ -97,11 +98,25 @@ def _rises(note: int, row: list[Timbre]) -> bool:
     return is_right
 
 
+def _brightness(rows: list[list[Timbre]]) -> list[Share]:
+    """Print whether centroids rise enough from soft to hard, and with each velocity."""
+    hz = np.array([[each.centroid_hz for each in row[SOFT:]] for row in rows])
+    steps = hz[:, 1:] / hz[:, :-1]
+    in_all = hz[:, -1] / hz[:, 0]
+    words = [f"{note} {ratio:.2f}" for note, ratio in zip(NOTES, in_all, strict=True)]
+    least = [f"{note} {ratio:.3f}" for note, ratio in zip(NOTES, steps.min(axis=1), strict=True)]
+    return [
+        share_line(f"brighter {BRIGHTER:g} times or more", in_all >= BRIGHTER, words),
+        share_line("brighter with each velocity", steps.min(axis=1) > 1.0, least),
+    ]
+
+
 def velocity(setup: Setup) -> list[Share]:
     """Print how each note's level rises with velocity, in each mapping that binds it.
 
     Level (dB, A-weighted) at six velocities; spectral centroid (Hz) and attack (ms) at 20 and
-    127; and the velocities at which a peak was above the threshold of the output's limiter.
+    127; and the velocities at which a peak was above the threshold of the output's limiter. With
+    the default mapping also how many notes become brighter.
     """
     parts = []
     for name in shipped_mappings():
@@ -120,5 +135,8 @@ def velocity(setup: Setup) -> list[Share]:
             f"centroid times {np.median(ratios):.2f}, attack {np.median(sooner):.0f} ms sooner; "
             f"limited in {sum(each.peak > LIMITER for each in found)} of {len(found)} notes"
         )
-        parts.append(share_line(name, right, [str(note) for note in NOTES]))
+        words = [str(note) for note in NOTES]
+        parts.append(share_line(name, right, words))
+        if name == DEFAULT:
+            parts += _brightness(rows)
     return parts

@@ -11,7 +11,7 @@ from interpreted import ALL_KINDS, Leader, Wished
 from yehu_server.core.controls.record import prepare_controls
 from yehu_server.core.controls.slots import HIGHEST, LOWEST
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration
+from yehu_server.core.player.calibration import GAINS, PITCHES, SPEEDS, Calibration
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import prepare_player
 from yehu_server.core.player.wishes import KINDS, fulfil
@@ -24,6 +24,11 @@ CALIBRATION = Calibration(
     (51.0, 64.0),
     tuple(tuple((20.0,) * len(SPEEDS) for _ in pitches) for pitches in PITCHES),
     tuple(tuple((-30.0,) * len(SPEEDS) for _ in (None, *pitches)) for pitches in PITCHES),
+    centroids=tuple(
+        tuple(tuple(900.0 + gain for gain in GAINS) for _ in (None, *pitches))
+        for pitches in PITCHES
+    ),
+    louder=tuple(tuple((1.0,) * len(GAINS) for _ in (None, *pitches)) for pitches in PITCHES),
 )
 QUANTITIES = CALIBRATION.tuned(Quantities())
 DEFAULTS = {param.address: param.default for param in TABLE}

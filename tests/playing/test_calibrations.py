@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.calibration import GAINS
 from yehu_server.errors import ParameterError
 from yehu_server.playing import calibration_store
 from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
@@ -21,6 +22,8 @@ MEASURED = Calibration(
     (50.0, 66.0),
     tuple(tuple((40.0,) * len(SPEEDS) for _ in pitches) for pitches in PITCHES),
     tuple(tuple((-20.0,) * len(SPEEDS) for _ in (0, *pitches)) for pitches in PITCHES),
+    centroids=tuple(tuple((800.0,) * len(GAINS) for _ in (0, *pitches)) for pitches in PITCHES),
+    louder=tuple(tuple((1.0,) * len(GAINS) for _ in (0, *pitches)) for pitches in PITCHES),
 )
 
 
@@ -125,6 +128,9 @@ WRONG = np.array(MEASURED.sharpening)
         spoiled(tensions=[5.0, 66.0]),
         spoiled(levels=SHORT),
         spoiled(levels=[[[[]]], []]),
+        spoiled(louder=SHORT),
+        spoiled(centroids=[]),
+        spoiled(centroids=np.full((2, len(PITCHES[0]) + 1, len(GAINS)), -1.0).tolist()),
         spoiled(sharpening=np.where(WRONG > 0, np.inf, 0.0).tolist()),
         spoiled(sharpening=np.where(WRONG > 0, 1e6, 0.0).tolist()),
         spoiled(sharpening=np.where(WRONG > 0, None, None).tolist()),

@@ -100,8 +100,11 @@ TABLE: tuple[Param, ...] = (
         "How much the sound of the body differs to both sides, above some 1.5 kHz; 0: not at all.",
         smooth_ms=20.0),
     _owned("/body/brilliance", "", "dB", -24.0, 24.0, 0.0,
-        "Gain of what lies above some 1.3 kHz, from the player's bow: harder and nearer to the "
-        "bridge is brighter.", smooth_ms=20.0),
+        "Gain of what lies above /body/brilliance_frequency, from the player's bow: harder and "
+        "nearer to the bridge is brighter.", smooth_ms=20.0),
+    _owned("/body/brilliance_frequency", "", "Hz", 200.0, 8000.0, 1300.0,
+        "Frequency above which /body/brilliance acts, from the note: there it has half of its "
+        "decibels.", curve=Curve.EXP, smooth_ms=20.0),
     _engine("/room/size", "", "m", 2.0, 40.0, 5.0,
         "Length of the room; its width and height go with it.", curve=Curve.EXP, is_shared=True),
     _engine("/room/decay", "", "s", 0.1, 10.0, 0.4,

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.shelf import shelf_response
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.player.bowing import (
@@ -33,17 +34,27 @@ from yehu_server.core.player.bowing import (
     at_pitch,
     share,
 )
-from yehu_server.core.player.brilliance import USUAL_EFFORT, USUAL_PLACE, brilliance_db
 from yehu_server.core.player.calibration import (
+    ABOVE,
+    GAINS,
     OPEN_NOTES,
     PITCHES,
+    PLAIN,
     SPEEDS,
+    USUAL_SPEED,
     Calibration,
+    Tables,
     frequency_hz,
     ideal_position,
 )
 from yehu_server.params.table import find
-from yehu_server.playing.pitch_and_level import SILENCE_DB, a_weighted_db, cents, pitch_hz
+from yehu_server.playing.pitch_and_level import (
+    SILENCE_DB,
+    a_weighted_db,
+    a_weighting,
+    cents,
+    pitch_hz,
+)
 from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.playing.stringing import notes_of
 from yehu_server.util import PACKAGE
@@ -88,7 +99,7 @@ def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
         for source in sorted((core / folder).glob("*.py"))
     ]
     sources += [core / "player" / f"{name}.py" for name in ("bowing", "calibration")]
-    sources += [core / "engine" / f"{name}.py" for name in ("sounding", "output")]
+    sources += [core / "engine" / f"{name}.py" for name in ("sounding", "output", "shelf")]
     sources += [Path(__file__)]
     bowed = shipped_practice(rate)[:, PLACES.index(DEFAULT_PLACE)].tolist()
     return key_of(sources, repr((rate, a4, quantities, bowed)))
@@ -139,13 +150,23 @@ def calibrate(
         open_levels = [_bow(tuned, string, note, speed, None)[1] for speed in SPEEDS]
         sharpening.append(_completed(own[:, :, 0], USUAL_CENTS[string]))
         levels.append(_completed(np.vstack([open_levels, own[:, :, 1]]), SILENCE_DB))
-    return Calibration(a4, (first, second), tuple(sharpening), tuple(levels), open_notes)
+    centroids, louder = _all_colours(tuned, sharpening)
+    tensions = (first, second)
+    return Calibration(
+        a4, tensions, tuple(sharpening), tuple(levels), open_notes, centroids, louder
+    )
 
 
 def _bow(
     setup: _Setup, string: int, pitch: float, speed: float, x_f: float | None
 ) -> tuple[float, float]:
     """Pitch (Hz) and level (dB) of a string, bowed as the player does at medium pressure."""
+    steady = _steady(setup, string, pitch, speed, x_f)
+    return pitch_hz(steady, setup.rate), a_weighted_db(steady, setup.rate)
+
+
+def _steady(setup: _Setup, string: int, pitch: float, speed: float, x_f: float | None) -> Array:
+    """What is heard of that, once it is steady."""
     rate = setup.rate
     instrument = Instrument(InstrumentSpec(rate, setup.quantities))
     if x_f is not None:
@@ -162,16 +183,57 @@ def _bow(
     instrument.write("/bow/noise", 0.0, ramp_ms=0.0)  # an even bow: the same at every try
     instrument.write("/bow/position", beta, ramp_ms=0.0)
     instrument.write("/bow/pressure", pressure, ramp_ms=0.0)
-    usual_db = brilliance_db(USUAL_EFFORT, USUAL_PLACE, pitch)
-    instrument.write("/body/brilliance", usual_db, ramp_ms=0.0)
     instrument.write("/bow/side", 1.0 if string == 0 else -1.0)
     instrument.write("/bow/speed", min(speed, fastest), ramp_ms=40.0)
     settle_s = OPEN_SETTLE_S if x_f is None else SETTLE_S
     listen_s = OPEN_LISTEN_S if x_f is None else LISTEN_S
     out = np.zeros(round((settle_s + listen_s) * rate), np.float32)
     instrument.process(out)
-    steady = out[round(settle_s * rate) :]
-    return pitch_hz(steady, rate), a_weighted_db(steady, rate)
+    return out[round(settle_s * rate) :]
+
+
+def _all_colours(setup: _Setup, sharpening: Sequence[Any]) -> tuple[Tables, Tables]:
+    """Two tables of all notes: `Calibration.centroids` and `louder`."""
+    usual = SPEEDS.index(USUAL_SPEED)
+    centroids, louder = [], []
+    with ThreadPoolExecutor(os.cpu_count()) as workers:
+        for string, pitches in enumerate(PITCHES):
+            jobs = [(setup, string, float(setup.open_notes[string]), None)]
+            jobs += [
+                (setup, string, pitch + setup.above(string), row[usual])
+                for pitch, row in zip(pitches, sharpening[string], strict=True)
+            ]
+            found = list(workers.map(lambda job: _colours(*job), jobs))
+            centroids.append(tuple(row[0] for row in found))
+            louder.append(tuple(row[1] for row in found))
+    return tuple(centroids), tuple(louder)
+
+
+def _colours(setup: _Setup, string: int, pitch: float, sharp: float | None) -> tuple[Any, Any]:
+    """Centroid (Hz) of a note with each of GAINS, and how much louder (dB) it is; 0 in silence.
+
+    `sharp`: its sharpening (cents); None for an open string.
+    """
+    x_f = None
+    if sharp is not None:
+        flat = frequency_hz(pitch - sharp / 100.0, setup.a4)
+        x_f = ideal_position(setup.quantities, string, flat)
+    speed = min(USUAL_SPEED, setup.recipe_value(string, pitch, TOP_SPEED))
+    steady = _steady(setup, string, pitch, speed, x_f)
+    spectrum = np.fft.rfft(steady * np.hanning(len(steady)))
+    frequencies = np.fft.rfftfreq(len(steady), 1.0 / setup.rate)[:-1]  # the shelf has no last one
+    power = np.abs(spectrum[:-1]) ** 2
+    if not power.any():
+        return (0.0,) * len(GAINS), (0.0,) * len(GAINS)
+    plain = frequencies @ power / power.sum()
+    shelves = np.array(
+        [shelf_response(frequencies, setup.rate, gain, ABOVE * plain) for gain in GAINS]
+    )
+    shelved = power * np.abs(shelves) ** 2
+    heard = shelved @ a_weighting(frequencies) ** 2
+    centroids = np.round(shelved @ frequencies / shelved.sum(axis=1), 1)
+    louder = np.round(10.0 * np.log10(heard / heard[PLAIN]), 2)
+    return tuple(centroids.tolist()), tuple(louder.tolist())
 
 
 def starting_tension(quantities: Quantities, a4: float, string: int) -> float:

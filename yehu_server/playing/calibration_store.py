@@ -19,6 +19,7 @@ import numpy as np
 from yehu_server.compile.cache_folder import data_folder
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import (
+    GAINS,
     OPEN_NOTES,
     PITCHES,
     ROWS_OF_A_YEHU,
@@ -48,6 +49,7 @@ SHIPPED = Path(__file__).parent / "calibrations.json"
 MOST_CENTS = ROUNDS * PLAUSIBLE_CENTS
 MOST_SHARPENING_CENTS = max(USUAL_CENTS) + len(SPEEDS) * MOST_CENTS
 MOST_LEVEL_DB = 200.0
+MOST_CENTROID_HZ, MOST_LOUDER_DB = 1e5, 40.0
 LEAST_N, MOST_N = 1.0, 500.0
 HIGHEST_KEY = 127
 
@@ -106,19 +108,27 @@ def read_measured(data: Any) -> Calibration:
         first, second = map(float, data["tensions"])
         inner, outer = (whole(note, 0, HIGHEST_KEY) for note in data.get("open_notes", OPEN_NOTES))
         a4 = float(data["a4"])
-        sharpening = _tables(data["sharpening"], 0, -MOST_SHARPENING_CENTS, MOST_SHARPENING_CENTS)
-        levels = _tables(data["levels"], 1, -MOST_LEVEL_DB, MOST_LEVEL_DB)
+        most, of_speeds = MOST_SHARPENING_CENTS, len(SPEEDS)
+        sharpening = _tables(data["sharpening"], 0, of_speeds, -most, most)
+        levels = _tables(data["levels"], 1, of_speeds, -MOST_LEVEL_DB, MOST_LEVEL_DB)
+        centroids, louder = data.get("centroids", ()), data.get("louder", ())  # older captures
+        if len(centroids) or len(louder):
+            centroids = _tables(centroids, 1, len(GAINS), 0.0, MOST_CENTROID_HZ)
+            louder = _tables(louder, 1, len(GAINS), -MOST_LOUDER_DB, MOST_LOUDER_DB)
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
         raise ParameterError("is not a calibration") from error
     if not LEAST_N <= min(first, second) <= max(first, second) <= MOST_N:  # also refuses NaN
         raise ParameterError(f"has tensions of {first:g} and {second:g} N")
     if inner >= outer:
         raise ParameterError(f"open strings of {inner} and {outer}: expected the lower one first")
-    return Calibration(a4, (first, second), sharpening, levels, (inner, outer))
+    tensions, open_notes = (first, second), (inner, outer)
+    return Calibration(
+        a4, tensions, sharpening, levels, open_notes, tuple(centroids), tuple(louder)
+    )
 
 
-def _tables(data: Any, more_rows: int, lo: float, hi: float) -> Tables:
-    """A table of notes and speeds for each string; raises TypeError or ValueError for no table."""
+def _tables(data: Any, more_rows: int, columns: int, lo: float, hi: float) -> Tables:
+    """A table of the notes of each string; raises TypeError or ValueError for no table."""
     tables = []
     for rows, pitches in zip(data, PITCHES, strict=True):
         table = np.array(rows, np.float64)
@@ -126,7 +136,7 @@ def _tables(data: Any, more_rows: int, lo: float, hi: float) -> Tables:
             table = np.concatenate(
                 [table, table[-1:].repeat(len(pitches) - ROWS_OF_A_YEHU, axis=0)]
             )
-        if table.shape != (len(pitches) + more_rows, len(SPEEDS)):
+        if table.shape != (len(pitches) + more_rows, columns):
             raise ValueError("shape")
         if not np.all((table >= lo) & (table <= hi)):  # also refuses NaN
             raise ValueError("range")

@@ -164,7 +164,7 @@ def test_a_string_that_has_no_period_is_leant_on_less_by_a_player_who_listens(no
         play = Play(listening, 0.0, pressure=0.99)  # all but scratching
         play.note(note, 1.0)
         pressures.append(play.instrument.target("/bow/pressure"))
-    assert play.player["pressure_factor"] <= 0.8
+    assert play.player["pressure_factor"] < 0.9  # by a tenth and more, once it is eased
     assert pressures[1] == pytest.approx(pressures[0] * play.player["pressure_factor"])
 
 

@@ -57,9 +57,8 @@ def test_the_level_rises_with_velocity_by_some_twenty_decibels(note):
 
 
 def test_notes_of_one_velocity_are_equally_loud():
-    # F4 has most of its sound in the band that a hard bow raises, so it follows velocity most.
-    for velocity, most_db in ((20, 4.0), (80, 3.0), (127, 4.0)):
-        assert np.ptp([level(note, velocity) for note in NOTES]) < most_db
+    for velocity in (20, 80, 127):
+        assert np.ptp([level(note, velocity) for note in NOTES]) < 4.0
 
 
 @pytest.mark.parametrize("note", NOTES)
@@ -69,7 +68,7 @@ def test_a_harder_note_is_brighter(note):
         power = np.abs(np.fft.rfft(steady)) ** 2
         return power @ np.fft.rfftfreq(len(steady), 1 / RATE) / power.sum()
 
-    assert centroid(127) > 1.03 * centroid(20)
+    assert centroid(127) > 1.25 * centroid(20)
 
 
 @pytest.mark.parametrize("note", NOTES)

@@ -11,7 +11,7 @@ from unittest.mock import patch
 from fuzz.instrument import CALIBRATION
 from fuzz.target import scratch, target
 
-from yehu_server.core.player.calibration import Calibration
+from yehu_server.core.player.calibration import Calibration, Tables
 from yehu_server.playing.calibration_store import calibration_for
 
 RATE = 31_000.0  # no shipped calibration has it
@@ -59,6 +59,12 @@ def calibration(data: bytes) -> None:
     assert file.read_bytes() == whole  # it is repaired
 
 
+def shape_of(tables: Tables) -> list[list[int]]:
+    """Numbers of columns of all rows, which hold finite numbers."""
+    assert all(math.isfinite(value) for table in tables for row in table for value in row)
+    return [[len(row) for row in table] for table in tables]
+
+
 @target("calibration-data", words=WORDS)
 def calibration_data(data: bytes) -> None:
     """A file with a right checksum holds a whole calibration, or it is measured again."""
@@ -68,7 +74,10 @@ def calibration_data(data: bytes) -> None:
         found = asked()
     assert found.a4 == CALIBRATION.a4
     assert all(0.0 < tension < math.inf for tension in found.tensions)
-    like = (*CALIBRATION.sharpening, *CALIBRATION.levels)
-    for table, usual in zip((*found.sharpening, *found.levels), like, strict=True):
-        assert [len(row) for row in table] == [len(row) for row in usual]
-        assert all(math.isfinite(value) for row in table for value in row)
+    assert shape_of(found.sharpening) == shape_of(CALIBRATION.sharpening)
+    assert shape_of(found.levels) == shape_of(CALIBRATION.levels)
+    for tables, usual in (
+        (found.centroids, CALIBRATION.centroids),
+        (found.louder, CALIBRATION.louder),
+    ):
+        assert not tables or shape_of(tables) == shape_of(usual)

@@ -50,7 +50,13 @@ def check_beginning(beginning: SessionStart) -> None:
         assert all(find(address).accept(value) == value for address, value in start.values.items())
         assert np.isfinite(start.bowing).all()
         if start.calibration is not None:
-            for tables in (start.calibration.sharpening, start.calibration.levels):
+            measured = start.calibration
+            for tables in (
+                measured.sharpening,
+                measured.levels,
+                measured.centroids,
+                measured.louder,
+            ):
                 assert all(np.isfinite(table).all() for table in tables)
 
 

@@ -98,8 +98,8 @@ def move(c: Any) -> None:
 
 
 FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.
-TO_OUTPUT, TO_BODY, TO_LIMITER, TO_BAND = range(4)  # gains that are set in decibels
-DECIBELS = 4
+TO_OUTPUT, TO_BODY, TO_LIMITER = range(3)  # gains that are set in decibels
+DECIBELS = 3
 
 
 @compiled

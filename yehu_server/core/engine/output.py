@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.controls.ramps import one_pole, pole_of_cutoff, pole_of_time
+from yehu_server.core.controls.ramps import pole_of_cutoff, pole_of_time
 from yehu_server.core.controls.record import CHUNK, FADE_S
 from yehu_server.core.controls.slots import STAGE_INPUTS
+from yehu_server.core.engine.shelf import SHELF, prepare_shelf, shelved
 from yehu_server.core.physics.layout import (
     BRIDGE_FORCE,
     ITERATIONS,
@@ -22,7 +23,6 @@ from yehu_server.core.physics.layout import (
 Array = Any
 
 BLOCKED_HZ = 10.0  # cutoff of the DC blocker
-BAND_HZ = 1300.0  # cutoff of the band that /body/brilliance raises or lowers
 # Pressure (Pa) for a newton at the bridge: a blend is about as loud at both of its ends.
 BRIDGE_PRESSURE = 0.1
 LARGEST = 1e12  # of full scale: a sample beyond this is an error
@@ -52,14 +52,14 @@ OUTPUT = np.dtype(
         ("pressure", np.float64),  # input and output of the DC blocker (Pa)
         ("swing", np.float64),
         ("blocker", np.float64),
-        ("low", np.float64, 2),  # what the two filters of the high band leave out
-        ("band", np.float64),
+        ("shelf", SHELF),
         ("controls", np.float64, (CHUNK, control_columns(MAX_FINGERS))),
         ("probes", np.float64, (CHUNK, probe_columns(MAX_FINGERS))),
         ("gain", np.float64, CHUNK),
         ("body", np.float64, CHUNK),
         ("blend", np.float64, CHUNK),
-        ("brilliance", np.float64, CHUNK),  # gain of the high band
+        ("brilliance", np.float64, CHUNK),  # gain (dB) of the shelf, and its frequency (Hz)
+        ("brilliance_frequency", np.float64, CHUNK),
         ("sounded", SOUNDED),
     ],
     align=True,
@@ -71,30 +71,22 @@ def prepare_output(output: Any, rate: float) -> None:
     output["invalid_samples"], output["sounded"]["silenced_at"] = 0, NOT_SILENCED
     output["decay"] = pole_of_time(FADE_S, rate)
     output["blocker"] = pole_of_cutoff(BLOCKED_HZ, rate)
-    output["band"] = 1.0 - pole_of_cutoff(BAND_HZ, rate)
+    prepare_shelf(output["shelf"], rate)
     rest_output(output)
 
 
 def rest_output(output: Any) -> None:
     """Clear the filters' states of a record of dtype OUTPUT, in place."""
-    for name in ("last", "ghost", "pressure", "swing", "low"):
+    for name in ("last", "ghost", "pressure", "swing"):
         output[name] = 0.0
+    output["shelf"]["held"] = 0.0
 
 
 @compiled
 def clear_filters(o: Any) -> None:
     """Clear the filters' states, when the model is put to rest. Real time: safe."""
     o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0
-    o.low[0], o.low[1] = 0.0, 0.0
-
-
-@compiled
-def high_band(o: Any, x: float) -> float:
-    """What of a sample lies above BAND_HZ: 12 dB an octave."""
-    for k in range(2):
-        o.low[k] = one_pole(o.low[k], x, o.band)
-        x -= o.low[k]
-    return x
+    o.shelf.held[0], o.shelf.held[1] = 0.0, 0.0
 
 
 @compiled
@@ -113,7 +105,8 @@ def output_sample(o: Any, n: int) -> float:
     source = radiated + o.blend[n] * (BRIDGE_PRESSURE * probe[BRIDGE_FORCE] - radiated)
     o.swing = source - o.pressure + o.blocker * o.swing
     o.pressure = source
-    sample = (o.swing + (o.brilliance[n] - 1.0) * high_band(o, o.swing)) * o.gain[n] + o.ghost
+    coloured = shelved(o.shelf, o.swing, o.brilliance[n], o.brilliance_frequency[n])
+    sample = coloured * o.gain[n] + o.ghost
     if not abs(sample) <= LARGEST:  # true for NaN too
         sample = 0.0
         o.invalid_samples += 1

@@ -10,7 +10,6 @@ from yehu_server.compile.jit import compiled, compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.hands import write_controls
 from yehu_server.core.controls.ramps import (
-    TO_BAND,
     TO_BODY,
     TO_LIMITER,
     amplitude,
@@ -23,6 +22,7 @@ from yehu_server.core.controls.slots import (
     BLEND,
     BODY,
     BRILLIANCE,
+    BRILLIANCE_FREQUENCY,
     LIMITER,
     LOSS,
     STAGE_INPUTS,
@@ -155,7 +155,8 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
             o.gain[done] = gain
             o.body[done] = amplitude(c, TO_BODY, c.value[BODY])
             o.blend[done] = c.value[BLEND]
-            o.brilliance[done] = amplitude(c, TO_BAND, c.value[BRILLIANCE])
+            o.brilliance[done] = c.value[BRILLIANCE]
+            o.brilliance_frequency[done] = c.value[BRILLIANCE_FREQUENCY]
             sounded.soft[done] = amplitude(c, TO_LIMITER, c.value[LIMITER])
             for k in range(len(STAGE_INPUTS)):
                 sounded.stage_inputs[done, k] = c.value[STAGE_INPUTS[k]]

@@ -3,7 +3,9 @@
 A fiddle sounds brighter when it is bowed harder or nearer to the bridge: force sharpens the corner
 of the Helmholtz motion [Schoonderwaldt]. The model's corner stays as round at any force, by its
 losses, its hair and its friction (docs/playing.md tells what was tried). What is missing is added
-by a law: the gain of the output's high band follows speed and pressure of the bow, and its place.
+by a law: the spectral centroid of a note follows speed and pressure of the bow, and its place. A
+shelf at the output raises what lies above the centroid, as far as the calibration found that it
+has to.
 """
 
 from __future__ import annotations
@@ -12,23 +14,29 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.player.calibration import ABOVE, GAINS, PLAIN
+from yehu_server.core.player.intonation import ALL, in_tables, place_in
 from yehu_server.core.player.ownership import USUAL_MS, move
-from yehu_server.core.player.rows import BODY_BRILLIANCE, BRILLIANCE, POSITION
+from yehu_server.core.player.rows import (
+    BODY_BRILLIANCE,
+    BRILLIANCE,
+    BRILLIANCE_FREQUENCY,
+    POSITION,
+)
 
-# Gain of the high band (dB): with the ordinary bow; for each doubling of its speed times its
-# pressure; for each halving of its distance from the bridge.
-USUAL_DB, HARDER_DB, NEARER_DB = 5.0, 7.0, 11.0
-USUAL_EFFORT = 0.08  # m/s, speed times share of Schelleng's limit
-USUAL_PLACE = 0.13
-LEAST_DB, MOST_DB = -6.0, 18.0
-# A higher note has its fundamental in the band, which then is loudness more than colour.
-FULL_UP_TO = 76.0  # E5, fractional MIDI note
-HALVED_IN = 8.0  # semitones
+# The bow whose sound is the model's own: speed times share of Schelleng's limit (m/s), and place.
+PLAIN_EFFORT, PLAIN_PLACE = 0.046, 0.13
+# Octaves of the centroid for each doubling of the effort, and for each halving of the distance
+# from the bridge. Strokes from pianissimo to fortissimo double the effort about one and a half
+# times: 1.5, a little more than in recordings of a cello (1.3).
+HARDER, NEARER = 0.4, 0.6
+# A frequency that falls slowly does not raise what still rings of a higher note.
+LOWERING_MS = 90.0
 
 
 @compiled_exactly
-def brilliance_db(effort: float, place: float, pitch: float) -> float:
-    """Gain of the high band (dB).
+def octaves_brighter(effort: float, place: float) -> float:
+    """How far (octaves) a note's centroid is to lie above that of the model.
 
     Parameters
     ----------
@@ -36,18 +44,51 @@ def brilliance_db(effort: float, place: float, pitch: float) -> float:
         Speed of the bow times its share of Schelleng's limit; above 0.
     place : float
         Distance of the bow from the bridge, as a share of the sounding length.
-    pitch : float
-        Fractional MIDI note.
     """
-    gain_db = USUAL_DB + HARDER_DB * math.log2(effort / USUAL_EFFORT)
-    gain_db -= NEARER_DB * math.log2(place / USUAL_PLACE)
-    gain_db = min(max(gain_db, LEAST_DB), MOST_DB)
-    return float(gain_db * 0.5 ** (max(pitch - FULL_UP_TO, 0.0) / HALVED_IN))
+    harder = HARDER * math.log2(effort / PLAIN_EFFORT)
+    return float(harder - NEARER * math.log2(place / PLAIN_PLACE))
 
 
 @compiled_exactly
-def set_brilliance(p: Any, c: Any, effort: float, pitch: float) -> None:
-    """Set ``/body/brilliance`` for a pitch and an effort of the bow (m/s)."""
-    if effort > 0.0:
-        gain_db = brilliance_db(effort, p.value[POSITION], pitch)
-        move(p, c, BODY_BRILLIANCE, p.value[BRILLIANCE] * gain_db, USUAL_MS)
+def set_brilliance(p: Any, c: Any, string: int, pitch: float, effort: float) -> None:
+    """Set ``/body/brilliance`` and its frequency for a pitch and an effort of the bow (m/s).
+
+    `p.louder_by` becomes the decibels (A-weighted) that they add.
+    """
+    row, part = place_in(ALL[string], in_tables(p, string, pitch))
+    plain = measured(p.centroids[string], row, part, PLAIN)
+    if not (effort > 0.0 and plain > 0.0):  # no bow, or no calibration
+        return
+    aim = plain * math.exp2(octaves_brighter(effort, p.value[POSITION]))
+    gain_db, below = GAINS[0], 0.0
+    for column in range(len(GAINS)):
+        above = measured(p.centroids[string], row, part, column)
+        if column > 0:
+            share = min((aim - below) / max(above - below, 1e-9), 1.0)
+            gain_db = GAINS[column - 1] + share * (GAINS[column] - GAINS[column - 1])
+        if above >= aim:
+            break
+        below = above
+    gain_db *= p.value[BRILLIANCE]
+    p.louder_by = louder_by(p.louder[string], row, part, gain_db)
+    move(p, c, BODY_BRILLIANCE, gain_db, USUAL_MS)
+    frequency = ABOVE * plain
+    ramp_ms = LOWERING_MS if frequency < p.sent[BRILLIANCE_FREQUENCY] else USUAL_MS
+    move(p, c, BRILLIANCE_FREQUENCY, frequency, ramp_ms)
+
+
+@compiled_exactly
+def measured(table: Any, row: int, part: float, column: int) -> float:
+    """A column of a table between two of its rows."""
+    return float(table[row, column] + part * (table[row + 1, column] - table[row, column]))
+
+
+@compiled_exactly
+def louder_by(table: Any, row: int, part: float, gain_db: float) -> float:
+    """How much louder (dB) a gain makes a note; beyond GAINS, as at their ends."""
+    column = 0
+    while column < len(GAINS) - 2 and gain_db >= GAINS[column + 1]:
+        column += 1
+    share = (gain_db - GAINS[column]) / (GAINS[column + 1] - GAINS[column])
+    low, high = measured(table, row, part, column), measured(table, row, part, column + 1)
+    return float(low + min(max(share, 0.0), 1.0) * (high - low))

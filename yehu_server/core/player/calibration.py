@@ -11,6 +11,11 @@ Tables = tuple[tuple[tuple[float, ...], ...], ...]  # of strings, notes, speeds
 
 OPEN_NOTES = (65, 72)  # F4 and C5, of a yehu
 SPEEDS = (0.12, 0.16, 0.2, 0.26)  # m/s
+USUAL_SPEED = 0.2
+# Gains (dB) of the shelf that makes a note brighter; its frequency, times the note's centroid.
+GAINS = (-6.0, 0.0, 6.0, 12.0, 18.0)
+PLAIN = GAINS.index(0.0)
+ABOVE = 1.4
 # The stopped pitches measured on each string: semitones, and quarter tones where the body's mode
 # at 439 Hz bends pitches most, and at 850 Hz, where the body radiates 9 dB more than beside it.
 # A yehu is stopped in the first ROWS_OF_A_YEHU; other fiddles may reach higher.
@@ -37,6 +42,11 @@ class Calibration:
     open_notes : tuple of int
         What the strings are tuned to (MIDI notes). Where that is not as on a yehu, a row is of the
         stop that has its pitch there.
+    centroids : tuple
+        Spectral centroid of each note (Hz), the open string first, with each of GAINS for what
+        lies ABOVE it, bowed at USUAL_SPEED.
+    louder : tuple
+        How much louder (dB, A-weighted) these gains make it.
     """
 
     a4: float
@@ -44,6 +54,8 @@ class Calibration:
     sharpening: Tables
     levels: Tables = ()
     open_notes: tuple[int, int] = OPEN_NOTES
+    centroids: Tables = ()
+    louder: Tables = ()
 
     def tuned(self, quantities: Quantities) -> Quantities:
         """The quantities with the tensions of this calibration."""

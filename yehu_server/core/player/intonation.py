@@ -59,12 +59,19 @@ def balance_db(p: Any, string: int, pitch: float, speed: float) -> float:
 @compiled_exactly
 def read(table: Array, pitches: Array, pitch: float, speed: float) -> float:
     """Interpolate a table of pitches and SPEEDS; beyond its ends, the end values apply."""
+    row, part = place_in(pitches, pitch)
+    low, high = at_speed(table[row], speed), at_speed(table[row + 1], speed)
+    return float(low + part * (high - low))
+
+
+@compiled_exactly
+def place_in(pitches: Array, pitch: float) -> tuple[int, float]:
+    """The row of a table at or below a pitch, and how far (0 to 1) it is to the next."""
     row = 0
     while row < len(pitches) - 2 and pitches[row + 1] <= pitch:
         row += 1
     part = (pitch - pitches[row]) / (pitches[row + 1] - pitches[row])
-    low, high = at_speed(table[row], speed), at_speed(table[row + 1], speed)
-    return float(low + min(max(part, 0.0), 1.0) * (high - low))
+    return row, min(max(part, 0.0), 1.0)
 
 
 @compiled_exactly

@@ -11,7 +11,7 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.slots import SILENCE, SPEED
-from yehu_server.core.player import brilliance, left_hand, right_hand, velocity, vibrato
+from yehu_server.core.player import left_hand, right_hand, velocity, vibrato
 from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import choose, choose_for_slide, stay
@@ -179,7 +179,6 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     vibrato.begin_vibrato(p, c)
     set_assist(p, c)
     set_level(p, c)
-    even_out(p, c)
     set_bow_pressure(p, c)
     if not is_legato:
         right_hand.bite(p, c)
@@ -281,17 +280,9 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 
 @compiled_exactly
 def set_bow_pressure(p: Any, c: Any) -> None:
-    """Set the bow's pressure and position."""
+    """Set the bow's pressure and position, and the colour that they make."""
     right_hand.set_bow_pressure(p, c, note_pitch(p), p.sounding >= 0)
-    set_brilliance(p, c)
-
-
-@compiled_exactly
-def set_brilliance(p: Any, c: Any) -> None:
-    """Set the gain of the high band, as the bow is wished or drawn by hand."""
-    effort = wished_speed(p) * p.value[PRESSURE]
-    pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
-    brilliance.set_brilliance(p, c, p.effort if p.by_hand != 0 else effort, pitch)
+    even_out(p, c)
 
 
 @compiled_exactly
@@ -305,12 +296,13 @@ def least_press(p: Any, string: int) -> float:
 
 @compiled_exactly
 def even_out(p: Any, c: Any) -> None:
-    """Set the gain that evens out the loudness of notes."""
+    """Set colour, and the gain that evens out the loudness of notes, as the bow is drawn."""
     if p.sounding >= 0 or p.by_hand != 0:
         pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
-        speed = p.speed if p.by_hand != 0 else wished_speed(p)
-        velocity.even_out(p, c, pitch, speed)
-        set_brilliance(p, c)
+        speed, effort = wished_speed(p), wished_speed(p) * p.value[PRESSURE]
+        if p.by_hand != 0:
+            speed, effort = p.speed, p.effort
+        velocity.even_out(p, c, pitch, speed, effort)
 
 
 @compiled_exactly

@@ -11,7 +11,13 @@ from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import DEFAULT_RECIPE, PLACES, RECIPE, default_recipes
 from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
-from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration, wave_speed
+from yehu_server.core.player.calibration import (
+    GAINS,
+    PITCHES,
+    SPEEDS,
+    Calibration,
+    wave_speed,
+)
 from yehu_server.core.player.drift import DRIFT_STATE
 from yehu_server.core.player.ear import EAR, prepare_ear, reset_ear
 from yehu_server.core.player.fingering import OPEN, OpenStrings
@@ -96,6 +102,7 @@ PLAYER = np.dtype(
         ("recipe", np.float64, RECIPE),  # how the sounding pitch is bowed
         ("hurry", np.float64),  # of a stroke soon after another: 0 to 1
         ("balance", np.float64),  # dB
+        ("louder_by", np.float64),  # dB, by brilliance
         # The variation: deviates of this note, and the random numbers drawn so far.
         ("speed_variation", np.float64),  # factor on the bow's speed
         ("weight", np.float64),  # factor on the bow's pressure
@@ -112,6 +119,8 @@ PLAYER = np.dtype(
         ("highest", np.float64, STRINGS),  # fractional MIDI notes
         ("sharpening", np.float64, (STRINGS, NOTES, len(SPEEDS))),  # cents
         ("levels", np.float64, (STRINGS, NOTES + 1, len(SPEEDS))),  # dB
+        ("centroids", np.float64, (STRINGS, NOTES + 1, len(GAINS))),  # Hz
+        ("louder", np.float64, (STRINGS, NOTES + 1, len(GAINS))),  # dB
         ("bowing", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, RECIPE)),
         ("vibrato_table", np.float64, (STEPS, 2)),  # `steepness.vibrato_table`
         ("open_strings", np.int64),  # number of the OpenStrings
@@ -183,6 +192,8 @@ def prepare_player(
         p["sharpening"] = calibration.sharpening
         if calibration.levels:
             p["levels"] = calibration.levels
+        if calibration.centroids:
+            p["centroids"], p["louder"] = calibration.centroids, calibration.louder
     p["vibrato_table"] = vibrato_table(quantities.body, float(p["a4"]), notes.lowest)
     p["bowing"] = default_recipes() if bowing is None else bowing
     p["open_strings"] = list(OpenStrings).index(open_strings)

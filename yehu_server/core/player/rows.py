@@ -28,6 +28,7 @@ VIBRATO_PRESS, VIBRATO_ONSET = ROW["/vibrato/press"], ROW["/vibrato/onset"]
 VIBRATO_UPWARD = ROW["/vibrato/upward"]
 PLUCK_FORCE = ROW["/pluck/force"]
 BODY_BRILLIANCE = ROW["/body/brilliance"]
+BRILLIANCE_FREQUENCY = ROW["/body/brilliance_frequency"]
 OUTPUT_LEVEL, OUTPUT_BALANCE = ROW["/output/level"], ROW["/output/balance"]
 
 # What it is wished.

@@ -11,6 +11,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SIDE
+from yehu_server.core.player.brilliance import set_brilliance
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.intonation import balance_db
@@ -24,13 +25,18 @@ RISING_MS, FALLING_MS = 90.0, 15.0
 
 
 @compiled_exactly
-def even_out(p: Any, c: Any, pitch: float, speed: float) -> None:
-    """Set ``/output/balance`` for a pitch (fractional MIDI note) and bow speed (m/s)."""
+def even_out(p: Any, c: Any, pitch: float, speed: float, effort: float) -> None:
+    """Set colour and ``/output/balance`` for a pitch (fractional MIDI note).
+
+    `speed` (m/s) is the bow's; `effort` (m/s) is it times its share of Schelleng's limit.
+    """
     string = max(p.string, 0)  # before the first note the inner string is open
     sounding_pitch = pitch
     if p.position == OPEN:
         sounding_pitch = p.open_note[string]
-    balance = balance_db(p, string, sounding_pitch, speed) * p.value[EVENNESS]
+    set_brilliance(p, c, string, sounding_pitch, effort)
+    balance = balance_db(p, string, sounding_pitch, speed) - p.louder_by
+    balance *= p.value[EVENNESS]
     balance += 0.0 if p.by_hand != 0 else struck_db(p) + p.gesture.gain_db
     is_off = c.value[SIDE] == 0.0 and p.by_hand == 0
     ramp_ms = RISING_MS if balance > p.balance and not is_off else FALLING_MS

@@ -186,9 +186,7 @@ def follow(p: Any, c: Any, row: int) -> None:
         notes.set_assist(p, c)
     elif row in (VOLUME, EXPRESSION):
         notes.set_level(p, c)
-    elif row == BRILLIANCE:
-        notes.set_brilliance(p, c)
-    elif row == EVENNESS:
+    elif row in (BRILLIANCE, EVENNESS):
         notes.even_out(p, c)
     elif row == VELOCITY:
         notes.draw(p, c, USUAL_MS)

@@ -11,8 +11,6 @@ from yehu_server.ahead.build import page_linker, page_module
 from yehu_server.live.page import facts
 from yehu_server.live.page.site import MODULE, page_files, page_folder
 
-TYPES = ("jsconfig.json", "sound/worklet.d.ts")
-
 
 @pytest.fixture(scope="session")
 def node() -> str:
@@ -27,7 +25,7 @@ def node() -> str:
 def page(tmp_path_factory) -> Path:
     """A folder with the page's modules, and what is generated for them, but for WebAssembly."""
     folder = tmp_path_factory.mktemp("web")
-    for file in (*page_files(), *TYPES):
+    for file in page_files():
         (folder / file).parent.mkdir(exist_ok=True)
         shutil.copy(page_folder() / file, folder / file)
     (folder / "package.json").write_text('{"type": "module"}')

@@ -92,6 +92,7 @@ STATED: dict[str, Stated] = {
     "passed-slide": Stated(
         _ranges(begins=(-3.3, -1.8), ends=(-0.2, 0.2), arrives=(80, 260)), (-3, 0)
     ),
+    "left-hand-pizzicato": Stated(_ranges(rise=(0, 25), fade=(8, 60, 0.5))),
     "flageolet": Stated(_ranges(sounds=(85, 101)), (0, 12)),
     "wavering": Stated(
         _ranges(low=(-0.7, -0.1, 0.5), high=(0.3, 0.9, 0.5), beat_rate=(2, 4, 1.0)), (-0.6, 0.8)

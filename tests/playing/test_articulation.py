@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import pytest
 from hands import Checked
 
+from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.tuning import KEYS, Tuning
 from yehu_server.playing.wishes import Key
 
@@ -110,6 +111,29 @@ def test_a_plucked_note_is_not_bowed(player, listener):
     player.note_off(key(75))
     player.note_off(key(68))
     assert len(listener.of("/pluck/force")) == 2
+
+
+def test_a_finger_of_the_left_hand_plucks_farther_from_the_bridge_and_softer(player, listener):
+    place, force = "/pluck/position", "/pluck/force"
+    plucked = []
+    for name in ("pizzicato", "left-hand-pizzicato", "pizzicato"):
+        player.write("/playing/articulation", float(NUMBER[name]))
+        player.note_on(key(75))
+        plucked.append((listener.target(place), listener[force]))
+        player.note_off(key(75))
+    right, left, again = plucked
+    assert again == right
+    assert left[0] == pytest.approx(2.0 ** (-5.0 / 12.0), abs=0.01)  # a fourth above the stop
+    assert 0.5 * abs(right[1]) < abs(left[1]) < abs(right[1])
+
+
+def test_a_place_of_the_pluck_that_is_written_stays(player, listener):
+    player.write("/playing/pizzicato", 1.0)
+    player.write("/pluck/position", 0.5)
+    for note in (75, 77):
+        player.note_on(key(note))
+        assert listener.target("/pluck/position") == 0.5
+        player.note_off(key(note))
 
 
 def test_more_pressure_plucks_harder_and_as_hard_again(player, listener):

@@ -31,6 +31,7 @@ from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
 from yehu_server.rendering.to_files import NORMALIZED_PEAK
+from yehu_server.rendering.true_peak import TruePeak
 from yehu_server.scores.phrasing import PHRASING, is_fingered, phrased
 from yehu_server.scores.reading import How, read_any
 from yehu_server.scores.score import Score
@@ -151,7 +152,7 @@ def render(
     mono : bool
         One channel, the mean of both.
     normalize : bool
-        Scale the sound to a peak of -1 dB of full scale.
+        Scale the sound to a true peak of -1 dB of full scale, between the samples too.
     gain_db : float, optional
         Gain before the limiter, -60 to 24; by default that of the preset, else 0.
     tail : float, optional
@@ -256,10 +257,12 @@ def _played(
             progress(frames / options.rate, performance.score_frames / options.rate)
     empty = np.zeros((0,) if options.is_mono else (0, 2), np.float32)
     sound = np.concatenate(blocks) if blocks else empty
+    if options.normalize:
+        meter = TruePeak()
+        meter.add(sound)
+        if (true_peak := meter.finish()) > 0.0:
+            sound *= np.float32(NORMALIZED_PEAK / true_peak)
     peak = float(np.abs(sound).max(initial=0.0))
-    if options.normalize and peak > 0.0:
-        sound *= np.float32(NORMALIZED_PEAK / peak)
-        peak = float(np.abs(sound).max())
     rms = float(np.sqrt(np.mean(np.square(sound, dtype=np.float64)))) if sound.size else 0.0
     elapsed_s = time.perf_counter() - start
     summary = summary_of(performance, frames / options.rate, elapsed_s, peak, rms)

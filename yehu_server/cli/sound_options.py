@@ -33,7 +33,7 @@ def add_sound(group: Any) -> None:
         --tail SECONDS: time after the end, up to 600 (default: until 80 dB below full scale, at
             most 5 s)
         --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
-        --normalize: scale the result to a peak of -1 dBFS
+        --normalize: scale the result to a true peak of -1 dBFS, between the samples too
         """,
         rate={"type": whole, "default": 44100},
         tail=number_within(0.0, 600.0, "s"),

@@ -72,6 +72,8 @@ class Articulation:
     so long after they began, and each time sooner by this share of it; at 0 ms they do not.
     `times`: how often they come; 0: while the note sounds.
     `tremolo`, `tremolo_depth`: strokes a second; as `/playing/tremolo_depth`.
+    `plucked_at`, `plucked_by`: where from the bridge a plucked string is pulled, as a share of its
+    sounding length, and a factor on the force; at 0 as `/pluck/position` says.
     `touches`: whether a finger touches an open string at a node, where the note is one
     (`core.player.harmonics`).
     """
@@ -91,6 +93,8 @@ class Articulation:
     tremolo: float = 0.0
     tremolo_depth: float = 0.0
     is_plucked: bool = False
+    plucked_at: float = 0.0
+    plucked_by: float = 1.0
     touches: bool = False
 
 
@@ -232,6 +236,12 @@ ARTICULATIONS: tuple[Articulation, ...] = (
         "a harmonic: the finger only touches the string at its half (F5, C6) or its third (G5, "
         "which sounds G6), the bow near the bridge; other notes are light",
         bow=(BowStep(speed=1.2, weight=0.5),), vibrato=Vibrato(0.0), touches=True,
+    ),
+    Articulation(
+        "left-hand-pizzicato", "左手拨弦",
+        "another finger of the left hand plucks, a fourth above the one that stops the string",
+        source="one of the left hand in descriptions of the erhu; place and force by ear",
+        is_plucked=True, plucked_at=0.75, plucked_by=0.7,
     ),
 )  # fmt: skip
 

@@ -17,12 +17,13 @@ from yehu_server.rendering.performance import Performance, Samples
 from yehu_server.rendering.pipe import PIPE, sound_pipe
 from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
+from yehu_server.rendering.true_peak import TruePeak
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.scores.score import Score
 from yehu_server.util.files import anything, why
 from yehu_server.util.sound_file import SoundWriter, check_format, sound_file
 
-NORMALIZED_PEAK = 10.0 ** (-1.0 / 20.0)
+NORMALIZED_PEAK = 10.0 ** (-1.0 / 20.0)  # a true peak
 CHUNK = 1 << 18  # bytes that are read again at a time: whole frames
 
 
@@ -41,18 +42,18 @@ def _plain(name: str) -> str:
 def write_normalized(
     takes: Iterable[Sequence[Samples]], files: Sequence[SoundWriter], folder: Path | None
 ) -> None:
-    """Write blocks, scaled so that the first file has a peak of NORMALIZED_PEAK.
+    """Write blocks, scaled so that the first file has a true peak of NORMALIZED_PEAK.
 
     `takes` has of each block the samples for each of the files; all are scaled alike. Temporary
     files are in `folder`; None: where the system has its own. Raises OutputError where the disk is
     full or cannot be written.
     """
-    peak, shape = 0.0, (-1,)
+    meter, shape = TruePeak(), (-1,)
     with contextlib.ExitStack() as stack:
         try:
             scratches = [stack.enter_context(tempfile.TemporaryFile(dir=folder)) for _ in files]
             for take in takes:
-                peak = max(peak, float(np.abs(take[0]).max(initial=0.0)))
+                meter.add(take[0])
                 shape = (-1, *take[0].shape[1:])
                 for scratch, samples in zip(scratches, take, strict=True):
                     scratch.write(np.ascontiguousarray(samples).tobytes())
@@ -62,6 +63,7 @@ def write_normalized(
             raise OutputError(
                 f"{folder or tempfile.gettempdir()}: cannot write: {why(error)}"
             ) from error
+        peak = meter.finish()
         factor = np.float32(NORMALIZED_PEAK / peak if peak > 0.0 else 1.0)
         for scratch, file in zip(scratches, files, strict=True):
             while data := scratch.read(CHUNK):

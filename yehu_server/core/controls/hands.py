@@ -132,8 +132,11 @@ def turned(c: Any) -> float:
 
 
 @compiled
-def stop_strings(c: Any, control: Array) -> None:
-    """Write the fingers' controls, with vibrato; follow the sounding length they leave."""
+def stop_strings(c: Any, control: Array) -> float:
+    """Write the fingers' controls, with vibrato; the bow follows the sounding length they leave.
+
+    Returns where that ends (m from the loop).
+    """
     vibrato = vibrate(c)
     stretch, harder = 1.0, 1.0
     if vibrato != 0.0:
@@ -161,6 +164,7 @@ def stop_strings(c: Any, control: Array) -> None:
         c.sounding_from = one_pole(c.sounding_from, stop, c.follow)
         if abs(c.sounding_from - stop) < ARRIVED:
             c.sounding_from = stop
+    return stop
 
 
 @compiled
@@ -195,7 +199,7 @@ def write_controls(c: Any, control: Array) -> None:
         See ``physics.layout``.
     """
     advance_drifts(c)
-    stop_strings(c, control)
+    stop = stop_strings(c, control)
     speed, side = c.value[SPEED] * turn_bow(c), c.value[SIDE]
     beta, firmness = c.value[POSITION], 1.0
     if c.drifting != 0:
@@ -211,4 +215,4 @@ def write_controls(c: Any, control: Array) -> None:
     control[X_B] = c.bridge_x - beta * sounding
     control[F_HAMMER] = 0.0
     control[F_PLUCK] = pluck(c)
-    control[X_PLUCK] = c.bridge_x - c.value[PLUCK_POSITION] * sounding
+    control[X_PLUCK] = c.bridge_x - c.value[PLUCK_POSITION] * (c.bridge_x - stop)

@@ -57,6 +57,7 @@ SHAPED_ROW = len(ARTICULATIONS)
 AT, AT_SHARE, RAMP, RAMP_SHARE, SPEED, WEIGHT, IS_ON, TURNS = range(8)  # of a bow's step
 SEMITONES, GLIDE = 2, 3  # of a finger's, after AT and AT_SHARE
 ATTACK, LENGTH, AGAIN, SOONER, TIMES, STROKES, DEPTH, IS_PLUCKED = range(8)
+PLUCKED_AT, PLUCKED_BY = 8, 9  # of the same rows
 CENTS, HERTZ, PRESS, UPWARD, DELAY_MS = range(5)  # of a vibrato
 
 
@@ -88,7 +89,7 @@ FINGER_STEPS = _padded(
 )
 SHAPES = np.array([
     (row.attack, row.length_s, row.again_ms, row.sooner, row.times or math.inf, row.tremolo,
-     row.tremolo_depth, row.is_plucked)
+     row.tremolo_depth, row.is_plucked, row.plucked_at, row.plucked_by)
     for row in _ROWS
 ])  # fmt: skip
 

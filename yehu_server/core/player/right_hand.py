@@ -1,7 +1,8 @@
-"""The right hand: draws the bow, or plucks. Compiled."""
+"""The right hand: draws the bow, or plucks, as a finger of the left hand may. Compiled."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
@@ -15,7 +16,14 @@ from yehu_server.core.player.bowing import (
     recipe_value,
     share,
 )
-from yehu_server.core.player.gestures import attack_ms, tremolo_depth_of, tremolo_of
+from yehu_server.core.player.gestures import (
+    PLUCKED_AT,
+    PLUCKED_BY,
+    SHAPES,
+    attack_ms,
+    tremolo_depth_of,
+    tremolo_of,
+)
 from yehu_server.core.player.harmonics import NONE, PLACE
 from yehu_server.core.player.intonation import in_tables
 from yehu_server.core.player.ownership import USUAL_MS, forget, move
@@ -29,6 +37,7 @@ from yehu_server.core.player.rows import (
     BOW_TREMOLO_DEPTH,
     DYNAMICS,
     PLUCK_FORCE,
+    PLUCK_POSITION,
     POSITION,
     PRESSURE,
     RELEASE,
@@ -47,6 +56,7 @@ LEAST_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow
 # Force of a pluck at medium pressure. By ear.
 PULL_N, MEDIUM = 1.2, 0.4
 HARDEST_PULL_N = find("/pluck/force").hi
+USUAL_PLUCK = find("/pluck/position").default
 
 
 @compiled_exactly
@@ -140,9 +150,14 @@ def lift(p: Any, c: Any, release_ms: float) -> None:
 
 @compiled_exactly
 def pluck(p: Any, c: Any, side: float) -> None:
-    """Pluck the string of a side; lift the bow before."""
+    """Pluck the string of a side where the articulation has it; lift the bow before."""
     if p.side != 0.0:
         lift(p, c, CROSSING_MS)
-    force = PULL_N * p.value[PRESSURE] * p.weight / MEDIUM
+    at = SHAPES[p.gesture.row, PLUCKED_AT]
+    if at > 0.0:
+        move(p, c, PLUCK_POSITION, at, 0.0)
+    elif not math.isnan(p.sent[PLUCK_POSITION]):  # after one that was plucked elsewhere
+        move(p, c, PLUCK_POSITION, USUAL_PLUCK, 0.0)
+    force = PULL_N * p.value[PRESSURE] * p.weight * SHAPES[p.gesture.row, PLUCKED_BY] / MEDIUM
     move(p, c, PLUCK_FORCE, side * min(force, HARDEST_PULL_N), USUAL_MS)
     forget(p, PLUCK_FORCE)  # the next one may be as hard

@@ -1,0 +1,53 @@
+"""True peaks, of waves whose own are known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from yehu_server.rendering.true_peak import PHASES, TAPS, TruePeak
+
+
+def peak_of(sound: np.ndarray, block: int = 1000) -> float:
+    meter = TruePeak()
+    for at in range(0, len(sound), block):
+        meter.add(sound[at : at + block])
+    return meter.finish()
+
+
+def sine(share: float, phase: float, frames: int = 4000) -> np.ndarray:
+    """A sine of amplitude 1 at a share of the sample rate, that comes and goes."""
+    wave = np.sin(2.0 * np.pi * share * np.arange(frames) + phase)
+    return wave * np.hanning(frames)
+
+
+@pytest.mark.parametrize("share", [0.01, 0.125, 0.25, 0.3])
+@pytest.mark.parametrize("phase", [0.0, 0.25 * math.pi])
+def test_a_sine_has_its_amplitude_wherever_it_is_sampled(share, phase):
+    # The standard allows 0.69 dB less up to 0.45 of the rate, and 0.2 to 0.4 dB more.
+    assert 20.0 * math.log10(peak_of(sine(share, phase))) == pytest.approx(0.0, abs=0.6)
+
+
+def test_a_quarter_of_the_rate_between_the_samples_is_three_decibels_over_them():
+    wave = sine(0.25, 0.25 * math.pi)
+    assert 20.0 * math.log10(np.abs(wave).max()) == pytest.approx(-3.01, abs=0.01)
+    assert 20.0 * math.log10(peak_of(wave)) == pytest.approx(0.0, abs=0.2)
+
+
+def test_it_is_as_without_blocks_and_without_leaving_anything_out():
+    chance = np.random.default_rng(1)
+    sound = chance.standard_normal((3000, 2)) * np.hanning(3000)[:, None] ** 4
+    padded = np.concatenate((np.zeros((TAPS, 2)), sound, np.zeros((TAPS, 2))))
+    whole = max(
+        np.abs(np.convolve(channel, phase)).max() for channel in padded.T for phase in PHASES
+    )
+    whole = max(whole, np.abs(sound).max())
+    for block in (7, 100, 3000):
+        assert peak_of(sound, block) == pytest.approx(whole, rel=1e-12)
+
+
+def test_silence_has_none():
+    assert peak_of(np.zeros((500, 2))) == 0.0
+    assert TruePeak().finish() == 0.0

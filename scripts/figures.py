@@ -10,6 +10,7 @@ ensemble   The beginning of examples/mo_li_hua.mid: four yehus on a stage.
 followed   A hummed tune, and what is played of it.
 life       A held note, a bow change and a plain phrase, as a machine and as hands play them.
 articulations  Every articulation on one note.
+brilliance How bright nine notes are from soft to hard.
 schelleng  Where the model can be bowed, and the forces by which the player bows it.
 
 Without names it draws all, in some minutes. Pictures go to FOLDER/figures and
@@ -25,12 +26,25 @@ import matplotlib as mpl
 
 mpl.use("Agg")
 
-from pictures import articulations, body, ensemble, followed, life, paper, rooms, schelleng
+from pictures import (
+    articulations,
+    body,
+    brilliance,
+    ensemble,
+    followed,
+    life,
+    paper,
+    rooms,
+    schelleng,
+)
 
 ROOT = Path(__file__).resolve().parent.parent
 ALL = {
     module.__name__.rpartition(".")[2]: module.draw_all
-    for module in (paper, body, rooms, ensemble, followed, life, articulations, schelleng)
+    for module in (
+        *(paper, body, rooms, ensemble, followed, life),
+        *(articulations, brilliance, schelleng),
+    )
 }
 
 

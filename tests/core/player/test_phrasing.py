@@ -6,6 +6,7 @@ import numpy as np
 from held_notes import Playing
 
 from yehu_server.core.controls.slots import DEPTH, FINGER_POSITION, ONSET
+from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
 
 def vibrato(playing: Playing, seconds: float) -> tuple[np.ndarray, np.ndarray]:
@@ -58,3 +59,32 @@ def test_steps_short_notes_and_plain_playing_do_not_slide():
     assert slide_s(0.0, 74, 79) < 0.02
     assert slide_s(1.0, 74, 76) < 0.02
     assert slide_s(1.0, 74, 79, held_s=0.1) < 0.02
+
+
+def first_bend(leap: float, **values: float) -> float:
+    """Where the finger is from the pitch of a note (semitones) as that begins after a long one."""
+    playing = Playing(phrasing=1.0, variation=0.0, listening=0.0)
+    playing.on(76.0 - leap)
+    playing.play(0.5)
+    for name, value in values.items():
+        playing.wishes.write(f"/playing/{name}", value)
+    playing.on(76)
+    playing.play(0.005)
+    return float(playing.player["gesture"]["bend"])
+
+
+def test_a_leap_slides_only_where_bow_and_finger_are_free_for_it():
+    """Not under a bow that stops or leaves the string, nor where the finger moves otherwise."""
+    slide = {
+        "ordinary", "tremolo", "padded", "sforzando", "swell", "straight", "rolling-vibrato",
+        "pressing-vibrato", "sliding-vibrato",
+    }  # fmt: skip
+    found = {
+        row.name
+        for row in ARTICULATIONS
+        if first_bend(7.0, articulation=NUMBER[row.name])
+        != first_bend(2.0, articulation=NUMBER[row.name])
+    }
+    assert found == slide
+    assert first_bend(7.0, pizzicato=1.0) == first_bend(7.0, bend=-2.0) == 0.0
+    assert first_bend(7.0, bend=0.5) < -5.0  # a pitch between the keys

@@ -103,6 +103,13 @@ def _reach(row: Articulation) -> tuple[float, float]:
 
 
 REACH = np.array([_reach(row) for row in _ROWS])
+# Whether finger and bow are free for a slide over a leap: the one moves no other way, the other
+# neither stops nor leaves the string before the finger is there.
+BEARS_SLIDE = np.array([
+    not (row.fingers or row.is_plucked or row.touches)
+    and all(step.is_on and step.speed > 0.0 for step in row.bow)
+    for row in _ROWS
+])  # fmt: skip
 # Whether another finger beats above the note's pitch.
 BEATS = np.array([any(step.semitones > 0.0 for step in row.fingers) for row in _ROWS])
 TOUCHES = np.array([row.touches for row in _ROWS])

@@ -16,6 +16,7 @@ from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import choose, choose_for_slide, stay
 from yehu_server.core.player.gestures import (
+    BEARS_SLIDE,
     BEATS,
     IS_PLUCKED,
     REACH,
@@ -73,6 +74,7 @@ BEND_RAMP_MS = find("/playing/bend").smooth_ms
 # The level is this power of dynamics: together with the slower bow, dynamics 0.5 is some 12 dB
 # below 1, and 0.1 some 35 dB. By ear.
 DYNAMICS_EXPONENT = 1.5
+FARTHEST_KEY = 0.5  # semitones, of a pitch from a key: what bends farther slides by itself
 SETTLING_MS = 35.0  # in which a string comes to its pitch, and what is heard is all of it
 
 
@@ -147,14 +149,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     p.pace = 1.0
     begin_gesture(p, c, is_slur)
     turns = plan_stroke(p, c, wished_speed(p), is_legato)
-    if is_touched(p):
-        slide_ms = STEP_MS
-    elif at_once:
-        slide_ms = 0.0
-    elif is_on(p, PORTAMENTO):
-        slide_ms = p.value[PORTAMENTO_TIME]
-    else:
-        slide_ms = slide_of_leap_ms(p, c, note_pitch(p) - p.finger_pitch)
+    slide_ms = 0.0 if at_once and not is_touched(p) else slide_into_note_ms(p, c)
     p.note_began = c.frame
     if slide_ms > 0.0 and p.string >= 0:
         string, position = begin_from_last(p, slide_ms)
@@ -187,6 +182,19 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     else:
         ramp_ms = CHANGE_MS if turns else SLURRED_MS
         draw(p, c, ramp_ms if is_slur else p.value[ATTACK])
+
+
+@compiled_exactly
+def slide_into_note_ms(p: Any, c: Any) -> float:
+    """Time of the slide that a note begins with; STEP_MS where the finger steps."""
+    if is_touched(p):
+        return STEP_MS
+    if is_on(p, PORTAMENTO):
+        return float(p.value[PORTAMENTO_TIME])
+    is_bent = abs(p.value[BEND]) > FARTHEST_KEY
+    if is_bent or is_plucked(p) or not BEARS_SLIDE[p.gesture.row]:
+        return STEP_MS
+    return slide_of_leap_ms(p, c, note_pitch(p) - p.finger_pitch)
 
 
 @compiled_exactly

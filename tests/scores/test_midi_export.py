@@ -72,7 +72,7 @@ def test_settings_become_the_controllers_of_keyboard(export):
 
 
 def test_bends_and_slides_are_in_the_file(export):
-    _, again, file, _ = export(
+    _, again, file, lost = export(
         note(0, 2, 67, Mark("slide-in-up")),
         note(2, 2, 72),
         spans=(Span("portamento", Fraction(0), Fraction(2)),),
@@ -83,6 +83,7 @@ def test_bends_and_slides_are_in_the_file(export):
     assert controls(file, 6) == [BEND_RANGE]
     assert controls(file, 65) == [127, 0]
     assert notes_of(again)[1].start_s < 2 * 60 / 90
+    assert lost == {}
 
 
 def test_what_midi_cannot_say_is_counted(export):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from itertools import pairwise
 
@@ -167,6 +168,8 @@ def test_the_direction_of_a_bow_is_for_its_note_alone(mark, value):
         ([Mark("vibrato", 0.0)], "/playing/phrasing", 0.0),
         (["spiccato"], "/playing/articulation", float(NUMBER["spiccato"])),
         ([Mark("articulation", 14)], "/playing/articulation", 14.0),
+        (["slide-in-up"], "/playing/articulation", float(NUMBER["slide-up"])),
+        (["slide-in-down"], "/playing/articulation", float(NUMBER["slide-down"])),
         (["inner-string"], "/playing/string", 1.0),
         (["outer-string"], "/playing/string", 2.0),
     ],
@@ -284,10 +287,63 @@ def test_a_note_ends_as_loud_as_the_next_begins_in_a_hairpin():
     assert step_db == pytest.approx((velocities[1] - velocities[2]) * 18 / 126, abs=0.35)
 
 
-def test_marked_loudness_is_not_phrased_over():
-    bare, marked = play(*FOUR), play(*FOUR, signs=[sign(0, "mf")])
-    assert {each.velocity for each in notes_of(phrased(bare, 1.0))} != {80}
-    assert {each.velocity for each in notes_of(phrased(marked, 1.0))} == {80}
+def levels_db(score) -> list[tuple[float, float]]:
+    """The level (dB) as time goes, by velocities and controller 11."""
+    velocities = {note.start_s: note.velocity for note in notes_of(score)}
+    times = sorted({*velocities, *(time for time, _ in expressions(score))})
+    found, velocity, expression = [], 80, 127
+    for time in times:
+        velocity = velocities.get(time, velocity)
+        expression = dict(expressions(score)).get(time, expression)
+        level = velocity * 18 / 126 + 40 * math.log10(expression / 127)
+        found.append((time, level))
+    return found
+
+
+@pytest.mark.parametrize(("before", "after"), [("f", "p"), ("p", "f")])
+def test_a_dynamic_within_a_held_note_is_no_jump(before, after):
+    notes = [note(0, 4, 67), note(4, 1, 69)]
+    score = play(*notes, signs=[sign(0, before), sign(2, after)])
+    found = levels_db(score)
+    assert max(abs(one - other) for (_, one), (_, other) in pairwise(found)) < 1.0
+    way = [time for time, level in found if abs(level - found[0][1]) > 0.1 and time < 2.0]
+    assert 1.0 < way[0] < 1.05
+    assert (found[-1][1] - found[0][1]) * 126 / 18 == pytest.approx(
+        DYNAMICS[after] - DYNAMICS[before], abs=1
+    )
+    assert abs(found[-1][1] - max(item for item in found if item[0] < 1.35)[1]) < 0.2
+
+
+def test_a_hairpin_within_a_held_note_begins_at_the_dynamic_before_it():
+    signs, spans = [sign(0, "f"), sign(2, "p")], [span("crescendo", 2, 8)]
+    found = levels_db(play(note(0, 8, 67), signs=signs, spans=spans))
+    lowest = min(level for _, level in found)
+    assert (lowest - found[0][1]) * 126 / 18 == pytest.approx(50 - 96, abs=2)
+    assert (found[-1][1] - lowest) * 126 / 18 == pytest.approx(20, abs=2)
+
+
+def test_between_marks_of_loudness_phrases_are_shaped_less():
+    notes = [note(n, 1, 67) for n in range(8)]
+    bare, marked = (
+        [each.velocity for each in notes_of(phrased(play(*notes, signs=signs), 0.5))]
+        for signs in ([], [sign(0, "mf")])
+    )
+    assert (
+        3.0 * (max(marked) - min(marked)) > max(bare) - min(bare) > max(marked) - min(marked) + 10
+    )
+    assert sum(marked) / len(marked) == pytest.approx(80.0, abs=3.0)
+
+
+def test_marks_of_loudness_keep_their_steps():
+    """An arch over p and f bends neither towards the other, and a hairpin goes on."""
+    notes = [note(n, 1, 67) for n in range(12)]
+    signs, spans = [sign(0, "p"), sign(8, "f")], [span("crescendo", 4, 8)]
+    found = [
+        each.velocity for each in notes_of(phrased(play(*notes, signs=signs, spans=spans), 0.5))
+    ]
+    assert sum(found[:4]) / 4 == pytest.approx(50.0, abs=2.0)
+    assert sum(found[8:]) / 4 == pytest.approx(96.0, abs=2.0)
+    assert found[3:8] == sorted(found[3:8])
 
 
 @pytest.mark.parametrize("marks", [["down-bow"], ["staccato"]])
@@ -363,18 +419,24 @@ def test_a_note_between_the_keys_is_bent_there():
     assert settings(score, "/playing/bend") == [(0.0, -0.25), (0.5, None)]
 
 
-@pytest.mark.parametrize(
-    ("mark", "first", "last"),
-    [
-        ("slide-in-up", -2.0, 0.0),
-        ("slide-in-down", 2.0, 0.0),
-        ("slide-out-up", 0.0, 2.0),
-        ("slide-out-down", 0.0, -2.0),
-    ],
-)
-def test_slides_bend_into_a_note_or_out_of_it(mark, first, last):
+def test_a_slide_is_played_once_and_plucked_too():
+    """Not again where a finger that tapped the string leaves it."""
+    address, slide = "/playing/articulation", float(NUMBER["slide-up"])
+    tapped = settings(play(*four(1, "slide-in-up", "mordent")), address)
+    assert tapped == [(0.5, slide), (0.575, None)]
+    assert settings(play(*four(1, "slide-in-up", "pizzicato")), address)[0] == (0.5, slide)
+
+
+def test_a_note_that_slides_has_no_other_articulation_and_that_is_told():
+    rolled = play(note(0, 1, 67, "slide-in-up"), signs=[sign(0, "gesture", 11.0)])
+    assert settings(rolled, "/playing/articulation")[0] == (0.0, float(NUMBER["slide-up"]))
+    assert "slides" in rolled.warnings[0]
+
+
+@pytest.mark.parametrize(("mark", "last"), [("slide-out-up", 2.0), ("slide-out-down", -2.0)])
+def test_slides_bend_out_of_a_note(mark, last):
     bends = settings(play(*four(1, mark)), "/playing/bend")
-    assert bends[0] == (0.5, first)
+    assert bends[0] == (0.5, 0.0)
     assert bends[-2][1] == pytest.approx(last)
     assert bends[-2][0] < 1.0
     assert bends[-1] == (1.0, None)

@@ -12,16 +12,20 @@ from fractions import Fraction
 
 import mido
 
+from yehu_server.core.player.gestures import FITS
+from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 from yehu_server.params.table import find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import DEFAULT, load
-from yehu_server.scores.score import BEND, Score, Setting
+from yehu_server.scores.score import BEND, Score, Setting, notes_of
 from yehu_server.scores.written.layout import signature
+from yehu_server.scores.written.mark_settings import ARTICULATION, SLIDES
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.tempo import WrittenClock
 
 TICKS = 960  # a quarter note
 BEND_RANGE = 24  # semitones
+SLIDE_POINTS = 16  # of a written slide
 SLOWEST = 0xFFFFFF  # microseconds a quarter, the longest that a file can say
 
 
@@ -55,12 +59,17 @@ def _file(
     )
     translated = _Translation()
     by_channel: dict[int, list[tuple[int, mido.Message]]] = {each: [] for each in channels}
+    lengths = {(note.channel, note.start_s): note.length_s for note in notes_of(score)}
     for event in score.events:
         tick = _tick(beat_at(event.time_s))
         messages = by_channel[event.message.channel]
         if isinstance(event.message, Setting):
             found = list(translated.messages(event.message))
             messages += [(tick, message) for message in found]
+            length_s = lengths.get((event.message.channel, event.time_s), 0.0)
+            for later_s, message in translated.slide(event.message, length_s):
+                found.append(message)
+                messages.append((_tick(beat_at(event.time_s + later_s)), message))
             lost[event.message.address] += not found and event.message.value is not None
         else:
             messages.append((tick, event.message))
@@ -111,6 +120,9 @@ def _conductor(written: Written, clock: WrittenClock) -> list[tuple[int, mido.Me
     ]
 
 
+_SLIDES = {float(NUMBER[name]) for name in SLIDES.values()}
+
+
 class _Translation:
     """Settings as messages of the mapping `keyboard`."""
 
@@ -119,23 +131,46 @@ class _Translation:
         for bind in load(DEFAULT).binds:
             if bind.source.startswith("cc "):
                 self._binds.setdefault(bind.target, bind)
-        self._ranged: set[int] = set()  # channels whose bend range is told
+        self._bent: dict[int, float] = {}  # semitones, of channels whose bend range is told
 
     def messages(self, setting: Setting) -> Iterator[mido.Message]:
         """The messages of a setting; none where MIDI cannot say it."""
         channel, address = setting.channel, setting.address
         value = find(address).default if setting.value is None else setting.value
         if address == BEND:
-            if channel not in self._ranged:
-                self._ranged.add(channel)
-                for control, number in ((101, 0), (100, 0), (6, BEND_RANGE), (38, 0)):
-                    yield _control(channel, control, number)
-            pitch = round(8191 * min(max(value / BEND_RANGE, -1.0), 1.0))
-            yield mido.Message("pitchwheel", channel=channel, pitch=pitch)
+            yield from self._range(channel)
+            self._bent[channel] = value
+            yield _wheel(channel, value)
         elif address in self._binds:
             bind = self._binds[address]
             position = min(max(bind.to_unit(value), 0.0), 1.0)
             yield _control(channel, int(bind.source.split()[1]), round(127 * position))
+
+    def slide(self, setting: Setting, length_s: float) -> Iterator[tuple[float, mido.Message]]:
+        """The bends of a written slide into a note of a length, and how much later each is (s)."""
+        if setting.address != ARTICULATION or setting.value not in _SLIDES:
+            return
+        first, last = ARTICULATIONS[int(setting.value)].fingers
+        channel, whole_s = setting.channel, 1e-3 * (last.at_ms + last.glide_ms)
+        pace = min(FITS * length_s / whole_s, 1.0)
+        yield from ((0.0, message) for message in self._range(channel))
+        for point in range(SLIDE_POINTS + 1):
+            share = point / SLIDE_POINTS
+            at_s = pace * 1e-3 * (last.at_ms + share * last.glide_ms)
+            bend = self._bent[channel] + (1.0 - share) * first.semitones
+            yield (at_s if point else 0.0), _wheel(channel, bend)
+
+    def _range(self, channel: int) -> Iterator[mido.Message]:
+        """Tell the range of a channel's bends, if it is not told."""
+        if channel not in self._bent:
+            self._bent[channel] = 0.0
+            for control, number in ((101, 0), (100, 0), (6, BEND_RANGE), (38, 0)):
+                yield _control(channel, control, number)
+
+
+def _wheel(channel: int, semitones: float) -> mido.Message:
+    pitch = round(8191 * min(max(semitones / BEND_RANGE, -1.0), 1.0))
+    return mido.Message("pitchwheel", channel=channel, pitch=pitch)
 
 
 def _control(channel: int, control: int, value: int) -> mido.Message:

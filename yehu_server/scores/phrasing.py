@@ -2,7 +2,7 @@
 
 docs/playing.md tells the rules and where they are from. Onsets and pitches stay. What a file marks
 itself is left alone, channel by channel: velocities that differ, controllers of loudness, notes
-that overlap.
+that overlap. A page marks loudness in few places: between them phrases are shaped, but less.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from bisect import insort
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 from yehu_server.scores.score import Score, ScoreNote, notes_of
 
@@ -31,6 +31,7 @@ REST_S, LONG_NOTE, LONGEST_PHRASE_BEATS = 0.3, 2.5, 16.0
 # for each semitone above the mean pitch of all, and at most.
 ARCH, DOWNBEAT, HALF_BAR, BEAT = 100.0, 12.0, 7.0, 4.0
 HIGHER, MOST_HIGHER = 6.0, 50.0
+BETWEEN_MARKS = 0.4  # so much of arches and accents, between the marks of a page: 3 dB by default
 # Notes in one bow: so many, each no longer, in steps no wider (semitones), nothing between them.
 MOST_IN_A_BOW, SHORT_S, STEP, GAP_S = 4, 0.3, 4, 0.03
 LEAST_FOR_BOWS = 0.25  # of phrasing, from which notes share a bow
@@ -55,9 +56,11 @@ def phrased(score: Score, amount: float) -> Score:
         }
         phrases = phrases_of(notes)
         usual = sum(note.key for note in notes) / len(notes)
-        if not is_shaped(notes, controllers):
+        is_marked = is_shaped(notes, controllers)
+        if score.is_written or not is_marked:
+            depth = amount * (BETWEEN_MARKS if is_marked else 1.0)
             for phrase in phrases:
-                velocities.update(shaped(phrase, score, amount, usual))
+                velocities.update(shaped(phrase, score, depth, usual, is_marked=is_marked))
         if amount >= LEAST_FOR_BOWS and not is_bowed(notes, controllers):
             for phrase in phrases:
                 ends_s.update(slurred(phrase))
@@ -110,24 +113,26 @@ def _ends_before(phrase: list[ScoreNote], lengths: list[float], note: ScoreNote)
 
 
 def shaped(
-    phrase: Sequence[ScoreNote], score: Score, amount: float, usual: float
+    phrase: Sequence[ScoreNote], score: Score, amount: float, usual: float, *, is_marked: bool
 ) -> dict[int, int]:
     """Return the velocities of a phrase's notes, by the numbers of their events.
 
     An arch whose mean is where the velocities were, accents of the metre, and higher notes louder.
-    `usual` is the mean pitch of the part (MIDI note).
+    `usual` is the mean pitch of the part (MIDI note). Where loudness `is_marked`, each run of notes
+    that are marked alike keeps its mean, and pitch does nothing.
     """
     begin, end = phrase[0].start_s, phrase[-1].start_s
-    arch = []
-    for note in phrase:
-        at = (note.start_s - begin) / (end - begin) if end > begin else 0.5
-        arch.append(1.0 - (2.0 * at - 1.0) ** 2)  # a parabola, 1 in the middle
-    middle = sum(arch) / len(arch)
     velocities = {}
-    for note, height in zip(phrase, arch, strict=True):
-        higher = min(max(HIGHER * (note.key - usual), -MOST_HIGHER), MOST_HIGHER)
-        change = amount * (ARCH * (height - middle) + accent(note.beat, score) + higher)
-        velocities[note.begins] = min(max(round(note.velocity + change), 1), 127)
+    for _, run in groupby(phrase, key=lambda note: note.velocity if is_marked else 0):
+        notes = list(run)
+        places = [(n.start_s - begin) / (end - begin) if end > begin else 0.5 for n in notes]
+        arch = [1.0 - (2.0 * at - 1.0) ** 2 for at in places]  # a parabola, 1 in the middle
+        middle = sum(arch) / len(arch)
+        for note, height in zip(notes, arch, strict=True):
+            higher = 0.0 if is_marked else HIGHER * (note.key - usual)
+            higher = min(max(higher, -MOST_HIGHER), MOST_HIGHER)
+            change = amount * (ARCH * (height - middle) + accent(note.beat, score) + higher)
+            velocities[note.begins] = min(max(round(note.velocity + change), 1), 127)
     return velocities
 
 

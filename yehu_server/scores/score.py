@@ -148,6 +148,7 @@ class Score:
     # One line each, of what a player should know and no file is to blame for.
     remarks: tuple[str, ...] = ()
     keys: tuple[KeySignature, ...] = ()  # in order, as far as they are told
+    is_written: bool = False  # from a page, whose marks of loudness are for stretches of notes
 
     def bar_at(self, beat: float) -> tuple[float, float]:
         """Return the beat from which the metre of a beat holds, and the quarters in its bars."""

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Note, Part, Sign, Span
+from yehu_server.scores.written.tempo import WrittenClock
 
 USUAL = float(DYNAMICS["mf"])
 # In steps of velocity, by ear.
@@ -17,13 +18,14 @@ REACH = Fraction(1)  # quarters after a hairpin, in which a dynamic is its aim
 SOFTEST, LOUDEST = 1.0, 127.0
 DB_PER_STEP = 18.0 / 126.0  # of velocity, over the whole range (core/player/velocity.py)
 LEAST_SWELL = 1.0
+CHANGE_S = 0.3  # in which a note that is held comes to a dynamic written within it; by ear
 LEVELS = {**DYNAMICS, **{name: DYNAMICS[then] for name, (_, then) in FORCED.items() if then}}
 
 
 class Loudness:
     """The loudness of a part at each beat; `is_marked` where the part says anything of it."""
 
-    def __init__(self, part: Part) -> None:
+    def __init__(self, part: Part, clock: WrittenClock) -> None:
         signs = [s for s in part.signs if s.name in LEVELS or s.name == "velocity"]
         hairpins = [s for s in part.spans if s.name in HAIRPINS and s.end > s.begin]
         forced = [sign.beat for sign in part.signs if sign.name in FORCED]
@@ -34,6 +36,8 @@ class Loudness:
         # Beats are floats here: swells ask for many.
         self._beats: list[float] = []
         self._levels: list[float] = []
+        self._notes, self._clock = part.notes, clock
+        self._starts = [note.beat for note in part.notes]
         self._build(sorted(signs, key=lambda s: s.beat), sorted(hairpins, key=lambda s: s.begin))
 
     def _build(self, signs: list[Sign], hairpins: list[Span]) -> None:
@@ -42,15 +46,17 @@ class Loudness:
             key=lambda change: change[:2],
         )
         starts = [sign.beat for sign in signs]
+        there = 0.0  # where the last sign is complete
         for exact, _, change in changes:
-            beat = float(exact)
+            beat = float(exact) if isinstance(change, Sign) else max(float(exact), there)
             level = self.at(beat)
             while self._beats and self._beats[-1] > beat:  # a hairpin that another sign cuts short
                 self._beats.pop()
                 self._levels.pop()
             self._add(beat, level)
             if isinstance(change, Sign):
-                self._add(beat, _level_of(change))
+                there = self._reached(exact)
+                self._add(there, _level_of(change))
                 continue
             after = bisect_left(starts, change.end)
             aim = level + (HAIRPIN if change.name == "crescendo" else -HAIRPIN)
@@ -58,7 +64,15 @@ class Loudness:
                 # To the dynamic after it, unless that lies the other way.
                 written = _level_of(signs[after])
                 aim = written if (written > level) == (aim > level) and written != level else aim
-            self._add(float(change.end), min(max(aim, SOFTEST), LOUDEST))
+            self._add(max(float(change.end), beat), min(max(aim, SOFTEST), LOUDEST))
+
+    def _reached(self, beat: Fraction) -> float:
+        """The beat at which a sign is complete: at once, or soon where a note is held over it."""
+        note = self._notes[max(bisect_right(self._starts, beat) - 1, 0)]
+        if not note.beat < beat < note.end:
+            return float(beat)
+        soon = self._clock.beat_at(self._clock.seconds(beat) + CHANGE_S)
+        return min(soon, float(note.end))
 
     def _add(self, beat: float, level: float) -> None:
         self._beats.append(beat)

@@ -46,7 +46,9 @@ CRISP: Mapping[str, Values] = {
 }
 
 
-# Marks that ask for an articulation, on notes that last so long (s).
+# Marks that ask for an articulation, before any other of their note.
+SLIDES: Mapping[str, str] = {"slide-in-up": "slide-up", "slide-in-down": "slide-down"}
+# The same, after others, on notes that last so long (s).
 GESTURES: Mapping[str, tuple[str, float]] = {
     "spiccato": ("spiccato", 0.0),
     "soft-accent": ("swell", 0.5),
@@ -165,7 +167,7 @@ def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = 
             values[PRESSURE] = SNAP
     if is_plucked(note, active):
         values |= {PIZZICATO: 1.0, GAIN: PLUCKED_DB}
-        for address in (TREMOLO, TREMOLO_DEPTH, ARTICULATION):
+        for address in (TREMOLO, TREMOLO_DEPTH, *([] if slide_of(note) else [ARTICULATION])):
             values.pop(address, None)
     node = harmonic_of(note, within)
     if node is not None:
@@ -189,6 +191,8 @@ def _held(active: Active) -> Values:
 def articulation_of(note: Note, active: Active, quarter_s: float) -> float:
     """The articulation that is written for a note, by its number; 0 for none."""
     length_s = float(note.length) * quarter_s
+    if slide := slide_of(note):
+        return slide
     if mark := note.marked("articulation"):
         return mark.value or 0.0
     for name, (gesture, least_s) in GESTURES.items():
@@ -200,6 +204,11 @@ def articulation_of(note: Note, active: Active, quarter_s: float) -> float:
     if active.is_forced and length_s >= least_s:
         return float(NUMBER[gesture])
     return active.articulation
+
+
+def slide_of(note: Note) -> float:
+    """The articulation of a written slide into a note, by its number; 0 for none."""
+    return next((float(NUMBER[name]) for mark, name in SLIDES.items() if note.marked(mark)), 0.0)
 
 
 def _trembled(strokes: float) -> Values:

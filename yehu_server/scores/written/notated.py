@@ -57,10 +57,10 @@ MARKS: Mapping[str, str] = {
     "fermata": "value: how many times as long",
     "breath": "a short gap after it",
     "caesura": "time stops for a moment after it",
-    "slide-in-up": "begins lower; value: by how many semitones",
-    "slide-in-down": "begins higher; value: by how many semitones",
-    "slide-out-up": "slides away upwards at its end; value: by how many semitones",
-    "slide-out-down": "slides away downwards at its end; value: by how many semitones",
+    "slide-in-up": "begins lower and slides into its pitch",
+    "slide-in-down": "begins higher and slides into its pitch",
+    "slide-out-up": "slides away upwards at its end",
+    "slide-out-down": "slides away downwards at its end",
     "arpeggio": "no meaning for one note at a time",
 }
 

@@ -1,4 +1,4 @@
-"""Ornaments and grace notes as touches of the fingers on one bow; slides, as the pitch of a note.
+"""Ornaments and grace notes as touches of the fingers on one bow; slides away, as a bent pitch.
 
 docs/scores.md has the table. Times are by ear, for the tempo of hands and not of the music.
 """
@@ -21,9 +21,8 @@ TRILL_LAST_S = 0.07  # of the plain note that ends it
 MOST_TAPS = 1000
 WHOLE, HALF = 2.0, 1.0  # usual intervals: of trills and mordents above, and below
 WIDEST = 12.0  # semitones, that a hand reaches
-# By ear: a slide takes so long, or so much of its note.
-SLIDE_S, SLIDE_SHARE = 0.13, 0.4
-USUAL_SLIDE = 2.0  # semitones
+# By ear: a slide away takes so long, or so much of its note, and goes so far (semitones).
+SLIDE_S, SLIDE_SHARE, AWAY = 0.13, 0.4, 2.0
 STEP_S = 0.01  # between points; the finger takes 8 ms for each
 LAST_S = 0.002
 MOST_POINTS = 3000
@@ -128,7 +127,7 @@ def curve_of(note: Note, begin_s: float, end_s: float) -> Curve:
     if length_s <= LAST_S:
         return []
     points = [(begin_s + share * length_s, bend) for share, bend in note.contour]
-    points = points or _slides(note, begin_s, end_s)
+    points = points or _slide_away(note, begin_s, end_s)
     if not points:
         return []
     if points[0][0] > begin_s:
@@ -144,21 +143,11 @@ def curve_of(note: Note, begin_s: float, end_s: float) -> Curve:
     return curve if len(curve) > 1 or curve[0][1] != 0.0 else []
 
 
-def _slides(note: Note, begin_s: float, end_s: float) -> Curve:
-    """The slides into a note and out of it."""
+def _slide_away(note: Note, begin_s: float, end_s: float) -> Curve:
+    """The slide out of a note, if it has one."""
+    way = AWAY * (bool(note.marked("slide-out-up")) - bool(note.marked("slide-out-down")))
     slide_s = min(SLIDE_S, SLIDE_SHARE * (end_s - begin_s))
-    points: Curve = []
-    for name, sign in (("slide-in-up", -1.0), ("slide-in-down", 1.0)):
-        mark = note.marked(name)
-        if mark is not None and not points:
-            by = USUAL_SLIDE if mark.value is None else abs(mark.value)
-            points = [(begin_s, sign * by), (begin_s + slide_s, 0.0)]
-    for name, sign in (("slide-out-up", 1.0), ("slide-out-down", -1.0)):
-        mark = note.marked(name)
-        if mark is not None:
-            by = USUAL_SLIDE if mark.value is None else abs(mark.value)
-            return [*(points or [(begin_s, 0.0)]), (end_s - slide_s, 0.0), (end_s, sign * by)]
-    return points
+    return [(begin_s, 0.0), (end_s - slide_s, 0.0), (end_s, way)] if way else []
 
 
 def _between(points: Curve, at_s: float) -> float:

@@ -20,10 +20,12 @@ from yehu_server.errors import ScoreError
 from yehu_server.scores.score import BEND, Score, ScoreEvent, ScorePart, Setting
 from yehu_server.scores.written.dynamics import Loudness
 from yehu_server.scores.written.mark_settings import (
+    ARTICULATION,
     DIRECTION,
     Active,
     actives_of,
     harmonic_of,
+    slide_of,
     values_of,
 )
 from yehu_server.scores.written.notated import Note, Part, Written, times
@@ -84,6 +86,7 @@ def performed(
         written.metres,
         tuple(parts),
         written.remarks,
+        is_written=True,
     )
 
 
@@ -102,7 +105,7 @@ class _Performer:
         self._channel = channel
         self._clock = clock
         self._left = left  # marks that are left out, and how often
-        self._loudness = Loudness(part)
+        self._loudness = Loudness(part, clock)
         self._timed: list[Timed] = []
         self._number = number
         self._set: dict[str, float] = {}  # by address, what marks have set
@@ -111,7 +114,7 @@ class _Performer:
 
     def events(self) -> list[Timed]:
         """All its events; not in order."""
-        if self._loudness.is_marked:  # so that no phrasing is laid over it
+        if self._loudness.is_marked:  # so that phrasing leaves room for it
             self._control(0.0, 0.0, EXPRESSION, 127)
         if has_bowing(self._part):
             self._control(0.0, 0.0, LEGATO_PEDAL, 0)
@@ -127,7 +130,7 @@ class _Performer:
 
     def _play(self, played: Played, active: Active) -> None:
         note, begin_s = played.note, played.begin_s
-        self._count_left(note)
+        self._count_left(note, active)
         values = values_of(note, active, self._clock.quarter_s(note.beat), self._within)
         if played.direction:
             values[DIRECTION] = played.direction
@@ -144,6 +147,9 @@ class _Performer:
         if self._loudness.is_marked:
             self._swell(played)
         touches = touches_of(replace(note, pitch=pitch), begin_s, played.end_s, played.trill)
+        if slide_of(note) and node is None and len(touches) > 1:  # the first of them slides
+            self._setting(touches[1].begin_s, SET, note.beat, ARTICULATION, None)
+            self._set.pop(ARTICULATION, None)
         for touch in touches:
             # Small notes bend with the great one: each is a key, and a share of a semitone.
             own = key if touch.pitch == pitch else _key_of(touch.pitch - (pitch - key))
@@ -214,7 +220,7 @@ class _Performer:
         event = ScoreEvent(time_s, message, beat, track=self._channel + 1)
         self._timed.append((time_s, order, self._number, event))
 
-    def _count_left(self, note: Note) -> None:
+    def _count_left(self, note: Note, active: Active) -> None:
         """Count marks that cannot be played as written."""
         if note.marked("harmonic") and harmonic_of(note, self._within) is None:
             self._left["a harmonic that does not speak is played as a light stopped note"] += 1
@@ -222,6 +228,8 @@ class _Performer:
         is_open = note.pitch < inner + 0.5 or abs(note.pitch - outer) <= SAME_PITCH
         if note.marked("open-string") and not is_open:
             self._left["an open string is marked on a note that no open string has"] += 1
+        if slide_of(note) and (note.marked("articulation") or active.gesture):
+            self._left["a note that slides has no other articulation"] += 1
         if note.marked("arpeggio"):
             self._left["an arpeggio has no meaning for one note at a time"] += 1
 

@@ -101,7 +101,8 @@ def test_the_mix_is_the_sum_of_its_stems(play, trio, tmp_path, words):
     assert np.abs(mix).max() > 0.1
     np.testing.assert_allclose(np.sum(stems, axis=0), mix, atol=1e-6)
     if "--normalize" in words:
-        assert np.abs(mix).max() == pytest.approx(10.0 ** (-1.0 / 20.0), abs=1e-4)
+        # The true peak is at -1 dB: samples are no higher.
+        assert np.abs(mix).max() == pytest.approx(10.0 ** (-1.0 / 20.0), abs=0.01)
     names = [Path(stem).name for stem in summary["stems"]]
     assert names[1] == "02-channel-2.wav"
 

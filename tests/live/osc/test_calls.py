@@ -107,6 +107,8 @@ def test_pitch_slides_the_sounding_note_steplessly(still):
     assert {address for _, address, _ in still.events} == {
         "/finger/1/position",
         "/output/balance",
+        "/body/brilliance",
+        "/body/brilliance_frequency",
         "/finger/1/press",  # some notes want it firmer
         "/bow/speed",  # A4 wants it slow
         "/bow/pressure",

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import re
+import string
+import unicodedata
 from collections import Counter
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 import soundfile
+from fontTools.ttLib import TTFont
+from latex2mathml.converter import convert
 from live.page.browser import drive, missing, running
 from markdown_it import MarkdownIt
 from pages import PAGES, ROOT, Page
@@ -88,6 +92,23 @@ def test_a_page_reads_on_the_site_as_on_github(content, place, page: Page):
     assert sum(tag == "math" for tag, _ in here.found) == equations
     assert Counter(tag for tag, _ in here.found if tag in STRUCTURE) == expected
     assert not re.search(r"<a [^>]*>[\w/.-]+\.md</a>", here.text)
+
+
+def test_the_font_of_equations_has_their_characters():
+    """Single letters are drawn as mathematical italics."""
+    blocks = [
+        tex for page in PAGES for tex in re.findall(r"```math\n(.*?)\n```", page.text, re.DOTALL)
+    ]
+    drawn = {sign for tex in blocks for sign in "".join(Elements(convert(tex)).words)}
+    letters = drawn.intersection(string.ascii_letters) - {"h"}  # which is Planck's constant
+    sizes = {letter: "SMALL" if letter.islower() else "CAPITAL" for letter in letters}
+    named = (f"MATHEMATICAL ITALIC {size} {each.upper()}" for each, size in sizes.items())
+    with TTFont(ROOT / "docs" / "site" / "math.woff") as font:
+        assert len(blocks) > 10
+        assert "MATH" in font
+        known = font.getBestCmap()
+    assert {each for each in drawn if ord(each) not in known} <= {"\n"}
+    assert {name for name in named if ord(unicodedata.lookup(name)) not in known} == set()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from yehu_server.core.physics.quantities import read_quantities
+from yehu_server.playing.practice_files import practice_beside, read_practice
 
 SCRIPTS = Path(__file__).parents[1] / "scripts"
 RATES = (44100.0, 48000.0, 96000.0)
@@ -154,3 +155,16 @@ def test_the_notes_that_are_measured_are_those_of_the_instrument():
     erhu = read_quantities(SCRIPTS.parent / "examples" / "erhu.toml")
     assert Setup(RATES[0]).notes == NOTES
     assert Setup(RATES[0], own=erhu).notes == range(62, 94)  # D4 to A6
+
+
+@pytest.mark.slow
+def test_an_erhu_plays_its_two_and_a_half_octaves_in_tune():
+    """All notes at five velocities and four places of the bow's speed; docs/intonation.md."""
+    from measures.in_tune import grid
+    from measures.take import Setup
+
+    file = SCRIPTS.parent / "examples" / "erhu.toml"
+    bowing = read_practice(practice_beside(file))
+    (found,) = grid(Setup(44100.0, own=read_quantities(file), bowing=bowing))
+    assert found.of == 32 * 20
+    assert found.right >= 0.97 * found.of

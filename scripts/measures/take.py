@@ -7,7 +7,6 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from functools import cache
 from typing import Any
 
 import mido
@@ -53,6 +52,11 @@ class Setup:
     phrasing: float = 0.0
 
     @property
+    def calibration(self) -> Calibration:
+        """That of the instrument, bowed so."""
+        return calibration_for(self.rate, self.own, bowing=self.bowing)
+
+    @property
     def notes(self) -> range:
         """The notes that the instrument has, such as F4 to F6 of a yehu."""
         lowest, highest = notes_of(self.own).ends
@@ -65,12 +69,6 @@ class Setup:
     def of_job(self, number: int) -> Setup:
         """Return the setup of one of many takes, whose notes vary otherwise than the others'."""
         return replace(self, seed=(1000 * self.seed + number) % SEEDS)
-
-
-@cache
-def calibrated(rate: float, own: Quantities) -> Calibration:
-    """Return the calibration of an instrument for a sample rate (Hz)."""
-    return calibration_for(rate, own)
 
 
 def _believe(instrument: Instrument, quantities: Quantities) -> None:
@@ -103,7 +101,7 @@ class Take:
         playing = PlayingOptions(
             start=start, mapping=load(mapping), seed=setup.seed, bowing=setup.bowing
         )
-        usual = calibrated(setup.rate, setup.own)
+        usual = setup.calibration
         quantities = quantities or setup.own
         first, second = usual.tensions
         strung = replace(usual, tensions=(tension * first, tension * second))

@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 
 from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.bowing import PLACES
 from yehu_server.core.player.calibration import GAINS
 from yehu_server.errors import ParameterError
+from yehu_server.params.table import find
 from yehu_server.playing import calibration_store
 from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
+from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.util import sealed
 from yehu_server.util.sealed import write_sealed
 
@@ -144,3 +147,15 @@ def test_what_no_measuring_could_have_found_is_no_calibration(data):
 
 def test_what_was_measured_is_a_calibration():
     assert read_calibration(spoiled(), Quantities(), 441.0) == MEASURED
+
+
+def test_a_calibration_is_of_how_notes_are_bowed_at_the_usual_place(kept):
+    bowing = shipped_practice(50000.0)
+    usual = PLACES.index(find("/playing/bow_position").default)
+    bowing[:, usual - 1] *= 1.1
+    calibrations = [calibration_for(50000.0, a4=441.0, bowing=each) for each in (None, bowing)]
+    assert kept.measured == 1
+    bowing[:, usual] *= 1.1
+    calibrations += [calibration_for(50000.0, a4=441.0, bowing=bowing) for _ in range(2)]
+    assert kept.measured == 2
+    assert calibrations == [MEASURED] * 4

@@ -23,6 +23,7 @@ from yehu_server.core.player.bowing import (
     TOP_SPEED,
     default_recipes,
 )
+from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import find
 from yehu_server.playing import practice as practising
@@ -32,9 +33,11 @@ from yehu_server.playing.practice import (
     EACH_S,
     EARLY_S,
     LATE_S,
+    LISTEN_S,
     Passage,
     Practice,
     Search,
+    has_pitch,
 )
 from yehu_server.playing.practice_files import (
     FORMAT,
@@ -249,6 +252,14 @@ def test_a_manner_that_speaks_is_told_from_one_that_cannot(practice, note, facto
     assert practice.score(search, bad, PASSAGES) < 0.6
 
 
+def test_a_mode_that_drowns_a_note_is_not_taken_for_it():
+    time = np.arange(round(LISTEN_S * RATE)) / RATE
+    note, mode = (np.sin(2.0 * np.pi * hz * time) for hz in (1318.51, 566.0))
+    for loudness, has in ((0.0, True), (0.1, True), (0.8, False), (3.0, False)):
+        assert has_pitch(note + loudness * mode, RATE, 88.0) == has, loudness
+    assert not has_pitch(0.0 * note, RATE, 88.0)
+
+
 def test_the_score_of_a_manner_is_always_the_same(practice):
     manner = default_recipes()[0, PLACE, 70 - FIRST]
     search = Search(0, 70, PLACE, manner)
@@ -271,6 +282,7 @@ def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late
         return True, 0.0
 
     monkeypatch.setattr(practising, "_speaks", speaks)
+    monkeypatch.setattr(practising, "has_pitch", lambda *_: True)
     practice = Practice(RATE, Quantities(), calibration_for(RATE), tuning=lambda key: key + 0.35)
     manner = default_recipes()[0, PLACE, 70 - FIRST]
     assert practice.score(Search(0, 70, PLACE, manner), manner, PASSAGES) == 1.0
@@ -300,6 +312,20 @@ def test_what_practise_writes_render_takes(command, render, tmp_path):
     assert changed.sum() == summary["improved"]
     assert set(zip(*np.nonzero(changed.any(axis=1)), strict=True)) <= {(0, 70 - FIRST)}
     assert render("--practice", path)[1]["practice"] == str(path)
+
+
+@pytest.mark.usefixtures("one_note")
+def test_practising_goes_on_from_what_lies_beside_the_instrument(command, tmp_path):
+    instrument, beside = tmp_path / "mine.toml", tmp_path / "mine.practice.json"
+    instrument.write_text("")
+    table = practised()
+    write_practice(beside, table, RATE)
+    code, _, error = command("practise", "--instrument", instrument, "-o", beside, "--quiet")
+    assert code == 0, error
+    same = np.isclose(read_practice(beside), table, atol=1e-4).all(axis=-1)
+    same[0, :, 70 - FIRST] = True
+    same[0, :, : LOWEST_NOTE - FIRST] = True  # as the open string
+    assert same.all()
 
 
 def test_practising_takes_no_map_without_a_scale(refused, tmp_path):

@@ -28,7 +28,6 @@ from yehu_server.errors import ParameterError, YehuError
 from yehu_server.lab.simulation import Simulation
 from yehu_server.params.spec import Place
 from yehu_server.params.table import find
-from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.util import __version__
@@ -109,7 +108,7 @@ class Instrument:
             seed=seed,
         )
         get_ready()
-        calibration = calibration_for(float(make.sample_rate), make.quantities, a4=make.playing.a4)
+        calibration = make.playing.calibration(float(make.sample_rate), make.quantities)
         spec = make.playing.spec(float(make.sample_rate), calibration, make.quantities)
         self._build(make.sample_rate, make.playing, spec, stereo=stereo)
 

@@ -23,7 +23,6 @@ from yehu_server.api.checks import (
 from yehu_server.api.notes import Note, score_of
 from yehu_server.api.playback import AudioWidget, Subtype, write_sound
 from yehu_server.errors import ParameterError
-from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT
 from yehu_server.playing.stringing import notes_of
 from yehu_server.playing.tuning import RangePolicy
@@ -233,7 +232,7 @@ def render(
     score = phrased(read, share)
     options = replace(options, phrasing=0.0 if is_fingered(score) else share)
     get_ready()
-    calibration = calibration_for(float(options.rate), options.quantities, a4=options.playing.a4)
+    calibration = options.playing.calibration(float(options.rate), options.quantities)
     options = replace(options, calibration=calibration)
     sound, asked, summary = _played(score, replace(options, normalize=bool(normalize)), progress)
     warnings = (*score.remarks, *score.warnings, *_remarks(summary))

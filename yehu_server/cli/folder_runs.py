@@ -15,6 +15,7 @@ import numpy as np
 from yehu_server.cli.arguments import instrument_of
 from yehu_server.cli.folder_cluster import render_on_cluster
 from yehu_server.cli.folder_tasks import Done, Line, Task, perform
+from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.cli.terminal import (
     ending_at_once,
     print_result,
@@ -67,12 +68,11 @@ class ProgressEstimate:
 def prepare(arguments: argparse.Namespace, progress: Any = None) -> None:
     """Compile, and measure the instrument, once on a machine before all its processes need it."""
     from yehu_server.core.engine.warming import warm_up
-    from yehu_server.playing.calibration_store import calibration_for
 
     with ending_at_once():
         warm_up()
-    rate, quantities = float(arguments.rate), instrument_of(arguments)
-    calibration_for(rate, quantities, a4=arguments.a4, progress=progress)
+    playing = playing_options_of(arguments)
+    playing.calibration(float(arguments.rate), instrument_of(arguments), progress)
 
 
 def render_all(

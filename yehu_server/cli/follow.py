@@ -166,13 +166,9 @@ def _write(arguments: argparse.Namespace, options: Options, heard: Heard, found:
         write_bytes(arguments.output, data, overwrite=arguments.overwrite)
         warn_of_lost(arguments.output, lost)
         return
-    from yehu_server.playing.calibration_store import calibration_for
-
     compile_all(arguments)
     with progress_bar(arguments, "calibrating", "notes") as progress:
-        calibration = calibration_for(
-            float(options.rate), options.quantities, a4=options.playing.a4, progress=progress
-        )
+        calibration = options.playing.calibration(float(options.rate), options.quantities, progress)
     options = replace(options, calibration=calibration)
     with progress_bar(arguments, "playing") as progress:
         if ending in CAPTURE:

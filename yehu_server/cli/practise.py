@@ -10,8 +10,9 @@ NAME.toml, NAME.practice.json is taken without that.
   yehu-server practise --tuning chaozhou-seven-equal -o chaozhou.json
   yehu-server render tune.mid -o tune.wav --practice mine.json
 
-Begins with what comes with this version, and takes a quarter of an hour or more on two cores. The
-usual instrument comes practised.
+Goes on from the practice beside the instrument file, where there is one, or begins with what comes
+with this version; takes a quarter of an hour or more on two cores. The usual instrument comes
+practised.
 """
 
 from __future__ import annotations
@@ -56,9 +57,16 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.core.physics.grid import check_rate
+    from yehu_server.core.player.bowing import PLACES
     from yehu_server.playing.calibration_store import calibration_for
     from yehu_server.playing.practice import Practice
-    from yehu_server.playing.practice_files import shipped_practice, write_practice
+    from yehu_server.playing.practice_files import (
+        practice_beside,
+        read_practice,
+        shipped_practice,
+        write_practice,
+    )
+    from yehu_server.playing.practice_recipes import DEFAULT
     from yehu_server.playing.preset_folders import Presets
     from yehu_server.playing.tuning import STANDARD_A4
 
@@ -69,18 +77,26 @@ def run(arguments: argparse.Namespace) -> int:
     check_distinct({"-o": arguments.output}, own)
     values = {} if arguments.preset is None else Presets().load(arguments.preset).values
     quantities = instrument_of(arguments)
+    beside = practice_beside(arguments.instrument)
+    known = shipped_practice(arguments.rate) if beside is None else read_practice(beside)
     start = time.perf_counter()
     compile_all(arguments)
-    with progress_bar(arguments, "calibrating", "notes") as progress:
-        calibration = calibration_for(arguments.rate, quantities, progress=progress)
-    practice = Practice(
-        arguments.rate, quantities, calibration, values, lambda key: tuning.pitch(key, STANDARD_A4)
-    )
-    with progress_bar(arguments, "practising", "notes") as progress:
-        table = practice.learn(progress, table=shipped_practice(arguments.rate))
+    table, improved = known, 0
+    others = set(range(len(PLACES))) - {DEFAULT}
+    for places in ({DEFAULT}, others):  # the instrument is calibrated at the usual place
+        with progress_bar(arguments, "calibrating", "notes") as progress:
+            calibration = calibration_for(
+                arguments.rate, quantities, bowing=table, progress=progress
+            )
+        practice = Practice(
+            *(arguments.rate, quantities, calibration, values),
+            lambda key: tuning.pitch(key, STANDARD_A4),
+        )
+        with progress_bar(arguments, "practising", "notes") as progress:
+            table = practice.learn(progress, table=table, places=places)
+        improved += practice.notes_changed
     write_practice(arguments.output, table, arguments.rate)
     elapsed = time.perf_counter() - start
-    improved = practice.notes_changed
     fields = {"rate": arguments.rate, "improved": improved, "elapsed_s": elapsed}
     text = f"{arguments.output}: {improved} notes at places of the bow are bowed otherwise now"
     print_report(arguments, fields, text)

@@ -157,13 +157,11 @@ def _stems(arguments: argparse.Namespace, options: Options, players: Players) ->
 
 
 def _calibrated(arguments: argparse.Namespace, parts: Sequence[Part], rate: float) -> list[Part]:
-    """Give all parts the calibration of their instruments, each measured once."""
-    from yehu_server.playing.calibration_store import calibration_for
-
+    """Give all parts the calibration of their instruments."""
     with progress_bar(arguments, "calibrating", "notes") as progress:
-        found = cache(partial(calibration_for, rate, progress=progress))
         return [
-            replace(part, calibration=found(part.quantities, a4=part.playing.a4)) for part in parts
+            replace(part, calibration=part.playing.calibration(rate, part.quantities, progress))
+            for part in parts
         ]
 
 

@@ -37,7 +37,6 @@ from yehu_server.live.part_addresses import part_of
 from yehu_server.live.web.query import Snapshot
 from yehu_server.live.web.server import Sources, WebServer
 from yehu_server.playing.calibration import Progress
-from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.delay import Delay
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.parts import Part, assemble, number_of_instruments, player_of, seated
@@ -322,11 +321,10 @@ def _tuned(
     parts: Sequence[PartOptions], rate: float, progress: Progress | None
 ) -> list[tuple[Calibration, Quantities]]:
     """The calibration of each part's instrument, and what it is before it is tuned."""
-    calibrations = {
-        kind: calibration_for(rate, kind, a4=parts[0].playing.a4, progress=progress)
-        for kind in dict.fromkeys(part.quantities for part in parts)
-    }
-    return [(calibrations[part.quantities], part.quantities) for part in parts]
+    return [
+        (part.playing.calibration(rate, part.quantities, progress), part.quantities)
+        for part in parts
+    ]
 
 
 def _sources(part: Part) -> PartSources:

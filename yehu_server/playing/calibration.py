@@ -90,8 +90,10 @@ class _Setup:
         return at_pitch(self.bowing[string], float(pitch - self.above(string)), column)
 
 
-def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
-    """Hash of everything that a calibration depends on (16 hex digits)."""
+def calibration_key(
+    rate: float, quantities: Quantities, a4: float, bowing: Array | None = None
+) -> str:
+    """Hash of everything that a calibration depends on (16 hex digits); see `calibrate`."""
     core = PACKAGE / "core"
     sources = [
         source
@@ -101,7 +103,8 @@ def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
     sources += [core / "player" / f"{name}.py" for name in ("bowing", "calibration")]
     sources += [core / "engine" / f"{name}.py" for name in ("sounding", "output", "shelf")]
     sources += [Path(__file__)]
-    bowed = shipped_practice(rate)[:, PLACES.index(DEFAULT_PLACE)].tolist()
+    bowing = shipped_practice(rate) if bowing is None else bowing
+    bowed = bowing[:, PLACES.index(DEFAULT_PLACE)].tolist()
     return key_of(sources, repr((rate, a4, quantities, bowed)))
 
 

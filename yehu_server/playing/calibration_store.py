@@ -59,22 +59,24 @@ def calibration_for(
     quantities: Quantities | None = None,
     *,
     a4: float = 440.0,
+    bowing: Any = None,
     progress: Progress | None = None,
 ) -> Calibration:
     """Find the calibration of an instrument, or measure it, in some seconds.
 
     `rate`: sample rate (Hz).
     `a4`: reference pitch (Hz).
+    `bowing` (ndarray, optional): how notes are bowed; by default as shipped.
     `progress`: called with the number of notes done and of all notes, where it is measured.
     """
     quantities = quantities or Quantities()
-    key = calibration_key(rate, quantities, a4)
+    key = calibration_key(rate, quantities, a4, bowing)
     if key in _shipped():
         return read_calibration(_shipped()[key], quantities, a4)
     path = data_folder() / f"calibration-{key}.json"
     found = _kept(path, quantities, a4)
     if found is None:
-        found = calibrate(rate, quantities, a4=a4, progress=progress)
+        found = calibrate(rate, quantities, a4=a4, bowing=bowing, progress=progress)
         try:
             write_sealed(path, json.dumps(asdict(found)).encode())
         except OSError as error:

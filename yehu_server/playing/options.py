@@ -14,6 +14,8 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.velocity import NEUTRAL
+from yehu_server.playing.calibration import Progress
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.practice_files import read_practice, shipped_practice
@@ -59,6 +61,12 @@ class PlayingOptions:
         if path is None or self.bowing is not None:
             return self
         return replace(self, bowing=read_practice(path), practice=path)
+
+    def calibration(
+        self, rate: float, quantities: Quantities, progress: Progress | None = None
+    ) -> Calibration:
+        """The calibration of an instrument that is bowed so; see `calibration_for`."""
+        return calibration_for(rate, quantities, a4=self.a4, bowing=self.bowing, progress=progress)
 
     @property
     def files(self) -> tuple[Path, ...]:

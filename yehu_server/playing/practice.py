@@ -1,9 +1,10 @@
 """Practise: find how each note is bowed at each place from the bridge, by playing it.
 
-Each note is played after others, slurred and separate, at several speeds and pressures; the ear of
-the player (``player.ear``) tells whether it speaks: with one slip in a period, at its pitch. Where
-it doesn't, other shares of Schelleng's limit, places nearby, slower bows and a firmer finger are
-tried. What is farther from the wish has to be better.
+Each note is played first, and after others, slurred and separate, at several speeds and pressures;
+the ear of the player (``player.ear``), at the string, tells whether it speaks: with one slip in a
+period, at its pitch. What the body radiates has to have that pitch, too: the bow may keep a mode of
+it going beside a high note. Where it doesn't speak, other shares of Schelleng's limit, places
+nearby, slower bows and a firmer finger are tried. What is farther from the wish has to be better.
 """
 
 from __future__ import annotations
@@ -28,8 +29,9 @@ from yehu_server.core.player.bowing import (
     PLACES,
     default_recipes,
 )
-from yehu_server.core.player.calibration import OPEN_NOTES, Calibration
+from yehu_server.core.player.calibration import OPEN_NOTES, Calibration, frequency_hz
 from yehu_server.core.player.note_range import LOWEST_NOTE, YEHU, NoteRange
+from yehu_server.playing.pitch_and_level import cents, pitch_hz
 from yehu_server.playing.practice_recipes import DEFAULT, ROUNDS, lighter, lost, moved
 from yehu_server.playing.wishes import Key, WishPoster
 
@@ -38,8 +40,9 @@ Progress = Callable[[float, float], None]
 
 SPEEDS, PRESSURES = (0.12, 0.16, 0.2, 0.25), (0.2, 0.3, 0.42, 0.55)
 QUICK = (0.2, 0.24)  # speeds (m/s) for which a light bow is practised
-RESTS_S = (0.02, 0.12)
+RESTS_S, FIRST_NOTES = (0.02, 0.12), 0.25  # s; share of notes with none before
 BEFORE_S, EARLY_S, LATE_S, UP_S, EACH_S = 0.2, 0.13, 0.38, 0.385, 0.4
+LISTEN_S = 0.06  # before LATE_S
 # Passages that a recipe is judged by, of which the first few tell those that are worth the others;
 # and of a light, quick bow.
 TRIES, HEAT, QUICK_TRIES = 16, 5, 8
@@ -51,13 +54,14 @@ NEAR_OPEN = 8.0  # of open strings, which nothing tunes
 OFF_WEIGHT = 600.0  # cents of the first error that count as much as never to speak
 GOOD, BETTER = 0.96, 0.015  # a score that is not improved, and by how much another must be better
 HALF = 0.5  # semitones
+REGISTERS = 3.0  # how far below and above a note its other registers are looked for
 
 
 @dataclass(frozen=True)
 class Passage:
-    """A note before, and how the next is bowed."""
+    """A note before, if there is one, and how the next is bowed."""
 
-    before: int
+    before: int | None
     speed: float
     pressure: float
     is_slurred: bool
@@ -252,26 +256,29 @@ class Practice:
         """Whether a note speaks early and late in a passage, and its error (cents) early."""
         start = instrument.frame
 
-        def play_until(seconds: float) -> None:
+        def play_until(seconds: float) -> Array:
             frames = start + instrument.frames(1e3 * seconds) - instrument.frame
-            instrument.process(np.zeros(frames, np.float32))
+            sound = np.zeros(frames, np.float32)
+            instrument.process(sound)
+            return sound
 
         before, note = passage.before, search.sounds
         at = start + instrument.frames(1e3 * BEFORE_S)
         rest = instrument.frames(1e3 * passage.rest_s)
         wishes.write("/playing/speed", passage.speed, frame=start)
         wishes.write("/playing/pressure", passage.pressure, frame=start)
-        wishes.note_on(Key(0, before), frame=start, tuned=self._pitches[int(before)])
-        if passage.is_slurred:
-            wishes.note_on(Key(0, note), frame=at, tuned=self._pitches[int(note)])
+        if before is not None:
+            wishes.note_on(Key(0, before), frame=start, tuned=self._pitches[before])
+            if not passage.is_slurred:
+                wishes.note_off(Key(0, before), frame=at - rest)
+        wishes.note_on(Key(0, note), frame=at, tuned=self._pitches[note])
+        if before is not None and passage.is_slurred:
             wishes.note_off(Key(0, before), frame=at)
-        else:
-            wishes.note_off(Key(0, before), frame=at - rest)
-            wishes.note_on(Key(0, note), frame=at, tuned=self._pitches[int(note)])
         play_until(BEFORE_S + EARLY_S)
         early, error = _speaks(instrument, NEAR_EARLY)
-        play_until(BEFORE_S + LATE_S)
+        sound = play_until(BEFORE_S + LATE_S)[-instrument.frames(1e3 * LISTEN_S) :]
         late, _ = _speaks(instrument, NEAR_OPEN if search.is_open else NEAR_LATE)
+        late = late and has_pitch(sound, self._rate, self._pitches[note])
         end = start + instrument.frames(1e3 * (BEFORE_S + UP_S))
         wishes.note_off(Key(0, note), frame=end)
         play_until(BEFORE_S + EACH_S)
@@ -304,6 +311,13 @@ def pitches_near_notes(
     return found
 
 
+def has_pitch(sound: Array, rate: float, pitch: float) -> bool:
+    """Whether a sound has a pitch (fractional MIDI note), in its register."""
+    wanted = frequency_hz(pitch, 440.0)
+    found = pitch_hz(sound, rate, lo=wanted / REGISTERS, hi=wanted * REGISTERS)
+    return math.isfinite(found) and abs(cents(found, wanted)) < NEAR_EARLY
+
+
 def _speaks(instrument: Instrument, near: float) -> tuple[bool, float]:
     """Whether the sounding note is heard to speak within `near` cents, and its error (cents)."""
     certainty, slips, error = instrument.heard()
@@ -326,7 +340,7 @@ def _passages(
     befores = [note for note in range(notes.lowest, highest + 1) if note != search.sounds]
     return [
         Passage(
-            before=int(chance.choice(befores)),
+            before=None if chance.random() < FIRST_NOTES else int(chance.choice(befores)),
             speed=float(bows[i % len(bows), 0]),
             pressure=float(bows[i % len(bows), 1]),
             is_slurred=bool(chance.integers(2)),

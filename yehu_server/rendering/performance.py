@@ -14,7 +14,6 @@ from yehu_server.core.engine.rig import RIG
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.rows import BEND
 from yehu_server.params.table import find
-from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.parts import number_of_instruments
 from yehu_server.playing.section_instruments import part_specs
 from yehu_server.rendering.cores import Cores, Sounded, computed_ahead, shared
@@ -106,7 +105,7 @@ class Performance:
         self._places: list[slice] = []  # of the instruments of each part
         for part in parts:
             playing, quantities, rate = part.playing, part.quantities, float(options.rate)
-            calibration = part.calibration or calibration_for(rate, quantities, a4=playing.a4)
+            calibration = part.calibration or playing.calibration(rate, quantities)
             own = part_specs(playing, rate, calibration, quantities, number=len(specs))
             self._places.append(slice(len(specs), len(specs) + len(own)))
             specs += own

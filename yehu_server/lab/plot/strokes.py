@@ -16,7 +16,6 @@ import numpy as np
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.section_instruments import part_specs
 from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.rendering.options import Options, Part
@@ -90,7 +89,7 @@ def _slurred(score: Score, played: Sequence[Played]) -> list[bool]:
 
 def _directions(part: Part, rate: int, played: Sequence[Played]) -> Iterator[list[float]]:
     """Play a part, and yield in which directions the bow goes at each note, in turn."""
-    calibration = calibration_for(float(rate), part.quantities, a4=part.playing.a4)
+    calibration = part.playing.calibration(float(rate), part.quantities)
     specs = part_specs(part.playing, float(rate), calibration, part.quantities, number=0)
     instruments = [Instrument(spec) for spec in specs]
     player, first = PartPlayer(part, instruments), instruments[0]

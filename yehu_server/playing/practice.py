@@ -211,7 +211,7 @@ class Practice:
         if best is not start:  # a best of many is biased upwards: score it again on fresh passages
             fresh = _passages(search, seed + 2 * AGAIN, 2 * TRIES, speeds, pressures)
             before, after = scores([start, best], fresh)
-            best = best if after > before else start
+            best = best if after > before + BETTER else start
         return self._lightly(search, best) if FLAUTANDO in pressures else best
 
     def _lightly(self, search: Search, usual: Array) -> Array:

@@ -34,9 +34,7 @@ from yehu_server.playing.practice import (
     EARLY_S,
     LATE_S,
     LISTEN_S,
-    Passage,
     Practice,
-    Search,
     has_pitch,
 )
 from yehu_server.playing.practice_files import (
@@ -50,6 +48,7 @@ from yehu_server.playing.practice_files import (
     shipped_practice,
     write_practice,
 )
+from yehu_server.playing.practice_passages import Passage, Search
 
 RATE = 44100.0
 PLACE = PLACES.index(0.1)

@@ -19,8 +19,8 @@ from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.live.page.facts import facts
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
-from yehu_server.playing.practice import Search, pitches_near_notes, stops_of
 from yehu_server.playing.practice_files import practice_beside, read_practice
+from yehu_server.playing.practice_passages import Search, pitches_near_notes, stops_of
 from yehu_server.playing.stringing import notes_of, range_text
 from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.scores.capture_header import SessionStart, header_of, read_header

@@ -14,7 +14,6 @@ import os
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,24 +24,29 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import (
     FIRST,
     FLAUTANDO,
-    LAST,
     PLACES,
     default_recipes,
 )
-from yehu_server.core.player.calibration import OPEN_NOTES, Calibration, frequency_hz
-from yehu_server.core.player.note_range import LOWEST_NOTE, YEHU, NoteRange
+from yehu_server.core.player.calibration import Calibration, frequency_hz
+from yehu_server.core.player.note_range import LOWEST_NOTE, NoteRange
 from yehu_server.playing.pitch_and_level import cents, pitch_hz
+from yehu_server.playing.practice_passages import (
+    Passage,
+    Search,
+    passages_of,
+    pitches_near_notes,
+    stops_of,
+)
 from yehu_server.playing.practice_recipes import DEFAULT, ROUNDS, lighter, lost, moved
 from yehu_server.playing.wishes import Key, WishPoster
 
 Array = Any
 Progress = Callable[[float, float], None]
 
-SPEEDS, PRESSURES = (0.12, 0.16, 0.2, 0.25), (0.2, 0.3, 0.42, 0.55)
 QUICK = (0.2, 0.24)  # speeds (m/s) for which a light bow is practised
-RESTS_S, FIRST_NOTES = (0.02, 0.12), 0.25  # s; share of notes with none before
 BEFORE_S, EARLY_S, LATE_S, UP_S, EACH_S = 0.2, 0.13, 0.38, 0.385, 0.4
 LISTEN_S = 0.06  # before LATE_S
+SPEEDS, PRESSURES = (0.12, 0.16, 0.2, 0.25), (0.2, 0.3, 0.42, 0.55)
 # Passages that a recipe is judged by, of which the first few tell those that are worth the others;
 # and of a light, quick bow.
 TRIES, HEAT, QUICK_TRIES = 16, 5, 8
@@ -53,55 +57,7 @@ CERTAIN, FEWEST, MOST, NEAR_EARLY, NEAR_LATE, EARLY = 0.97, 0.7, 1.4, 60.0, 15.0
 NEAR_OPEN = 8.0  # of open strings, which nothing tunes
 OFF_WEIGHT = 600.0  # cents of the first error that count as much as never to speak
 GOOD, BETTER = 0.96, 0.015  # a score that is not improved, and by how much another must be better
-HALF = 0.5  # semitones
 REGISTERS = 3.0  # how far below and above a note its other registers are looked for
-
-
-@dataclass(frozen=True)
-class Passage:
-    """A note before, if there is one, and how the next is bowed."""
-
-    before: int | None
-    speed: float
-    pressure: float
-    is_slurred: bool
-    rest_s: float
-
-
-@dataclass(frozen=True)
-class Search:
-    """A note on a string, at one of PLACES, and the recipes that a search starts from.
-
-    `note` is its name on a yehu, `notes` are those of the instrument; `moved` is that of the
-    default place, with the bow moved to here.
-    """
-
-    string: int
-    note: int
-    place: int
-    start: Array
-    moved: Array | None = None
-    notes: NoteRange = YEHU
-
-    @property
-    def above(self) -> int:
-        """Semitones by which it sounds higher than on a yehu."""
-        return self.notes.open_notes[self.string] - OPEN_NOTES[self.string]
-
-    @property
-    def sounds(self) -> int:
-        """The note that it is."""
-        return self.note + self.above
-
-    @property
-    def is_open(self) -> bool:
-        """Whether no finger tunes it."""
-        return self.note == OPEN_NOTES[self.string]
-
-    @property
-    def is_high_on_inner(self) -> bool:
-        """Whether it is played on the inner string only where that is wished for, or near."""
-        return self.string == 0 and self.sounds >= self.notes.open_notes[1]
 
 
 class Practice:
@@ -177,8 +133,8 @@ class Practice:
         string, place, start = search.string, search.place, search.start
         seed = 1000 * search.note + 100 * string + place
         speeds, pressures = self._speeds, self._pressures
-        passages = _passages(search, seed, TRIES, speeds, pressures)
-        again = _passages(search, seed + AGAIN, TRIES, speeds, pressures)
+        passages = passages_of(search, seed, TRIES, speeds, pressures)
+        again = passages_of(search, seed + AGAIN, TRIES, speeds, pressures)
 
         def scores(tried: list[Array], passages: list[Passage]) -> Array:
             found = list(workers.map(lambda m: self.score(search, m, passages), tried))
@@ -209,14 +165,14 @@ class Practice:
             for others in ROUNDS:
                 best, score = choose(best, score, others(best, string, place))
         if best is not start:  # a best of many is biased upwards: score it again on fresh passages
-            fresh = _passages(search, seed + 2 * AGAIN, 2 * TRIES, speeds, pressures)
+            fresh = passages_of(search, seed + 2 * AGAIN, 2 * TRIES, speeds, pressures)
             before, after = scores([start, best], fresh)
             best = best if after > before + BETTER else start
         return self._lightly(search, best) if FLAUTANDO in pressures else best
 
     def _lightly(self, search: Search, usual: Array) -> Array:
         """A recipe with a share for flautando at which a quick bow speaks."""
-        passages = _passages(search, search.note, QUICK_TRIES, QUICK, (FLAUTANDO,))
+        passages = passages_of(search, search.note, QUICK_TRIES, QUICK, (FLAUTANDO,))
         best, most = usual, -math.inf
         for recipe, loss in lighter(usual):
             score = self.score(search, recipe, passages) - loss
@@ -285,32 +241,6 @@ class Practice:
         return early, late, error
 
 
-def stops_of(notes: NoteRange) -> list[tuple[int, int]]:
-    """The notes practised on each string, by the names that they have on a yehu.
-
-    What is bent above the first's goes to the other.
-    """
-    stops = []
-    for string, (first, reach) in enumerate(zip(OPEN_NOTES, notes.reaches, strict=True)):
-        above = notes.open_notes[string] - first
-        last = min(first + math.ceil(reach), LAST, notes.highest - above)
-        stops += [(string, note) for note in range(first, last + 1)]
-    return stops
-
-
-def pitches_near_notes(
-    tuning: Callable[[float], float | None], notes: NoteRange = YEHU
-) -> dict[int, float]:
-    """The pitch of a tuning that is nearest to each note, within a quarter tone; else the note."""
-    keys = (tuning(float(key)) for key in range(128))
-    pitches = [pitch for pitch in keys if pitch is not None]
-    found = {}
-    for note in range(notes.lowest, notes.highest + 1):
-        nearest = min(pitches, key=lambda pitch: abs(pitch - note), default=float(note))
-        found[note] = nearest if abs(nearest - note) <= HALF else float(note)
-    return found
-
-
 def has_pitch(sound: Array, rate: float, pitch: float) -> bool:
     """Whether a sound has a pitch (fractional MIDI note), in its register."""
     wanted = frequency_hz(pitch, 440.0)
@@ -323,28 +253,3 @@ def _speaks(instrument: Instrument, near: float) -> tuple[bool, float]:
     certainty, slips, error = instrument.heard()
     is_one = certainty > CERTAIN and FEWEST < slips < MOST
     return is_one and abs(error) < near, error
-
-
-def _passages(
-    search: Search,
-    seed: int,
-    count: int,
-    speeds: tuple[float, ...],
-    pressures: tuple[float, ...],
-) -> list[Passage]:
-    chance = np.random.default_rng(seed)
-    notes = search.notes
-    highest = math.floor(notes.highest_notes[0]) if search.is_high_on_inner else notes.highest
-    # In turn, so that a few passages have them all.
-    bows = chance.permutation([(speed, pressure) for speed in speeds for pressure in pressures])
-    befores = [note for note in range(notes.lowest, highest + 1) if note != search.sounds]
-    return [
-        Passage(
-            before=None if chance.random() < FIRST_NOTES else int(chance.choice(befores)),
-            speed=float(bows[i % len(bows), 0]),
-            pressure=float(bows[i % len(bows), 1]),
-            is_slurred=bool(chance.integers(2)),
-            rest_s=float(chance.choice(RESTS_S)),
-        )
-        for i in range(count)
-    ]

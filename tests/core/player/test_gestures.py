@@ -68,6 +68,25 @@ def test_a_sprung_bow_leaves_the_string_and_a_stopped_one_stands_on_it():
     assert stopped[at(0.9), SPEED] == 0.0
 
 
+def test_a_gesture_goes_on_while_dynamics_move():
+    """Its bow was where it should come to at once."""
+    speeds = []
+    for moves in (False, True):
+        playing = Playing(
+            articulation=NUMBER["swell"], note_length=2.0, variation=0.0, dynamics=0.7
+        )
+        playing.on(74)
+        found = []
+        for step in range(40):
+            if moves:
+                playing.wishes.write("/playing/dynamics", 0.7 + 0.0005 * step)
+            found.append(np.abs(playing.play(0.02, "value")[0][-1, SPEED]))
+        speeds.append(np.array(found))
+    still, moved = speeds
+    assert still[30] > 1.5 * still[8]
+    assert np.abs(moved / still - 1.0)[8:].max() < 0.05
+
+
 def test_a_thrown_bow_bounces_five_times_and_ever_sooner():
     side = np.abs(played("ricochet", seconds=1.2)[:, SIDE]) > 0.5
     begins = np.flatnonzero(side[1:] & ~side[:-1]) * HOP / RATE

@@ -87,6 +87,7 @@ def move_bow(p: Any, c: Any, now: float, length: float) -> None:
             return
         g.bow.step += 1
         ramp_ms = g.pace * step[RAMP] + 1e3 * step[RAMP_SHARE] * length
+        g.there = now + 1e-3 * ramp_ms
         g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
         g.is_off = 0 if step[IS_ON] != 0.0 else 1
         if step[TURNS] != 0.0:

@@ -137,6 +137,7 @@ GESTURE = np.dtype(
         ("gain_db", np.float64),  # of the level, that follows the bow's speed
         ("gain_to", np.float64),  # where it goes (dB)
         ("gain_step", np.float64),  # by so much in each 5 ms
+        ("there", np.float64),  # when the bow's move ends (s after the note's beginning)
         ("is_off", np.int64),  # whether the hair is lifted
         ("node", np.int64),  # of `harmonics.NODES`, that the finger touches; else NONE
         ("finger", TRACK),
@@ -165,7 +166,7 @@ def rest(g: Any) -> None:
     g.bow.begins = g.finger.begins = 0.0
     g.speed = g.weight = g.pace = 1.0
     g.gain_db = g.gain_to = g.gain_step = 0.0
-    g.is_off, g.bend, g.slide_s, g.node = 0, 0.0, 0.0, NONE
+    g.there, g.is_off, g.bend, g.slide_s, g.node = 0.0, 0, 0.0, 0.0, NONE
 
 
 @compiled_exactly

@@ -63,6 +63,7 @@ from yehu_server.core.player.rows import (
     POSITION,
     PRESSURE,
     RELEASE,
+    SMOOTH_MS,
     VOLUME,
 )
 from yehu_server.core.player.stroke import CHANGE_MS, is_at_its_end, plan_stroke
@@ -287,6 +288,13 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 
 
 @compiled_exactly
+def draw_on(p: Any, c: Any) -> None:
+    """Draw as parameters wish by now, but let a move of the gesture take its time."""
+    left_ms = 1e3 * (p.gesture.there - (c.frame - p.note_began) / p.rate)
+    draw(p, c, max(left_ms, SMOOTH_MS[BOW_SPEED]))
+
+
+@compiled_exactly
 def set_bow_pressure(p: Any, c: Any) -> None:
     """Set the bow's pressure and position, and the colour that they make."""
     right_hand.set_bow_pressure(p, c, note_pitch(p), p.sounding >= 0)
@@ -344,7 +352,7 @@ def follow_pitch(p: Any, c: Any, slide_ms: float) -> None:
         begin_tuning(p, pitch)
     if string != before or not right_hand.has_same_recipe(p, pitch):
         set_bow_pressure(p, c)
-        draw(p, c, USUAL_MS)
+        draw_on(p, c)
     if pitch != was:
         p.first_error, p.jumps = math.nan, 0
         pause_listening(p, c, max(slide_ms, 0.0))

@@ -26,7 +26,7 @@ from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.record import Controls
 from yehu_server.core.player import by_hand, left_hand, notes, vibrato
-from yehu_server.core.player.ownership import USUAL_MS, forget, ramp_to, release, write_directly
+from yehu_server.core.player.ownership import forget, ramp_to, release, write_directly
 from yehu_server.core.player.phrasing import begin_sequence
 from yehu_server.core.player.record import Player
 from yehu_server.core.player.rows import (
@@ -170,16 +170,16 @@ def follow(p: Any, c: Any, row: int) -> None:
     elif row == PRESS:
         left_hand.press(p, c, notes.least_press(p, max(p.string, 0)))
     elif row == DYNAMICS:
-        notes.draw(p, c, USUAL_MS)
+        notes.draw_on(p, c)
         notes.follow_bend(p, c)
         notes.set_level(p, c)
     elif row == SPEED:  # a faster bow changes the pitch
-        notes.draw(p, c, USUAL_MS)
+        notes.draw_on(p, c)
         notes.follow_bend(p, c)
     elif row in (PRESSURE, POSITION):
         notes.set_bow_pressure(p, c)
     elif row == TREMOLO:
-        notes.draw(p, c, USUAL_MS)
+        notes.draw_on(p, c)
     elif row in (VIBRATO, PLAYING_VIBRATO_PRESS, PLAYING_VIBRATO_RATE, PHRASING):
         vibrato.set_vibrato(p, c)
     elif row == ASSIST:
@@ -189,7 +189,7 @@ def follow(p: Any, c: Any, row: int) -> None:
     elif row in (BRILLIANCE, EVENNESS):
         notes.even_out(p, c)
     elif row == VELOCITY:
-        notes.draw(p, c, USUAL_MS)
+        notes.draw_on(p, c)
         notes.follow_bend(p, c)
         notes.even_out(p, c)
     elif row == LISTENING and p.value[LISTENING] == 0.0:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import http.server
 import json
 import shutil
@@ -96,7 +97,6 @@ class Driver:
 
     def _lines(self) -> tuple[IO[str], IO[str]]:
         if self._process is None or self._process.poll() is not None:
-            # It ends by itself when its input ends, and that ends with this process.
             self._process = subprocess.Popen(
                 [str(NODE), str(HERE / "driver.mjs"), str(CHROMIUM)],
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
@@ -108,6 +108,11 @@ class Driver:
     def _stop(self) -> None:
         if self._process is not None:
             self._process.kill()
+
+    def close(self) -> None:
+        """End it, with its browser, by the end of its input."""
+        if self._process is not None:
+            self._process.communicate()
 
     def play(
         self, scenario: str, url: str, *words: str, reach: Callable[[str], Any] | None = None
@@ -132,4 +137,6 @@ class Driver:
         pytest.fail(f"{scenario} did not end within {LIMIT_S:.0f} s, or Node broke off")
 
 
-drive = Driver().play
+_driver = Driver()
+atexit.register(_driver.close)
+drive = _driver.play

@@ -114,7 +114,9 @@ export default async function (browser, url) {
   const { page: third } = await open(browser, link);
   const hand = await fingersOf(third);
   await third.click("#listen");
-  await third.waitForFunction(() => globalThis.imitation?.notes.length === 1);
+  await third.waitForFunction(() => globalThis.imitation?.notes.length === 1, undefined, {
+    polling: 10, // the note is short
+  });
   const { x, y, width, height } = await third.locator("#fingerboard").boundingBox();
   await hand("touchStart", [{ x: x + 0.8 * width, y: y + height / 2, id: 1 }]);
   await third.waitForTimeout(800); // longer than what was kept

@@ -73,7 +73,7 @@ def test_a_program_that_reads_strictly_from_a_pipe_reads_it(tune, tmp_path):
 def test_normalized_sound_can_be_piped(tune):
     done = piped("render", tune, "-o", "-", "--format", "raw", "--normalize", *DRY)
     meter = TruePeak()
-    meter.add(np.frombuffer(done.stdout, "<f4"))
+    meter.add(np.frombuffer(done.stdout, "<f4").reshape(-1, 2))
     assert meter.finish() == pytest.approx(10.0 ** (-1.0 / 20.0), rel=1e-5)
 
 

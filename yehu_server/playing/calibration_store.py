@@ -54,6 +54,9 @@ LEAST_N, MOST_N = 1.0, 500.0
 HIGHEST_KEY = 127
 
 
+_unkept: dict[str, Calibration] = {}  # what could not be written, by its key
+
+
 def calibration_for(
     rate: float,
     quantities: Quantities | None = None,
@@ -74,13 +77,14 @@ def calibration_for(
     if key in _shipped():
         return read_calibration(_shipped()[key], quantities, a4)
     path = data_folder() / f"calibration-{key}.json"
-    found = _kept(path, quantities, a4)
+    found = _kept(path, quantities, a4) or _unkept.get(key)
     if found is None:
         found = calibrate(rate, quantities, a4=a4, bowing=bowing, progress=progress)
         try:
             write_sealed(path, json.dumps(asdict(found)).encode())
         except OSError as error:
             log.warning("%s: %s; the calibration is not kept for the next start", path, why(error))
+            _unkept[key] = found
     return found
 
 

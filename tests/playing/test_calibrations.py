@@ -55,6 +55,7 @@ def kept(monkeypatch, tmp_path) -> Kept:
     kept = Kept(tmp_path)
     monkeypatch.setattr(calibration_store, "calibrate", kept.measure)
     monkeypatch.setattr(calibration_store, "data_folder", lambda: tmp_path)
+    monkeypatch.setattr(calibration_store, "_unkept", {})
     return kept
 
 
@@ -161,17 +162,10 @@ def test_a_calibration_is_of_how_notes_are_bowed_at_the_usual_place(kept):
     assert calibrations == [MEASURED] * 4
 
 
-def test_what_cannot_be_written_is_measured_once(tmp_path, monkeypatch):
+def test_what_cannot_be_written_is_measured_once(kept, monkeypatch):
     """The parts of an ensemble share a calibration, on a disk that is full or read-only, too."""
-    found = calibration_for(44100.0)
-    measured = []
-
-    def calibrate(*given, **_options):
-        measured.append(given)
-        return found
-
-    (tmp_path / "file").touch()
-    monkeypatch.setattr(calibration_store, "data_folder", lambda: tmp_path / "file")
-    monkeypatch.setattr(calibration_store, "calibrate", calibrate)
-    assert all(calibration_for(12345.0) == found for _ in range(3))
-    assert measured == [(12345.0, Quantities())]
+    nowhere = kept.folder / "file"
+    nowhere.touch()
+    monkeypatch.setattr(calibration_store, "data_folder", lambda: nowhere)
+    assert kept.ask() == kept.ask() == MEASURED
+    assert kept.measured == 1

@@ -229,7 +229,7 @@ def render(
         read = read_any(path_of(score, "score"), how, song=number_of_song)
     else:
         read = score_of(score)
-    score = phrased(read, share)
+    score = phrased(read, share, playing, how.within)
     options = replace(options, phrasing=0.0 if is_fingered(score) else share)
     get_ready()
     calibration = options.playing.calibration(float(options.rate), options.quantities)

@@ -88,7 +88,7 @@ def players_of(
         files += own.files
         with _at(entry.where):
             read = scores_for(notes_of(instrument))
-        part = _part(entry, read, instrument, phrasing, arguments)
+        part = _part(entry, read, instrument, own, phrasing, arguments)
         seed = own.seed if entry.seed is None else entry.seed
         gain_db = _gain_db(own, entry, len(entries), arguments)
         parts.append(replace(part, playing=replace(own, seed=seed), gain_db=gain_db))
@@ -182,16 +182,19 @@ def _part(
     entry: PartEntry,
     scores: Sequence[Score],
     quantities: Quantities,
+    playing: PlayingOptions,
     phrasing: float,
     arguments: argparse.Namespace,
 ) -> Part:
     """The part of an entry, before its player has a seat."""
+    from yehu_server.playing.stringing import notes_of
     from yehu_server.rendering.options import Part
     from yehu_server.scores.phrasing import is_fingered, phrased
     from yehu_server.scores.reading import part_of
 
+    within = notes_of(quantities)
     own = [part_of(score, entry.channel, entry.track) for score in scores]
-    score = concatenate([phrased(each, phrasing) for each in own])
+    score = concatenate([phrased(each, phrasing, playing, within) for each in own])
     channels = frozenset({entry.channel}) if entry.channel is not None else None
     if channels is None and arguments.channel is not None:
         channels = frozenset(arguments.channel)

@@ -136,8 +136,9 @@ def _players(
 
     if arguments.ensemble is not None:
         return players_of(arguments, scores, options.playing, options.quantities, phrasing)
-    read = scores(notes_of(options.quantities))
-    score = concatenate([phrased(each, phrasing) for each in read])
+    within = notes_of(options.quantities)
+    played = [phrased(each, phrasing, options.playing, within) for each in scores(within)]
+    score = concatenate(played)
     part = options.solo(score)
     return Players((replace(part, phrasing=0.0 if is_fingered(score) else phrasing),))
 

@@ -12,7 +12,8 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.player.rows import BEND
+from yehu_server.core.player.rows import BEND, ROW
+from yehu_server.core.player.wishes import EXPRESS
 from yehu_server.params.table import find
 from yehu_server.playing.parts import number_of_instruments
 from yehu_server.playing.section_instruments import part_specs
@@ -43,6 +44,7 @@ class PartPlayer:
         for address, value in (*gain, *playing.settings):
             self.wishes.start_with(address, value)
         self._sound = self.midi.sound()  # what settings of the score are put back to
+        self._passing: set[str] = set()  # what is set until the next note
         self._lengths_s = {note.begins: note.length_s for note in notes_of(part.score)}
         self._events = enumerate(part.score.events)
         self._next = next(self._events, END)
@@ -65,11 +67,18 @@ class PartPlayer:
 
     def _receive(self, number: int, event: ScoreEvent, frame: int) -> None:
         if number in self._lengths_s:
+            for address in self._passing:
+                self.wishes.post(EXPRESS, frame, ROW[address], self._usual(address))
+            self._passing.clear()
             self.wishes.write("/playing/note_length", self._lengths_s[number], frame=frame)
         if isinstance(event.message, Setting):
             self._set(event.message, frame)
         else:
             self.midi.receive(event.message, frame=frame)
+
+    def _usual(self, address: str) -> float:
+        """What a parameter is where the score does not set it."""
+        return self._sound.get(address, find(address).default)
 
     def _set(self, setting: Setting, frame: int) -> None:
         """Set a parameter as a mark of the score asks, or put it back."""
@@ -77,9 +86,12 @@ class PartPlayer:
             return
         value = setting.value
         if value is None:
-            default = find(setting.address).default
-            value = self._sound.get(setting.address, default)
-        self.midi.write(setting.address, value, frame=frame)
+            value = self._usual(setting.address)
+        if setting.is_passing:
+            self._passing.add(setting.address)
+            self.wishes.write(setting.address, value, frame=frame)
+        else:
+            self.midi.write(setting.address, value, frame=frame)
 
 
 class Performance:

@@ -14,7 +14,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
 
+from yehu_server.core.player.note_range import YEHU, NoteRange
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.scores.score import Score, ScoreNote, notes_of
+from yehu_server.scores.slides import with_slides
 
 PHRASING = 0.5  # of files, where nothing else is asked for
 LOUDNESS = {1, 2, 7, 11}  # controllers: modulation, breath, volume, expression
@@ -39,8 +42,13 @@ OVERLAP_S = 0.012  # of slurred notes
 SAME_BEAT = 1e-3
 
 
-def phrased(score: Score, amount: float) -> Score:
-    """Return a score as shaped by phrasing, 0 to 1; at 0 as it is."""
+def phrased(
+    score: Score, amount: float, playing: PlayingOptions | None = None, within: NoteRange = YEHU
+) -> Score:
+    """Return a score as shaped by phrasing, 0 to 1; at 0 as it is.
+
+    `playing`, `within`: of the instrument that plays it.
+    """
     if amount == 0.0:
         return score
     by_channel: dict[int, list[ScoreNote]] = defaultdict(list)
@@ -64,7 +72,10 @@ def phrased(score: Score, amount: float) -> Score:
         if amount >= LEAST_FOR_BOWS and not is_bowed(notes, controllers):
             for phrase in phrases:
                 ends_s.update(slurred(phrase))
-    return _changed(score, velocities, ends_s)
+    changed = _changed(score, velocities, ends_s)
+    if is_fingered(score):
+        return changed
+    return with_slides(changed, amount, playing or PlayingOptions(), within)
 
 
 def is_shaped(notes: Sequence[ScoreNote], controllers: Iterable[int]) -> bool:

@@ -68,6 +68,7 @@ class Setting:
     address: str  # of `params/table.py`
     value: float | None  # None: what it was before the score set it
     channel: int = 0  # of the part, counted from 0; where that is not played, nothing is set
+    is_passing: bool = False  # until the next note begins, which takes the hands as they are
     type: ClassVar[str] = "setting"  # as messages have one
 
 

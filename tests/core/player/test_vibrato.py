@@ -12,6 +12,7 @@ from held_notes import Playing
 from yehu_server.core.controls.slots import DEPTH, UPWARD
 from yehu_server.core.physics.quantities import measured_body
 from yehu_server.core.player.steepness import LEANING, LEAST, NARROWED, USUAL, vibrato_table
+from yehu_server.params.articulations import NUMBER
 
 A4, LOWEST = 440.0, 65
 PEAK = 80.6  # MIDI note, between two rows
@@ -75,3 +76,25 @@ def test_the_players_own_is_narrower_near_the_nut():
     depths = [played(note, phrasing=0.5)[0] for note in (66, 70, 79)]
     assert depths == pytest.approx([20.0, 28.0, 30.0])
     assert played(66, vibrato=30.0)[0] == 30.0  # what is wished is not
+
+
+def test_a_long_open_string_is_stopped_on_the_other_for_its_vibrato():
+    """C5, where it is known to last, and phrasing gives it a vibrato."""
+    long = {"phrasing": 0.5, "note_length": 0.9}
+    ways = {
+        "long": long,
+        "short": {**long, "note_length": 0.4},
+        "of unknown length": {"phrasing": 0.5},
+        "as written": {**long, "phrasing": 0.0},
+        "on a written string": {**long, "string": 2.0},
+        "straight": {**long, "articulation": NUMBER["straight"]},
+        "a trill": {**long, "articulation": NUMBER["trill"]},
+        "plucked": {**long, "pizzicato": 1.0},
+    }
+    strings = {}
+    for name, values in ways.items():
+        playing = Playing(**values)
+        playing.on(72)
+        playing.play(0.01)
+        strings[name] = int(playing.player["string"])
+    assert [name for name, string in strings.items() if string == 0] == ["long"]

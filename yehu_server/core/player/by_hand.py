@@ -25,7 +25,7 @@ def slide(p: Any, c: Any, pitch: float) -> None:
         follow_bend(p, c)
         return
     p.finger_pitch = pitch
-    string, position = choose(p, pitch, False, wished_speed(p))
+    string, position = choose(p, pitch, False, False, wished_speed(p))
     left_hand.stop(p, c, string, position, 0.0, BEND_RAMP_MS)
     if p.by_hand != 0:
         ramp_to(p, c, BOW_SIDE, side_of(p), USUAL_MS)

@@ -37,7 +37,7 @@ def wished_string(p: Any) -> int:
 
 
 @compiled_exactly
-def choose(p: Any, pitch: float, beats: bool, speed: float) -> tuple[int, float]:
+def choose(p: Any, pitch: float, beats: bool, shakes: bool, speed: float) -> tuple[int, float]:
     """Choose the fingering of a pitch (fractional MIDI note) at a bow speed (m/s).
 
     Below the open outer string it is on the inner one; from there up on the outer, unless the
@@ -49,6 +49,8 @@ def choose(p: Any, pitch: float, beats: bool, speed: float) -> tuple[int, float]
     beats : bool
         Whether another finger beats above it, as in a trill, for which the inner string is too
         short there.
+    shakes : bool
+        Whether it is to have a vibrato, for which the open string is stopped on the other.
 
     Returns
     -------
@@ -62,7 +64,8 @@ def choose(p: Any, pitch: float, beats: bool, speed: float) -> tuple[int, float]
         return 0, OPEN  # the lowest note of the instrument
     if wish == 0:
         return 0, learnt_position(p, 0, pitch, speed)
-    if abs(pitch - p.open_note[1]) < OPEN_FOR[p.open_strings]:
+    is_open = abs(pitch - p.open_note[1]) < OPEN_FOR[p.open_strings]
+    if is_open and (wish == 1 or not shakes):
         return 1, OPEN
     if pitch < p.open_note[1] + OPEN_WITHIN:
         return 0, learnt_position(p, 0, pitch, speed)
@@ -113,7 +116,7 @@ def choose_for_slide(
         return 0, OPEN if pitch < first + OPEN_WITHIN else learnt_position(p, 0, pitch, speed)
     if low > second and pitch > second + OPEN_WITHIN and wished_string(p) != 0:
         return 1, learnt_position(p, 1, pitch, speed)
-    return choose(p, pitch, False, speed) if is_new else stay(p, pitch, False, speed)
+    return choose(p, pitch, False, False, speed) if is_new else stay(p, pitch, False, speed)
 
 
 @compiled_exactly

@@ -166,7 +166,9 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
             low, high = aim + low, aim + high
             string, position = choose_for_slide(p, pitch, low, high, wished_speed(p), True)
         else:
-            string, position = choose(p, pitch, BEATS[p.gesture.row], wished_speed(p))
+            beats = BEATS[p.gesture.row]
+            shakes = not (beats or is_plucked(p)) and vibrato.is_sure(p)
+            string, position = choose(p, pitch, beats, shakes, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
     begin_pressure_correction(p, pitch)

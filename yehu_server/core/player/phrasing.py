@@ -99,12 +99,15 @@ def hurried(p: Any, factor: float) -> float:
 
 @compiled_exactly
 def slide_of_leap_ms(p: Any, c: Any, leap: float) -> float:
-    """Time of a slide over a leap (semitones); STEP_MS where the finger steps."""
-    if p.value[PHRASING] == 0.0 or c.value[SIDE] == 0.0:
+    """Time of a slide over a leap (semitones); STEP_MS where the finger steps.
+
+    Not where lengths of notes are known, and so what comes: files have slides that arrive on the
+    beat (``scores.slides``).
+    """
+    if p.value[PHRASING] == 0.0 or c.value[SIDE] == 0.0 or p.value[NOTE_LENGTH] > 0.0:
         return STEP_MS
     is_wide = LEAST_LEAP < abs(leap) < WIDEST_LEAP
     is_long = c.frame - p.note_began > LONG_S * p.rate
-    length = p.value[NOTE_LENGTH]
-    if not is_wide or not is_long or 0.0 < length < LONG_S:
+    if not is_wide or not is_long:
         return STEP_MS
     return float(SHORTEST_SLIDE_MS + (SLIDE_MS - SHORTEST_SLIDE_MS) * p.value[PHRASING])

@@ -18,6 +18,7 @@ from yehu_server.core.player.gestures import UPWARD as UPWARD_SHARE
 from yehu_server.core.player.ownership import USUAL_MS, forget, move
 from yehu_server.core.player.rows import (
     BEND,
+    NOTE_LENGTH,
     PHRASING,
     PLAYING_VIBRATO_DELAY,
     PLAYING_VIBRATO_PRESS,
@@ -34,6 +35,7 @@ from yehu_server.core.player.steepness import LEANING, NARROWED, STEPS, USUAL
 
 # The player's own, at full phrasing; by ear.
 OWN_CENTS, LATE_MS = 60.0, 750.0
+HEARD_S = 0.6  # of a note, from which on one hears it
 # It is narrower near the nut [Pop]: its share there, and from where on it is whole.
 AT_NUT, WHOLE_FROM = 0.6, 6.0  # semitones above the open string
 FADING_MS = 600.0  # after the last note
@@ -84,6 +86,14 @@ def end_vibrato(p: Any, c: Any) -> None:
 def has_vibrato(p: Any) -> bool:
     """Whether the note's articulation has a vibrato of its own."""
     return bool(HAS_VIBRATO[p.gesture.row])
+
+
+@compiled_exactly
+def is_sure(p: Any) -> bool:
+    """Whether phrasing gives a note a vibrato, and it is known to last long enough for one."""
+    is_long = p.value[PHRASING] > 0.0 and p.value[NOTE_LENGTH] >= HEARD_S
+    is_straight = has_vibrato(p) and VIBRATOS[p.gesture.row, CENTS] == 0.0
+    return bool(is_long and not is_straight)
 
 
 @compiled_exactly

@@ -57,8 +57,10 @@ def strokes_of(
     part = written.parts[number]
     actives = actives_of(part)
     played = bowed(part, actives, WrittenClock(written))
-    score = phrased(performed(written, [number], range_of(quantities)), phrasing)
-    options = Options(quantities=quantities, phrasing=0.0 if is_fingered(score) else phrasing)
+    options = Options(quantities=quantities)
+    within = range_of(quantities)
+    score = phrased(performed(written, [number], within), phrasing, options.playing, within)
+    options = replace(options, phrasing=0.0 if is_fingered(score) else phrasing)
     directions = list(_directions(options.solo(score), options.rate, played))
     slurred = _slurred(score, played)
     found: list[Stroke] = []

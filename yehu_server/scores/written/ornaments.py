@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from yehu_server.scores.phrasing import OVERLAP_S
+from yehu_server.scores.slides import logistic
 from yehu_server.scores.written.notated import Grace, Note
 
 GRACE_S = 0.085
@@ -23,6 +24,7 @@ WHOLE, HALF = 2.0, 1.0  # usual intervals: of trills and mordents above, and bel
 WIDEST = 12.0  # semitones, that a hand reaches
 # By ear: a slide away takes so long, or so much of its note, and goes so far (semitones).
 SLIDE_S, SLIDE_SHARE, AWAY = 0.13, 0.4, 2.0
+SLIDE_STEPS = 12  # lines that its curve is made of
 STEP_S = 0.01  # between points; the finger takes 8 ms for each
 LAST_S = 0.002
 MOST_POINTS = 3000
@@ -147,7 +149,11 @@ def _slide_away(note: Note, begin_s: float, end_s: float) -> Curve:
     """The slide out of a note, if it has one."""
     way = AWAY * (bool(note.marked("slide-out-up")) - bool(note.marked("slide-out-down")))
     slide_s = min(SLIDE_S, SLIDE_SHARE * (end_s - begin_s))
-    return [(begin_s, 0.0), (end_s - slide_s, 0.0), (end_s, way)] if way else []
+    if not way:
+        return []
+    shares = [step / SLIDE_STEPS for step in range(SLIDE_STEPS + 1)]
+    bends = [(end_s - (1.0 - share) * slide_s, way * logistic(share)) for share in shares]
+    return [(begin_s, 0.0), *bends]
 
 
 def _between(points: Curve, at_s: float) -> float:

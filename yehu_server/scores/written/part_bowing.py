@@ -19,10 +19,9 @@ SHARES = {
 }  # fmt: skip
 LOURE = 0.75  # tenuto and staccato together
 BREATH_S, BREATH_SHARE = 0.18, 0.3
-# A glissando fills this share of the note that it leaves; a portamento takes so long, and most of
-# it comes before the beat.
+# Shares of the note that they leave: a glissando fills so much; a portamento so much at most.
 GLISSANDO_SHARE, LONGEST_SLIDE_S = 0.7, 2.0
-PORTAMENTO_S, PORTAMENTO_SHARE, BEFORE_BEAT = 0.14, 0.5, 0.7
+PORTAMENTO_S, PORTAMENTO_SHARE = 0.14, 0.5
 SLIDES = ("glissando", "portamento")
 BOWING_MARKS = {
     "staccato", "staccatissimo", "spiccato", "portato", "up-bow", "down-bow", "tremolo",
@@ -129,11 +128,10 @@ def _breathe(begin_s: float, end_s: float) -> float:
 def _slid_to(one: Played, other: Played, slide: str) -> Played:
     """The second of two notes, begun early so that the finger is there on the beat."""
     length_s = other.begin_s - one.begin_s
+    slide_s = min(PORTAMENTO_S, PORTAMENTO_SHARE * length_s)
     if slide == "glissando":
         slide_s = min(GLISSANDO_SHARE * length_s, LONGEST_SLIDE_S)
-        return replace(other, begin_s=other.begin_s - slide_s, slide_s=slide_s)
-    slide_s = min(PORTAMENTO_S, PORTAMENTO_SHARE * length_s)
-    return replace(other, begin_s=other.begin_s - BEFORE_BEAT * slide_s, slide_s=slide_s)
+    return replace(other, begin_s=other.begin_s - slide_s, slide_s=slide_s)
 
 
 def _farther(one: Span, other: Span) -> Span:

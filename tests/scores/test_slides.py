@@ -1,0 +1,135 @@
+"""Slides over leaps in files leave the note before and are on their pitch on the beat."""
+
+from __future__ import annotations
+
+import mido
+import numpy as np
+import pytest
+
+import yehu_server as yehu
+from yehu_server.api.notes import score_of as score_of_notes
+from yehu_server.core.player.note_range import YEHU
+from yehu_server.params.articulations import NUMBER
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
+from yehu_server.scores.phrasing import phrased
+from yehu_server.scores.score import Score, ScoreEvent, Setting, notes_of
+from yehu_server.scores.slides import logistic
+
+BEND, STRING = "/playing/bend", "/playing/string"
+HALVES = 0.5  # s
+RATE = 22050
+
+
+def score_of(*keys: int, each_s: float = HALVES, at_first: tuple[Setting, ...] = ()) -> Score:
+    """Notes one after another, and settings before the first."""
+    events = [ScoreEvent(0.0, setting, 0.0) for setting in at_first]
+    for number, key in enumerate(keys):
+        begin, end = number * each_s, (number + 1) * each_s
+        events.append(ScoreEvent(begin, mido.Message("note_on", note=key, velocity=80), begin))
+        events.append(ScoreEvent(end, mido.Message("note_off", note=key), end))
+    return Score(tuple(events), len(keys) * each_s)
+
+
+def settings(score: Score, address: str) -> list[tuple[float, float | None]]:
+    return [
+        (event.time_s, event.message.value)
+        for event in score.events
+        if isinstance(event.message, Setting) and event.message.address == address
+    ]
+
+
+def heard_about(sound: np.ndarray, at_s: float, low: int, high: int) -> float:
+    """The pitch (MIDI note), of those about two, at which 36 ms about a time are most periodic."""
+    part = sound[round((at_s - 0.018) * RATE) : round((at_s + 0.018) * RATE)]
+    pitches = np.arange(low - 2.0, high + 2.0, 0.05)
+    lags = RATE / (440.0 * 2.0 ** ((pitches - 69.0) / 12.0))
+    power = np.abs(np.fft.rfft(part * np.hanning(len(part)), 1 << 14)) ** 2
+    likeness = np.fft.irfft(power)
+    return float(pitches[np.argmax(np.interp(lags, np.arange(len(likeness)), likeness))])
+
+
+def slid(score: Score, amount: float = 0.5) -> Score:
+    return phrased(score, amount, PlayingOptions(), YEHU)
+
+
+@pytest.mark.parametrize(("keys", "leap"), [((74, 79), 5.0), ((79, 74), -5.0), ((67, 76), 9.0)])
+def test_a_slide_is_a_bend_of_the_note_before_that_ends_on_the_beat(keys, leap):
+    score = score_of(*keys)
+    played = slid(score)
+    assert [(n.start_s, n.key) for n in notes_of(played)] == [(0.0, keys[0]), (HALVES, keys[1])]
+    slide = settings(played, BEND)
+    times, bends = np.array(slide).T
+    assert bends[-1] == pytest.approx(leap)
+    assert times[-1] + 0.008 == pytest.approx(HALVES)  # a bend takes 8 ms
+    assert 0.06 < times[-1] - times[0] < 0.12
+    assert (np.diff(bends) * leap > 0.0).all()
+    half = np.interp(0.5 * leap, np.sort(bends), times if leap > 0.0 else times[::-1])
+    assert half == pytest.approx(np.mean([times[0], times[-1]]), abs=0.006)
+
+
+def test_a_slide_is_slow_at_its_ends_and_quick_in_its_middle():
+    steps = np.diff([logistic(n / 20) for n in range(21)])
+    assert steps.sum() == pytest.approx(1.0)
+    assert steps == pytest.approx(steps[::-1])
+    assert (np.diff(steps[:10]) > 0.0).all()
+    assert steps[9] > 2.0 * steps[0]
+
+
+def test_only_leaps_that_hands_are_free_for_slide():
+    articulation = "/playing/articulation"
+    never = {
+        "a step": score_of(74, 76),
+        "an octave": score_of(67, 79),
+        "short notes": score_of(74, 79, each_s=0.25),
+        "to the open string F4": score_of(72, 65),
+        "beyond the inner string": score_of(71, 77),
+        "a written outer string": score_of(74, 67, at_first=(Setting(STRING, 2.0),)),
+        "plucked": score_of(74, 79, at_first=(Setting("/playing/pizzicato", 1.0),)),
+        "portamento": score_of(74, 79, at_first=(Setting("/playing/portamento", 1.0),)),
+        "bent": score_of(74, 79, at_first=(Setting(BEND, 0.3),)),
+        "staccato": score_of(74, 79, at_first=(Setting(articulation, NUMBER["staccato"]),)),
+        "no phrasing": score_of(74, 79, at_first=(Setting("/playing/phrasing", 0.0),)),
+    }
+    found = [name for name, score in never.items() if len(settings(slid(score), BEND)) > 1]
+    assert not found
+    assert settings(phrased(score_of(74, 79), 0.0), BEND) == []
+    rolled = (Setting(articulation, NUMBER["rolling-vibrato"]),)
+    assert settings(slid(score_of(74, 79, at_first=rolled)), BEND)
+
+
+def test_a_slide_over_both_strings_is_on_the_inner_one():
+    assert settings(slid(score_of(74, 67)), STRING) == [(0.0, 1.0), (HALVES, None)]
+    assert settings(slid(score_of(74, 79)), STRING) == []
+    two = settings(slid(score_of(74, 67, 74)), STRING)
+    assert two == [(0.0, 1.0), (HALVES, 1.0), (2 * HALVES, None)]
+
+
+@pytest.mark.parametrize("keys", [(74, 79), (79, 74), (74, 67)])
+def test_the_finger_is_heard_to_leave_before_the_beat_and_to_be_there_on_it(keys):
+    notes = [(keys[0], 0.0, HALVES), (keys[1], HALVES, HALVES)]
+    usual = {"settings": {"/playing/variation": 0.0}, "dry": True, "mono": True}
+    for phrasing, is_on_the_way in ((0.0, False), (0.5, True)):
+        sound = yehu.render(notes, phrasing=phrasing, sample_rate=RATE, **usual).sound
+        before, after = (heard_about(sound, HALVES + s, *sorted(keys)) for s in (-0.035, 0.05))
+        assert after == pytest.approx(keys[1], abs=0.3)
+        assert (min(keys) + 1.0 < before < max(keys) - 1.0) == is_on_the_way, (phrasing, before)
+
+
+@pytest.mark.parametrize("overlap_s", [0.0, 0.012])
+def test_the_second_note_takes_the_finger_where_it_is(overlap_s):
+    """On its string, without a step, whether slurred or not."""
+    still = {"/playing/variation": 0.0, "/playing/listening": 0.0}
+    playing = PlayingOptions(settings=tuple(still.items()))
+    score = phrased(score_of_notes([(79, 0.0, 0.5 + overlap_s), (74, 0.5, 0.5)]), 0.5, playing)
+    options = Options(phrasing=0.5, playing=playing, block=441, is_dry=True, is_mono=True)
+    performance = Performance(score, options)
+    places = []
+    for _ in performance.blocks():
+        player = performance.instrument._rig["player"][0]
+        places.append((int(player["string"]), int(player["finger"]), float(player["position"])))
+    before, after = places[48], places[60]  # each 10 ms
+    assert after[:2] == before[:2]
+    assert after[2] == pytest.approx(before[2], abs=2e-3)
+    assert abs(places[30][2] - after[2]) > 0.02

@@ -1,0 +1,180 @@
+"""Slides over leaps, in files: the finger leaves a note before its end, to be there on the beat.
+
+A file tells what comes. So the bow that plays the first note carries the slide, and the second
+note begins where it is written, on its pitch; live a slide can only follow the beat
+(``core.player.phrasing``, which has its size too). The slide is a bend of the first note.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from typing import NamedTuple
+
+from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.core.player.fingering import OPEN_WITHIN
+from yehu_server.core.player.gestures import BEARS_SLIDE, STEEP
+from yehu_server.core.player.note_range import NoteRange
+from yehu_server.core.player.phrasing import (
+    LEAST_LEAP,
+    LONG_S,
+    SHORTEST_SLIDE_MS,
+    SLIDE_MS,
+    WIDEST_LEAP,
+)
+from yehu_server.params.spec import TURNED_ON
+from yehu_server.params.table import find
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.scores.score import BEND, Score, ScoreEvent, ScoreNote, Setting, notes_of
+
+ARTICULATION, STRING = "/playing/articulation", "/playing/string"
+PHRASING, PIZZICATO, PORTAMENTO = "/playing/phrasing", "/playing/pizzicato", "/playing/portamento"
+INNER = 1.0
+SEEN = (ARTICULATION, BEND, PHRASING, PIZZICATO, PORTAMENTO, STRING)
+STEP_S = 0.005  # between the points of a slide: the player looks no more often
+BEND_S = 1e-3 * find(BEND).smooth_ms  # after which the finger is at a point
+GAP_S = 0.03  # between two notes that a slide may join
+
+
+def logistic(part: float) -> float:
+    """How far a slide has come, 0 to 1, at a share of its time, 0 to 1; as `gestures.slid`."""
+
+    def curve(at: float) -> float:
+        return 1.0 / (1.0 + math.exp(-STEEP * (2.0 * at - 1.0)))
+
+    low, high = curve(0.0), curve(1.0)
+    return (curve(min(max(part, 0.0), 1.0)) - low) / (high - low)
+
+
+class Slide(NamedTuple):
+    """A slide from one note to the next; `string` is set for both, where it is not 0."""
+
+    note: ScoreNote
+    after: ScoreNote
+    semitones: float
+    string: float
+
+
+class _State(NamedTuple):
+    """What parameters of SEEN are, and how often the bend was set until then."""
+
+    values: Mapping[str, float]
+    bends: int
+
+
+def with_slides(score: Score, amount: float, playing: PlayingOptions, within: NoteRange) -> Score:
+    """Return a score with slides over its leaps, as far as phrasing (0 to 1) says.
+
+    `playing`, `within`: of the instrument that plays it.
+    """
+    slide_s = 1e-3 * (SHORTEST_SLIDE_MS + (SLIDE_MS - SHORTEST_SLIDE_MS) * amount)
+    slides = list(_slides(score, amount, playing, within))
+    on_strings = {slide.note.begins for slide in slides if slide.string}
+    before: dict[int, list[ScoreEvent]] = defaultdict(list)  # by the number of the event after
+    for slide in slides:
+        note, after = slide.note, slide.after
+        on, then = score.events[note.begins], score.events[after.begins]
+        set_on, set_then = (partial(_setting, event, after.channel) for event in (on, then))
+        if slide.string:
+            before[note.begins].append(set_on(on.time_s, STRING, slide.string))
+            if after.begins not in on_strings:
+                before[after.begins + 1].append(set_then(then.time_s, STRING, None))
+        count = math.ceil(slide_s / STEP_S)
+        for number in range(1, count + 1):
+            at_s = min(note.end_s, then.time_s) - BEND_S - (count - number) * STEP_S
+            place = bisect_right(score.events, at_s, key=lambda event: event.time_s)
+            bend = slide.semitones * logistic(number / count)
+            before[place].append(set_on(at_s, BEND, bend, is_passing=True))
+    events: list[ScoreEvent] = []
+    for number, event in enumerate(score.events):
+        events += [*before[number], event]
+    return replace(score, events=(*events, *before[len(score.events)]))
+
+
+def _setting(
+    at: ScoreEvent,
+    channel: int,
+    time_s: float,
+    address: str,
+    value: float | None,
+    *,
+    is_passing: bool = False,
+) -> ScoreEvent:
+    setting = Setting(address, value, channel, is_passing)
+    return ScoreEvent(time_s, setting, at.beat, at.track)
+
+
+def _slides(
+    score: Score, amount: float, playing: PlayingOptions, within: NoteRange
+) -> Iterator[Slide]:
+    """The slides over leaps that bow and fingers are free for."""
+    notes = [note for note in notes_of(score) if note.channel != PERCUSSION]
+    states = _states(score, playing, amount)
+    for note, after in pairwise(notes):
+        is_one = note.channel == after.channel and note.ends >= 0
+        is_long = note.length_s > LONG_S and after.length_s >= LONG_S
+        if not (is_one and is_long and after.start_s - note.end_s <= GAP_S):
+            continue
+        state, then = states[note.begins], states[after.begins]
+        low, high = sorted(_pitch(each, playing, within) for each in (note, after))
+        is_leap = LEAST_LEAP < high - low < WIDEST_LEAP  # not where either is NaN
+        if not is_leap or not _is_free(state) or not _is_free(then) or state.bends != then.bends:
+            continue
+        string = _string(low, high, (state, then), within)
+        if string is not None:
+            yield Slide(note, after, math.copysign(high - low, after.key - note.key), string)
+
+
+def _pitch(note: ScoreNote, playing: PlayingOptions, within: NoteRange) -> float:
+    """The pitch (fractional MIDI note) of a note; NaN where the instrument has none for it."""
+    tuned = playing.tuning.pitch(note.key, playing.a4)
+    fitted = None if tuned is None else playing.policy.fit(tuned, within)
+    return math.nan if fitted is None else fitted
+
+
+def _states(score: Score, playing: PlayingOptions, amount: float) -> dict[int, _State]:
+    """What parameters are as notes begin, by the numbers of their events."""
+    start = {**dict(playing.mapping.start), PHRASING: amount}
+    start |= {**dict(playing.start), **dict(playing.settings)}
+    usual = {address: start.get(address, find(address).default) for address in SEEN}
+    by_channel: dict[int, _State] = defaultdict(lambda: _State(usual, 0))
+    found = {}
+    for number, event in enumerate(score.events):
+        message = event.message
+        if isinstance(message, Setting) and message.address in SEEN:
+            values, bends = by_channel[message.channel]
+            value = usual[message.address] if message.value is None else message.value
+            own = _State({**values, message.address: value}, bends + (message.address == BEND))
+            by_channel[message.channel] = own
+        elif message.type == "note_on":
+            found[number] = by_channel[message.channel]
+    return found
+
+
+def _is_free(state: _State) -> bool:
+    """Whether a note has no other slide, bend or gesture, and is bowed."""
+    row = round(state.values[ARTICULATION])
+    bears = bool(BEARS_SLIDE[row]) if 0 <= row < len(BEARS_SLIDE) else True
+    is_on = max(state.values[PIZZICATO], state.values[PORTAMENTO]) >= TURNED_ON
+    return bears and not is_on and state.values[BEND] == 0.0 and state.values[PHRASING] > 0.0
+
+
+def _string(low: float, high: float, states: Sequence[_State], within: NoteRange) -> float | None:
+    """The string to set for a slide between two pitches, 0 for any; None where none has both.
+
+    No finger slides to where a string is open.
+    """
+    inner, outer = within.open_notes
+    wished = [round(state.values[STRING]) for state in states]
+    if low < inner + OPEN_WITHIN:
+        return None
+    if low >= outer + OPEN_WITHIN:
+        return None if INNER in wished and high > within.highest_notes[0] else 0.0
+    if high <= outer - OPEN_WITHIN or wished == [INNER, INNER]:
+        return 0.0
+    return INNER if high <= within.highest_notes[0] and wished == [0, 0] else None

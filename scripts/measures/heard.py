@@ -17,7 +17,7 @@ from scipy.ndimage import binary_opening
 from scipy.signal import find_peaks, resample_poly
 
 from yehu_server.following.frames import HIGHEST_HZ, likeness, most_alike, refined
-from yehu_server.playing.pitch_and_level import a_weighting
+from yehu_server.util.loudness import a_weighting
 
 Array = Any
 

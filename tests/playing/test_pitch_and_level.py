@@ -9,12 +9,8 @@ import pytest
 from pitch import cents, pitch_of
 
 from yehu_server.playing import pitch_and_level
-from yehu_server.playing.pitch_and_level import (
-    SILENCE_DB,
-    a_weighted_db,
-    a_weighting,
-    pitch_hz,
-)
+from yehu_server.playing.pitch_and_level import SILENCE_DB, a_weighted_db, pitch_hz
+from yehu_server.util.loudness import a_weighting
 
 RATES = (22050.0, 44100.0, 48000.0, 96000.0)
 # The A curve in dB, from the table of IEC 61672-1.

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.following.recording import RATE
-from yehu_server.playing.pitch_and_level import a_weighting
+from yehu_server.util.loudness import a_weighting
 
 Array = Any
 

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.shelf import shelf_response
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.shelf import shelf_response
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
@@ -51,13 +51,13 @@ from yehu_server.params.table import find
 from yehu_server.playing.pitch_and_level import (
     SILENCE_DB,
     a_weighted_db,
-    a_weighting,
     cents,
     pitch_hz,
 )
 from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.playing.stringing import notes_of
 from yehu_server.util import PACKAGE
+from yehu_server.util.loudness import a_weighting
 from yehu_server.util.source_key import key_of
 
 Array = Any
@@ -101,7 +101,7 @@ def calibration_key(
         for source in sorted((core / folder).glob("*.py"))
     ]
     sources += [core / "player" / f"{name}.py" for name in ("bowing", "calibration")]
-    sources += [core / "engine" / f"{name}.py" for name in ("sounding", "output", "shelf")]
+    sources += [core / "engine" / f"{name}.py" for name in ("sounding", "output")]
     sources += [Path(__file__)]
     bowing = shipped_practice(rate) if bowing is None else bowing
     bowed = bowing[:, PLACES.index(DEFAULT_PLACE)].tolist()

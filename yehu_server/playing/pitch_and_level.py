@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.util.loudness import a_weighting
+
 Array = Any
 
 LOWEST_HZ, HIGHEST_HZ = 120.0, 2400.0
@@ -95,15 +97,6 @@ def _refine(like: Array, period: float) -> float:
 
 
 SILENCE_DB = -200.0
-
-
-def a_weighting(frequencies_hz: Array) -> Array:
-    """Return the amplitude factor of A weighting, 1 at 1 kHz. Source: [IEC61672]."""
-    f2 = np.asarray(frequencies_hz, np.float64) ** 2
-    curve = (12194.0**2 * f2 * f2) / (
-        (f2 + 20.6**2) * np.sqrt((f2 + 107.7**2) * (f2 + 737.9**2)) * (f2 + 12194.0**2)
-    )
-    return curve * 10.0 ** (2.0 / 20.0)
 
 
 def a_weighted_db(samples: Array, rate: float) -> float:

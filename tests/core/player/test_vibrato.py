@@ -14,13 +14,13 @@ from yehu_server.core.physics.quantities import measured_body
 from yehu_server.core.player.steepness import LEANING, LEAST, NARROWED, USUAL, vibrato_table
 from yehu_server.params.articulations import NUMBER
 
-A4, LOWEST = 440.0, 65
+A4, OPEN_NOTES = 440.0, (65, 72)
 PEAK = 80.6  # MIDI note, between two rows
 SHARP = 0.999  # radius of the pole: some 14 Hz wide
 
 
 def row_of(pitch: float) -> int:
-    return round(2.0 * (pitch - LOWEST))
+    return round(2.0 * (pitch - OPEN_NOTES[0]))
 
 
 def with_peak() -> np.ndarray:
@@ -28,12 +28,13 @@ def with_peak() -> np.ndarray:
     rate = measured_body().radiation_rate
     angle = 2.0 * math.pi * A4 * 2.0 ** ((PEAK - 69.0) / 12.0) / rate
     section = (1.0, 0.0, -2.0 * SHARP * math.cos(angle), SHARP**2)
-    return vibrato_table(replace(measured_body(), sections=(section,), direct_gain=0.0), A4, LOWEST)
+    body = replace(measured_body(), sections=(section,), direct_gain=0.0)
+    return vibrato_table(body, A4, OPEN_NOTES)
 
 
 def test_a_body_that_radiates_evenly_leaves_a_vibrato_alone():
     body = replace(measured_body(), sections=measured_body().sections[:1], direct_gain=1e6)
-    table = vibrato_table(body, A4, LOWEST)
+    table = vibrato_table(body, A4, OPEN_NOTES)
     assert (table[:, NARROWED] == 1.0).all()
     assert (table[:, LEANING] == 0.0).all()
 
@@ -60,6 +61,15 @@ def test_the_player_narrows_it_at_a5_alone_of_two_neighbours():
     depth, upward = played(81, vibrato=30.0)
     assert depth == pytest.approx(15.0)
     assert 0.3 < upward < 0.7
+
+
+def test_it_is_narrower_where_brilliance_raises_a_harmonic_that_the_body_swings():
+    """The body radiates A4 itself evenly, and its second harmonic not."""
+    plain = vibrato_table(measured_body(), A4, OPEN_NOTES)
+    assert tuple(plain[row_of(69.0)]) == (1.0, 0.0)
+    depth, upward = played(69, vibrato=30.0)
+    assert depth == pytest.approx(20.0)
+    assert upward > 0.3
 
 
 def test_a_narrow_one_stays_and_a_wide_one_is_narrowed_alike():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from stages import SMALL, Stage, response, told
 
-from yehu_server.playing.pitch_and_level import a_weighting
+from yehu_server.util.loudness import a_weighting
 
 RATES = [22050.0, 44100.0, 48000.0, 96000.0, 192000.0]
 

@@ -8,11 +8,11 @@ import pytest
 from acoustics import clarity_db
 from stages import Stage, response, told
 
-from yehu_server.playing.pitch_and_level import a_weighting
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
 from yehu_server.scores.smf.reader import read_score
+from yehu_server.util.loudness import a_weighting
 
 ROOT = Path(__file__).resolve().parents[3]
 RATE = 44100

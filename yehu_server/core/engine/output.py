@@ -10,7 +10,6 @@ from yehu_server.compile.jit import compiled
 from yehu_server.core.controls.ramps import pole_of_cutoff, pole_of_time
 from yehu_server.core.controls.record import CHUNK, FADE_S
 from yehu_server.core.controls.slots import STAGE_INPUTS
-from yehu_server.core.engine.shelf import SHELF, prepare_shelf, shelved
 from yehu_server.core.physics.layout import (
     BRIDGE_FORCE,
     ITERATIONS,
@@ -19,6 +18,7 @@ from yehu_server.core.physics.layout import (
     control_columns,
     probe_columns,
 )
+from yehu_server.core.physics.shelf import SHELF, prepare_shelf, shelved
 
 Array = Any
 

@@ -13,7 +13,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from yehu_server.compile.jit import compiled_exactly
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly, uncompiled
 from yehu_server.core.player.calibration import ABOVE, GAINS, PLAIN
 from yehu_server.core.player.intonation import ALL, in_tables, place_in
 from yehu_server.core.player.ownership import USUAL_MS, move
@@ -23,9 +25,12 @@ from yehu_server.core.player.rows import (
     BRILLIANCE_FREQUENCY,
     POSITION,
 )
+from yehu_server.params.table import find
 
 # The bow whose sound is the model's own: speed times share of Schelleng's limit (m/s), and place.
 PLAIN_EFFORT, PLAIN_PLACE = 0.046, 0.13
+USUAL_EFFORT = find("/playing/speed").default * find("/playing/pressure").default
+USUAL_PLACE = find("/playing/bow_position").default
 # Octaves of the centroid for each doubling of the effort, and for each halving of the distance
 # from the bridge. Strokes from pianissimo to fortissimo double the effort about one and a half
 # times: 1.5, a little more than in recordings of a cello (1.3).
@@ -75,6 +80,18 @@ def set_brilliance(p: Any, c: Any, string: int, pitch: float, effort: float) -> 
     frequency = ABOVE * plain
     ramp_ms = LOWERING_MS if frequency < p.sent[BRILLIANCE_FREQUENCY] else USUAL_MS
     move(p, c, BRILLIANCE_FREQUENCY, frequency, ramp_ms)
+
+
+def usual_shelf(centroids: Any, string: int, pitch: float) -> tuple[float, float]:
+    """Gain (dB) and frequency (Hz) that a pitch of a yehu's string has, as the usual bow draws it.
+
+    `centroids`: of the notes of that string, as of a `Calibration`.
+    """
+    rows = np.array(centroids)
+    own = [np.interp(pitch, ALL[string], column) for column in rows.T]
+    brighter = uncompiled(octaves_brighter)(USUAL_EFFORT, USUAL_PLACE)
+    aim = own[PLAIN] * 2.0**brighter
+    return float(np.interp(aim, np.maximum.accumulate(own), GAINS)), float(ABOVE * own[PLAIN])
 
 
 @compiled_exactly

@@ -194,7 +194,10 @@ def prepare_player(
             p["levels"] = calibration.levels
         if calibration.centroids:
             p["centroids"], p["louder"] = calibration.centroids, calibration.louder
-    p["vibrato_table"] = vibrato_table(quantities.body, float(p["a4"]), notes.lowest)
+    centroids = calibration.centroids if calibration is not None else ()
+    p["vibrato_table"] = vibrato_table(
+        quantities.body, float(p["a4"]), tuple(notes.open_notes), centroids
+    )
     p["bowing"] = default_recipes() if bowing is None else bowing
     p["open_strings"] = list(OpenStrings).index(open_strings)
     return player

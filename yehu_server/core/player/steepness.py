@@ -13,6 +13,11 @@ import numpy as np
 
 from yehu_server.core.physics.quantities import Body
 from yehu_server.core.physics.radiation import response
+from yehu_server.core.physics.shelf import shelf_response
+from yehu_server.core.player.brilliance import usual_shelf
+from yehu_server.core.player.calibration import OPEN_NOTES, Tables
+from yehu_server.core.player.fingering import OPEN_WITHIN
+from yehu_server.util.loudness import a_weighting
 
 Array = Any
 
@@ -22,27 +27,21 @@ NARROWED, LEANING = range(2)  # columns of the table
 # where even that swings too far.
 USUAL, NARROW, LEAST = 30, 20, 15
 MOST_OFF = 8  # cents: a middle as near to the note is in tune
-MOST_DB = 4.4  # from the loudest to the softest moment of a turn
+# From the loudest to the softest moment of a turn, of the usual vibrato and of a narrow one, where
+# the pitch strays: near a mode of the body it goes farther than the finger.
+MOST_DB, MOST_NARROW_DB, STRAY = 5.0, 6.0, 8
 HARMONICS = 8
-
-# Depth, and how far its middle is above the note (cents), the best first.
-_WAYS = (
-    *((depth, 0) for depth in range(USUAL, NARROW - 1, -1)),
-    *(
-        (depth, side * off)
-        for depth in range(USUAL, LEAST - 1, -1)
-        for off in range(1, MOST_OFF + 1)
-        for side in (1, -1)
-    ),
-)
 
 
 @lru_cache(maxsize=64)
-def vibrato_table(body: Body, a4: float, lowest: float) -> Array:
+def vibrato_table(
+    body: Body, a4: float, open_notes: tuple[float, float], centroids: Tables = ()
+) -> Array:
     """How a vibrato about each pitch is played.
 
     `a4`: reference pitch (Hz).
-    `lowest`: MIDI note of the first row.
+    `open_notes`: MIDI notes; the lower one is of the first row.
+    `centroids`: as of a `Calibration`; without them no note is made brighter.
 
     Returns
     -------
@@ -50,34 +49,58 @@ def vibrato_table(body: Body, a4: float, lowest: float) -> Array:
         NARROWED is the depth, as a share of USUAL, and of a wider one; LEANING how far the middle
         is above the note, as a share of the depth.
     """
-    margin = USUAL + MOST_OFF
-    first = round(100.0 * lowest) - margin
-    level = _level_db(body, a4, np.arange(first, first + 50 * (STEPS - 1) + 2 * margin + 1))
-
-    def swing(row: int, depth: int, off: int) -> float:
-        middle = margin + 50 * row + off
-        return float(np.ptp(level[middle - depth : middle + depth + 1]))
-
+    margin = USUAL + STRAY + MOST_OFF
+    pitches = open_notes[0] + 0.01 * np.arange(-margin, 50 * (STEPS - 1) + margin + 1)
+    frequency_hz = np.outer(a4 * np.exp2((pitches - 69.0) / 12.0), np.arange(1, HARMONICS + 1))
+    heard = _plain(body, frequency_hz)
     table = np.empty((STEPS, 2))
     for row in range(STEPS):
-        even = (way for way in _WAYS if swing(row, *way) <= MOST_DB)
-        narrowest = (way for way in _WAYS if way[0] == LEAST)
-        depth, off = next(even, None) or min(narrowest, key=lambda way: swing(row, *way))
+        near = slice(50 * row, 50 * row + 2 * margin + 1)
+        own = heard[near]
+        if centroids:
+            pitch = open_notes[0] + 0.5 * row
+            string = int(pitch >= open_notes[1] + OPEN_WITHIN)
+            on_a_yehu = pitch - open_notes[string] + OPEN_NOTES[string]
+            gain_db, shelf_hz = usual_shelf(centroids[string], string, on_a_yehu)
+            own = own * np.abs(
+                shelf_response(frequency_hz[near], body.radiation_rate, gain_db, shelf_hz)
+            )
+        depth, off = _way(10.0 * np.log10((own**2).sum(axis=1) + 1e-30), margin)
         table[row] = depth / USUAL, off / depth
     table.flags.writeable = False
     return table
 
 
-def _level_db(body: Body, a4: float, cents: Array) -> Array:
-    """Level (dB) of a bowed string at pitches (cents of a MIDI note), by the body's radiation.
+def _way(level: Array, note: int) -> tuple[int, int]:
+    """Depth, and how far its middle is above the note (cents).
 
-    The force of a bowed string on its bridge has harmonics that fall as 1/n.
+    `level`: in dB, at each cent about the note, which is at index `note`.
     """
-    n = np.arange(1, HARMONICS + 1)
-    frequency_hz = np.outer(a4 * np.exp2((cents - 6900) / 1200.0), n)
+
+    def swing(depth: int, off: int) -> float:
+        reach = depth + STRAY
+        return float(np.ptp(level[note + off - reach : note + off + reach + 1]))
+
+    def evenest(depth: int) -> int:
+        offs = sorted(range(-MOST_OFF, MOST_OFF + 1), key=abs)
+        return min(offs, key=lambda off: swing(depth, off))
+
+    if swing(USUAL, 0) <= MOST_DB:
+        return USUAL, 0
+    depth = NARROW if swing(NARROW, evenest(NARROW)) <= MOST_NARROW_DB else LEAST
+    return depth, evenest(depth)
+
+
+def _plain(body: Body, frequency_hz: Array) -> Array:
+    """How strong a bowed string's harmonics are heard, the lowest first, without brilliance.
+
+    Their force on the bridge falls as 1/n; the body radiates them, and the ear hears them
+    (A-weighted). `frequency_hz`: of the harmonics, in columns. Returns amplitudes in that shape.
+    """
+    n = np.arange(1, frequency_hz.shape[1] + 1)
     radiated = response(
         np.array(body.sections), np.array([body.direct_gain]), body.radiation_rate,
         frequency_hz.ravel(),
     ).reshape(frequency_hz.shape)  # fmt: skip
     is_measured = frequency_hz < 0.5 * body.radiation_rate
-    return 10.0 * np.log10((np.abs(radiated * is_measured / n) ** 2).sum(axis=1) + 1e-30)
+    return np.abs(radiated) * is_measured * a_weighting(frequency_hz) / n

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from yehu_server.core.engine.shelf import SHELF, prepare_shelf, shelf_response, shelved
+from yehu_server.core.physics.shelf import SHELF, prepare_shelf, shelf_response, shelved
 
 FRAMES = 4096
 

@@ -1,0 +1,18 @@
+"""A weighting: how loud a sound of each frequency is heard."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+Array = Any
+
+
+def a_weighting(frequencies_hz: Array) -> Array:
+    """Return the amplitude factor of A weighting, 1 at 1 kHz. Source: [IEC61672]."""
+    f2 = np.asarray(frequencies_hz, np.float64) ** 2
+    curve = (12194.0**2 * f2 * f2) / (
+        (f2 + 20.6**2) * np.sqrt((f2 + 107.7**2) * (f2 + 737.9**2)) * (f2 + 12194.0**2)
+    )
+    return curve * 10.0 ** (2.0 / 20.0)

@@ -577,7 +577,8 @@ def test_plain_notes_are_shaped_and_may_be_left_as_they_are(midi, play):
 
 def test_the_phrasing_of_a_setting_counts_and_one_out_of_range_is_refused(midi, play, command):
     tune = midi(*notes(*PLAIN))
-    assert play(tune, "--set", "/playing/phrasing=0.2")[0]["phrasing"] == 0.2
+    told = play(tune, "--set", "/playing/phrasing=0.2", "--rubato", 0.7)[0]
+    assert (told["phrasing"], told["rubato"]) == (0.2, 0.7)
     code, _, err = command("render", tune, "-o", tune.with_suffix(".wav"), "--phrasing", "1.5")
     assert code == 2
     assert "1.5 is not within 0 to 1" in err

@@ -7,7 +7,8 @@ from itertools import pairwise
 import mido
 import pytest
 
-from yehu_server.scores.phrasing import LEAST_FOR_BOWS, accent, is_fingered, phrased, phrases_of
+from yehu_server.scores.phrases import phrases_of
+from yehu_server.scores.phrasing import LEAST_FOR_BOWS, accent, is_fingered, phrased
 from yehu_server.scores.score import COMMON_TIME, Metre, Score, ScoreEvent, notes_of
 
 BEAT_S = 0.5
@@ -151,3 +152,16 @@ def test_a_key_struck_again_ends_its_note():
     on = mido.Message("note_on", note=70, velocity=9)
     score = Score((ScoreEvent(0.0, on), ScoreEvent(1.0, on)), 3.0)
     assert [note.length_s for note in notes_of(score)] == [1.0, 2.0]
+
+
+def test_the_bow_breathes_between_phrases_but_not_where_bows_are_marked():
+    phrases = [(n * 0.5, 0.5, 67 + n % 3) for n in range(6)], (3.0, 3.0, 72), (6.0, 1.0, 67)
+    notes = [*phrases[0], *phrases[1:]]
+    ends = [note.end_s for note in notes_of(phrased(bare(*notes), 0.5))]
+    assert ends[6] == pytest.approx(3.0 - 0.05)
+    assert ends[-1] == pytest.approx(3.5)
+    pedal = mido.Message("control_change", control=64, value=0)
+    pedalled = notes_of(phrased(bare(*notes, extra=[(0.0, pedal)]), 0.5))
+    assert pedalled[6].end_s == 3.0
+    slurred = [*phrases[0], (3.0, 3.02, 72), (6.0, 1.0, 67)]
+    assert notes_of(phrased(bare(*slurred), 0.5))[6].end_s == pytest.approx(3.01)

@@ -116,6 +116,7 @@ def render(
     preset: PathLike | None = None,
     settings: Mapping[str, float] | None = None,
     phrasing: float | None = None,
+    rubato: float | None = None,
     dry: bool = False,
     mono: bool = False,
     normalize: bool = False,
@@ -146,6 +147,9 @@ def render(
         As of `Instrument`. Rooms are presets too: ``preset="hall"``.
     phrasing : float
         How much plain notes are shaped, 0 to 1; by default 0.5 for files and 0 for notes.
+    rubato : float
+        How far the tempo of a score, or a MIDI file in time, gives way within phrases and at the
+        end, 0 to 1; by default as `phrasing`. Phrases begin on time; at 0 all notes do.
     dry : bool
         Without a room.
     mono : bool
@@ -229,7 +233,8 @@ def render(
         read = read_any(path_of(score, "score"), how, song=number_of_song)
     else:
         read = score_of(score)
-    score = phrased(read, share, playing, how.within)
+    delay = share if rubato is None else number(rubato, "rubato", 0.0, 1.0)
+    score = phrased(read, share, playing, how.within, delay)
     options = replace(options, phrasing=0.0 if is_fingered(score) else share)
     get_ready()
     calibration = options.playing.calibration(float(options.rate), options.quantities)

@@ -192,9 +192,9 @@ def _part(
     from yehu_server.scores.phrasing import is_fingered, phrased
     from yehu_server.scores.reading import part_of
 
-    within = notes_of(quantities)
     own = [part_of(score, entry.channel, entry.track) for score in scores]
-    score = concatenate([phrased(each, phrasing, playing, within) for each in own])
+    how = {"playing": playing, "within": notes_of(quantities), "rubato": arguments.rubato}
+    score = concatenate([phrased(each, phrasing, **how) for each in own])
     channels = frozenset({entry.channel}) if entry.channel is not None else None
     if channels is None and arguments.channel is not None:
         channels = frozenset(arguments.channel)

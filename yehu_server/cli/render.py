@@ -78,6 +78,9 @@ def add_to(commands: Any) -> None:
             repeated (default: of a written score the first, of a MIDI file all)
         --phrasing SHARE: how much plain notes are shaped, by phrases, accents, slurs, vibrato and
             slides; what a file marks stays: 0 to 1 (default: 0.5; 0: exactly as written)
+        --rubato SHARE: how far the tempo of scores, and of MIDI files in time, gives way within
+            phrases, which still begin on time, and at the end: 0 to 1 (default: as --phrasing; 0:
+            every note begins as written, as other music needs that plays beside it)
         --song N: play only the N-th song of each file, where a file has several (default: one after
             another)
         --strict: refuse MIDI files with any damage, with exit code 1 (default: warn)
@@ -89,6 +92,7 @@ def add_to(commands: Any) -> None:
         subtype={"choices": ("16", "24", "float")},
         channel={"type": channel, "action": "append"},
         phrasing=number_within(0.0, 1.0, ""),
+        rubato=number_within(0.0, 1.0, ""),
         song=positive,
         max_duration={"type": hours, "default": MAX_DURATION_H},
         plot=target,

@@ -106,7 +106,9 @@ def rendered(
         title = f"{parts[0].score.name}: {voices}{options.rate / 1000.0:g} kHz"
         write_picture(watch, arguments.plot, title, overwrite=arguments.overwrite)
     summary = replace(summary, percussion_notes=summary.percussion_notes + players.percussion_notes)
-    fields = {**_fields(summary, playing, stems), "phrasing": phrasing, "calibration": key}
+    rubato = phrasing if arguments.rubato is None else arguments.rubato
+    shaped = {"phrasing": phrasing, "rubato": rubato}
+    fields = {**_fields(summary, playing, stems), **shaped, "calibration": key}
     return Rendered(summary, fields, read)
 
 
@@ -137,8 +139,8 @@ def _players(
     if arguments.ensemble is not None:
         return players_of(arguments, scores, options.playing, options.quantities, phrasing)
     within = notes_of(options.quantities)
-    played = [phrased(each, phrasing, options.playing, within) for each in scores(within)]
-    score = concatenate(played)
+    shape = partial(phrased, playing=options.playing, within=within, rubato=arguments.rubato)
+    score = concatenate([shape(each, phrasing) for each in scores(within)])
     part = options.solo(score)
     return Players((replace(part, phrasing=0.0 if is_fingered(score) else phrasing),))
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
 from yehu_server.scores.octaves import Sounding, octaves_of
-from yehu_server.scores.phrasing import REST_S
+from yehu_server.scores.phrases import REST_S
 from yehu_server.scores.score import Score, ScorePart, notes_of
 from yehu_server.scores.smf.tunings import RPN_FINE, transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns

@@ -1,14 +1,14 @@
 """Shapes files with bare notes as a player would: phrases, accents, and bows of several notes.
 
-docs/playing.md tells the rules and where they are from. Onsets and pitches stay. What a file marks
-itself is left alone, channel by channel: velocities that differ, controllers of loudness, notes
-that overlap. A page marks loudness in few places: between them phrases are shaped, but less.
+docs/playing.md tells the rules and where they are from. Pitches stay, and onsets but for
+``rubato``. What a file marks itself is left alone, channel by channel: velocities that differ,
+controllers of loudness, notes that overlap. A page marks loudness in few places: between them
+phrases are shaped, but less.
 """
 
 from __future__ import annotations
 
 import math
-from bisect import insort
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -16,6 +16,8 @@ from itertools import groupby, pairwise
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.scores.phrases import phrases_of
+from yehu_server.scores.rubato import delayed
 from yehu_server.scores.score import Score, ScoreNote, notes_of
 from yehu_server.scores.slides import with_slides
 
@@ -27,9 +29,6 @@ LEFT_HAND_MESSAGES = {"pitchwheel", "aftertouch", "polytouch"}
 FEW_VELOCITIES = 3  # so many different ones are no marks of a person
 MARKED_SPAN = 12  # between the softest and the loudest
 
-# A phrase ends with a rest, with a note that lasts much longer than those about it, or when it is
-# this long.
-REST_S, LONG_NOTE, LONGEST_PHRASE_BEATS = 0.3, 2.5, 16.0
 # In steps of velocity at full phrasing: from the ends of a phrase to its middle, and on the beats;
 # for each semitone above the mean pitch of all, and at most.
 ARCH, DOWNBEAT, HALF_BAR, BEAT = 100.0, 12.0, 7.0, 4.0
@@ -39,18 +38,29 @@ BETWEEN_MARKS = 0.4  # so much of arches and accents, between the marks of a pag
 MOST_IN_A_BOW, SHORT_S, STEP, GAP_S = 4, 0.3, 4, 0.03
 LEAST_FOR_BOWS = 0.25  # of phrasing, from which notes share a bow
 OVERLAP_S = 0.012  # of slurred notes
+# Between phrases the bow leaves the string, at full phrasing for so long, or this share of the note
+# that ends one, which lasts so long at least.
+BREATH_S, BREATH_SHARE, LONG_S = 0.1, 0.2, 0.3
 SAME_BEAT = 1e-3
 
 
 def phrased(
-    score: Score, amount: float, playing: PlayingOptions | None = None, within: NoteRange = YEHU
+    score: Score,
+    amount: float,
+    playing: PlayingOptions | None = None,
+    within: NoteRange = YEHU,
+    rubato: float | None = None,
 ) -> Score:
     """Return a score as shaped by phrasing, 0 to 1; at 0 as it is.
 
     `playing`, `within`: of the instrument that plays it.
+    `rubato`: how far the tempo gives way, 0 to 1; by default as far as phrasing says.
     """
-    if amount == 0.0:
-        return score
+    score = _phrased(score, amount, playing or PlayingOptions(), within) if amount else score
+    return delayed(score, amount if rubato is None else rubato)
+
+
+def _phrased(score: Score, amount: float, playing: PlayingOptions, within: NoteRange) -> Score:
     by_channel: dict[int, list[ScoreNote]] = defaultdict(list)
     for note in notes_of(score):
         by_channel[note.channel].append(note)
@@ -69,13 +79,16 @@ def phrased(
             depth = amount * (BETWEEN_MARKS if is_marked else 1.0)
             for phrase in phrases:
                 velocities.update(shaped(phrase, score, depth, usual, is_marked=is_marked))
-        if amount >= LEAST_FOR_BOWS and not is_bowed(notes, controllers):
+        is_free = not is_bowed(notes, controllers)
+        if amount >= LEAST_FOR_BOWS and is_free:
             for phrase in phrases:
                 ends_s.update(slurred(phrase))
+        if score.is_written or is_free:
+            ends_s.update(breaths(phrases, amount))
     changed = _changed(score, velocities, ends_s)
     if is_fingered(score):
         return changed
-    return with_slides(changed, amount, playing or PlayingOptions(), within)
+    return with_slides(changed, amount, playing, within)
 
 
 def is_shaped(notes: Sequence[ScoreNote], controllers: Iterable[int]) -> bool:
@@ -98,29 +111,6 @@ def is_fingered(score: Score) -> bool:
         or (event.message.type == "control_change" and event.message.control in LEFT_HAND)
         for event in score.events
     )
-
-
-def phrases_of(notes: Sequence[ScoreNote]) -> list[list[ScoreNote]]:
-    """Divide the notes of one voice into phrases."""
-    phrases: list[list[ScoreNote]] = []
-    lengths: list[float] = []  # of the last phrase, sorted
-    for note in notes:
-        if not phrases or _ends_before(phrases[-1], lengths, note):
-            phrases.append([])
-            lengths = []
-        phrases[-1].append(note)
-        insort(lengths, note.length_s)
-    return phrases
-
-
-def _ends_before(phrase: list[ScoreNote], lengths: list[float], note: ScoreNote) -> bool:
-    last = phrase[-1]
-    if note.start_s - last.end_s >= REST_S:
-        return True
-    if note.beat - phrase[0].beat >= LONGEST_PHRASE_BEATS:
-        return True
-    usual = lengths[len(lengths) // 2]
-    return len(phrase) > 3 and last.length_s > LONG_NOTE * usual
 
 
 def shaped(
@@ -177,6 +167,17 @@ def slurred(phrase: Sequence[ScoreNote]) -> dict[int, float]:
         in_bow = in_bow + 1 if goes_on else 1
         if goes_on:
             ends[note.ends] = after.start_s + min(OVERLAP_S, 0.5 * after.length_s)
+    return ends
+
+
+def breaths(phrases: Sequence[Sequence[ScoreNote]], amount: float) -> dict[int, float]:
+    """Return the new ends (s) of notes after which a phrase begins at once, by their events."""
+    ends = {}
+    for phrase, after in pairwise(phrases):
+        last, gap_s = phrase[-1], after[0].start_s - phrase[-1].end_s
+        breath_s = min(BREATH_S * amount, BREATH_SHARE * last.length_s)
+        if 0.0 <= gap_s < breath_s and last.length_s >= LONG_S and last.ends >= 0:
+            ends[last.ends] = after[0].start_s - breath_s
     return ends
 
 

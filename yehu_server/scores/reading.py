@@ -11,12 +11,13 @@ from yehu_server.core.midi.channels import PERCUSSION
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.scores import chosen_parts
+from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, naming
 from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.written.in_range import moved, usual_parts
 from yehu_server.scores.written.notated import Written
-from yehu_server.scores.written.performed import performed
+from yehu_server.scores.written.performed import leading_notes, performed
 from yehu_server.util.files import open_regular
 
 
@@ -162,10 +163,14 @@ def performed_part(written: Written, how: How = USUAL) -> Score:
         written, line = moved(written, plays, how.within)
         remarks.append(line)
     remarks = [*filter(None, remarks)]
-    return performed(replace(written, remarks=tuple(remarks)), plays, how.within)
+    score = performed(replace(written, remarks=tuple(remarks)), plays, how.within)
+    leading = leading_notes(written, next(iter(usual_parts(written)), 0))
+    return replace(score, delays=delays_of(leading))
 
 
 def _midi_played(score: Score, how: How) -> Score:
+    tune = score if how.is_mpe else chosen_parts.usual_midi_part(score)
+    score = replace(score, delays=midi_delays(score, tune))
     if how.parts:
         score = chosen_parts.parts_chosen(score, how.parts)
     elif len(score.parts) > 1 and not (how.all_parts or how.is_mpe or chosen_parts.says_mpe(score)):

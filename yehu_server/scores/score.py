@@ -149,6 +149,8 @@ class Score:
     # One line each, of what a player should know and no file is to blame for.
     remarks: tuple[str, ...] = ()
     keys: tuple[KeySignature, ...] = ()  # in order, as far as they are told
+    # How much later it is at full rubato (``rubato.delays_of``); none where that is not known.
+    delays: tuple[tuple[float, float], ...] = ()
     is_written: bool = False  # from a page, whose marks of loudness are for stretches of notes
 
     def bar_at(self, beat: float) -> tuple[float, float]:

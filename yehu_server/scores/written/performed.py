@@ -17,7 +17,7 @@ import mido
 from yehu_server.core.player.harmonics import SAME_PITCH
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError
-from yehu_server.scores.score import BEND, Score, ScoreEvent, ScorePart, Setting
+from yehu_server.scores.score import BEND, Score, ScoreEvent, ScoreNote, ScorePart, Setting
 from yehu_server.scores.written.dynamics import Loudness
 from yehu_server.scores.written.mark_settings import (
     ARTICULATION,
@@ -88,6 +88,27 @@ def performed(
         written.remarks,
         is_written=True,
     )
+
+
+def leading_notes(written: Written, number: int) -> list[ScoreNote]:
+    """The notes of a part, by its number from 0, as they are written: all others follow it.
+
+    One under a fermata is as long as that has it.
+    """
+    clock = WrittenClock(written)
+    return [
+        ScoreNote(
+            -1,
+            -1,
+            0,
+            _key_of(note.pitch),
+            0,
+            clock.seconds(note.beat),
+            clock.seconds(note.end),
+            float(note.beat),
+        )
+        for note in written.parts[number].notes
+    ]
 
 
 class _Performer:

@@ -1,0 +1,125 @@
+"""The tempo of a score gives way: slower where a phrase begins and ends, and at the very end.
+
+All parts move together, by the phrases of the one that leads. A phrase begins when it is written:
+what is slow at its ends is made up for in its middle. Arches of tempo: [Friberg], [Todd]; the end:
+[FribergSundberg]. Amounts are small, by ear.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.scores.phrases import phrases_of
+from yehu_server.scores.score import Score, ScoreNote, notes_of
+
+# At full rubato: a beat at either end of a phrase is two thirds of this longer, one in its middle a
+# third shorter.
+ARCH = 0.08
+LEAST_NOTES, LEAST_S, POINTS = 4, 1.5, 16  # of a phrase with an arch; lines that this is made of
+# The last beats before the last note are up to so much longer; so is that, for a beat at most.
+LAST, LAST_BEATS = 0.2, 2.0
+# A file is in time where nearly all onsets are on a grid: the parts of a quarter, and how near.
+GRID, NEAR, IN_TIME = 24, 2e-3, 0.95
+SAME_TEMPO, STEADY_BEATS = 0.02, 8.0  # a change of tempo; at most one in so many quarters
+
+Delays = tuple[tuple[float, float], ...]
+
+
+def midi_delays(score: Score, tune: Score) -> Delays:
+    """The delays of a MIDI file, where its notes are in time and its tempo is not shaped itself.
+
+    `tune` has the notes of the part that leads.
+    """
+    notes, leading = ([n for n in notes_of(s) if n.channel != PERCUSSION] for s in (score, tune))
+    return delays_of(leading) if is_in_time(notes) else ()
+
+
+def is_in_time(notes: Sequence[ScoreNote]) -> bool:
+    """Whether notes were written by a machine: on a grid, and in a tempo that hardly changes."""
+    places = [note.beat * GRID for note in notes if not math.isnan(note.beat)]
+    near = sum(abs(place - round(place)) < NEAR * GRID for place in places)
+    if not notes or near < IN_TIME * len(notes):
+        return False
+    tempi = _tempi(notes)
+    changes = sum(abs(after - one) > SAME_TEMPO * one for one, after in pairwise(tempi))
+    return changes * STEADY_BEATS <= max(notes[-1].beat - notes[0].beat, STEADY_BEATS)
+
+
+def delays_of(notes: Sequence[ScoreNote]) -> Delays:
+    """How much later than written a score is at full rubato: points of seconds, in order.
+
+    `notes`: of the part that leads. Between the points are straight lines.
+    """
+    points: list[tuple[float, float]] = []
+    for phrase in phrases_of(notes):
+        begin, length = phrase[0].start_s, phrase[-1].end_s - phrase[0].start_s
+        if len(phrase) < LEAST_NOTES or length < LEAST_S:
+            continue
+        for step in range(POINTS + 1):
+            to_end = 2.0 * step / POINTS - 1.0  # the integral of the square less a third
+            points.append(
+                (begin + length * step / POINTS, ARCH * length * (to_end**3 - to_end) / 6)
+            )
+    return _with_end(notes, points)
+
+
+def _with_end(notes: Sequence[ScoreNote], points: list[tuple[float, float]]) -> Delays:
+    """The same with the last beats slower, where their tempo is steady."""
+    close = [note for note in notes if note.beat > notes[-1].beat - 2.0 * LAST_BEATS - NEAR]
+    tempi = _tempi(close)
+    if not tempi or max(tempi) > (1.0 + SAME_TEMPO) * min(tempi):
+        return tuple(points)
+    last, quarter_s = notes[-1], tempi[-1]
+    begin = last.start_s - LAST_BEATS * quarter_s
+    held_s = min(last.length_s, quarter_s)
+    at = sorted({
+        *(begin + (last.start_s - begin) * step / POINTS for step in range(POINTS + 1)),
+        last.start_s + held_s,
+        *(seconds for seconds, _ in points if seconds > begin),
+    })  # fmt: skip
+    before = [point for point in points if point[0] < begin]
+    after = [(s, at_time(points, s) + _slowed(s, begin, last.start_s, held_s)) for s in at]
+    return (*before, *after)
+
+
+def _slowed(seconds: float, begin: float, last: float, held_s: float) -> float:
+    """The delay of the last beats, whose tempo sinks with the square of time."""
+    share = min((seconds - begin) / (last - begin), 1.0)
+    return LAST * ((last - begin) * share**3 / 3.0 + min(max(seconds - last, 0.0), held_s))
+
+
+def _tempi(notes: Sequence[ScoreNote]) -> list[float]:
+    """How long a quarter is (s), from each note to the next."""
+    return [
+        (after.start_s - one.start_s) / (after.beat - one.beat)
+        for one, after in pairwise(notes)
+        if after.beat > one.beat + NEAR
+    ]
+
+
+def at_time(points: Sequence[tuple[float, float]], seconds: float) -> float:
+    """The value at a time on the lines between points; beyond them, that of the nearest."""
+    after = bisect_right(points, (seconds, float("inf")))
+    if not points or after == 0:
+        return points[0][1] if points else 0.0
+    if after == len(points):
+        return points[-1][1]
+    (begin, first), (end, last) = points[after - 1], points[after]
+    return first + (last - first) * (seconds - begin) / (end - begin)
+
+
+def delayed(score: Score, amount: float) -> Score:
+    """Return a score whose tempo gives way, as far as an amount of 0 to 1; at 0 as it is."""
+    if amount == 0.0 or not score.delays:
+        return score
+
+    def played(seconds: float) -> float:
+        return seconds + amount * at_time(score.delays, seconds)
+
+    events = (replace(event, time_s=played(event.time_s)) for event in score.events)
+    return replace(score, events=tuple(events), duration_s=played(score.duration_s), delays=())

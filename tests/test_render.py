@@ -250,8 +250,8 @@ def test_gain_is_in_decibels(play, phrase):
 @pytest.mark.parametrize("subtype", ["16", "float"])
 def test_the_limiter_keeps_a_loud_rendering_within_full_scale(play, phrase, subtype):
     summary, sound = play(phrase, "--tail", 0, "--gain-db", 24, "--subtype", subtype)
-    assert 0.9 < np.abs(sound).max() <= 1.0
-    assert summary["peak"] <= 1.0
+    assert 0.85 < np.abs(sound).max() < 0.9  # the wave between the samples is higher
+    assert summary["peak"] < 0.9
     # Limited, not wrapped around: no sample jumps from one end to the other.
     assert np.abs(np.diff(sound)).max() < 1.0
 

@@ -299,16 +299,24 @@ def test_parameters_and_panic_act_on_the_server(server) -> None:
 def test_a_wish_ahead_is_fulfilled_at_its_frame(server) -> None:
     server.instrument.report_wishes()
     server.instrument.applied_wishes()
-    frame = server.instrument.frame + 12000
 
-    async def play(page: Page) -> None:
+    async def lateness(page: Page, ahead: int) -> int:
+        frame = server.instrument.frame + ahead
         await page.wish(wish(WRITE, ROW[PRESSURE], 0.75, at=frame))
         await asyncio.to_thread(until, lambda: server.instrument.frame > frame + 480, "no time")
+        applied = server.instrument.applied_wishes()
+        found = applied[(applied["kind"] == WRITE) & (applied["value"] == 0.75)]
+        return int(found["frame"].item()) - frame
 
-    with_pages(server, 1, play)
-    applied = server.instrument.applied_wishes()
-    found = applied[(applied["kind"] == WRITE) & (applied["value"] == 0.75)]
-    assert found["frame"].tolist() == [frame]
+    async def play(page: Page) -> list[int]:
+        found: list[int] = []
+        for ahead in (12000, 48000, 192000):  # a busy machine may be late with the message itself
+            found.append(await lateness(page, ahead))
+            if found[-1] == 0:
+                break
+        return found
+
+    assert with_pages(server, 1, play)[-1] == 0
 
 
 @pytest.mark.parametrize(

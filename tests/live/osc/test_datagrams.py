@@ -17,6 +17,7 @@ from yehu_server.live.osc.open_sockets import (
     BatchReader,
     SingleReader,
     datagrams,
+    mute,
     widen,
 )
 
@@ -75,6 +76,19 @@ def test_a_burst_of_more_than_one_read_loses_nothing(pair, reader):
     assert [packet for packet, _, _ in found] == sent
     assert hears.read() == ([], False)
     assert hears.dropped == 0
+
+
+@on_linux
+@pytest.mark.parametrize("pair", [socket.AF_INET], indirect=True)
+def test_the_kernel_drops_what_muted_senders_send_and_nothing_else(pair):
+    here, there = pair
+    hears, port = datagrams(here), there.getsockname()[1]
+    others = [("127.0.0.2", port), ("127.0.0.1", port + 1), ("127.0.0.1", port - 1)]
+    for muted in (others, [*others, there.getsockname()], []):
+        mute(here, muted)
+        there.send(b"%d" % len(muted))
+    assert [packet for packet, _, _ in hears.read()[0]] == [b"3", b"0"]
+    assert hears.dropped == 1
 
 
 def begin_stamping(here: socket.socket, there: socket.socket) -> None:

@@ -19,9 +19,9 @@ from yehu_server.errors import DeviceError
 from yehu_server.live.network import Allowed
 from yehu_server.live.osc import open_sockets, receiving
 from yehu_server.live.osc.answering import ANSWERED_BYTES, TO_ALL_HOSTS
-from yehu_server.live.osc.fair_queue import MOST_BYTES
+from yehu_server.live.osc.fair_queue import OVERHEAD_BYTES, FairQueue
 from yehu_server.live.osc.packets import pack
-from yehu_server.live.osc.receiving import OscPorts
+from yehu_server.live.osc.receiving import MOST_OF_A_SENDER_BYTES, OscPorts
 from yehu_server.live.osc.schedule import AHEAD_S
 
 HOST = "127.0.0.1"
@@ -134,11 +134,12 @@ def send_all(client, packets) -> None:
 
 
 @pytest.mark.parametrize("hindrance", ["none", "busy", "held up", "not started"])
-def test_a_burst_that_the_buffer_holds_arrives_whole(
+def test_a_burst_that_buffer_and_queue_hold_arrives_whole(
     listen, client, keeper, until, busy, hindrance
 ):
     ports = listen(start=hindrance != "not started")
-    packets = numbered(min(BURST, ports.traffic.buffer_bytes // (2 * PACKET_BYTES)))
+    holds = MOST_OF_A_SENDER_BYTES // (len(numbered(1)[0]) + OVERHEAD_BYTES)
+    packets = numbered(min(holds, ports.traffic.buffer_bytes // (2 * PACKET_BYTES)))
     if hindrance == "held up":
         keeper.go_on.clear()
     with busy() if hindrance == "busy" else contextlib.nullcontext():
@@ -178,7 +179,7 @@ def test_longer_datagrams_are_dropped_and_counted(
     listen, client, keeper, until, monkeypatch, kernel_filters
 ):
     if not kernel_filters:
-        monkeypatch.setattr(open_sockets, "FILTER", ((6, 0, 0, 0xFFFFFFFF),))
+        monkeypatch.setattr(open_sockets, "mute", lambda _udp, _senders: None)
     elif sys.platform != "linux":
         pytest.skip("only Linux filters")
     ports = listen()
@@ -212,26 +213,50 @@ def test_answers_nobody_takes_are_no_trouble(listen, client, keeper, until):
     until(lambda: ports.traffic.unsent == 2, "both to be counted")
 
 
-def test_what_waits_in_memory_is_bounded_and_what_is_over_is_counted(listen, client, keeper, until):
+@pytest.mark.parametrize("kernel_filters", [True, False])
+def test_a_sender_with_much_waiting_is_muted_until_it_is_handled(
+    listen, client, keeper, until, monkeypatch, kernel_filters
+):
+    if not kernel_filters:
+        monkeypatch.setattr(receiving, "mute", lambda _udp, _senders: None)
+    elif sys.platform != "linux":
+        pytest.skip("only Linux filters")
     ports = listen()
     one, other = client(ports), client(ports)
     keeper.is_slow = True
     keeper.go_on.clear()
-    sent = MOST_BYTES // 16_000
-    for number in range(sent):
+    fit = -(-(MOST_OF_A_SENDER_BYTES - 16_000) // (16_000 + OVERHEAD_BYTES))
+    for number in range(fit + 1):
         one.take(b"x" * 16_000)
-        if number % 10 == 0:  # as the system's buffer may be small
-            until(lambda sent=number + 1: ports.traffic.packets == sent, "it to be read")
-    until(lambda: ports.traffic.packets == sent, "all to be read")
-    for _ in range(5):
-        other.take(b"y" * 16_000)
-    until(lambda: ports.traffic.packets == sent + 5, "all to be read")
-    assert 0.4 * sent < ports.traffic.excess < 0.6 * sent  # half of the room is for others
-    assert ports._queue.bytes < 0.6 * MOST_BYTES
+        until(lambda count=number + 1: ports.traffic.packets == count, "it to be read")
+    until(lambda: ports._muted, "it to be muted")
+    for _ in range(10):
+        one.take(b"x" * 16_000)
+    other.take(b"y" * 16_000)
+    until(lambda: ports._queue.bytes > (fit + 1) * 16_000, "the other to be heard")
     keeper.go_on.set()
-    until(lambda: ports._queue.bytes == 0, "nothing to be left")
-    assert len(keeper.packets) == sent + 5 - ports.traffic.excess
-    assert keeper.bodies.count(b"y" * 16_000) == 5
+    until(lambda: not ports._muted, "it to be handled")
+    one.take(b"again")
+    until(lambda: b"again" in keeper.bodies, "it to be heard again")
+    assert sorted(keeper.bodies) == [b"again", *[b"x" * 16_000] * fit, b"y" * 16_000]
+    dropped = ports.traffic.kernel_drops, ports.traffic.excess
+    assert dropped == ((10, 1) if kernel_filters else (0, 11))
+
+
+def test_who_has_little_waiting_is_not_muted_where_its_host_has_no_more_room(
+    listen, client, keeper, until
+):
+    ports = listen(start=False)
+    ports._queue = FairQueue(ports._handle, 64_000)
+    ports.start()
+    keeper.is_slow = True
+    keeper.go_on.clear()
+    one = client(ports)
+    for number in range(4):
+        one.take(b"x" * 16_000)
+        until(lambda count=number + 1: ports.traffic.packets == count, "it to be read")
+    assert ports.traffic.excess == 3
+    assert not ports._muted
 
 
 def test_there_is_osc_over_ipv6(listen, client, keeper):
@@ -586,7 +611,7 @@ def test_what_is_due_is_looked_after_however_much_is_to_be_read(listen, client, 
     gc.disable()  # a collection of all the session's objects takes long
     try:
         ports.start()
-        until(lambda: len(keeper.packets) >= count, "all packets")
+        until(lambda: ports.traffic.packets >= count and not ports._queue, "all packets")
     finally:
         gc.enable()
     gaps = [after - before for before, after in itertools.pairwise(keeper.ticked_s)]

@@ -11,13 +11,15 @@ import contextlib
 import ctypes
 import errno
 import http.client
+import itertools
 import json
 import logging
 import socket
 import struct
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -34,13 +36,22 @@ TRIES_FOR_A_PORT = 20
 # Linux's numbers of options that Python's socket module does not name.
 SO_ATTACH_FILTER, SO_RCVBUFFORCE, SO_TIMESTAMPNS, SO_RXQ_OVFL = 26, 33, 35, 40
 UDP_HEADER_BYTES = 8
-# A kernel filter (BPF) that drops longer datagrams before they take room in the buffer.
-FILTER = (
+MOST_MUTED = 256  # senders; the system bounds the size of a filter
+# A kernel filter (BPF) that drops datagrams before they take room in the buffer.
+DROP, KEEP = (0x06, 0, 0, 0), (0x06, 0, 0, 0xFFFFFFFF)
+DROP_LONGER = (
     (0x80, 0, 0, 0),  # load the length
     (0x25, 0, 1, DATAGRAM_BYTES + UDP_HEADER_BYTES),  # skip one if it is no more than this
-    (0x06, 0, 0, 0),  # drop
-    (0x06, 0, 0, 0xFFFFFFFF),  # keep
+    DROP,
 )
+LOAD_SENDER = (  # its address in IPv4, XOR its port in the upper half
+    (0x28, 0, 0, 0),  # load the port
+    (0x64, 0, 0, 16),  # shift it to the left
+    (0x07, 0, 0, 0),  # put it aside
+    (0x20, 0, 0, 0xFFF00000 + 12),  # load the address, from the IP header
+    (0xAC, 0, 0, 0),  # XOR what is aside
+)
+SKIP_UNLESS = 0x15
 # Of who is asked at an address in use.
 ANSWERS_WITHIN_S = 0.3
 ANSWER_BYTES = 1 << 16
@@ -88,12 +99,23 @@ def widen(udp: socket.socket) -> int:
         for option in (SO_TIMESTAMPNS, SO_RXQ_OVFL):
             with contextlib.suppress(OSError):
                 udp.setsockopt(socket.SOL_SOCKET, option, 1)
-        program = b"".join(struct.pack("HBBI", *line) for line in FILTER)
-        buffer = ctypes.create_string_buffer(program, len(program))
-        with contextlib.suppress(OSError):
-            described = struct.pack("HP", len(FILTER), ctypes.addressof(buffer))
-            udp.setsockopt(socket.SOL_SOCKET, SO_ATTACH_FILTER, described)
+    mute(udp, ())
     return udp.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+
+
+def mute(udp: socket.socket, senders: Iterable[Address]) -> None:
+    """Let Linux drop what is too long, all datagrams of some senders (by IPv4), and no others."""
+    if sys.platform != "linux":
+        return
+    lines = [*DROP_LONGER, *LOAD_SENDER]
+    for host, port in itertools.islice(senders, MOST_MUTED if udp.family == socket.AF_INET else 0):
+        (number,) = struct.unpack(">I", socket.inet_aton(host))
+        lines += [(SKIP_UNLESS, 0, 1, number ^ port << 16), DROP]
+    program = b"".join(struct.pack("HBBI", *line) for line in (*lines, KEEP))
+    buffer = ctypes.create_string_buffer(program, len(program))
+    with contextlib.suppress(OSError):
+        described = struct.pack("HP", len(lines) + 1, ctypes.addressof(buffer))
+        udp.setsockopt(socket.SOL_SOCKET, SO_ATTACH_FILTER, described)
 
 
 def by_whom(error: OSError, host: str, port: int, asks: Callable[[str, int], bool]) -> str:
@@ -236,6 +258,7 @@ def _places(rows: Any) -> Any:
     return rows.ctypes.data + rows.strides[0] * np.arange(len(rows))
 
 
+@lru_cache(maxsize=1024)
 def _address(name: bytes) -> Any:
     """A ``struct sockaddr`` as Python's sockets tell it."""
     (family,), (port,) = struct.unpack_from("H", name), struct.unpack_from(">H", name, 2)

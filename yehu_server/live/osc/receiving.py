@@ -1,10 +1,10 @@
 """Receives OSC by UDP and TCP at one address, in one thread.
 
 The UDP socket is emptied before packets are parsed, so that memory holds a burst and not the
-kernel's small buffer; packets of a sender that has too many waiting are dropped and counted. A
-connection is not read again before its last packets are handled, so that its sender waits. On
-Linux the kernel stamps packets on arrival and counts those it drops: a message has its true time
-however busy Python is.
+kernel's small buffer. A sender that has too many waiting is muted until they are handled: what it
+sends is dropped, on Linux by the kernel, before it takes room that others need. A connection is not
+read again before its last packets are handled, so that its sender waits. On Linux the kernel stamps
+packets on arrival and counts those it drops: a message has its true time however busy Python is.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from yehu_server.live.osc.answering import (
 )
 from yehu_server.live.osc.fair_queue import FairQueue
 from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, datagrams, open_both, widen
+from yehu_server.live.osc.open_sockets import DATAGRAM_BYTES, datagrams, mute, open_both, widen
 
 log = logging.getLogger(__name__)
 
@@ -41,6 +41,8 @@ STREAM_BYTES = 1 << 16  # of a connection, read at a time
 BEHIND_BYTES = 1 << 16  # waiting of one WebSocket, before it has to wait
 MOST_ASKED = 64
 READ_FOR_NS = 4_000_000  # before packets are handled in between
+# Waiting of a sender of datagrams: the most, and with how much it is muted where it finds no room.
+MOST_OF_A_SENDER_BYTES, MUTED_FROM_BYTES = 512 << 10, 64 << 10
 MOST_PEERS = 1024  # UDP peers that are kept, and hosts
 ACCEPT_AGAIN_S = 1.0
 MOST_CONNECTIONS, MOST_OF_A_HOST = 64, 32
@@ -59,6 +61,7 @@ class OscPorts:
         self._allowed = allowed
         self._handler = handler
         self._queue: FairQueue[bytes | None] = FairQueue(self._handle)  # None: it hung up
+        self._muted: set[UdpPeer] = set()  # not heard until nothing of them waits
         self._has_more = False  # whether the UDP socket was not emptied
         self._handled_ns = 0
         self._accept_from = math.inf  # monotonic s
@@ -143,6 +146,7 @@ class OscPorts:
         if not self._has_more or now_ns - self._handled_ns > READ_FOR_NS:
             self._queue.work()
             self._handled_ns = time.monotonic_ns()
+        self._mute({peer for peer in self._muted if self._queue.bytes_of(peer)})
         self._handler.tick()
         now = time.monotonic()
         if now > self._accept_from:
@@ -219,24 +223,33 @@ class OscPorts:
         """Read some of the waiting datagrams."""
         found, self._has_more = self._datagrams.read()
         self.traffic.kernel_drops = self._datagrams.dropped
+        muted = set(self._muted)
         for packet, address, arrived_ns in found:
-            if address[1] == self.port and is_here(address[0]):
-                self.traffic.refused += 1  # from this server: someone subscribed it to itself
-            elif address[0] in self._allowed:
-                self._enqueue(packet, self._peer(address), arrived_ns)
-            else:
+            is_own = address[1] == self.port and is_here(address[0])  # subscribed to itself
+            if is_own or address[0] not in self._allowed:
                 self.traffic.refused += 1
+                continue
+            self.traffic.packets += 1
+            peer, size = self._peer(address), len(packet)
+            waiting = self._queue.bytes_of(peer)
+            fits = size <= DATAGRAM_BYTES and waiting + size <= MOST_OF_A_SENDER_BYTES
+            is_heard = fits and peer not in muted
+            if not (is_heard and self._queue.add(packet, peer, arrived_ns, size)):
+                self.traffic.excess += 1
+                if waiting > MUTED_FROM_BYTES:
+                    muted.add(peer)
+        self._mute(muted)
+
+    def _mute(self, peers: set[UdpPeer]) -> None:
+        """Drop the datagrams of some peers, and of no others."""
+        if peers != self._muted:
+            self._muted = peers
+            mute(self._udp, (peer.address for peer in peers))
 
     def _new_peer(self, address: Address) -> UdpPeer:
         host = address[0]
         buckets = [answer_bucket()] if is_here(host) else [self._to_host(host), self._to_all]
         return UdpPeer(self._udp, address, self.traffic, buckets)
-
-    def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
-        self.traffic.packets += 1
-        is_short = len(packet) <= DATAGRAM_BYTES  # the kernel drops longer ones on Linux only
-        if not (is_short and self._queue.add(packet, peer, arrived_ns, len(packet))):
-            self.traffic.excess += 1
 
     # -- TCP -----------------------------------------------------------------------------------
 

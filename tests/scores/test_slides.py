@@ -9,6 +9,7 @@ import pytest
 import yehu_server as yehu
 from yehu_server.api.notes import score_of as score_of_notes
 from yehu_server.core.player.note_range import YEHU
+from yehu_server.core.player.rows import ROW
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Options
@@ -133,3 +134,17 @@ def test_the_second_note_takes_the_finger_where_it_is(overlap_s):
     assert after[:2] == before[:2]
     assert after[2] == pytest.approx(before[2], abs=2e-3)
     assert abs(places[30][2] - after[2]) > 0.02
+
+
+def test_everybody_of_a_section_slides_and_is_on_the_note():
+    playing = PlayingOptions(start=(("/playing/section", 3.0),))
+    score = phrased(score_of_notes([(79, 0.0, 0.5), (74, 0.5, 0.5)]), 0.5, playing)
+    options = Options(phrasing=0.5, playing=playing, block=441, is_dry=True, is_mono=True)
+    performance = Performance(score, options)
+    bends = np.array([
+        [each._rig["player"][0]["value"][ROW[BEND]] for each in performance.ensemble.instruments]
+        for _ in performance.blocks()
+    ])  # fmt: skip
+    assert bends.shape[1] == 3
+    assert (bends.min(axis=0) < -4.5).all()
+    assert (bends[65:] == 0.0).all()

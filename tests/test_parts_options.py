@@ -11,6 +11,7 @@ from yehu_server.cli.serve_options import options_of
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.errors import YehuError
 from yehu_server.live.midi.routes import Route
+from yehu_server.playing.mapping import load, shipped_mappings
 from yehu_server.playing.stringing import notes_of
 from yehu_server.util.files import shipped_folder
 
@@ -30,6 +31,23 @@ def test_by_default_one_plays_in_a_room():
     assert options.has_room
     assert options.midi.routes == []
     assert not served("--dry").has_room
+
+
+def test_live_playing_begins_with_a_vibrato_unless_a_mapping_is_chosen():
+    """A mapping has its own way to a vibrato, or begins with one."""
+
+    def vibrato(*words: str) -> float:
+        playing = served(*words).parts[0].playing
+        return {**dict(playing.mapping.start), **dict(playing.start)}.get("/playing/vibrato", 0.0)
+
+    assert vibrato() > 20.0
+    assert vibrato("--mapping", "keyboard-bow-speed") > 20.0
+    still = ("--mapping", "keyboard"), ("--mapping", "wind"), ("--mpe",), ("--preset", "ordinary")
+    assert [vibrato(*words) for words in still] == [0.0] * 4
+    for name in shipped_mappings():
+        binds = load(name).binds
+        moves = [bind.source for bind in binds if bind.target == "/playing/vibrato"]
+        assert moves != ["cc 77"] or vibrato("--mapping", name) > 20.0, name
 
 
 def test_each_part_has_its_own_mapping_preset_and_settings():

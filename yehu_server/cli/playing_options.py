@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.playing.tuning import Tuning
 
+# The preset of live playing where nothing is said. Compared in phrases (scripts/first_sound.py).
+FIRST_LIVE = "vibrato"
+
 
 def add_playing(group: Any) -> None:
     """Add the options of playing that serve and render share; see `playing_options_of`."""
@@ -43,13 +46,14 @@ def add_tables(group: Any) -> None:
     """Add the options of how messages are interpreted; see `table_options_of`."""
     add_options(
         group,
-        """
+        f"""
         --mapping FILE: what controllers move: the name of a mapping, mine/NAME for one of yours, or
             a file (default: keyboard)
         --mpe: start with one MPE zone of 15 member channels; without --mapping, use the mapping
             named mpe
         --preset NAME: the sound to start with: the name of a preset, or a file (see yehu-server
-            presets); a plus takes several together, such as sul-tasto+hall
+            presets); a plus takes several together, such as sul-tasto+hall (default: of serve
+            without --mapping and --mpe, {FIRST_LIVE}; else none)
         --programs: let MIDI program changes select presets (default: they are ignored)
         """,
     )
@@ -139,9 +143,12 @@ def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) ->
     presets = Presets(arguments.presets, user_first=user_first)
     start: tuple[tuple[str, float], ...] = ()
     file = None
-    if arguments.preset is not None:
-        file = presets.find_file(arguments.preset)
-        preset = presets.find(arguments.preset)
+    name = arguments.preset
+    if name is None and is_live and arguments.mapping is None and not arguments.mpe:
+        name = FIRST_LIVE
+    if name is not None:
+        file = presets.find_file(name)
+        preset = presets.find(name)
         start = tuple(preset.values.items())
         for remark in preset.remarks():
             warn(remark)

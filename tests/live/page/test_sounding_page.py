@@ -61,7 +61,7 @@ def test_what_is_recorded_is_the_note_that_was_played(found, folder, name):
     sound, rate = soundfile.read(folder / name, dtype="float32")
     assert np.isfinite(sound).all()
     assert np.abs(sound).max() > 0.03
-    assert abs(off_by(sound, rate)) < 20.0  # a vibrato of 16 cents, of which it hears a turn or so
+    assert abs(off_by(sound, rate)) < 26.0  # as wide as the vibrato, of which it hears a turn or so
 
 
 @pytest.mark.parametrize("name", ["recorded.wav", "script.wav"])
@@ -82,7 +82,7 @@ def test_the_server_replays_what_was_kept(found, folder, tmp_path):
     assert main(["replay", str(folder / "kept.jsonl"), "-o", str(tmp_path / "kept.wav")]) == 0
     sound, rate = soundfile.read(tmp_path / "kept.wav", dtype="float32")
     assert len(sound) / rate == pytest.approx(1.9, abs=1.0)
-    assert abs(off_by(sound, rate)) < 20.0  # a vibrato of 16 cents, of which it hears a turn or so
+    assert abs(off_by(sound, rate)) < 26.0  # as wide as the vibrato, of which it hears a turn or so
 
 
 @pytest.fixture(scope="module")

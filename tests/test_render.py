@@ -13,10 +13,10 @@ from pathlib import Path
 import mido
 import numpy as np
 import pytest
+import scipy
 import soundfile
 from midi_files import midi_file, notes
 from pitch import cents, hertz, pitch_of
-from scipy.signal import resample
 from sound import rms
 
 from yehu_server.playing.options import PlayingOptions
@@ -219,7 +219,7 @@ def test_normalize_puts_the_true_peak_at_minus_1_dbfs(play, phrase, kind, subtyp
     )
     summary, sound = play(phrase, *words)
     # An interpolation of our own, by a spectrum without what is above half the rate.
-    between = resample(sound, 8 * len(sound))
+    between = scipy.signal.resample(sound, 8 * len(sound))
     assert 20.0 * math.log10(np.abs(between).max()) == pytest.approx(-1.0, abs=0.15)
     assert summary["peak"] == pytest.approx(np.abs(sound).max(), abs=STEP[subtype])
     assert summary["rms"] == pytest.approx(rms(sound), abs=STEP[subtype])

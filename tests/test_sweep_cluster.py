@@ -5,13 +5,11 @@ from __future__ import annotations
 import json
 
 import pytest
-from clusters import cluster_in
+from clusters import cluster_in, needs_distributed
 
 from yehu_server.rendering import cluster_worker
 
-pytestmark = pytest.mark.slow
-
-pytest.importorskip("distributed")
+pytestmark = [pytest.mark.slow, needs_distributed]
 
 BOWED = {"duration": 0.1, "controls": {"bow_force": 0.5, "bow_velocity": 0.2}}
 # Not in the order of the alphabet.

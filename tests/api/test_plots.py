@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
 import types
 from collections.abc import Iterator
@@ -16,19 +17,18 @@ from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ
 from yehu_server.lab.sweeps.result import Result, result_of
 from yehu_server.lab.sweeps.study import study_of
 
-mpl.use("Agg")
-
-import matplotlib.pyplot as plt
-
 RATE = 44100
 BOWED = {"bow_force": [[0, 0], [0.03, 0.7]], "bow_velocity": [[0, 0], [0.03, 0.3]]}
 
 
 @pytest.fixture(autouse=True)
-def _figures() -> Iterator[None]:
-    plt.close("all")  # what other tests left
-    yield
-    plt.close("all")
+def plt() -> Iterator[types.ModuleType]:
+    """``matplotlib.pyplot``, which takes long to load, without figures that other tests left."""
+    mpl.use("Agg")
+    pyplot = importlib.import_module("matplotlib.pyplot")
+    pyplot.close("all")
+    yield pyplot
+    pyplot.close("all")
 
 
 def sine(hz: float, seconds: float = 0.5) -> np.ndarray:
@@ -75,7 +75,7 @@ def test_a_spectrogram_may_go_without_pitch():
     assert not yehu.plot.spectrogram(sine(500.0), RATE, pitch=False).get_lines()
 
 
-def test_pitch_and_level_of_an_array():
+def test_pitch_and_level_of_an_array(plt):
     axes = yehu.plot.pitch(sine(440.0), RATE)
     assert np.nanmedian(line(axes, "played").get_ydata()) == pytest.approx(69.0, abs=0.02)
     plt.figure()
@@ -166,7 +166,7 @@ def test_a_plucked_string_begins_with_its_energy():
 # ---------------------------------------------------------------- maps
 
 
-def test_regimes_are_drawn_where_they_were_found():
+def test_regimes_are_drawn_where_they_were_found(plt):
     found = result(
         {"bow_force": [0.1, 0.2, 0.3], "bow_velocity": [0.1, 0.2]},
         regime=[[0, 1], [1, 1], [6, 2]],
@@ -247,7 +247,7 @@ def test_guettler_counts_periods_from_the_first_slip_and_leaves_out_what_never_c
 # ---------------------------------------------------------------- axes in, axes out
 
 
-def test_it_draws_into_the_axes_that_it_is_given(run):
+def test_it_draws_into_the_axes_that_it_is_given(run, plt):
     figure, panels = plt.subplots(1, 3)
     found = result({"bow_position": [0.25, 0.28], "bow_force": [0.1, 1.0]}, regime=[[1, 1]] * 2)
     assert yehu.plot.spectrogram(sine(440.0), RATE, ax=panels[0]) is panels[0]

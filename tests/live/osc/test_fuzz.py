@@ -14,7 +14,6 @@ from pathlib import Path
 
 import pytest
 from fuzz.target import Program
-from fuzz.targets.osc_calls import packet
 
 PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 GROWTH_BYTES = 64 << 20
@@ -26,6 +25,8 @@ def resident_bytes() -> int:
 
 @pytest.mark.parametrize("kind", ["udp", "prefixed", "slip"])
 def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(live, until, kind):
+    from fuzz.targets.osc_calls import packet  # with all targets, which takes long
+
     chance = random.Random(f"garbage by {kind}")
     sender = live.client() if kind == "udp" else live.stream(slip=kind == "slip")
     listener = live.client()

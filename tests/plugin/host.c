@@ -14,7 +14,7 @@
  *
  * The first ten are events of a block, or told with it; the others happen between two blocks.
  * Prints lines: a word and numbers. "odd": samples that are not finite, denormal, not written, or
- * beyond the block; "untrue": a parameter, and a value whose text does not lead back to itself.
+ * beyond the block; "names": of keys, the last of these keys, and how often they changed; "untrue": a parameter, and a value whose text does not lead back to itself.
  */
 #include <math.h>
 #include <stdio.h>
@@ -80,8 +80,22 @@ static bool CLAP_ABI push(const clap_output_events_t *list, const clap_event_hea
 }
 static const clap_input_events_t event_list = {NULL, size_of, get};
 static const clap_output_events_t ignored = {NULL, push};
-static const void *CLAP_ABI extension(const clap_host_t *host, const char *id) { return (void)host, (void)id, NULL; }
+/* As clap/ext/note-name.h, which older sets of headers have not. */
+static const char *const NAMES = "clap.note-name";
+typedef struct { char name[CLAP_NAME_SIZE]; int16_t port, key, channel; } note_name;
+typedef struct {
+    uint32_t(CLAP_ABI *count)(const clap_plugin_t *);
+    bool(CLAP_ABI *get)(const clap_plugin_t *, uint32_t, note_name *);
+} plugin_names;
+static long calls_wanted, names_changed;
+
 static void CLAP_ABI nothing(const clap_host_t *host) { (void)host; }
+static void CLAP_ABI want_call(const clap_host_t *host) { (void)host, calls_wanted++; }
+static void CLAP_ABI hear_names(const clap_host_t *host) { (void)host, names_changed++; }
+static const struct { void(CLAP_ABI *changed)(const clap_host_t *); } host_names = {hear_names};
+static const void *CLAP_ABI extension(const clap_host_t *host, const char *id) {
+    return (void)host, strcmp(id, NAMES) ? NULL : &host_names;
+}
 
 static int64_t CLAP_ABI put(const clap_ostream_t *stream, const void *bytes, uint64_t n) {
     n = n > PIECE ? PIECE : n;
@@ -209,7 +223,7 @@ int main(int words, char **word) {
     const clap_plugin_entry_t *entry = library ? dlsym(library, "clap_entry") : NULL;
     if (!entry || !entry->init(word[1])) return fprintf(stderr, "%s\n", dlerror()), 3;
     const clap_plugin_factory_t *factory = entry->get_factory(CLAP_PLUGIN_FACTORY_ID);
-    const clap_host_t host = {CLAP_VERSION, NULL, "host", "", "", "1", extension, nothing, nothing, nothing};
+    const clap_host_t host = {CLAP_VERSION, NULL, "host", "", "", "1", extension, nothing, nothing, want_call};
     const clap_plugin_descriptor_t *about = factory->get_plugin_descriptor(factory, 0);
     if (entry->get_factory("clap.no-such-factory") || factory->get_plugin_count(factory) != 1) return 8;
     if (!is_instrument(about->features) || factory->create_plugin(factory, &host, "x")) return 9;
@@ -277,6 +291,14 @@ int main(int words, char **word) {
             if (!is_true(plugin, params, info.id, value)) printf("untrue %u %.17g\n", info.id, value);
         }
     }
+    for (; calls_wanted > 0; calls_wanted--) plugin->on_main_thread(plugin);
+    const plugin_names *names = plugin->get_extension(plugin, NAMES);
+    note_name named = {.key = -1};
+    for (uint32_t i = 0; i < names->count(plugin); i++)
+        if (!names->get(plugin, i, &named) || named.port != -1 || named.channel != -1) return 11;
+    if (names->get(plugin, names->count(plugin), &named)) return 12;
+    printf("names %u %d %ld\n", names->count(plugin), named.key, names_changed);
+    if (names->count(plugin)) printf("last-%s\n", named.name);
     printf("odd %ld\nallocated %ld\ntook %g\nlongest %g\n", odd, allocated, took, longest);
     plugin->stop_processing(plugin), plugin->deactivate(plugin), plugin->destroy(plugin);
     entry->deinit();

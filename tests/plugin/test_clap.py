@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from plugin.sounds import FRAMES, PHRASE, by_library, frequency, level_db, script
 
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.playing.preset_folders import Presets
 
 pytestmark = pytest.mark.slow
@@ -53,6 +54,17 @@ def test_a_parameter_moves_at_its_frame(play, shown):
         assert not np.array_equal(moved[14461:14480], still[14461:14480])
         later = slice(26000, 28000)  # the room has decayed
         assert level_db(moved[later]) < level_db(still[later]) - 30.0
+
+
+def test_keys_that_choose_articulations_have_names(play, shown):
+    mapping = shown["/mapping"]
+    switches = mapping.choices.index("keyboard-articulations")
+    _, told = play(PLAYS, 256)
+    assert told["names"] == [[0, -1, 0]]
+    _, told = play([*PLAYS, f"0 set {mapping.number} {switches}"], 1024)
+    last = 36 + len(ARTICULATIONS) - 1
+    assert told["names"] == [[len(ARTICULATIONS), last, 1]]
+    assert f"last-{ARTICULATIONS[-1].name}" in told
 
 
 def test_a_preset_moves_what_it_names_and_tells_the_host(play, shown):

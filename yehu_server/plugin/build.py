@@ -21,6 +21,7 @@ from yehu_server.plugin.targets import ALL, NAMES, X11, System, systems_of
 
 SOURCE = Path(__file__).parent / "source"
 COMMON = ("engine.cpp", "instrument.cpp", "resampler.cpp", "text.cpp")
+CLAP = ("clap.cpp", "clap_notes.cpp")
 VST3 = ("vst3.cpp", "vst3_processor.cpp", "vst3_controller.cpp")
 # Of the window, where a system has one (`System.window`).
 FACE = ("canvas.cpp", "face.cpp")
@@ -51,9 +52,7 @@ class Format:
 
 
 FORMATS = (
-    Format(
-        "CLAP", ("clap.cpp",), DPF, Path("clap/entry.h"), "dpf-source", put_clap, ("clap_face.cpp",)
-    ),
+    Format("CLAP", CLAP, DPF, Path("clap/entry.h"), "dpf-source", put_clap, ("clap_face.cpp",)),
     Format("LV2", ("lv2.cpp",), SYSTEM, Path("lv2/core/lv2.h"), "lv2-dev", put_lv2),
     Format("VST3", VST3, DPF, Path("travesty/base.h"), "dpf-source", put_vst3, ("vst3_view.cpp",)),
 )

@@ -36,6 +36,7 @@ class Carried:
     presets: dict[str, dict[str, float]]
     mappings: dict[str, Array]  # runs of words of ``midi.tables``
     starts: dict[str, dict[str, float]]
+    switches: dict[str, int]  # of each mapping: the first key that chooses an articulation; or -1
     tunings: dict[str, Array]  # the same, for the fields OF_TUNING
 
     @cached_property
@@ -56,6 +57,7 @@ def carried() -> Carried:
             name: {address: find(address).accept(value) for address, value in mapping.start}
             for name, mapping in loaded.items()
         },
+        {name: -1 if m.key_switches is None else m.key_switches for name, m in loaded.items()},
         _tunings(),
     )
 

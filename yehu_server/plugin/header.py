@@ -6,8 +6,16 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.plugin.carried import Carried
-from yehu_server.plugin.parameters import CHANCE, MAPPING, PRESET, TUNING, HostParameter
+from yehu_server.plugin.parameters import (
+    ARTICULATION,
+    CHANCE,
+    MAPPING,
+    PRESET,
+    TUNING,
+    HostParameter,
+)
 from yehu_server.util import __version__
 
 Array = Any
@@ -63,6 +71,9 @@ static const Parameter parameters[] = {{
 }};
 enum {{ PARAMETERS = {count} }};
 enum {{ PRESET = {preset}, MAPPING = {mapping}, TUNING = {tuning}, CHANCE = {chance} }};
+enum {{ ARTICULATION = {articulation}, ARTICULATIONS = {articulations} }};
+/* Of each mapping the key that chooses the first articulation, others upwards; or -1. */
+static const int16_t first_switches[] = {{{switches}}};
 
 {lists}
 
@@ -101,6 +112,9 @@ def header(shown: Sequence[HostParameter], data: Carried) -> str:
         mapping=place[MAPPING],
         tuning=place[TUNING],
         chance=place[CHANCE],
+        articulation=place[ARTICULATION],
+        articulations=len(ARTICULATIONS),
+        switches=", ".join(map(str, data.switches.values())),
         lists="\n".join(_places(shown)),
         expressions="\n".join(
             f"    {{0x{status:02X}, {controller}, {neutral}, {lo:g}, {hi:g}}}, /* {name} */"

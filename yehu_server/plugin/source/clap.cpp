@@ -6,7 +6,6 @@
 #include <clap/entry.h>
 #include <clap/ext/audio-ports.h>
 #include <clap/ext/latency.h>
-#include <clap/ext/note-ports.h>
 #include <clap/ext/params.h>
 #include <clap/ext/state.h>
 #include <clap/plugin-factory.h>
@@ -27,17 +26,7 @@ bool CLAP_ABI get_audio(const clap_plugin_t *, uint32_t index, bool is_input, cl
     return true;
 }
 
-uint32_t CLAP_ABI count_notes(const clap_plugin_t *, bool is_input) { return is_input ? 1 : 0; }
-
-bool CLAP_ABI get_notes(const clap_plugin_t *, uint32_t index, bool is_input, clap_note_port_info_t *info) {
-    if (!is_input || index > 0) return false;
-    const uint32_t all = CLAP_NOTE_DIALECT_CLAP | CLAP_NOTE_DIALECT_MIDI | CLAP_NOTE_DIALECT_MIDI_MPE;
-    *info = {0, all, CLAP_NOTE_DIALECT_CLAP, "Yehu"};
-    return true;
-}
-
 const clap_plugin_audio_ports_t audio_ports = {count_audio, get_audio};
-const clap_plugin_note_ports_t note_ports = {count_notes, get_notes};
 
 /* -- parameters and events -------------------------------------------------------------------- */
 
@@ -131,6 +120,7 @@ void CLAP_ABI flush(const clap_plugin_t *plugin, const clap_input_events_t *in, 
         if (parameter >= 0) instrument.set(parameter, changed->value);
     }
     tell_moved(instrument, out);
+    watch_names(of(plugin));
 }
 
 const clap_plugin_params_t params = {count_parameters, get_parameter, get_value, to_text, from_text, flush};
@@ -189,6 +179,7 @@ const clap_plugin_latency_t latency = {get_latency};
 bool CLAP_ABI init(const clap_plugin_t *) { return true; }
 bool CLAP_ABI start(const clap_plugin_t *) { return true; }
 void CLAP_ABI nothing(const clap_plugin_t *) {}
+void CLAP_ABI on_main_thread(const clap_plugin_t *plugin) { tell_names(of(plugin)); }
 void CLAP_ABI reset(const clap_plugin_t *plugin) { of(plugin).instrument.reset(); }
 
 void CLAP_ABI destroy(const clap_plugin_t *plugin) {
@@ -216,15 +207,16 @@ clap_process_status CLAP_ABI process(const clap_plugin_t *plugin, const clap_pro
     float **out = block->audio_outputs[0].data32;
     instrument.process(out[0], out[1], block->frames_count);
     tell_moved(instrument, block->out_events);
+    watch_names(of(plugin));
     return CLAP_PROCESS_CONTINUE;
 }
 
 const void *CLAP_ABI get_extension(const clap_plugin_t *, const char *id) {
     const struct { const char *id; const void *extension; } known[] = {
-        {CLAP_EXT_AUDIO_PORTS, &audio_ports}, {CLAP_EXT_NOTE_PORTS, &note_ports},
-        {CLAP_EXT_PARAMS, &params},           {CLAP_EXT_STATE, &state},
+        {CLAP_EXT_AUDIO_PORTS, &audio_ports}, {CLAP_EXT_PARAMS, &params}, {CLAP_EXT_STATE, &state},
         {CLAP_EXT_LATENCY, &latency},         {"clap.tail", &tail},
     };
+    if (const void *extension = note_extension(id)) return extension;
     if (const void *extension = face_extension(id)) return extension;
     for (const auto &each : known)
         if (!strcmp(id, each.id)) return each.extension;
@@ -250,7 +242,8 @@ const clap_plugin_t *CLAP_ABI create(const clap_plugin_factory_t *, const clap_h
     Plugin *made = new (memory) Plugin{};
     made->host = host;
     made->clap = {&descriptor, made, init, destroy, activate, nothing, start, nothing, reset, process,
-                  get_extension, nothing};
+                  get_extension, on_main_thread};
+    made->named = made->instrument.value(MAPPING);
     return &made->clap;
 }
 

@@ -1,6 +1,8 @@
-/* The plug-in for CLAP hosts, as its two files know it. */
+/* The plug-in for CLAP hosts, as its files know it. */
 #ifndef YEHU_CLAP_HPP
 #define YEHU_CLAP_HPP
+
+#include <atomic>
 
 #include <clap/entry.h>
 #include <clap/plugin-factory.h>
@@ -19,9 +21,17 @@ struct Plugin {
     Face *face; /* null while there is none */
     clap_id timer;
     bool has_timer;
+    std::atomic<double> named; /* the mapping whose keys the host knows the names of */
 };
 
 inline Plugin &of(const clap_plugin_t *plugin) { return *(Plugin *)plugin->plugin_data; }
+
+/* The extension of notes, by its name, or null. */
+const void *note_extension(const char *id);
+/* From the thread that changes parameters: see whether keys have other names. Then, on the main
+ * thread, tell the host. */
+void watch_names(Plugin &plugin);
+void tell_names(const Plugin &plugin);
 
 #ifdef YEHU_FACE
 /* The extension of a window, by its name, or null. */

@@ -61,8 +61,8 @@ def scrape_db(sound: Any, rate: float, note: ScoreNote) -> float:
 
 def shape_of(path: Path, phrasing: float, rate: float, seed: int) -> dict[str, Any]:
     """What is heard of a tune."""
-    sound = yehu.render(path, phrasing=phrasing, dry=True, mono=True, seed=seed).sound
-    sound = np.asarray(sound, np.float64).reshape(len(sound), -1).mean(axis=1)
+    on_time = yehu.render(path, phrasing=phrasing, rubato=0.0, dry=True, mono=True, seed=seed)
+    sound = np.asarray(on_time.sound, np.float64)
     track = heard(sound, rate)
     notes = notes_of(performed_part(read_written(path)))
     long = [note for note in notes if note.length_s >= LONG_S]

@@ -30,7 +30,7 @@ SHOWN_S, FADE_S = 12.0, 0.5  # almost two phrases
 def rendered(folder: Path) -> tuple[Any, list[Any]]:
     """Return the mix [shape=(frames, 2)] and the stems of the parts [shape=(frames,)]."""
     mix = folder / "mix.wav"
-    words = ["--ensemble", "--rate", str(RATE), "--subtype", "float", "--quiet"]
+    words = ["--ensemble", "--rubato", "0", "--rate", str(RATE), "--subtype", "float", "--quiet"]
     if command(["render", str(SCORE), "-o", str(mix), "--stems", str(folder / "s"), *words]):
         raise SystemExit(1)
     stems = sorted((folder / "s").glob("[0-9]*.wav"))

@@ -114,6 +114,8 @@ def test_the_end_is_slower_unless_its_tempo_is_written():
     assert steps[-1] > steps[-2] > steps[-3]
     longer = phrased(score, 0.5).duration_s - score.duration_s
     assert 0.05 < longer < 0.15
+    few = written(lengths=[1, 1, 4])
+    assert later(few) == pytest.approx([0.0] * 3)
     slower = written(Span("ritardando", Fraction(4), Fraction(10)))
     assert phrased(slower, 0.5).duration_s == pytest.approx(slower.duration_s)
 

@@ -72,10 +72,13 @@ def _with_end(notes: Sequence[ScoreNote], points: list[tuple[float, float]]) -> 
     """The same with the last beats slower, where their tempo is steady."""
     close = [note for note in notes if note.beat > notes[-1].beat - 2.0 * LAST_BEATS - NEAR]
     tempi = _tempi(close)
-    if not tempi or max(tempi) > (1.0 + SAME_TEMPO) * min(tempi):
+    is_steady = bool(tempi) and 0.0 < max(tempi) <= (1.0 + SAME_TEMPO) * min(tempi)
+    if not is_steady or len(notes) < LEAST_NOTES:
         return tuple(points)
     last, quarter_s = notes[-1], tempi[-1]
     begin = last.start_s - LAST_BEATS * quarter_s
+    if begin < notes[0].start_s:
+        return tuple(points)
     held_s = min(last.length_s, quarter_s)
     at = sorted({
         *(begin + (last.start_s - begin) * step / POINTS for step in range(POINTS + 1)),

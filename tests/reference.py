@@ -20,7 +20,7 @@ n-1/2. `step` returns the state one sample later. Inputs are never modified.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -187,6 +187,7 @@ def rest_state(params: RefParams, fingers: int) -> RefState:
 # ---------------------------------------------------------------------------------------------
 
 
+@cache
 def D_minus(string: RefString) -> Array:
     """(27): N x (N-1), the slope between neighbours of the interior nodes, ends fixed at zero."""
     N = string.N
@@ -198,11 +199,13 @@ def D_plus(string: RefString) -> Array:
     return -D_minus(string).T
 
 
+@cache
 def D_2(string: RefString) -> Array:
     """(27): (N-1) x (N-1)."""
     return D_plus(string) @ D_minus(string)
 
 
+@cache
 def D_4(string: RefString) -> Array:
     """(27), corrected: D4 = D2 D2, the ends simply supported (3)."""
     return D_2(string) @ D_2(string)
@@ -328,14 +331,13 @@ def sign_changes(function: Callable[[Array], Array], scan: Array) -> list[tuple[
         closer = [np.linspace(x[j - 1], x[j + 1], 101) for j in places]
         x = np.unique(np.concatenate([x, *closer]))
         y = function(x)
-    intervals: list[tuple[float, float]] = []
     (nonzero,) = np.nonzero(y)
-    for a, b in pairwise(nonzero):
-        if np.sign(y[a]) != np.sign(y[b]):
-            intervals.append((float(x[a]), float(x[b])))
-        elif b > a + 1:  # it touches zero and turns back: a double root
-            intervals += [(float(x[a + 1]), float(x[a + 1]))] * 2
-    return intervals
+    a, b = nonzero[:-1], nonzero[1:]
+    changes = np.sign(y[a]) != np.sign(y[b])
+    touches = ~changes & (b > a + 1)  # it touches zero and turns back: a double root
+    crossed = [*zip(x[a[changes]], x[b[changes]], strict=True)]
+    touched = [(place, place) for place in x[a[touches] + 1]]
+    return [(float(low), float(high)) for low, high in crossed + 2 * touched]
 
 
 def root_to_the_last_bit(function: Callable[[Array], Array], a: float, b: float) -> float:

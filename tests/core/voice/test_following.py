@@ -59,10 +59,12 @@ def followed(
 def vowel(pitch: np.ndarray, rate: float = RATE) -> np.ndarray:
     """A sung vowel: pulses through three formants, up to 12 kHz; at most 1."""
     hz = 440.0 * 2.0 ** ((pitch - 69.0) / 12.0)
-    phase, sound = 2.0 * np.pi * np.cumsum(hz) / rate, np.zeros(len(pitch))
+    turn, sound = np.exp(2j * np.pi * np.cumsum(hz) / rate), np.zeros(len(pitch))
+    partial = np.ones_like(turn)
     for k in range(1, int(min(0.45 * rate, 12e3) / hz.max()) + 1):
         gain = sum(1.0 / (1.0 + ((k * hz - f) / 90.0) ** 2) + 0.03 for f in (700.0, 1200.0, 2600.0))
-        sound += gain / k * np.sin(k * phase + 0.3 * k * k)
+        partial *= turn
+        sound += gain / k * (partial * np.exp(0.3j * k * k)).imag
     return sound / np.abs(sound).max()
 
 

@@ -34,20 +34,17 @@ def test_by_default_one_plays_in_a_room():
 
 
 def test_live_playing_begins_with_a_vibrato_unless_a_mapping_is_chosen():
-    """A mapping has its own way to a vibrato, or begins with one."""
+    """Each mapping has its own way to a vibrato."""
 
     def vibrato(*words: str) -> float:
         playing = served(*words).parts[0].playing
         return {**dict(playing.mapping.start), **dict(playing.start)}.get("/playing/vibrato", 0.0)
 
     assert vibrato() > 20.0
-    assert vibrato("--mapping", "keyboard-bow-speed") > 20.0
     still = ("--mapping", "keyboard"), ("--mapping", "wind"), ("--mpe",), ("--preset", "ordinary")
     assert [vibrato(*words) for words in still] == [0.0] * 4
     for name in shipped_mappings():
-        binds = load(name).binds
-        moves = [bind.source for bind in binds if bind.target == "/playing/vibrato"]
-        assert moves != ["cc 77"] or vibrato("--mapping", name) > 20.0, name
+        assert "/playing/vibrato" in {bind.target for bind in load(name).binds}, name
 
 
 def test_each_part_has_its_own_mapping_preset_and_settings():

@@ -24,9 +24,10 @@ def test_a_message_is_heard_a_constant_time_after_it_came(live, busy):
             client.wait_for("/bow/position")
             moves = [frame for frame, address, _ in live.settle() if address == "/bow/position"]
             delays.append((moves[0] - before, moves[0] - after, delay))
-    # On a busy machine some may be late; most are not.
-    on_time = [1 for most, least, delay in delays if least <= delay <= most + 1]
-    assert len(on_time) > len(delays) // 2
+    # Hardly any is early, as the delay itself may change. On a busy machine many are late; not all.
+    early = [1 for most, _, delay in delays if delay > most + 1]
+    on_time = [1 for _, least, delay in delays if least <= delay]
+    assert len(early) < 3 < len(on_time), delays
 
 
 def test_a_burst_of_messages_all_reach_the_instrument(live, wire):

@@ -174,9 +174,9 @@ def test_errors_in_bundles_are_told_when_their_time_comes(still, wire):
 
 def test_bundles_to_a_real_server_keep_their_distances(live, wire, until):
     client = live.client()
-    steps: Counter[int] = Counter()
-    for _ in range(3):  # on a busy machine the silent clock stumbles
+    for _ in range(8):  # on a busy machine the silent clock stumbles
         live.settle()
+        late = live.handler.counts.late_bundles
         first = time.time() + 0.5
         for number in range(50):
             packet = wire.message("/yehu/bow/position", 0.1 + 0.001 * number)
@@ -188,10 +188,10 @@ def test_bundles_to_a_real_server_keep_their_distances(live, wire, until):
         moves = [frame for frame, address, _ in live.settle() if address == "/bow/position"]
         assert len(moves) == 50
         steps = Counter(after - before for before, after in itertools.pairwise(moves))
-        if steps == {240: 49}:
+        if steps[240] > 24 and live.handler.counts.late_bundles == late:
             break
-    assert steps.most_common(1)[0][0] == 240
-    assert live.handler.counts.late_bundles == 0
+    else:
+        pytest.fail(f"{steps}")
     client.take(wire.bundle(time.time() - 1.0, wire.message("/yehu/ping", 5)))
     assert client.wait_for("/pong") == [5]
-    assert live.handler.counts.late_bundles == 1
+    assert live.handler.counts.late_bundles == late + 1

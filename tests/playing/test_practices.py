@@ -294,7 +294,8 @@ def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late
 
 @pytest.fixture
 def one_note(monkeypatch) -> None:
-    """Practise a single note, with a single passage at each trial."""
+    """Practise a single note, with a single passage at each trial, and one round of trials."""
+    monkeypatch.setattr(practising, "ROUNDS", practising.ROUNDS[:1])
     monkeypatch.setattr(practising, "stops_of", lambda _notes: [(0, 70)])
     monkeypatch.setattr(practising, "TRIES", 1)
     monkeypatch.setattr(practising, "QUICK_TRIES", 1)

@@ -22,7 +22,7 @@ from yehu_server.scores.score import ScoreNote, notes_of
 TUNES = Path(__file__).parents[2] / "examples" / "tunes"
 PHRASINGS = (0.0, 0.5)
 SILENT_DB = 35.0  # below the loudest moment of a tune
-LONG_S, EDGE_S, SCRAPE_S, WITHIN_DB = 0.4, 0.1, 0.08, 3.0
+LONG_S, EDGE_S, SCRAPE_S, RISEN = 0.4, 0.1, 0.08, 0.9
 LEAST_DB, MOST_DB = 10.0, 17.0  # over a tune, from the 5th to the 95th of a hundred
 
 
@@ -34,9 +34,10 @@ def over_tune(track: Track) -> float:
 
 
 def of_note(track: Track, note: ScoreNote) -> tuple[float, float, float]:
-    """Rise (ms) to 3 dB below the loudest, SD of the level (dB), width of the vibrato (cents)."""
+    """Rise (ms) to 90 % of the loudest, SD of the level (dB), width of the vibrato (cents)."""
     part = track.part(note.start_s, note.end_s)
-    rise = 1e3 * HOP_S * float(np.argmax(part.level_db > part.level_db.max() - WITHIN_DB))
+    risen_db = part.level_db.max() + 20.0 * np.log10(RISEN)
+    rise = 1e3 * HOP_S * float(np.argmax(part.level_db > risen_db))
     edge = round(EDGE_S / HOP_S)
     level, pitch = part.level_db[edge:-edge], part.pitch[edge:-edge]
     pitch = pitch[np.isfinite(pitch)]

@@ -1,5 +1,7 @@
 """What every program's surface has alike: a control for each parameter, in its place."""
 
+from functools import cache
+
 import pytest
 from boxes import overlapping
 from surface_readers import READERS, SERVER
@@ -11,8 +13,13 @@ from yehu_server.surfaces.catalogue import SURFACES, made
 pytestmark = pytest.mark.parametrize("name", READERS)
 
 
+@cache
+def controls_of(name):
+    return READERS[name]().controls
+
+
 def test_every_parameter_has_one_control_of_its_range_that_begins_at_its_default(name):
-    controls = READERS[name]().controls
+    controls = controls_of(name)
     assert sorted(control.address for control in controls) == sorted(BY_ADDRESS)
     for control in controls:
         param = BY_ADDRESS[control.address]
@@ -21,7 +28,7 @@ def test_every_parameter_has_one_control_of_its_range_that_begins_at_its_default
 
 
 def test_a_control_sends_at_its_address_and_has_its_name_and_range_beside_it(name):
-    for control in READERS[name]().controls:
+    for control in controls_of(name):
         param = BY_ADDRESS[control.address]
         assert control.sends == f"/yehu{param.address}"
         assert common_layout.label(param) in control.texts

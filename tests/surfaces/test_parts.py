@@ -1,6 +1,7 @@
 """Surfaces for one part of a server with several."""
 
 import re
+from functools import cache
 
 import pytest
 
@@ -16,6 +17,7 @@ SPEAKING = [surface for surface in SURFACES if surface.name != "parameters.html"
 ADDRESS = re.compile(r"(?<![\w.])/yehu(/[\w/-]+)")
 
 
+@cache
 def text_of(surface, part):
     return surface.content(made(surface, SERVER, part)).decode()
 

@@ -92,7 +92,8 @@ def test_a_picture_is_drawn_beside_the_sound_which_is_the_same(tune, command, tm
 
     pixels = imread(tmp_path / "b.png")
     assert pixels.shape[:2] == (990, 1540)
-    assert len(np.unique(pixels.reshape(-1, pixels.shape[2]), axis=0)) > 100
+    some = pixels[::5, ::5].reshape(-1, pixels.shape[2])
+    assert len(np.unique(some, axis=0)) > 100
 
 
 def test_the_same_rendering_has_the_same_picture_which_it_may_replace(tune, command, tmp_path):

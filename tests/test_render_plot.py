@@ -163,6 +163,7 @@ def test_where_matplotlib_is_missing_the_extra_is_named(tune, refused, tmp_path,
         assert "install yehu-server[plots]" in err
 
 
+@pytest.mark.usefixtures("_forked_workers")
 def test_a_folder_has_a_folder_of_pictures(tmp_path, command):
     (tmp_path / "in" / "x").mkdir(parents=True)
     midi_file(tmp_path / "in" / "x" / "a.mid", notes((0.0, 0.1, 67, 90)))

@@ -21,7 +21,7 @@ from yehu_server.live.osc import open_sockets, receiving
 from yehu_server.live.osc.answering import ANSWERED_BYTES, TO_ALL_HOSTS
 from yehu_server.live.osc.fair_queue import OVERHEAD_BYTES, FairQueue
 from yehu_server.live.osc.packets import pack
-from yehu_server.live.osc.receiving import MOST_OF_A_SENDER_BYTES, OscPorts
+from yehu_server.live.osc.receiving import MUTED_FROM_BOTH_BYTES, OscPorts
 from yehu_server.live.osc.schedule import AHEAD_S
 
 HOST = "127.0.0.1"
@@ -138,7 +138,7 @@ def test_a_burst_that_buffer_and_queue_hold_arrives_whole(
     listen, client, keeper, until, busy, hindrance
 ):
     ports = listen(start=hindrance != "not started")
-    holds = MOST_OF_A_SENDER_BYTES // (len(numbered(1)[0]) + OVERHEAD_BYTES)
+    holds = MUTED_FROM_BOTH_BYTES // 2 // (len(numbered(1)[0]) + OVERHEAD_BYTES)
     packets = numbered(min(holds, ports.traffic.buffer_bytes // (2 * PACKET_BYTES)))
     if hindrance == "held up":
         keeper.go_on.clear()
@@ -225,7 +225,7 @@ def test_a_sender_with_much_waiting_is_muted_until_it_is_handled(
     one, other = client(ports), client(ports)
     keeper.is_slow = True
     keeper.go_on.clear()
-    fit = -(-(MOST_OF_A_SENDER_BYTES - 16_000) // (16_000 + OVERHEAD_BYTES))
+    fit = MUTED_FROM_BOTH_BYTES // 2 // (16_000 + OVERHEAD_BYTES) + 1
     for number in range(fit + 1):
         one.take(b"x" * 16_000)
         until(lambda count=number + 1: ports.traffic.packets == count, "it to be read")

@@ -41,6 +41,10 @@ class MemoryQuota:
         """Bytes that a peer holds; any thread may call."""
         return self._by_peer.get(peer, 0)
 
+    def of_both(self, peer: Peer) -> int:
+        """Bytes that a peer holds, and those of all of its host, added."""
+        return self.of(peer) + self._by_host.get(peer.host, 0)
+
     def take(self, peer: Peer, size: int, *, always: bool = False) -> bool:
         """Take bytes for a peer; return whether there were enough (with `always` there are)."""
         of_peer, of_host = self.of(peer) + size, self._by_host.get(peer.host, 0) + size
@@ -140,6 +144,10 @@ class FairQueue(Generic[T]):
     def bytes_of(self, peer: Peer) -> int:
         """The size of one peer's waiting packets; any thread may call."""
         return self._quota.of(peer)
+
+    def bytes_of_both(self, peer: Peer) -> int:
+        """The size of one peer's waiting packets, and of all of its host, added."""
+        return self._quota.of_both(peer)
 
     def add(self, thing: T, peer: Peer, when: int, size: int = 0, *, always: bool = False) -> bool:
         """Add a packet; return whether there was room.

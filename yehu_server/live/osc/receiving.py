@@ -41,8 +41,9 @@ STREAM_BYTES = 1 << 16  # of a connection, read at a time
 BEHIND_BYTES = 1 << 16  # waiting of one WebSocket, before it has to wait
 MOST_ASKED = 64
 READ_FOR_NS = 4_000_000  # before packets are handled in between
-# Waiting of a sender of datagrams: the most, and with how much it is muted where it finds no room.
-MOST_OF_A_SENDER_BYTES, MUTED_FROM_BYTES = 512 << 10, 64 << 10
+# A sender of datagrams is muted that has so much waiting, and with all of its host added so much or
+# no more room. So a burst of some 7,000 short messages of one sender is taken.
+MUTED_FROM_BYTES, MUTED_FROM_BOTH_BYTES = 256 << 10, 4 << 20
 MOST_PEERS = 1024  # UDP peers that are kept, and hosts
 ACCEPT_AGAIN_S = 1.0
 MOST_CONNECTIONS, MOST_OF_A_HOST = 64, 32
@@ -231,12 +232,12 @@ class OscPorts:
                 continue
             self.traffic.packets += 1
             peer, size = self._peer(address), len(packet)
-            waiting = self._queue.bytes_of(peer)
-            fits = size <= DATAGRAM_BYTES and waiting + size <= MOST_OF_A_SENDER_BYTES
-            is_heard = fits and peer not in muted
+            has_much = self._queue.bytes_of(peer) > MUTED_FROM_BYTES
+            is_too_much = has_much and self._queue.bytes_of_both(peer) > MUTED_FROM_BOTH_BYTES
+            is_heard = size <= DATAGRAM_BYTES and not is_too_much and peer not in muted
             if not (is_heard and self._queue.add(packet, peer, arrived_ns, size)):
                 self.traffic.excess += 1
-                if waiting > MUTED_FROM_BYTES:
+                if has_much:
                     muted.add(peer)
         self._mute(muted)
 

@@ -3777,13 +3777,13 @@
      "patching_rect": [
       16.0,
       2886,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 5.5"
+     "text": "loadmess set 6"
     }
    },
    {
@@ -3793,7 +3793,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       2886,
       252,
       22
@@ -3811,7 +3811,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      442.0,
+      428.0,
       2886,
       98,
       22
@@ -9761,13 +9761,13 @@
      "patching_rect": [
       16.0,
       4986,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 5.5"
+     "text": "loadmess set 6"
     }
    },
    {
@@ -9777,7 +9777,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       4986,
       196,
       22
@@ -9795,7 +9795,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      372.0,
       4986,
       98,
       22

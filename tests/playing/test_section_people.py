@@ -189,7 +189,7 @@ def vibratos(variation):
 
 def test_people_have_vibratos_of_their_own_and_the_first_that_of_the_part():
     rates, depths, phases = vibratos(0.25)
-    assert (rates[0], depths[0]) == (5.5, 30.0)
+    assert (rates[0], depths[0]) == (6.0, 30.0)
     for own_values, least in ((rates, 0.2), (depths, 3.0), (phases, 0.1)):
         assert np.std(own_values) > least
     assert all(np.ptp(values) == 0.0 for values in vibratos(0.0))

@@ -54,7 +54,7 @@ class Vibrato:
     """
 
     cents: float
-    hertz: float = 5.5
+    hertz: float = 6.0
     press: float = 0.0
     upward: bool = False
     delay_ms: float = 400.0
@@ -163,7 +163,7 @@ ARTICULATIONS: tuple[Articulation, ...] = (
     Articulation(
         "rolling-vibrato", "滚揉", "the finger rolls to both sides of the pitch",
         source="39 to 105 cents from peak to peak in recordings of an erhu, a violin and a cello",
-        vibrato=Vibrato(32.0, 5.8, 0.15, delay_ms=350.0),
+        vibrato=Vibrato(32.0, 6.0, 0.15, delay_ms=350.0),
     ),
     Articulation(
         "pressing-vibrato", "压揉", "the finger presses the string in and only raises its pitch",

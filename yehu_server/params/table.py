@@ -70,7 +70,7 @@ TABLE: tuple[Param, ...] = (
         "Middle of the vibrato above the pitch, as a share of its depth: at 0 it goes to both "
         "sides, at 1 only up, twice as far, at -1 only down.",
         smooth_ms=20.0),
-    _owned("/vibrato/rate", "", "Hz", 0.5, 12.0, 5.5,
+    _owned("/vibrato/rate", "", "Hz", 0.5, 12.0, 6.0,
         "Rate of the vibrato.", smooth_ms=20.0),
     _owned("/vibrato/onset", "", "1", 0.0, 1.0, 1.0,
         "Fade-in of the vibrato: none up to 0.4, then gradually to its full depth at 1."),
@@ -162,7 +162,7 @@ TABLE: tuple[Param, ...] = (
         "Depth of the vibrato to either side."),
     Param("/playing/vibrato_press", "", "1", 0.0, 1.0, 0.0,
         "Variation of the finger force with the vibrato, as a fraction of it."),
-    Param("/playing/vibrato_rate", "", "Hz", 2.0, 10.0, 5.5,
+    Param("/playing/vibrato_rate", "", "Hz", 2.0, 10.0, 6.0,
         "Rate of the vibrato."),
     Param("/playing/vibrato_delay", "", "ms", 0.0, 3000.0, 500.0,
         "Fade-in time of each note's vibrato: none for 0.4 of it, then gradually."),

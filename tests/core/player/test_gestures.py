@@ -299,3 +299,17 @@ def test_a_vibrato_fades_with_the_last_note_and_comes_in_anew_with_the_next():
     assert onset[-1] == 1.0
     playing.off(76)
     assert playing.play(1.0, "value")[0][-1, ONSET] == 0.0
+
+
+def test_an_open_string_is_plucked_as_loud_after_a_finger_that_was_where_it_is_pulled():
+    def level(before: int | None) -> float:
+        playing = Playing(articulation=NUMBER["left-hand-pizzicato"], variation=0.0)
+        if before is not None:
+            playing.on(before)
+            playing.sound(0.4)
+            playing.off(before)
+        playing.sound(0.15)
+        playing.on(72)
+        return float(np.sqrt(np.mean(playing.sound(0.2) ** 2)))
+
+    assert level(70) == pytest.approx(level(None), rel=0.4)

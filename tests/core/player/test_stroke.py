@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
+from yehu_server.core.controls.slots import SHARE
 from yehu_server.core.controls.slots import SPEED as SLOT_OF_SPEED
 from yehu_server.core.player.stroke import END, SLOWEST
 
@@ -125,3 +126,13 @@ def test_one_direction_is_kept_if_wished():
         assert place.max() <= LENGTH
         playing.off(74)
         playing.play(0.05)
+
+
+@pytest.mark.parametrize(("note", "lighter"), [(70, True), (76, False)])
+def test_a_stroke_on_the_inner_string_begins_lighter(note, lighter):
+    """Under a heavy bow B flat 4 begins half a semitone flat."""
+    playing = Playing(variation=0.0, listening=0.0)
+    playing.on(note)
+    share = playing.play(0.4, "value")[0][:, SHARE]
+    assert (share[0] < 0.8 * share[-1]) == lighter
+    assert share[40] == pytest.approx(share[-1])

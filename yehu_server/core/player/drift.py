@@ -43,8 +43,12 @@ HAND = np.array((RIGHT, RIGHT, RIGHT, LEFT, LEFT))
 LEADER = np.array((SPEED_DRIFT, SPEED_DRIFT, SPEED_DRIFT, CENTS_DRIFT, CENTS_DRIFT))
 TOGETHER = 0.6  # correlation with it
 
-# A vibrato's turns differ: standard deviations of rate and width at full variation. By ear.
-UNEVEN_PACE, UNEVEN_WIDTH = 0.12, 0.3
+# A vibrato's turns differ: standard deviations of rate and width at full variation, by ear less
+# than violinists' [Seashore]. Half of the variance wanders: it keeps this much from turn to turn.
+UNEVEN_PACE, UNEVEN_WIDTH = 0.4, 0.4
+WANDERING = 0.85
+WANDERED = math.sqrt(3.0 * (1.0 - WANDERING**2))
+MOST_UNEVEN = 0.5  # of rate and width, up or down
 FOLLOW = 0.15  # of the way to those of the next turn, in a hop
 
 TIMES_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is the drift
@@ -69,6 +73,7 @@ DRIFT_STATE = np.dtype(
         ("tremor", np.float64, (HANDS, 2)),  # of each hand, now and one hop ago
         ("cents", np.float64, LATE + 1),  # of the finger, now and at the last hops
         ("phase", np.float64),  # of the vibrato, one hop ago (turns)
+        ("wander", np.float64, 2),  # slow deviates of the vibrato's rate and width
         ("pace", np.float64),  # deviates of this turn of the vibrato
         ("width", np.float64),
         ("drawn", np.int64),  # random numbers so far
@@ -119,12 +124,26 @@ def vary_vibrato(p: Any, c: Any) -> None:
     """Let the vibrato's rate and width follow the deviates of its turn."""
     u, amount = p.drift_state, p.value[VARIATION] if p.sounding >= 0 else 0.0
     if c.vibrato < u.phase:
-        u.pace, u.width = math.sqrt(3.0) * draw(p), math.sqrt(3.0) * draw(p)
+        u.pace, u.width = next_turn(p, 0), next_turn(p, 1)
     u.phase = c.vibrato
-    c.vibrato_pace += FOLLOW * (1.0 + amount * UNEVEN_PACE * u.pace - c.vibrato_pace)
-    c.vibrato_width += FOLLOW * (1.0 + amount * UNEVEN_WIDTH * u.width - c.vibrato_width)
+    c.vibrato_pace += FOLLOW * (uneven(amount * UNEVEN_PACE * u.pace) - c.vibrato_pace)
+    c.vibrato_width += FOLLOW * (uneven(amount * UNEVEN_WIDTH * u.width) - c.vibrato_width)
     if amount == 0.0 and max(abs(c.vibrato_pace - 1.0), abs(c.vibrato_width - 1.0)) < STEADY:
         c.vibrato_pace = c.vibrato_width = 1.0
+
+
+@compiled_exactly
+def next_turn(p: Any, which: int) -> float:
+    """The deviate of the vibrato's next turn, of variance 1: of its rate (0) or its width (1)."""
+    wander = p.drift_state.wander
+    wander[which] = WANDERING * wander[which] + WANDERED * draw(p)
+    return float(math.sqrt(0.5) * (wander[which] + math.sqrt(3.0) * draw(p)))
+
+
+@compiled_exactly
+def uneven(by: float) -> float:
+    """The factor of a turn that differs by so much, within what a hand does."""
+    return 1.0 + min(max(by, -MOST_UNEVEN), MOST_UNEVEN)
 
 
 @compiled_exactly

@@ -16,6 +16,7 @@ from yehu_server.core.player.bowing import (
     recipe_value,
     share,
 )
+from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.gestures import (
     PLUCKED_AT,
     PLUCKED_BY,
@@ -36,6 +37,8 @@ from yehu_server.core.player.rows import (
     BOW_TREMOLO,
     BOW_TREMOLO_DEPTH,
     DYNAMICS,
+    FINGER_COUNT,
+    FINGER_PRESS,
     PLUCK_FORCE,
     PLUCK_POSITION,
     POSITION,
@@ -53,6 +56,10 @@ SLURRED_MS = 25.0  # ramp of bow speed from one slurred note to the next
 # Bow speed at dynamics 0, as a fraction of that at full dynamics. By ear.
 SOFTEST = 0.45
 LEAST_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow is lifted
+# A heavy stroke on the inner string begins with this share of its pressure: its first periods are
+# long under more, and it begins flat. Under LIGHTEST it might slip twice in a period. Tried at 0.5 to
+# 1 and 60 to 200 ms on F4 to B4, at three dynamics. Hurried strokes have little pressure already.
+LIGHTER, LIGHTEST, LIGHTER_MS = 0.65, 0.4, 150.0
 # Force of a pluck at medium pressure. By ear.
 PULL_N, MEDIUM = 1.2, 0.4
 HARDEST_PULL_N = find("/pluck/force").hi
@@ -111,12 +118,15 @@ def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
 
 @compiled_exactly
 def bite(p: Any, c: Any) -> None:
-    """Begin a hard stroke with more pressure."""
-    factor = struck_bite(p)
-    if factor > 1.0:
-        usual = p.sent[BOW_PRESSURE]
-        move(p, c, BOW_PRESSURE, factor * usual, 0.0)
-        move(p, c, BOW_PRESSURE, usual, BITE_MS)
+    """Begin a hard stroke with more pressure, and one on the inner string with less."""
+    usual = p.sent[BOW_PRESSURE]
+    begins, ms = struck_bite(p) * usual, BITE_MS
+    if p.string == 0:
+        lighter = max(LIGHTER * usual, LIGHTEST)
+        begins, ms = min(usual, lighter + p.hurry * (usual - lighter)), LIGHTER_MS
+    if begins != usual:
+        move(p, c, BOW_PRESSURE, begins, 0.0)
+        move(p, c, BOW_PRESSURE, usual, ms)
 
 
 @compiled_exactly
@@ -153,6 +163,8 @@ def pluck(p: Any, c: Any, side: float) -> None:
     """Pluck the string of a side where the articulation has it; lift the bow before."""
     if p.side != 0.0:
         lift(p, c, CROSSING_MS)
+    if p.position == OPEN:
+        clear_string(p, c)
     at = SHAPES[p.gesture.row, PLUCKED_AT]
     if at > 0.0:
         move(p, c, PLUCK_POSITION, at, 0.0)
@@ -161,3 +173,12 @@ def pluck(p: Any, c: Any, side: float) -> None:
     force = PULL_N * p.value[PRESSURE] * p.weight * SHAPES[p.gesture.row, PLUCKED_BY] / MEDIUM
     move(p, c, PLUCK_FORCE, side * min(force, HARDEST_PULL_N), USUAL_MS)
     forget(p, PLUCK_FORCE)  # the next one may be as hard
+
+
+@compiled_exactly
+def clear_string(p: Any, c: Any) -> None:
+    """Take all fingers from the strings at once: one that hovers would stop what a pluck swings."""
+    for finger in range(FINGER_COUNT):
+        forget(p, FINGER_PRESS[finger])
+        move(p, c, FINGER_PRESS[finger], 0.0, 0.0)
+        c.finger_up[finger] = c.park_after

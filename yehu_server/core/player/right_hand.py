@@ -57,8 +57,8 @@ SLURRED_MS = 25.0  # ramp of bow speed from one slurred note to the next
 SOFTEST = 0.45
 LEAST_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow is lifted
 # A heavy stroke on the inner string begins with this share of its pressure: its first periods are
-# long under more, and it begins flat. Under LIGHTEST it might slip twice in a period. Tried at 0.5 to
-# 1 and 60 to 200 ms on F4 to B4, at three dynamics. Hurried strokes have little pressure already.
+# long under more, and it begins flat. Under LIGHTEST it may slip twice in a period. Tried at 0.3 to
+# 0.9 and 60 to 200 ms, F4 to B4, at three dynamics. Hurried strokes have little pressure already.
 LIGHTER, LIGHTEST, LIGHTER_MS = 0.65, 0.4, 150.0
 # Force of a pluck at medium pressure. By ear.
 PULL_N, MEDIUM = 1.2, 0.4

@@ -485,10 +485,13 @@ def power(sound: np.ndarray) -> float:
 
 
 def test_players_add_up_as_people_do_and_not_as_copies_of_one():
-    playing = replace(PlayingOptions(seed=2), start=(("/playing/section", 8.0),))
-    sounds = played(playing, 8, 4096)
-    powers = sum(power(sound) for sound in sounds)
-    assert 0.4 * powers < power(sounds.sum(axis=0)) < 2.5 * powers  # copies: 8 times
+    """By chance a single time is anything up to copies: phases are random."""
+    times = []
+    for seed in range(6):
+        playing = replace(PlayingOptions(seed=seed), start=(("/playing/section", 8.0),))
+        sounds = played(playing, 8, 4096)
+        times.append(power(sounds.sum(axis=0)) / sum(power(sound) for sound in sounds))
+    assert 0.4 < np.mean(times) < 2.5  # copies: 8
 
 
 def test_a_reset_lets_all_play_that_played_at_the_start():

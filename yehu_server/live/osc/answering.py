@@ -19,6 +19,7 @@ import socket
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Protocol
 
 from pythonosc import slip
@@ -177,7 +178,15 @@ class UdpPeer:
     traffic: Traffic = field(compare=False)
     buckets: Sequence[TokenBucket] = field(compare=False)
 
-    @property
+    @cached_property
+    def _hash(self) -> int:
+        return hash(self.address)
+
+    def __hash__(self) -> int:
+        """Its address's, computed once: each message looks its peer up a dozen times."""
+        return self._hash
+
+    @cached_property
     def host(self) -> str:
         """See `Peer`."""
         return self.address[0]

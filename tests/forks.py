@@ -193,6 +193,8 @@ def _be_prepared(link: socket.socket) -> str:
     gc.collect()
     gc.freeze()  # a fork shares what it never touches
     assert len([*Path("/proc/self/task").iterdir()]) == 1
+    # multiprocessing blocks signals while it starts its tracker, which may be the first request.
+    signal.pthread_sigmask(signal.SIG_SETMASK, ())
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for pytest
     while True:
         header, files, *_ = socket.recv_fds(link, HEADER_BYTES, MOST_FILES)

@@ -244,8 +244,8 @@ class OscPorts:
     def _mute(self, peers: set[UdpPeer]) -> None:
         """Drop the datagrams of some peers, and of no others."""
         if peers != self._muted:
-            self._muted = peers
             mute(self._udp, (peer.address for peer in peers))
+            self._muted = peers
 
     def _new_peer(self, address: Address) -> UdpPeer:
         host = address[0]

@@ -138,7 +138,7 @@ PRINT = """
 import numpy as np
 from yehu_server.lab.regimes.strokes import find
 from yehu_server.lab.sweeps.study import study_of
-study = study_of({"duration": 0.04, "sample_rate": 22050.0, "vary": {"force": [0.4]},
+study = study_of({"duration": 0.04, "vary": {"force": [0.4]},
                   "stroke": {"string": 2, "note": 89, "acceleration": 100.0}})
 found = find(*study.bow.strokes(study.axes, np.zeros((1, 1), int)))
 print([float(found[name][0]) for name in found.dtype.names])

@@ -46,7 +46,10 @@ def test_there_are_constants(here):
     assert any(line.startswith("yehu_server.core.player.drift RADIUS") for line in here)
 
 
-@pytest.mark.parametrize("processor", PROCESSORS)
+@pytest.mark.parametrize(
+    "processor",  # generic has the least of what this one has
+    [pytest.param(each, marks=[pytest.mark.slow][: each != "generic"]) for each in PROCESSORS],
+)
 def test_constants_are_the_same_on_every_processor(here, processor):
     other = constants(sys.executable, str(TESTS / "as_processor.py"), processor)
     assert [line for line in other if line not in here] == []

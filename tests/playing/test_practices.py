@@ -49,6 +49,7 @@ from yehu_server.playing.practice_files import (
     write_practice,
 )
 from yehu_server.playing.practice_passages import Passage, Search
+from yehu_server.playing.practice_recipes import slower
 
 RATE = 44100.0
 PLACE = PLACES.index(0.1)
@@ -294,8 +295,8 @@ def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late
 
 @pytest.fixture
 def one_note(monkeypatch) -> None:
-    """Practise a single note, with a single passage at each trial, and one round of trials."""
-    monkeypatch.setattr(practising, "ROUNDS", practising.ROUNDS[:1])
+    """Practise a single note, with a single passage at each trial, and one short round of them."""
+    monkeypatch.setattr(practising, "ROUNDS", [slower])
     monkeypatch.setattr(practising, "stops_of", lambda _notes: [(0, 70)])
     monkeypatch.setattr(practising, "TRIES", 1)
     monkeypatch.setattr(practising, "QUICK_TRIES", 1)
@@ -309,7 +310,7 @@ def test_what_practise_writes_render_takes(command, render, tmp_path):
     summary = json.loads(out)
     assert summary["rate"] == RATE
     changed = ~np.isclose(read_practice(path), shipped_practice(RATE), atol=1e-4).all(axis=-1)
-    assert changed.sum() == summary["improved"]
+    assert changed.sum() == summary["improved"] > 0
     assert set(zip(*np.nonzero(changed.any(axis=1)), strict=True)) <= {(0, 70 - FIRST)}
     assert render("--practice", path)[1]["practice"] == str(path)
 

@@ -73,10 +73,10 @@ def test_players_err_by_fourteen_milliseconds_at_most():
     varied.variation, most.variation = 0.4, 1.0
     # 0.4 of 36 ms is more than 14 already.
     assert np.array_equal(onsets(varied, 50), onsets(most, 50))
-    apart = []
+    duo, apart = Together(2, RATE, seed=0), []
+    duo.variation = 1.0
     for seed in range(1500):  # first onsets, where nobody has anything to correct
-        duo = Together(2, RATE, seed)
-        duo.variation = 1.0
+        duo.begin(seed)
         apart.append(onsets(duo, 1).max())
     # The median of how far two normal numbers are apart, which the bound of 40 ms leaves alone.
     assert np.median(apart) == pytest.approx(0.6745 * np.sqrt(2.0) * 14.0, rel=0.05)

@@ -31,9 +31,9 @@ def player_at(rate: float) -> tuple[WishPoster, Instrument]:
 # ---------------------------------------------------------------- notes
 
 
-def test_every_note_speaks_in_tune_within_a_fifth_of_a_second_without_any_controller():
+def test_every_note_speaks_in_tune_within_a_fifth_of_a_second_without_any_controller(everything):
     off = {}
-    for note in range(65, 90):
+    for note in range(65, 90) if everything else range(65, 90, 2):
         player, instrument = player_at(RATE)
         player.note_on(Key(0, note))
         out = run_for(instrument, 0.6)[RATE // 5 :]

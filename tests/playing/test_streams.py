@@ -19,7 +19,7 @@ from yehu_server.playing.tuning import RangePolicy
 from yehu_server.playing.wishes import Key
 
 CHANNELS = (0, 1, 9)
-ours = settings(max_examples=40)
+ours = settings(max_examples=25)
 
 channels = st.sampled_from(CHANNELS)
 data = st.integers(0, 127)
@@ -76,7 +76,7 @@ def calibrated(seed: int = 0) -> Watched:
 
 def let_everything_go():
     for channel in CHANNELS:
-        for note in range(128):
+        for note in range(60, 95):
             yield mido.Message("note_off", channel=channel, note=note)
         yield mido.Message("control_change", channel=channel, control=64, value=0)
 
@@ -159,8 +159,8 @@ class Keyboard:
         return self.order[-1] if self.order else None
 
 
-def test_the_last_key_struck_of_those_hand_or_pedal_hold_is_the_one_that_sounds():
-    for seed in range(60):
+def test_the_last_key_struck_of_those_hand_or_pedal_hold_is_the_one_that_sounds(everything):
+    for seed in range(60 if everything else 15):
         player = Checked(calibrated())
         midi = MidiPoster(player, load("keyboard"))
         expected = Keyboard()
@@ -196,8 +196,8 @@ class Boxes(Keyboard):
         self.order = [k for k in self.order if k.channel // 16 != port and self.is_held(k)]
 
 
-def test_the_pedals_of_a_box_hold_the_notes_of_all_keyboards_until_they_are_up():
-    for seed in range(30):
+def test_the_pedals_of_a_box_hold_the_notes_of_all_keyboards_until_they_are_up(everything):
+    for seed in range(30 if everything else 15):
         player = Checked(calibrated())
         midi = MidiPoster(player, load("keyboard"))
         expected = Boxes()

@@ -128,7 +128,7 @@ def told(written: Written) -> dict[str, object]:
 
 
 @given(scores([*BOTH, *XML_ONLY]))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_what_is_written_as_musicxml_is_read_as_it_was(written):
     again, lost = as_musicxml(written)
     assert told(again) == told(written)
@@ -138,7 +138,7 @@ def test_what_is_written_as_musicxml_is_read_as_it_was(written):
 
 
 @given(scores(BOTH))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_what_is_written_as_jianpu_is_read_as_it_was(written):
     again, lost = as_jianpu(written)
     assert told(again) == told(written)

@@ -137,6 +137,31 @@ def test_functions_of_one_name_have_code_of_their_own(kept):
     assert kept.start(made(2)) == (24, True)
 
 
+class Rising(set):
+    """Options in an order, as a process happens to have them."""
+
+    def __iter__(self):
+        return iter(sorted(super().__iter__()))
+
+
+class Falling(set):
+    def __iter__(self):
+        return iter(sorted(super().__iter__(), reverse=True))
+
+
+@pytest.mark.usefixtures("kept")
+def test_code_is_found_whatever_order_a_process_has_its_options_in():
+    """Python orders a set of words anew at each start."""
+    assert [*Rising(jit.FASTMATH)] != [*Falling(jit.FASTMATH)]
+    files = {
+        numba_compiler.dispatcher(
+            third_of, no_alias=True, one_version=False, fastmath=order(jit.FASTMATH)
+        )._cache.path(())
+        for order in (Rising, Falling)
+    }
+    assert len(files) == 1
+
+
 def test_a_full_disk_is_told_once_and_it_plays(kept, caplog, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

@@ -55,7 +55,9 @@ def dispatcher(
     """
     if no_alias:
         options["pipeline_class"] = NoAliasCompiler
-    made = _cached(numba.njit(**OPTIONS, **options)(function), function, repr(options))
+    # A set's text has another order in each process.
+    how = {name: sorted(each) if isinstance(each, set) else each for name, each in options.items()}
+    made = _cached(numba.njit(**OPTIONS, **options)(function), function, repr(how))
     if one_version:
         versions = made.get_call_template
         made.get_call_template = lambda arguments, named: versions(

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 
+import forks
 import matplotlib as mpl
 import pytest
 
@@ -76,7 +77,7 @@ def test_no_module_hides_a_public_name():
         "        except ImportError: pass\n"
         "print(*(n for n in y.__all__ if not callable(getattr(y, n))))"
     )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    run = forks.run(code=code)
     assert run.stdout.split() == ["__version__", "body", "plot"]
 
 

@@ -1,7 +1,9 @@
 """Every sample is finite and within full scale, whatever the instrument's state is."""
 
 import math
+from collections.abc import Iterable, Iterator
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +21,7 @@ from yehu_server.core.stage.late_field import ROOM
 from yehu_server.core.stage.seat import SEAT
 from yehu_server.params.table import ENGINE, SLOT
 
+RATE = 22050  # of those in a room
 BAD = (math.nan, math.inf, -math.inf, 1e308, -1e308)
 STAGES = ("state", "controls", "player", "output")
 
@@ -26,6 +29,13 @@ STAGES = ("state", "controls", "player", "output")
 def of_floats(kind: np.dtype) -> list[str]:
     """The names of a record's floating-point fields."""
     return [name for name in kind.names if kind[name].base == np.float64]
+
+
+def tried(names: Iterable[Any], everything: bool) -> Iterator[tuple[Any, float]]:
+    """What is no number in each of these, and one of all else too; with --all, all of it."""
+    for number, name in enumerate(names):
+        for bad in BAD if everything else (math.nan, BAD[1 + number % (len(BAD) - 1)]):
+            yield name, bad
 
 
 @pytest.fixture(scope="module")
@@ -43,8 +53,8 @@ def instrument() -> Instrument:
 
 
 @pytest.mark.parametrize("stage", STAGES)
-def test_whatever_a_stage_holds_every_sample_is_finite(instrument, playing, stage):
-    for field, bad in product(of_floats(RIG[stage]), BAD):
+def test_whatever_a_stage_holds_every_sample_is_finite(instrument, playing, stage, everything):
+    for field, bad in tried(of_floats(RIG[stage]), everything):
         instrument._rig[:] = playing
         instrument._rig[stage][field] = bad
         out = np.full(256, np.nan, np.float32)
@@ -59,10 +69,10 @@ def test_whatever_a_stage_holds_every_sample_is_finite(instrument, playing, stag
 @pytest.fixture(scope="module")
 def duet() -> tuple[Ensemble, np.ndarray]:
     """Two who bow in a room, and their memory in the middle of a note."""
-    ensemble = Ensemble([InstrumentSpec(44100, body=body) for body in range(2)])
+    ensemble = Ensemble([InstrumentSpec(RATE, body=body) for body in range(2)])
     for instrument in ensemble.instruments:
         bow(instrument, press=1.5)
-    ensemble.process(np.zeros((4410, 2), np.float32))
+    ensemble.process(np.zeros((RATE // 10, 2), np.float32))
     return ensemble, ensemble.memory.copy()
 
 
@@ -81,23 +91,21 @@ def test_whatever_a_stage_holds_the_mix_is_finite_and_comes_back(duet, kind, eve
         SIDES: ensemble.instruments[0]._rig["seat"]["sides"],
         ROOM: ensemble._stage["room"],
     }[kind]
-    for number, field in enumerate(of_floats(kind)):
-        # Of what is no number in each field; and of all else too, with --all.
-        for bad in BAD if everything else {math.nan, BAD[number % len(BAD)]}:
-            ensemble.memory[:] = memory
-            fields[field] = bad
-            check_it_comes_back(ensemble, field, bad)
+    for field, bad in tried(of_floats(kind), everything):
+        ensemble.memory[:] = memory
+        fields[field] = bad
+        check_it_comes_back(ensemble, field, bad)
 
 
 def check_it_comes_back(ensemble: Ensemble, field: str, bad: float) -> None:
     """The mix is finite; and sounds again, unless what was lost is only prepared at the start."""
-    out = np.full((22050, 2), np.nan, np.float32)
+    out = np.full((RATE // 2, 2), np.nan, np.float32)
     before = int(ensemble._stage["invalid_samples"])
-    for start in range(0, len(out), 4410):
-        ensemble.process(out[start : start + 4410])
+    for start in range(0, len(out), RATE // 10):
+        ensemble.process(out[start : start + RATE // 10])
     assert (np.abs(out) <= 1.0).all(), (field, bad)  # also refuses NaN
     if field not in PREPARED:
-        assert np.abs(out[-4410:]).max() > 0.05, (field, bad)
+        assert np.abs(out[-RATE // 10 :]).max() > 0.05, (field, bad)
         room = ensemble._stage["room"]
         assert np.isfinite(room["row"]).all(), (field, bad)
         # All begins anew at once, wherever a block begins: what was computed ahead is lost too.
@@ -142,8 +150,8 @@ def test_a_target_that_is_no_number_is_passed_over(instrument, playing):
 
 
 @pytest.mark.parametrize("sounds", [False, True], ids=["in silence", "in a note"])
-def test_whatever_is_wished_for_every_sample_is_finite(instrument, playing, sounds):
-    for kind, bad in product(range(len(KINDS)), BAD):
+def test_whatever_is_wished_for_every_sample_is_finite(instrument, playing, sounds, everything):
+    for kind, bad in tried(range(len(KINDS)), everything):
         instrument._rig[:] = playing
         if sounds:
             instrument.post(BEGIN, value=69.0, other=69.0)

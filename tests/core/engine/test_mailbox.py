@@ -9,7 +9,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from itertools import combinations, product
 
 import forks
@@ -114,8 +114,13 @@ def storm(rig, start, count):
     return refused
 
 
+@cache
+def compiled_storm() -> Callable[[int, int, int], int]:
+    return numba.cfunc("int64(voidptr, int64, int64)")(storm).ctypes
+
+
 def post_by_storm(instrument: Instrument, count: int) -> int:
-    compiled = numba.cfunc("int64(voidptr, int64, int64)")(storm).ctypes
+    compiled = compiled_storm()
     return sum(compiled(instrument.address, start, 1000) for start in range(0, count, 1000))
 
 
@@ -164,7 +169,7 @@ def collect(
 
 
 @pytest.mark.parametrize("make", [offline, live], ids=["offline", "live"])
-@pytest.mark.parametrize(("post", "count"), [(post_by_storm, 100_000), (post_by_python, 20_000)])
+@pytest.mark.parametrize(("post", "count"), [(post_by_storm, 50_000), (post_by_python, 20_000)])
 def test_wishes_come_whole_and_in_order_from_thread_to_thread(make, post, count):
     instrument = reporting(make())
     out = np.zeros(64, np.float32)
@@ -399,7 +404,7 @@ def postings(frames: int, most: int) -> st.SearchStrategy:
     return st.lists(st.tuples(st.lists(wish, max_size=most), st.integers(1, frames)), max_size=6)
 
 
-@settings(max_examples=20)
+@settings(max_examples=10)
 @given(st.one_of(postings(100, 30), postings(5, 60), postings(2, 120)))
 def test_wishes_apply_by_frame_and_then_as_posted_whatever_the_order_of_posting(batches):
     instrument, model = reporting(offline()), Model()

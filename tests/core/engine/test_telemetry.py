@@ -482,7 +482,7 @@ def listen(rig, into, times):
 
 
 def test_a_reader_never_sees_half_of_a_record():
-    instrument, into, times = Instrument(InstrumentSpec(RATE)), np.zeros(1, METERS), 500_000
+    instrument, into, times = Instrument(InstrumentSpec(RATE)), np.zeros(1, METERS), 200_000
     telling = numba.cfunc("int64(voidptr, int64)")(tell).ctypes
     listening = numba.cfunc("int64(voidptr, voidptr, int64)")(listen).ctypes
     teller = threading.Thread(target=lambda: telling(instrument.address, times))

@@ -65,9 +65,9 @@ def test_each_mode_rings_at_its_measured_frequency():
     for rate in (22050.0, 44100.0, 96000.0):
         body = replace(YEHU.body, damping=(0.0,) * len(M))
         model = kernel.prepare(replace(YEHU, body=body), rate)
-        q = np.zeros((2002, layout.MAX_MODES))
+        q = np.zeros((702, layout.MAX_MODES))
         q[:2] = 1e-6
-        for n in range(2000):
+        for n in range(700):
             advance_bridge(model[0], q[n + 2], q[n + 1], q[n], 0.0)
         for m, y in enumerate(q[:, : len(M)].T):
             twice_cos = (y[1:-1] @ (y[2:] + y[:-2])) / (y[1:-1] @ y[1:-1])
@@ -78,7 +78,7 @@ def test_each_mode_rings_at_its_measured_frequency():
 @pytest.mark.parametrize("rate", [22050.0, 44100.0, 96000.0])
 def test_a_hammer_moves_the_bridge_by_the_sum_of_its_modes(rate):
     """Exactly as [Yehu] eq. (41) written out for one mode after another."""
-    k, frames = 1.0 / rate, round(0.05 * rate)
+    k, frames = 1.0 / rate, round(0.015 * rate)
     expected = np.zeros(frames + 1)
     for mass, damping, omega in zip(M, R, OMEGA, strict=True):
         stiffness = mass * (2.0 / k * math.tan(omega * k / 2.0)) ** 2

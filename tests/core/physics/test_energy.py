@@ -57,7 +57,7 @@ def performance(t):
     }
 
 
-@pytest.mark.parametrize("rate", [44100.0, 96000.0])
+@pytest.mark.parametrize("rate", [44100.0, pytest.param(96000.0, marks=pytest.mark.slow)])
 def test_four_seconds_of_playing_create_and_lose_no_energy(rate):
     run = play(performance, 4.0, rate)
     balanced(run)

@@ -146,13 +146,13 @@ def test_a_finger_at_rest_never_moves_and_touches_nothing():
 def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
     """Bit for bit: pressed, lifted, at rest, hit there by a plucked string, and pressed again."""
     model = kernel.prepare(YEHU, RATE, 2)
-    t = np.arange(round(0.6 * RATE)) / RATE
+    t = np.arange(round(0.45 * RATE)) / RATE
     table = rows(
         len(t),
         2,
-        {"press": [np.where((t < 0.05) | (t > 0.5), 1.0, 0.0), 0.0], "x_f": [0.1, 0.012]},
+        {"press": [np.where((t < 0.03) | (t > 0.4), 1.0, 0.0), 0.0], "x_f": [0.1, 0.012]},
     )
-    table[:, layout.F_PLUCK] = np.where((t > 0.35) & (t < 0.4), 25.0, 0.0)
+    table[:, layout.F_PLUCK] = np.where((t > 0.3) & (t < 0.33), 25.0, 0.0)
     table[:, layout.X_PLUCK] = 0.1
     found = []
     for is_reminded in (False, True):
@@ -168,8 +168,8 @@ def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
         found.append((probes, was_still))
     (probes, was_still), (again, _) = found
     hit = np.abs(probes[:, layout.FINGER_PROBES + 1]) > 0.0
-    assert was_still[(t > 0.3) & (t < 0.35), 0].all()
-    assert (hit & (t > 0.35) & (t < 0.5)).any()
+    assert was_still[(t > 0.27) & (t < 0.3), 0].all()
+    assert (hit & (t > 0.3) & (t < 0.4)).any()
     assert not was_still[hit, 0].any()
     assert was_still[:, 1].any()
     assert np.array_equal(probes, again)
@@ -183,7 +183,7 @@ def test_the_gradient_never_lets_the_mean_potential_go_negative():
     model = kernel.prepare(YEHU, RATE)[0]
     rng = np.random.default_rng(21)
     below_1 = 0
-    for _ in range(5000):
+    for _ in range(1500):
         Psi, eta = 10.0 ** rng.uniform(-8.0, 0.0), 10.0 ** rng.uniform(-7.0, -3.0)
         travel = rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-9.0, -2.0)
         g = limited_gradient(gradient(model, eta), Psi, travel)
@@ -194,7 +194,7 @@ def test_the_gradient_never_lets_the_mean_potential_go_negative():
             below_1 += 1
             assert 0.0 <= g < full
             assert Psi + g * travel / 4.0 == pytest.approx(0.0, abs=1e-15 * Psi + 1e-30)
-    assert below_1 > 500
+    assert below_1 > 100
 
 
 def test_a_finger_that_glides_drags_the_pitch_with_it():

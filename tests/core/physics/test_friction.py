@@ -217,7 +217,7 @@ def test_the_derivatives_of_the_law_are_its_slopes():
     model = kernel.prepare(YEHU, RATE)[0]
     rng = np.random.default_rng(15)
     compared = 0
-    for _ in range(2000):
+    for _ in range(600):
         F_N, string = 10.0 ** rng.uniform(-2.0, 0.7), int(rng.integers(2))
         reach = F_N / BOW.epsilon_0
         z_ba = BOW.xi[string] * BOW.mu_C * reach
@@ -250,7 +250,7 @@ def test_the_derivatives_of_the_law_are_its_slopes():
                 (more[4] - less[4]) / (2.0 * dv), rel=1e-5, abs=1e-10
             )
             compared += 1
-    assert compared > 300
+    assert compared > 100
 
 
 def test_nothing_in_the_law_is_more_sudden_than_the_solver_takes_it_to_be():
@@ -258,7 +258,7 @@ def test_nothing_in_the_law_is_more_sudden_than_the_solver_takes_it_to_be():
     model = kernel.prepare(YEHU, RATE)[0]
     rng = np.random.default_rng(18)
     compared = 0
-    for _, mobility, z, F_N, _, string in problems(2000, seed=19):
+    for _, mobility, z, F_N, _, string in problems(700, seed=19):
         reach = F_N / BOW.epsilon_0
         z_ba = BOW.xi[string] * BOW.mu_C * reach
         limit = max(1.2 * BOW.mu_S * reach, abs(z))
@@ -279,7 +279,7 @@ def test_nothing_in_the_law_is_more_sudden_than_the_solver_takes_it_to_be():
             third = 2.0 * (more[2] - less[2]) / (2.0 * dv)
             assert abs(third) <= 6.0 * jerk * (1.0 + abs(v_r) * per_v)
             compared += 1
-    assert compared > 500
+    assert compared > 200
 
 
 def z_static(v_r, reach):

@@ -14,7 +14,7 @@ from yehu_server.core.physics.quantities import Quantities, override
 
 YEHU = Quantities()
 BOTH = {"torsion": "on", "bow": {"width": 0.008}}
-FRAMES = 20_000
+FRAMES = 10_000
 BOWS = st.fixed_dictionaries(
     {
         "width": st.just(0.0) | st.floats(1e-3, 0.03),
@@ -57,7 +57,7 @@ def jumps(t):
     }
 
 
-@settings(max_examples=10)
+@settings(max_examples=4)
 @given(
     kind=KINDS,
     modes=st.integers(1, layout.MAX_MODES),

@@ -10,7 +10,7 @@ from yehu_server.core.physics import kernel, layout, refined, time_loop
 from yehu_server.core.physics.quantities import Quantities, override
 
 RATE = 44100.0
-FRAMES = 40
+FRAMES = 12
 REFINED = override(Quantities(), {"torsion": "on", "bow": {"width": 0.008}})
 
 
@@ -21,10 +21,10 @@ def step_through(quantities: Quantities) -> np.ndarray:
     state["motion"]["U"] = -1e-6
     controls = np.zeros((FRAMES, layout.control_columns(3)))
     controls[:, [layout.F_N, layout.V_B, layout.X_B]] = 0.6, 0.25, 0.255
-    controls[:20, layout.F_PLUCK] = -2.0
+    controls[:6, layout.F_PLUCK] = -2.0
     controls[:, layout.X_PLUCK] = 0.1
     controls[:, layout.FINGER_CONTROLS :] = 0.1, 2.0, 0.11, 1.0, 0.25, 0.0
-    controls[20:, layout.FINGER_CONTROLS] = 0.25  # under the bow: contacts are solved jointly
+    controls[6:, layout.FINGER_CONTROLS] = 0.25  # under the bow: contacts are solved jointly
     probes = np.zeros((FRAMES, layout.probe_columns(3)))
     ledger = np.zeros((FRAMES, len(layout.LEDGER)))
     time_loop.run(model, state, more, controls, probes, ledger)

@@ -128,11 +128,11 @@ def friction_regime(params, controls, outputs):
 
 @pytest.fixture(scope="module")
 def compared():
-    """200 random steps by both: problem, reference (before and after), kernel."""
+    """100 random steps by both: problem, reference (before and after), kernel."""
     rng = np.random.default_rng(9)
     steps = []
     # A thousandfold tension modulation shows its coupling with the contacts.
-    for case in [(22050.0, 1.0), (44100.0, 0.0), (44100.0, 1000.0), (96000.0, 1.0)] * 50:
+    for case in [(22050.0, 1.0), (44100.0, 0.0), (44100.0, 1000.0), (96000.0, 1.0)] * 25:
         params, prepared = models(*case)
         state, controls = random_problem(params, rng)
         try:
@@ -161,8 +161,8 @@ def test_random_steps_meet_every_kind_of_contact(compared):
         h = params.strings[max(outputs.bowed, 0)].h
         met["bow at the bridge"] += controls.x_b > params.x_c - 2.0 * h
         met["finger at the bow"] += bool((np.abs(controls.x_f - controls.x_b) < 2.0 * h).any())
-    assert met["all"] >= 190
-    assert min(met.values()) >= 10, met
+    assert met["all"] >= 95
+    assert min(met.values()) >= 5, met
 
 
 def test_one_step_from_any_state_is_the_references_to_rounding(compared):
@@ -214,7 +214,7 @@ def test_the_mean_potential_of_a_contact_is_never_negative(compared):
         alone += np.count_nonzero(outputs.g) == 1
         assert mean.min() >= -allowed * max(Psi.max(), 1e-6)
         assert row[layout.LEDGER.index("loss_finger")] >= -1e-8
-    assert alone > 10
+    assert alone > 5
 
 
 @pytest.mark.parametrize(("F_N", "fingers"), [(0.7, 2), (-0.7, 1)], ids=["F4", "C5"])

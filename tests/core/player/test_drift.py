@@ -16,7 +16,7 @@ from yehu_server.core.controls.record import (
 from yehu_server.core.controls.slots import SLOT
 from yehu_server.core.player.drift import DRIFT, TOGETHER, TREMOR, TREMOR_HZ
 
-LONG_S = 40.0
+LONG_S = 30.0
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +115,7 @@ def test_turns_of_the_vibrato_differ_in_width_and_length():
     playing = Playing(variation=0.25, vibrato=20.0, vibrato_delay=0.0, bow_length=0.0)
     playing.on(74)
     playing.play(0.3)
-    phase, width = playing.play(20.0, "vibrato", "vibrato_width")
+    phase, width = playing.play(12.0, "vibrato", "vibrato_width")
     begins = np.flatnonzero(np.diff(phase) < 0.0)
     lengths = np.diff(begins)
     assert 0.04 < lengths.std() / lengths.mean() < 0.14
@@ -128,7 +128,7 @@ def test_the_rate_of_a_vibrato_wanders_slowly():
     playing = Playing(variation=0.5, vibrato=20.0, vibrato_delay=0.0, bow_length=0.0)
     playing.on(74)
     playing.play(0.3)
-    (phase,) = playing.play(60.0, "vibrato")
+    (phase,) = playing.play(25.0, "vibrato")
     lengths = np.diff(np.flatnonzero(np.diff(phase) < 0.0)).astype(float)
     assert np.corrcoef(lengths[:-2], lengths[2:])[0, 1] > 0.25
 

@@ -45,10 +45,10 @@ def at(seconds: float) -> int:
     return round(seconds * RATE / HOP)
 
 
-def test_every_articulation_plays_finite_sound_and_ends():
+def test_every_articulation_plays_finite_sound_and_ends(everything):
     wrong = []
     for articulation in ARTICULATIONS:
-        for length in (0.0, 0.08, 1.0):
+        for length in (0.0, 0.08, 1.0) if everything else (0.08,):
             playing = Playing(articulation=NUMBER[articulation.name], note_length=length)
             for note in (65, 76):
                 playing.on(note)
@@ -124,7 +124,7 @@ def test_a_slide_in_a_note_stays_on_one_string():
     """Also on the open C5, which is stopped on the F string for it."""
     wrong = []
     for name in ("passed-slide", "fall", "turning-slide", "sliding-vibrato"):
-        for note in (71, 72, 74, 75, 79):
+        for note in (71, 72, 79):
             playing = Playing(articulation=NUMBER[name], variation=0.0, listening=0.0)
             playing.on(76)
             playing.play(0.2)
@@ -143,7 +143,7 @@ def test_a_trill_stays_on_one_string():
     """Also near the inner string's end, where the trilling finger would not fit."""
     wrong = []
     for name in ("trill", "wide-trill", "mordent"):
-        for note in (71, 72, 73, 74, 75, 76):
+        for note in (71, 72, 73, 76):
             playing = Playing(articulation=NUMBER[name], variation=0.0, listening=0.0)
             strings = set()
             for each in (70, note):

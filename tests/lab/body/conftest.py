@@ -15,7 +15,7 @@ def taps():
 @pytest.fixture(scope="session")
 def whole_fit(once):
     """Admittance and radiation of five taps with noise 40 dB below."""
-    return once("whole_fit", lambda _: fit(average(made_taps(noise_db=40.0))))
+    return once("whole_fit", lambda _: fit(average(made_taps(noise_db=40.0, seconds=0.4))))
 
 
 @pytest.fixture(scope="session", params=[40.0, 30.0], ids=lambda db: f"{db:g}dB")

@@ -138,8 +138,9 @@ PRINT = """
 import numpy as np
 from yehu_server.lab.regimes.strokes import find
 from yehu_server.lab.sweeps.study import study_of
-study = study_of({"duration": 0.04, "vary": {"force": [0.4]},
-                  "stroke": {"string": 2, "note": 89, "acceleration": 100.0}})
+bow = {"bow_velocity": [[0.0, 0.0], [0.001, 0.2]], "bow_force": -0.4, "bow_position": 0.28,
+       "finger_position": 0.25, "press_force": 2.0}
+study = study_of({"gesture": {"duration": 0.011, "controls": bow}, "vary": {"bow_force": [-0.4]}})
 found = find(*study.bow.strokes(study.axes, np.zeros((1, 1), int)))
 print([float(found[name][0]) for name in found.dtype.names])
 """

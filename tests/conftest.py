@@ -21,13 +21,20 @@ from platformdirs import user_config_path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # The same cases on every machine, and no deadline: a first call may have to compile.
-settings.register_profile("yehu", deadline=None, derandomize=True, database=None)
+settings.register_profile("yehu", deadline=None, derandomize=True, database=None, max_examples=40)
+settings.register_profile("long", settings.get_profile("yehu"), max_examples=200)
 settings.load_profile("yehu")
 
+COLLECT_AFTER = (50_000, 20, 20)  # objects: Python's own 700 would look through all of them often
 
 CHANGED_S = 60.0  # how long tests of a change begin
 NEED_THE_PAGE = {"ahead", "documentation", "page"}  # folders; it is compiled beside the others
 PAGE_FROM, PAGE_TO = 0.35, 0.92  # of all files: when it is compiled, and before the end
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("--all"):
+        settings.load_profile("long")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -49,6 +56,7 @@ def pytest_collection() -> Iterator[None]:
         return (yield)
     finally:
         gc.freeze()
+        gc.set_threshold(*COLLECT_AFTER)
         gc.enable()
 
 

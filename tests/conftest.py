@@ -3,9 +3,11 @@
 import gc
 import os
 import pickle
+import re
 import signal
 import sys
 import time
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -65,6 +67,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in items:
             if item.get_closest_marker("slow"):
                 item.add_marker(pytest.mark.skip(reason="slow: run with --all"))
+        if not any("::" in argument for argument in config.args):
+            left_out = set(combinations(items))
+            config.hook.pytest_deselected(items=list(left_out))
+            items[:] = [item for item in items if item not in left_out]
     place = places(list(dict.fromkeys(item.path for item in items)))
     items.sort(key=lambda item: place[item.path])
     if revision := config.getoption("--changed"):
@@ -75,6 +81,23 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items[:] = sorted(
             (item for item in items if item.path in near), key=lambda item: near[item.path]
         )
+
+
+def combinations(items: list[pytest.Item]) -> list[pytest.Item]:
+    """Cases of tests with several axes that bring no value of an axis which others don't bring."""
+    tests: dict[str, dict[pytest.Item, set[Any]]] = defaultdict(dict)
+    for item in items:
+        if len(marks := list(item.iter_markers("parametrize"))) > 1:
+            axes = [re.findall(r"\w+", str(mark.args[0])) for mark in marks]
+            values = item.callspec.params
+            tests[item.nodeid.partition("[")[0]][item] = {
+                tuple((name, id(values[name])) for name in names) for names in axes
+            }
+    for cases in tests.values():
+        missing = set().union(*cases.values())
+        while missing:
+            missing -= cases.pop(max(cases, key=lambda case: len(cases[case] & missing)))
+    return [case for cases in tests.values() for case in cases]
 
 
 def places(files: list[Path]) -> dict[Path, float]:

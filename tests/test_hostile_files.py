@@ -61,14 +61,18 @@ CONTENTS = {
 }
 
 
-@pytest.mark.parametrize("content", CONTENTS)
 @pytest.mark.parametrize("name", READERS)
-def test_a_hostile_text_is_refused(tmp_path, name, content):
+def test_a_hostile_text_is_refused(tmp_path, name):
     path = tmp_path / name
-    path.write_bytes(CONTENTS[content])
-    with pytest.raises(YehuError) as error:
-        READERS[name](path)
-    assert str(error.value).startswith(str(path))
+    wrong = {}
+    for content, text in CONTENTS.items():
+        path.write_bytes(text)
+        try:
+            wrong[content] = READERS[name](path)
+        except YehuError as error:
+            if not str(error).startswith(str(path)):
+                wrong[content] = error
+    assert not wrong
 
 
 @pytest.mark.parametrize("name", READERS)

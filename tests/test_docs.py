@@ -17,7 +17,8 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from pages import FENCED, PACKAGE, PAGES, ROOT, Page, page
+from pages import FENCED, PACKAGE, PAGES, ROOT, Page
+from pages import page as page_named
 
 import yehu_server
 from yehu_server.cli import _parser, main
@@ -26,7 +27,6 @@ from yehu_server.live.osc.all_calls import CALLS, PREFIX
 from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.params.table import TABLE, UNIT
 
-each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 OURS = ("yehu-server", "scripts/yehu")
 FOREIGN = (".venv/bin/pytest", ".venv/bin/mkdocs", "open-stage-control")
 SLOW = {"docs/body.md"}  # whose programs take half a minute
@@ -52,11 +52,11 @@ def test_what_is_marked_as_generated_is_there():
 @pytest.mark.parametrize("index", ["docs/README.md", "docs/decisions/README.md"])
 def test_an_index_leads_to_every_page_beside_it(index):
     beside = {path.name for path in (ROOT / index).parent.glob("*.md")} - {"README.md"}
-    assert {name for name in beside if f"]({name})" not in page(index).text} == set()
+    assert {name for name in beside if f"]({name})" not in page_named(index).text} == set()
 
 
 def test_every_call_is_described():
-    described = " ".join(page("docs/osc.md").code)
+    described = " ".join(page_named("docs/osc.md").code)
     assert [call.address for call in CALLS if PREFIX + call.address not in described] == []
 
 
@@ -104,17 +104,19 @@ def check_command(line: str) -> None:
         assert tool in {"git", "cd", "scripts/lock", "hatchling"}, line
 
 
-@each_page
-def test_every_command_in_a_block_can_be_given(page: Page):
-    for line in page.commands():
-        check_command(line)
+def test_every_command_in_a_block_can_be_given(subtests):
+    for page in PAGES:
+        with subtests.test(page.name):
+            for line in page.commands():
+                check_command(line)
 
 
-@each_page
-def test_a_server_is_where_it_listens_by_default(page: Page):
-    ports = set(re.findall(r"(?:127\.0\.0\.1:|to port |on port )(\d+)", page.text))
-    osc, http = OSC_ADDRESS[1], HTTP_ADDRESS[1]
-    assert ports <= {str(osc), str(http), str(http + 1)}  # the last is the page's
+def test_a_server_is_where_it_listens_by_default(subtests):
+    for page in PAGES:
+        with subtests.test(page.name):
+            ports = set(re.findall(r"(?:127\.0\.0\.1:|to port |on port )(\d+)", page.text))
+            osc, http = OSC_ADDRESS[1], HTTP_ADDRESS[1]
+            assert ports <= {str(osc), str(http), str(http + 1)}  # the last is the page's
 
 
 @pytest.mark.parametrize(
@@ -254,25 +256,27 @@ def anchors(path: Path) -> set[str]:
     return slugs.union(re.findall(r'id="([^"]+)"', text))
 
 
-@each_page
-def test_a_link_leads_to_what_is_there(page: Page):
-    broken = []
-    for link in re.findall(r"\]\(([^)\s]+)\)", page.prose):
-        name, _, anchor = link.partition("#")
-        path = page.path.parent / name if name else page.path
-        if not urlsplit(link).scheme and not (
-            path.exists() and (not anchor or anchor in anchors(path))
-        ):
-            broken.append(link)
-    assert broken == []
+def test_a_link_leads_to_what_is_there(subtests):
+    for page in PAGES:
+        with subtests.test(page.name):
+            broken = []
+            for link in re.findall(r"\]\(([^)\s]+)\)", page.prose):
+                name, _, anchor = link.partition("#")
+                path = page.path.parent / name if name else page.path
+                if not urlsplit(link).scheme and not (
+                    path.exists() and (not anchor or anchor in anchors(path))
+                ):
+                    broken.append(link)
+            assert broken == []
 
 
-@each_page
-def test_what_a_page_names_is_there(page: Page):
-    assert [word for code in page.code for word in missing(code, page)] == []
+def test_what_a_page_names_is_there(subtests):
+    for page in PAGES:
+        with subtests.test(page.name):
+            assert [word for code in page.code for word in missing(code, page)] == []
 
 
-@pytest.mark.parametrize("block", page("CONTRIBUTING.md").blocks("diff"))
+@pytest.mark.parametrize("block", page_named("CONTRIBUTING.md").blocks("diff"))
 def test_a_change_that_is_shown_can_be_made_or_was(block):
     head, *lines = block.splitlines()
     text = (ROOT / head.removeprefix("--- ")).read_text("utf-8")
@@ -282,16 +286,17 @@ def test_a_change_that_is_shown_can_be_made_or_was(block):
     assert any(state and text.count(state) == 1 for state in states)
 
 
-@pytest.mark.parametrize("block", page("CONTRIBUTING.md").blocks("python"))
+@pytest.mark.parametrize("block", page_named("CONTRIBUTING.md").blocks("python"))
 def test_what_a_piece_of_a_program_imports_is_there(block):
     for line in re.findall(r"^(?:from|import) .*", block, re.MULTILINE):
         exec(line, {})  # noqa: S102 - our own documentation
 
 
-@each_page
-def test_every_address_that_is_named_is_one(page: Page):
-    groups = {PREFIX.strip("/"), *(param.address.split("/")[1] for param in TABLE)}
-    for code in (*page.code, *page.blocks("toml"), *page.blocks("json")):
-        for address in re.findall(r"(?<![\w./])/[a-z][\w/.]*(?![\w{])", code):
-            if address.split("/")[1] in groups:
-                assert is_address(address), address
+def test_every_address_that_is_named_is_one(subtests):
+    for page in PAGES:
+        with subtests.test(page.name):
+            groups = {PREFIX.strip("/"), *(param.address.split("/")[1] for param in TABLE)}
+            for code in (*page.code, *page.blocks("toml"), *page.blocks("json")):
+                for address in re.findall(r"(?<![\w./])/[a-z][\w/.]*(?![\w{])", code):
+                    if address.split("/")[1] in groups:
+                        assert is_address(address), address

@@ -15,7 +15,7 @@ from fontTools.ttLib import TTFont
 from latex2mathml.converter import convert
 from live.page.browser import drive, missing, running
 from markdown_it import MarkdownIt
-from pages import PAGES, ROOT, Page
+from pages import PAGES, ROOT
 
 import yehu_server as yehu
 from yehu_server import body, plot
@@ -82,16 +82,17 @@ def place():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("page", PROSE, ids=lambda page: page.name)
-def test_a_page_reads_on_the_site_as_on_github(content, place, page: Page):
-    github = Elements(MarkdownIt("commonmark").enable("table").render(page.text))
-    expected = Counter(tag for tag, _ in github.found if tag in STRUCTURE)
-    here = content(place(page))
-    equations = page.text.count("\n```math\n")  # code to this reader, typeset on both
-    expected["pre"] -= equations
-    assert sum(tag == "math" for tag, _ in here.found) == equations
-    assert Counter(tag for tag, _ in here.found if tag in STRUCTURE) == expected
-    assert not re.search(r"<a [^>]*>[\w/.-]+\.md</a>", here.text)
+def test_a_page_reads_on_the_site_as_on_github(subtests, content, place):
+    for page in PROSE:
+        with subtests.test(page.name):
+            github = Elements(MarkdownIt("commonmark").enable("table").render(page.text))
+            expected = Counter(tag for tag, _ in github.found if tag in STRUCTURE)
+            here = content(place(page))
+            equations = page.text.count("\n```math\n")  # code to this reader, typeset on both
+            expected["pre"] -= equations
+            assert sum(tag == "math" for tag, _ in here.found) == equations
+            assert Counter(tag for tag, _ in here.found if tag in STRUCTURE) == expected
+            assert not re.search(r"<a [^>]*>[\w/.-]+\.md</a>", here.text)
 
 
 def test_the_font_of_equations_has_their_characters():
@@ -111,13 +112,14 @@ def test_the_font_of_equations_has_their_characters():
     assert {name for name in named if ord(unicodedata.lookup(name)) not in known} == set()
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_a_page_begins_with_its_one_title_and_says_what_it_is_for(page: Page):
-    assert len(re.findall(r"^# ", page.prose, re.MULTILINE)) == 1
-    if "/decisions/" not in page.name and page.name != "SECURITY.md":
-        title, first, *_ = page.prose.split("\n\n")
-        assert re.fullmatch(r"# [^\n]+[^.\n]", title.strip())
-        assert re.match(r"[A-Z0-9`一-鿿][^|]*[.:]", first.lstrip(), re.DOTALL), first
+def test_a_page_begins_with_its_one_title_and_says_what_it_is_for(subtests):
+    for page in PAGES:
+        with subtests.test(page.name):
+            assert len(re.findall(r"^# ", page.prose, re.MULTILINE)) == 1
+            if "/decisions/" not in page.name and page.name != "SECURITY.md":
+                title, first, *_ = page.prose.split("\n\n")
+                assert re.fullmatch(r"# [^\n]+[^.\n]", title.strip())
+                assert re.match(r"[A-Z0-9`一-鿿][^|]*[.:]", first.lstrip(), re.DOTALL), first
 
 
 @pytest.mark.slow

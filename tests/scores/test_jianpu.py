@@ -200,10 +200,11 @@ def examples_in_the_documentation() -> list[str]:
     return [text for text in found if not text.startswith("--")]
 
 
-@pytest.mark.parametrize("text", examples_in_the_documentation())
-def test_what_the_documentation_shows_is_understood(text):
-    mode = "mode=" if re.fullmatch("[a-z]+u", text) else ""
-    assert not written(f"1\n{mode}{text}\n1 1").unknown
+def test_what_the_documentation_shows_is_understood(subtests):
+    for text in examples_in_the_documentation():
+        with subtests.test(text):
+            mode = "mode=" if re.fullmatch("[a-z]+u", text) else ""
+            assert not written(f"1\n{mode}{text}\n1 1").unknown
 
 
 # ---------------------------------------------------------------- what cannot be read

@@ -46,20 +46,21 @@ def test_no_node_has_an_attribute_we_do_not_tell_of(root):
         assert set(node) <= set(ATTRIBUTES)
 
 
-@pytest.mark.parametrize("param", TABLE, ids=lambda param: param.address)
-def test_every_parameter_is_described_as_the_table_has_it(root, param):
-    path = "/yehu" + param.address
-    node = find(root, path)
-    assert node["FULL_PATH"] == path
-    assert (node["TYPE"], node["ACCESS"]) == ("f", 3)
-    assert node["RANGE"] == [{"MIN": param.lo, "MAX": param.hi}]
-    assert node["CLIPMODE"] == ["both"]
-    assert node["DESCRIPTION"].startswith(param.doc)
-    assert ("UNIT" in node) == (param.unit != "1")
-    unit = node["CONTENTS"]["unit"]
-    assert unit["FULL_PATH"] == path + "/unit"
-    assert unit["RANGE"] == [{"MIN": 0.0, "MAX": 1.0}]
-    assert (unit["TYPE"], unit["ACCESS"]) == ("f", 3)
+def test_every_parameter_is_described_as_the_table_has_it(subtests, root):
+    for param in TABLE:
+        with subtests.test(param.address):
+            path = "/yehu" + param.address
+            node = find(root, path)
+            assert node["FULL_PATH"] == path
+            assert (node["TYPE"], node["ACCESS"]) == ("f", 3)
+            assert node["RANGE"] == [{"MIN": param.lo, "MAX": param.hi}]
+            assert node["CLIPMODE"] == ["both"]
+            assert node["DESCRIPTION"].startswith(param.doc)
+            assert ("UNIT" in node) == (param.unit != "1")
+            unit = node["CONTENTS"]["unit"]
+            assert unit["FULL_PATH"] == path + "/unit"
+            assert unit["RANGE"] == [{"MIN": 0.0, "MAX": 1.0}]
+            assert (unit["TYPE"], unit["ACCESS"]) == ("f", 3)
 
 
 def test_every_value_that_is_set_over_osc_is_read(still):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from ahead.phrases import PHRASES, played
 
-from yehu_server.ahead.build import build, page_linker, page_module
+from yehu_server.ahead.build import ANY, page_linker, page_module
 from yehu_server.ahead.interpreter import look_length
 
 HERE = Path(__file__).parent
@@ -25,14 +25,27 @@ def wasm() -> Path:
 
 
 @pytest.fixture(scope="session")
-def library(once) -> Path:
+def any_processor(once) -> Path:
+    """A folder with the library, its header, and the phrases by code for any processor."""
+    return once("any_processor", _any_processor)
+
+
+def _any_processor(folder: Path) -> Path:
+    environment = {
+        **os.environ,
+        "NUMBA_CPU_NAME": ANY,
+        "NUMBA_CPU_FEATURES": "",
+        "PYTHONPATH": os.pathsep.join(map(str, (HERE.parent, HERE.parents[1]))),
+    }
+    command = [sys.executable, str(HERE / "phrases.py"), str(folder)]
+    subprocess.run(command, env=environment, check=True, capture_output=True)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def library(any_processor) -> Path:
     """A folder with the library and its header."""
-
-    def built(folder: Path) -> Path:
-        build("library", folder)
-        return folder
-
-    return once("library", built)
+    return any_processor
 
 
 @pytest.fixture(scope="session")
@@ -42,21 +55,9 @@ def here() -> dict[str, np.ndarray]:
 
 
 @pytest.fixture(scope="session")
-def by_any_processor(once) -> dict[str, np.ndarray]:
+def by_any_processor(any_processor) -> dict[str, np.ndarray]:
     """The samples of each phrase, with instructions that any processor has."""
-    return once("by_any_processor", _by_any_processor)
-
-
-def _by_any_processor(folder: Path) -> dict[str, np.ndarray]:
-    environment = {
-        **os.environ,
-        "NUMBA_CPU_NAME": "generic",
-        "NUMBA_CPU_FEATURES": "",
-        "PYTHONPATH": os.pathsep.join(map(str, (HERE.parent, HERE.parents[1]))),
-    }
-    command = [sys.executable, str(HERE / "phrases.py"), str(folder)]
-    subprocess.run(command, env=environment, check=True, capture_output=True)
-    read = {name: np.fromfile(folder / f"{name}.f32", np.float32) for name in PHRASES}
+    read = {name: np.fromfile(any_processor / f"{name}.f32", np.float32) for name in PHRASES}
     return {name: samples.reshape(-1, 2) for name, samples in read.items()}
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from yehu_server.ahead.build import ANY, build_here
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, END, HOLD
@@ -57,7 +58,8 @@ def played(wishes, frames=FRAMES, block=BLOCK, channels=2) -> tuple[np.ndarray, 
     return out, ensemble
 
 
-if __name__ == "__main__":  # as another processor: writes the samples of each phrase
+if __name__ == "__main__":  # as any processor: writes the library, and the samples of each phrase
     folder = Path(sys.argv[1])
+    build_here("library", folder, ANY, [RATE])
     for name, wishes in PHRASES.items():
         played(wishes)[0].tofile(folder / f"{name}.f32")

@@ -20,7 +20,7 @@ HERE = Path(__file__).parent
 midi_fields = MIDI.fields or {}
 HELD, SOUNDING = ((MIDI_AT + midi_fields[name][1]) // 8 for name in ("held", "sounding"))
 SOME, MANY = 15_000, 1_000_000
-TABLES = 60  # that plain Python plays through
+TABLES = 30  # that plain Python plays through
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")

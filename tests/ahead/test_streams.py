@@ -38,7 +38,7 @@ from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
 HERE = Path(__file__).parent
-SEEDS, PARTS = range(3), 12
+SEEDS, PARTS = range(2), 12
 SHORT = 2  # parts of a stream in plain Python
 
 

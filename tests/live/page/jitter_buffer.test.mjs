@@ -8,6 +8,9 @@ const { JitterBuffer } = await import(pathToFileURL(file).href);
 const RATE = 48000;
 const BLOCK = 128;
 const SETTLED_S = 5;
+const PERIOD = Float32Array.from({ length: RATE / 1000 }, (_, n) =>
+  Math.sin((2 * Math.PI * 1000 * n) / RATE),
+);
 
 /** Numbers that look random, and are the same each time. */
 function randoms() {
@@ -25,16 +28,17 @@ function listen({ ppm, seconds, lateS, ownRate = RATE }) {
   const [out, right] = [new Float32Array(BLOCK), new Float32Array(BLOCK)];
   let unlike = 0; // most that right is not minus half of left
   const fills = [];
-  let [sent, sendAt, crossings, before] = [0, 0, 0, 0];
+  const crossings = []; // frames
+  let [sent, sendAt, before] = [0, 0, 0];
   for (let block = 0; block * BLOCK < seconds * ownRate; block++) {
     const now = (block * BLOCK) / ownRate;
     for (; sendAt <= now; sendAt += 0.0025 + lateS * random()) {
       const made = Math.floor((sendAt * RATE * (1 + ppm * 1e-6)) / BLOCK) * BLOCK;
-      const samples = Float32Array.from(
-        { length: 2 * (made - sent) },
-        (_, i) =>
-          (i % 2 ? -0.5 : 1) * Math.sin((2 * Math.PI * 1000 * (sent + Math.floor(i / 2))) / RATE),
-      );
+      const samples = new Float32Array(2 * (made - sent));
+      for (let i = 0; i < made - sent; i++) {
+        samples[2 * i] = PERIOD[(sent + i) % PERIOD.length];
+        samples[2 * i + 1] = -0.5 * samples[2 * i];
+      }
       if (made > sent) sound.write(sent, samples);
       sent = made;
     }
@@ -42,12 +46,12 @@ function listen({ ppm, seconds, lateS, ownRate = RATE }) {
     for (let i = 0; i < BLOCK; i++) unlike = Math.max(unlike, Math.abs(right[i] + 0.5 * out[i]));
     if (now < SETTLED_S) continue;
     fills.push(sound.fill);
-    for (const sample of out) {
-      if (before < 0 && sample >= 0) crossings++;
+    out.forEach((sample, i) => {
+      if (before < 0 && sample >= 0) crossings.push(block * BLOCK + i);
       before = sample;
-    }
+    });
   }
-  const frequency = crossings / (seconds - SETTLED_S);
+  const frequency = ((crossings.length - 1) * ownRate) / (crossings.at(-1) - crossings[0]);
   fills.sort((one, other) => one - other);
   return { gaps: sound.gaps, aim: sound.aim, most: fills.at(-1), frequency, unlike };
 }
@@ -56,7 +60,7 @@ console.log(
   JSON.stringify({
     fast: listen({ ppm: 200, seconds: Number(seconds), lateS: 0.003 }),
     slow: listen({ ppm: -200, seconds: Number(seconds), lateS: 0.003 }),
-    otherRate: listen({ ppm: 0, seconds: 60, lateS: 0.003, ownRate: 44100 }),
+    otherRate: listen({ ppm: 0, seconds: Number(seconds), lateS: 0.003, ownRate: 44100 }),
     late: listen({ ppm: 0, seconds: 60, lateS: 0.05 }),
   }),
 );

@@ -31,8 +31,8 @@ from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, STANDARD_A4, Tuning, read_tuning
 from yehu_server.playing.wishes import UNMAPPED, Key, WishPoster
 
-STREAMS, MANY_STREAMS = 200, 4_000
-SOME_MAPPINGS = 20
+STREAMS, MANY_STREAMS = 80, 4_000
+SOME_MAPPINGS = 12
 HAND = -1  # channel of the only hand
 # Those of named controls, which nothing moves on a page, and of programs, which it ignores; points
 # may lie elsewhere, where somebody has taught the mapping something in place of their bind.
@@ -210,10 +210,10 @@ def test_the_page_of_another_fiddle_plays_that_fiddles_notes(node, playing, tmp_
     assert begun == [73.0, 62.0, 93.0, 82.0]  # an octave from what it has not
 
 
-def test_the_page_s_own_player_has_hands(node, playing):
+def test_the_page_s_own_player_has_hands(node, playing, everything):
     result = subprocess.run(
         [node, "--test", Path(__file__).with_name("player.test.mjs")],
-        env=os.environ | {"WEB": str(playing)},
+        env=os.environ | {"WEB": str(playing), "EVERYTHING": "yes" * everything},
         capture_output=True,
         text=True,
         check=False,

@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 from pathlib import Path
-
-from yehu_server.live.page.facts import write
-from yehu_server.live.page.site import page_folder
 
 FILE = Path(__file__).with_name("performances.test.mjs")
 
 
-def test_performances_are_bounded_and_reach_nothing_but_the_sound(node, tmp_path):
-    web = tmp_path / "web"
-    shutil.copytree(page_folder(), web)
-    write(web)
+def test_performances_are_bounded_and_reach_nothing_but_the_sound(node, page, everything):
     run = subprocess.run(
         [node, "--test", str(FILE)],
-        env={**os.environ, "WEB": str(web)},
+        env={**os.environ, "WEB": str(page), "MANY": "2000" if everything else "200"},
         capture_output=True,
         text=True,
         timeout=120,

@@ -188,7 +188,7 @@ def test_a_person_is_told_of_notes_out_of_range(command, tmp_path, out):
 
 
 def test_a_terminal_gets_a_progress_bar_and_a_pipe_its_summary(tmp_path, out):
-    tune = one_note(tmp_path / "tune.mid", seconds=20.0)
+    tune = one_note(tmp_path / "tune.mid", seconds=6.0)
     ours, theirs = pty.openpty()
     process = start("render", tune, "-o", out / "x.wav", stderr=theirs)
     os.close(theirs)

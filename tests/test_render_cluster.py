@@ -10,10 +10,11 @@ from typing import Self
 import pytest
 from clusters import cluster_in, needs_distributed
 from commands import is_one_line, results_in
-from forks import start
+from forks import in_the_place_of_workers, start
 from midi_files import midi_file, notes
 from waiting import LONG_S, until
 
+from yehu_server.cli import main
 from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.workers import Event
 
@@ -35,20 +36,29 @@ def tune(path: Path, note: int, seconds: float = 0.2) -> None:
     midi_file(path, notes((0.0, seconds, note, 90)))
 
 
+def write_songs(folder: Path) -> None:
+    """Scores, one of them broken."""
+    for number in range(SCORES):
+        tune(folder / f"{number % 2}" / f"{number}.mid", 66 + number)
+    (folder / "broken.mid").write_bytes(b"MThd")
+
+
 @pytest.fixture
 def songs(tmp_path) -> Path:
-    """A folder of scores, one of them broken, and what becomes of them on this machine."""
-    for number in range(SCORES):
-        tune(tmp_path / "in" / f"{number % 2}" / f"{number}.mid", 66 + number)
-    (tmp_path / "in" / "broken.mid").write_bytes(b"MThd")
+    """A folder of scores."""
+    write_songs(tmp_path / "in")
     return tmp_path
 
 
-@pytest.fixture
-def alone(songs, command) -> dict[str, bytes]:
-    code, _, _ = command("render", songs / "in", "-o", songs / "alone", *DRY, "--jobs", 1)
-    assert code == 1
-    return results_in(songs / "alone")
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory) -> dict[str, bytes]:
+    """What becomes of them on this machine."""
+    folder = tmp_path_factory.mktemp("alone")
+    write_songs(folder / "in")
+    words = ("render", folder / "in", "-o", folder / "out", *DRY, "--jobs", "1")
+    with in_the_place_of_workers():
+        assert main([*map(str, words)]) == 1
+    return results_in(folder / "out")
 
 
 # ---------------------------------------------------------------- a real cluster

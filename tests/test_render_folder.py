@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import argparse
 import errno
+import io
 import json
+import multiprocessing
 import os
 import shutil
 import signal
-import subprocess
-import sys
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
 import soundfile
 from commands import COMMAND, is_one_line
-from forks import start
+from forks import in_the_place_of_workers, start
 from midi_files import midi_file, notes
 from waiting import LONG_S, until
 
-from yehu_server.cli import _parser, folder_tasks, render_folder, render_one
+from yehu_server.cli import _parser, folder_tasks, main, render_folder, render_one
 from yehu_server.core.player.bowing import default_recipes
 from yehu_server.errors import OutputError
 from yehu_server.playing.practice_files import write_practice
@@ -49,9 +51,10 @@ def once(tmp_path_factory):
     (folder / "in" / "empty.mid").touch()
     (folder / "in" / "broken.mid").write_bytes(b"MThd")
     words = ["render", folder / "in", "-o", folder / "out", *DRY, "--jobs", 2, "--json"]
-    process = start(*words)
-    out, err = process.communicate(timeout=300)
-    return folder, process.returncode, out, err
+    out, err = io.StringIO(), io.StringIO()
+    with in_the_place_of_workers(), redirect_stdout(out), redirect_stderr(err):
+        code = main([*map(str, words)])
+    return folder, code, out.getvalue(), err.getvalue()
 
 
 @pytest.fixture
@@ -243,19 +246,8 @@ def test_a_failure_that_is_not_the_scores_is_tried_again(folder, command):
 # ---------------------------------------------------------------- interrupted
 
 
-def children(process: subprocess.Popen) -> list[int]:
-    """The processes that render."""
-    all_of_them = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-    return [
-        int(each)
-        for each in all_of_them
-        if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()
-    ]
-
-
-def is_at_second(process: subprocess.Popen, out: Path) -> bool:
+def is_at_second(out: Path) -> bool:
     """Whether a first score is whole, and another one is being made."""
-    assert process.poll() is None
     return (out / ".yehu-server" / "a.wav.json").exists() and bool(leavings(out))
 
 
@@ -275,7 +267,7 @@ def test_an_interrupted_folder_goes_on_where_it_was(long, command, signum):
     handled = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);" + COMMAND
     words = ("render", long / "in", "-o", long / "out", *DRY, "--jobs", 1)
     process = start(*words, code=handled)
-    until(lambda: is_at_second(process, long / "out"), within_s=LONG_S)
+    until(lambda: process.poll() is not None or is_at_second(long / "out"), within_s=LONG_S)
     process.send_signal(signum)
     _, err = process.communicate(timeout=60)
     until(lambda: not leavings(long / "out"), within_s=LONG_S)
@@ -292,16 +284,20 @@ def test_an_interrupted_folder_goes_on_where_it_was(long, command, signum):
     assert times(long / "out").items() >= before.items()
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-def test_a_process_that_is_killed_takes_no_other_score_with_it(long):
-    process = start("render", long / "in", "-o", long / "out", *DRY, "--jobs", 1)
-    for _ in range(2):
-        until(lambda: is_at_second(process, long / "out"), within_s=LONG_S)
-        before = leavings(long / "out")
-        os.kill(children(process)[0], signal.SIGKILL)
-        until(lambda before=before: leavings(long / "out") != before, within_s=LONG_S)
-    _, err = process.communicate(timeout=120)
-    assert process.returncode == 1
+def test_a_process_that_is_killed_takes_no_other_score_with_it(long, command):
+    def kill_two() -> None:
+        for _ in range(2):
+            until(lambda: is_at_second(long / "out"), within_s=LONG_S)
+            before = leavings(long / "out")
+            [worker] = multiprocessing.active_children()
+            worker.kill()
+            until(lambda before=before: leavings(long / "out") != before, within_s=LONG_S)
+
+    with ThreadPoolExecutor(1) as beside:
+        killed = beside.submit(kill_two)
+        code, _, err = command("render", long / "in", "-o", long / "out", *DRY, "--jobs", 1)
+    killed.result()
+    assert code == 1
     assert err == "yehu-server: b.mid: the process that rendered it was killed by signal 9\n"
     assert set(sounds(long / "out")) == {"a.wav", "c.wav"}
     assert not leavings(long / "out")
@@ -329,7 +325,8 @@ def test_a_file_that_is_too_large_for_the_disk_is_told(tmp_path):
     tune(tmp_path / "in" / "a.mid")
     tune(tmp_path / "in" / "b.mid", seconds=3.0)
     limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536));"
-    process = start("render", tmp_path / "in", "-o", tmp_path / "out", *DRY, code=limit + COMMAND)
+    words = ("render", tmp_path / "in", "-o", tmp_path / "out", *DRY, "--jobs", 1)
+    process = start(*words, code=limit + COMMAND)
     _, err = process.communicate(timeout=120)
     assert process.returncode == 1
     assert err == "yehu-server: b.mid: cannot write: File too large\n"

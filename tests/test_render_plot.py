@@ -11,6 +11,7 @@ import pytest
 from midi_files import midi_file, notes
 
 from yehu_server.rendering.plot_data import COLUMNS, PlotData
+from yehu_server.rendering.workers import Event
 
 DRY = ("--dry", "--tail", 0)  # in little time
 RATE = 44100.0
@@ -83,27 +84,26 @@ def test_a_long_score_has_no_more_columns_than_a_picture():
 mpl = pytest.importorskip("matplotlib")
 
 
-def test_a_picture_is_drawn_beside_the_sound_which_is_the_same(tune, command, tmp_path):
-    for name, words in (("a", ()), ("b", ("--plot", tmp_path / "b.png"))):
-        code, _, err = command("render", tune, "-o", tmp_path / f"{name}.wav", *words, *DRY)
-        assert (code, err) == (0, "")
-    assert (tmp_path / "a.wav").read_bytes() == (tmp_path / "b.wav").read_bytes()
+def test_a_picture_is_drawn_beside_the_sound_which_is_the_same_and_may_be_replaced(
+    tune, command, tmp_path
+):
+    sound, picture = tmp_path / "a.wav", tmp_path / "a.png"
+    words = ("render", tune, "-o", sound, *DRY)
+    command(*words)
+    alone = sound.read_bytes()
+    assert command(*words, "--plot", picture)[::2] == (0, "")
+    assert sound.read_bytes() == alone
     from matplotlib.image import imread
 
-    pixels = imread(tmp_path / "b.png")
+    pixels = imread(picture)
     assert pixels.shape[:2] == (990, 1540)
     some = pixels[::5, ::5].reshape(-1, pixels.shape[2])
     assert len(np.unique(some, axis=0)) > 100
-
-
-def test_the_same_rendering_has_the_same_picture_which_it_may_replace(tune, command, tmp_path):
-    words = ("render", tune, "-o", tmp_path / "a.wav", "--plot", tmp_path / "a.png", *DRY)
-    command(*words)
-    before = (tmp_path / "a.png").read_bytes()
-    (tmp_path / "a.png").write_bytes(before + b"\0")
+    before = picture.read_bytes()
+    picture.write_bytes(before + b"\0")
     with mpl.rc_context({"font.size": 20.0, "axes.facecolor": "red"}):
-        assert command(*words)[0] == 0
-    assert (tmp_path / "a.png").read_bytes() == before
+        assert command(*words, "--plot", picture)[0] == 0
+    assert picture.read_bytes() == before
 
 
 def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
@@ -163,8 +163,14 @@ def test_where_matplotlib_is_missing_the_extra_is_named(tune, refused, tmp_path,
         assert "install yehu-server[plots]" in err
 
 
-@pytest.mark.usefixtures("_forked_workers")
-def test_a_folder_has_a_folder_of_pictures(tmp_path, command):
+def test_a_folder_has_a_folder_of_pictures(tmp_path, command, monkeypatch):
+    monkeypatch.setattr(
+        "yehu_server.rendering.workers.perform_all",
+        lambda perform, tasks, _: (
+            Event(job, 1.0, result=perform(task, lambda _done, _total: None))
+            for job, task in enumerate(tasks)
+        ),
+    )
     (tmp_path / "in" / "x").mkdir(parents=True)
     midi_file(tmp_path / "in" / "x" / "a.mid", notes((0.0, 0.1, 67, 90)))
     words = ("render", tmp_path / "in", "-o", tmp_path / "out", *DRY)

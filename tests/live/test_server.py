@@ -50,7 +50,7 @@ def test_a_burst_of_messages_all_reach_the_instrument(live, wire):
 @pytest.mark.parametrize("slip", [False, True], ids=["prefixed", "slip"])
 def test_a_stream_of_messages_all_reach_the_instrument(live, busy, slip, wire):
     stream = live.stream(slip=slip)
-    count = 8_000
+    count = 3_000
     packets = [wire.message("/yehu/bow/position", 0.04 + 5e-5 * n) for n in range(count)]
     with busy():
         stream.socket.sendall(b"".join(map(stream.wrap, packets)))

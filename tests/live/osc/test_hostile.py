@@ -31,7 +31,7 @@ KINDS = [
     "subscriptions",
     "due_never",
 ]
-USUAL = ("web_page", "small_of_the_players_host")  # the others with --all
+USUAL = ("small_of_the_players_host",)  # the others with --all
 # On Linux the system drops these, and only these, before they take room.
 TOO_LONG = ("datagrams_of_many", "questions") if sys.platform == "linux" else ()
 

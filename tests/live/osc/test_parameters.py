@@ -115,8 +115,11 @@ def test_a_value_is_asked_for_with_or_without_the_prefix(still, asked):
 
 
 @pytest.mark.parametrize("played", [False, True], ids=["in silence", "while a note sounds"])
-def test_a_value_that_was_set_is_answered_before_and_after_the_audio_side_has_it(still, played):
-    for param in TABLE:
+def test_a_value_that_was_set_is_answered_before_and_after_the_audio_side_has_it(
+    still, played, everything
+):
+    # Half of them each, by default.
+    for param in TABLE if everything else TABLE[played::2]:
         still.tell("/reset")
         if played:
             still.tell("/note", 72.0, 90.0)

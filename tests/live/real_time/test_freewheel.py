@@ -16,7 +16,7 @@ from yehu_server.playing.mapping import load
 from yehu_server.playing.options import PlayingOptions
 
 RATE = 48000
-FIRST = 20 * RATE  # by then the device has taken over
+FIRST = 12 * RATE  # by then the device has taken over
 FRAMES = 4 * RATE
 BLOCKS = [64, *(pytest.param(block, marks=pytest.mark.slow) for block in (100, 128, 333, 1024))]
 STYLE = PlayingOptions(mapping=load("keyboard"), seed=3)

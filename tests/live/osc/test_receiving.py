@@ -292,7 +292,7 @@ def test_a_stream_that_is_too_fast_is_made_to_wait(listen, client, keeper, until
     ports = listen()
     keeper.go_on.clear()
     packet = b"/" + b"x" * 999
-    count = 40_000
+    count = 20_000
     stream = client(ports, kind)
     data = stream.wrap(packet) * count
 

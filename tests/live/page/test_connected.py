@@ -395,7 +395,7 @@ def test_twenty_listeners_get_what_is_played_without_a_gap(server) -> None:
 
     async def all_listen() -> Any:
         async with aiohttp.ClientSession(connector=aiohttp.TCPConnector(limit=0)) as session:
-            return await asyncio.gather(*(listen(session, 1.0) for _ in range(20)))
+            return await asyncio.gather(*(listen(session, 0.4) for _ in range(20)))
 
     found = asyncio.run(all_listen())
     assert len(found) == 20

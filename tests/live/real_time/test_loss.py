@@ -163,6 +163,7 @@ def test_an_audio_server_that_hangs_is_left_and_taken_up_again(jackd, serve, tmp
     np.testing.assert_array_equal(again, recorded)
 
 
+@pytest.mark.slow  # by default servers of this process are seen to do so, below
 def test_an_audio_process_that_crashes_is_replaced(jackd, serve, tmp_path):
     jackd.start()
     server, osc = begun(serve, tmp_path)

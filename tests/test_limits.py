@@ -3,37 +3,23 @@
 from __future__ import annotations
 
 import subprocess
-import sys
-from pathlib import Path
 
+import forks
 import pytest
 from commands import COMMAND
 
-resource = pytest.importorskip("resource", reason="there is no such limit on Windows")
+pytest.importorskip("resource", reason="there is no such limit on Windows")
 
-from yehu_server.cli import serve as limits  # noqa: E402
-from yehu_server.cli.serve import (  # noqa: E402
-    FILES_NEEDED,
-    MOST_FILES,
-    allow_files,
-)
-from yehu_server.errors import YehuError  # noqa: E402
-
-ROOT = Path(__file__).resolve().parents[1]
+from yehu_server.cli import serve as limits
+from yehu_server.cli.serve import FILES_NEEDED, MOST_FILES, allow_files
+from yehu_server.errors import YehuError
 
 
 def serve(files: int, *words: str) -> subprocess.CompletedProcess[str]:
     """Run ``serve`` briefly with a limit on open files."""
+    limit = f"import resource; resource.setrlimit(resource.RLIMIT_NOFILE, ({files}, {files}));"
     ports = ("--osc", "127.0.0.1:0", "--http", "127.0.0.1:0")
-    return subprocess.run(
-        [sys.executable, "-c", COMMAND, "serve", "--audio-device", "null", *ports, *words],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=180.0,
-        check=False,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (files, files)),
-    )
+    return forks.run("serve", "--audio-device", "null", *ports, *words, code=limit + COMMAND)
 
 
 @pytest.mark.parametrize("files", [8, 16, 24, FILES_NEEDED - 1])

@@ -148,7 +148,9 @@ def found(study, tmp_path):
     return target
 
 
-@pytest.mark.parametrize("column", ["regime", "helmholtz_s", "pitch_hz"])
+@pytest.mark.parametrize(
+    "column", ["regime", pytest.param("helmholtz_s", marks=pytest.mark.slow), "pitch_hz"]
+)
 def test_a_result_is_drawn(found, tmp_path, column):
     pytest.importorskip("matplotlib")
     assert main(["sweep", "show", str(found), "--column", column, "--quiet"]) == 0

@@ -206,7 +206,7 @@ def names(listing: str, name: str) -> set[str]:
     found = set()
     for part in inside(name):
         code = listing.partition(f"\n{part}:")[2]
-        code = re.split(r"\.cfi_endproc|\.size\b", code)[0]
+        code = re.split(r"\.cfi_endproc|\.size\b", code, maxsplit=1)[0]
         code = re.sub(r"#.*|^\s*\..*", "", code, flags=re.MULTILINE)
         assert re.search(r"\b(ret|jmp)", code), part
         found |= set(re.findall(r"(?<![%\w.])[A-Za-z_][\w.]*(?=@)|(?<=\$)[A-Za-z_][\w.]*", code))
@@ -239,8 +239,8 @@ def test_their_assembly_names_nothing_else(everything):
 @on_x86
 def test_the_assembly_is_that_of_the_processor_asked_for():
     """Otherwise the test before would prove little."""
-    old, middle, new = (assembly("advance", processor) for processor in PROCESSORS)
-    assert "rint" in names(old, "advance") - names(middle, "advance")
+    old, middle, new = (assembly("write", processor) for processor in PROCESSORS)
+    assert "rint" in names(old, "write") - names(middle, "write")
     assert ("vfmadd" in old, "vfmadd" in middle) == (False, True)  # multiply and add in one
     has_32_registers = re.compile(r"mm(1[6-9]|2\d|3[01])\b").search
     assert (has_32_registers(middle), bool(has_32_registers(new))) == (None, True)

@@ -49,15 +49,15 @@ class Module:
     """What the names of a module stand for."""
 
     def __init__(self, text: str) -> None:
-        self.tree = ast.parse(text)
+        self.nodes = [*ast.walk(ast.parse(text))]
         self.kinds = {"row": ROW, "slot": SLOT}
         self.vectors: dict[str, str] = {}
         self.imported: dict[str, tuple[str, str]] = {}
         self.twice: list[tuple[int, str]] = []
-        for node in ast.walk(self.tree):
+        for node in self.nodes:
             if isinstance(node, ast.ImportFrom):
                 self._take(node)
-        for node in ast.walk(self.tree):
+        for node in self.nodes:
             if isinstance(node, ast.Assign):
                 self._assign(node.targets[0], node.value)
 
@@ -123,7 +123,7 @@ def source_of(module: str) -> Path:
 
 def places(module: Module, own: str):
     """Each place for a row or a slot: its line, which of both, the expression there."""
-    for node in ast.walk(module.tree):
+    for node in module.nodes:
         if isinstance(node, ast.Subscript):
             kind = kind_of_index(module, node.value)
             if kind:
@@ -148,7 +148,7 @@ def kind_of_index(module: Module, value: ast.expr) -> str | None:
 
 
 def functions_in(name: str, module: Module) -> Iterator[tuple[tuple[str, str], list[str]]]:
-    for node in ast.walk(module.tree):
+    for node in module.nodes:
         if isinstance(node, ast.FunctionDef):
             arguments = [argument.arg for argument in node.args.args]
             is_take = (name, node.name) == ("yehu_server.core.controls.ramps", "take")

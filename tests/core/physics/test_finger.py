@@ -145,8 +145,9 @@ def test_a_finger_at_rest_never_moves_and_touches_nothing():
 
 def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
     """Bit for bit: pressed, lifted, at rest, hit there by a plucked string, and pressed again."""
-    model = kernel.prepare(YEHU, RATE, 2)
-    t = np.arange(round(0.45 * RATE)) / RATE
+    rate = 22050.0
+    model = kernel.prepare(YEHU, rate, 2)
+    t = np.arange(round(0.45 * rate)) / rate
     table = rows(
         len(t),
         2,

@@ -1,7 +1,7 @@
 """The kernel against tests/reference.py: the same equations, dense and slow.
 
 The model is chaotic, so whole runs cannot be compared: single steps from shared random
-states can, to rounding, and so can the first 100 samples of a start.
+states can, to rounding, and so can the first 50 samples of a start.
 """
 
 from collections import Counter
@@ -218,9 +218,9 @@ def test_the_mean_potential_of_a_contact_is_never_negative(compared):
 
 
 @pytest.mark.parametrize(("F_N", "fingers"), [(0.7, 2), (-0.7, 1)], ids=["F4", "C5"])
-def test_the_first_100_samples_of_a_start_are_the_references(F_N, fingers):
+def test_the_first_50_samples_of_a_start_are_the_references(F_N, fingers):
     """Bowed and pressed, the fingers already on the strings, gliding."""
-    rate, frames = 44100.0, 100
+    rate, frames = 44100.0, 50
     params, prepared = models(rate)
     model = prepared[fingers]
     state = ref.rest_state(params, fingers)

@@ -65,7 +65,7 @@ def first_bend(leap: float, **values: float) -> float:
     """Where the finger is from the pitch of a note (semitones) as that begins after a long one."""
     playing = Playing(phrasing=1.0, variation=0.0, listening=0.0)
     playing.on(76.0 - leap)
-    playing.play(0.5)
+    playing.play(0.35)
     for name, value in values.items():
         playing.wishes.write(f"/playing/{name}", value)
     playing.on(76)

@@ -60,12 +60,12 @@ def test_a_damaged_file_is_told_in_a_line(tmp_path, result, cut):
 
 
 def test_a_small_file_that_claims_much_is_refused_before_it_is_read(tmp_path, result):
-    count = 2**22
+    count = 2**21
     arrays = result.arrays()
     same = {name: np.zeros(count, arrays[name].dtype) for name in COLUMNS}
     huge = {"numbers": np.zeros(count, np.int64)} | same
     axes = [f"axis_{name}" for name in result.axes]
-    wide = dict(zip(axes, (np.arange(2**17), np.arange(2**9)), strict=True))
+    wide = dict(zip(axes, (np.arange(2**17), np.arange(2**8)), strict=True))
     taken = []
     for claim in (huge, wide):
         np.savez_compressed(tmp_path / "mine.npz", **(arrays | claim))

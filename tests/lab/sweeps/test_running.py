@@ -66,7 +66,7 @@ def test_an_interrupted_study_goes_on_and_ends_the_same(tmp_path, data, result, 
 @pytest.mark.usefixtures("small_chunks")
 def test_a_study_that_was_stopped_within_its_finest_level_ends_the_same(tmp_path, data):
     """What is done of a level must not change which points it wants."""
-    refine = {"axes": ["force", "position"], "levels": 3}
+    refine = {"axes": ["force", "position"], "levels": 2}
     study, target = study_of(data(refine=refine)), tmp_path / "mine.npz"
     whole = sweep(study, workers=2)
 

@@ -17,7 +17,8 @@ def build_hash() -> str:
         (PACKAGE / "playing" / name).read_text(encoding="utf-8")
         for name in ("calibrations.json", "practices.json")
     ]
-    return key_of(sorted(Path(__file__).parent.glob("*.py")), source_hash(), *learnt)
+    begun = [PACKAGE / "playing" / name for name in ("options.py", "tables.py")]  # memory's start
+    return key_of([*sorted(Path(__file__).parent.glob("*.py")), *begun], source_hash(), *learnt)
 
 
 NAME = b"yehu"

@@ -130,9 +130,8 @@ def test_the_version_is_told(command):
     assert command("--version") == (0, f"yehu-server {yehu_server.__version__}\n", "")
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
+def test_a_call_that_is_not_complete_gets_one_line(subtests, refused):
+    for words in [
         (),
         ("rendr",),
         ("--rate", "44100"),
@@ -142,10 +141,9 @@ def test_the_version_is_told(command):
         ("simulate",),
         ("simulate", "g.json"),
         ("simulate", "one.json", "two.json", "-o", "x.npz"),
-    ],
-)
-def test_a_call_that_is_not_complete_gets_one_line(refused, words):
-    assert "--help" in refused(*words)
+    ]:
+        with subtests.test(words=words):
+            assert "--help" in refused(*words)
 
 
 # ---------------------------------------------------------------- what is said when all is well

@@ -61,9 +61,8 @@ def test_what_is_right_is_read_and_what_is_missing_has_its_default():
     assert read(document('{"gain": 3, "bind": []}').json()) == [3.0, 8.0, 2.0]
 
 
-@pytest.mark.parametrize(
-    ("data", "reason"),
-    [
+def test_data_without_a_file_have_their_place_alone(subtests):
+    for data, reason in [
         ([], "expected a table of names and values, got []"),
         ({"gain": 9}, "gain: 9 is not within -60 to 6 dB"),
         ({"gain": float("nan")}, "gain: nan is not finite"),
@@ -74,13 +73,12 @@ def test_what_is_right_is_read_and_what_is_missing_has_its_default():
         ({"bind": [3]}, "bind 1: expected a table"),
         ({"bind": [{}]}, "bind 1: channel: missing"),
         ({"x" * 10**6: 3}, f"{'x' * 77}...: unknown entry"),
-    ],
-)
-def test_data_without_a_file_have_their_place_alone(data, reason):
-    with pytest.raises(ParameterError) as error:
-        read(Fields(data))
-    assert str(error.value).startswith(reason.replace("\\\\", "\\"))
-    assert len(str(error.value)) < 200
+    ]:
+        with subtests.test(data=data, reason=reason):
+            with pytest.raises(ParameterError) as error:
+                read(Fields(data))
+            assert str(error.value).startswith(reason.replace("\\\\", "\\"))
+            assert len(str(error.value)) < 200
 
 
 def test_an_error_keeps_the_place_that_it_has_and_gets_one_where_it_has_none():

@@ -36,16 +36,17 @@ def test_presets_are_listed_with_their_programs(command, own):
     assert rows["tremolo"]["own"] is False
 
 
-@pytest.mark.parametrize("name", SHIPPED.names())
-def test_a_preset_is_shown_with_all_its_values(command, name):
-    preset = SHIPPED.load(name)
-    shown = json.loads(command("presets", "show", name, "--json")[1])
-    assert shown["values"] == preset.values
-    assert (shown["program"], shown["about"]) == (preset.program, preset.about)
-    code, out, _ = command("presets", "show", name)
-    assert code == 0
-    for address in preset.values:
-        assert address in out
+def test_a_preset_is_shown_with_all_its_values(subtests, command):
+    for name in SHIPPED.names():
+        with subtests.test(name=name):
+            preset = SHIPPED.load(name)
+            shown = json.loads(command("presets", "show", name, "--json")[1])
+            assert shown["values"] == preset.values
+            assert (shown["program"], shown["about"]) == (preset.program, preset.about)
+            code, out, _ = command("presets", "show", name)
+            assert code == 0
+            for address in preset.values:
+                assert address in out
 
 
 def test_files_are_checked(command, tmp_path):

@@ -328,9 +328,8 @@ def control(name: str, value: object) -> dict:
     return {"controls": {name: value}}
 
 
-@pytest.mark.parametrize(
-    ("gesture", "wrong"),
-    [
+def test_a_gesture_that_makes_no_sense_is_refused_by_name(subtests):
+    for gesture, wrong in [
         ([], "gesture"),
         ({"rate": 44100}, "rate: unknown entry"),
         ({"sample_rate": 22049}, "sample_rate"),
@@ -373,13 +372,12 @@ def control(name: str, value: object) -> dict:
         ({"hammer": "hard"}, "hammer"),
         ({"hammer": [[0, 1e5]]}, "hammer"),
         ({"hammer": [[0, math.nan]]}, "hammer"),
-    ],
-)
-def test_a_gesture_that_makes_no_sense_is_refused_by_name(gesture, wrong):
-    with pytest.raises(ParameterError) as caught:
-        gesture_from(gesture)
-    assert wrong in str(caught.value)
-    assert str(caught.value).isprintable()
+    ]:
+        with subtests.test(gesture=gesture, wrong=wrong):
+            with pytest.raises(ParameterError) as caught:
+                gesture_from(gesture)
+            assert wrong in str(caught.value)
+            assert str(caught.value).isprintable()
 
 
 def test_what_would_not_fit_into_memory_is_refused_before_it_runs():

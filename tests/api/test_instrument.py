@@ -271,9 +271,8 @@ def test_the_past_cannot_be_changed(fiddle):
         fiddle.note_on("A4", at=0.2)
 
 
-@pytest.mark.parametrize(
-    ("options", "names"),
-    [
+def test_a_wrong_option_is_told_in_one_line(subtests):
+    for options, names in [
         ({"sample_rate": 8000}, "sample_rate"),
         ({"sample_rate": 44100.5}, "whole"),
         ({"instrument": {"string_1": {"mass": 1.0}}}, "mass"),
@@ -287,13 +286,12 @@ def test_the_past_cannot_be_changed(fiddle):
         ({"practice": "/no/such.json"}, "such.json"),
         ({"a4": 100.0}, "a4"),
         ({"seed": -1}, "seed"),
-    ],
-)
-def test_a_wrong_option_is_told_in_one_line(options, names):
-    with pytest.raises(YehuError) as refused:
-        yehu.Instrument(**options)
-    assert names in str(refused.value)
-    assert "\n" not in str(refused.value)
+    ]:
+        with subtests.test(options=options, names=names):
+            with pytest.raises(YehuError) as refused:
+                yehu.Instrument(**options)
+            assert names in str(refused.value)
+            assert "\n" not in str(refused.value)
 
 
 def test_an_instrument_of_other_strings_is_tuned(tmp_path):

@@ -259,9 +259,8 @@ def test_it_draws_into_the_axes_that_it_is_given(run, plt):
 FOUND = result({"bow_force": [0.1, 0.2], "bow_velocity": [0.1, 0.2]}, regime=[[1, 1]] * 2)
 
 
-@pytest.mark.parametrize(
-    ("name", "arguments", "options", "names"),
-    [
+def test_what_cannot_be_drawn_is_told_in_one_line(subtests):
+    for name, arguments, options, names in [
         ("spectrogram", [np.zeros(99)], {}, "sample_rate"),
         ("spectrogram", [np.zeros(99), RATE], {"top_hz": 1e6}, "top_hz"),
         ("level", ["a.wav"], {}, "sound"),
@@ -273,13 +272,12 @@ FOUND = result({"bow_force": [0.1, 0.2], "bow_velocity": [0.1, 0.2]}, regime=[[1
         ("regimes", [FOUND, "bow_force", "bow_velocity"], {"at": {"z": 1.0}}, "'z'"),
         ("schelleng", [FOUND], {}, "bow_position"),
         ("guettler", [FOUND], {}, "bow_acceleration"),
-    ],
-)
-def test_what_cannot_be_drawn_is_told_in_one_line(name, arguments, options, names):
-    with pytest.raises(YehuError) as refused:
-        getattr(yehu.plot, name)(*arguments, **options)
-    assert names in str(refused.value)
-    assert "\n" not in str(refused.value)
+    ]:
+        with subtests.test(name=name, arguments=arguments, options=options, names=names):
+            with pytest.raises(YehuError) as refused:
+                getattr(yehu.plot, name)(*arguments, **options)
+            assert names in str(refused.value)
+            assert "\n" not in str(refused.value)
 
 
 def test_a_moment_is_one_of_the_run(run):

@@ -130,11 +130,12 @@ def with_examples() -> Iterator[tuple[str, object]]:
         yield f"body.{name}", getattr(yehu.body, name)
 
 
-@pytest.mark.parametrize(("name", "function"), list(with_examples()))
-def test_every_public_function_has_an_example(name, function):
-    text = inspect.getdoc(function) or ""
-    assert doctest.DocTestParser().get_examples(text), name
-    assert "Raises\n------" in text or name == "Note"
+def test_every_public_function_has_an_example(subtests):
+    for name, function in list(with_examples()):
+        with subtests.test(name=name, function=function):
+            text = inspect.getdoc(function) or ""
+            assert doctest.DocTestParser().get_examples(text), name
+            assert "Raises\n------" in text or name == "Note"
 
 
 def test_every_public_argument_is_described():

@@ -169,9 +169,8 @@ def test_progress_is_told(tune):
 # ---------------------------------------------------------------- what is refused
 
 
-@pytest.mark.parametrize(
-    ("score", "names"),
-    [
+def test_a_wrong_score_is_told_in_one_line(subtests):
+    for score, names in [
         ("/no/such.mid", "such.mid"),
         (7, "score"),
         (None, "score"),
@@ -185,13 +184,12 @@ def test_progress_is_told(tune):
         (["A4", "C5"], "note 0"),
         (np.zeros((2, 7)), "note 0"),
         (np.array([[65.0, np.nan, 1.0]]), "start"),
-    ],
-)
-def test_a_wrong_score_is_told_in_one_line(score, names):
-    with pytest.raises(YehuError) as refused:
-        yehu.render(score)
-    assert names in str(refused.value)
-    assert "\n" not in str(refused.value)
+    ]:
+        with subtests.test(score=score, names=names):
+            with pytest.raises(YehuError) as refused:
+                yehu.render(score)
+            assert names in str(refused.value)
+            assert "\n" not in str(refused.value)
 
 
 @pytest.mark.parametrize(

@@ -225,9 +225,8 @@ def test_progress_is_told():
     assert told[-1] == (2, 2)
 
 
-@pytest.mark.parametrize(
-    ("vary", "names"),
-    [
+def test_wrong_values_are_told_in_one_line(subtests):
+    for vary, names in [
         ({}, "vary"),
         ([1.0], "vary"),
         ({"bow_force": 0.5}, "bow_force"),
@@ -238,10 +237,9 @@ def test_progress_is_told():
         ({7: [1.0]}, "7"),
         ({"bow_acceleration": [1.0]}, "bow_velocity"),
         ({"bow_force": np.linspace(0, 1, 1001), "press_force": np.linspace(0, 1, 1000)}, "runs"),
-    ],
-)
-def test_wrong_values_are_told_in_one_line(vary, names):
-    with pytest.raises(YehuError) as refused:
-        yehu.sweep({"duration": 0.05}, vary)
-    assert names in str(refused.value)
-    assert "\n" not in str(refused.value)
+    ]:
+        with subtests.test(vary=vary, names=names):
+            with pytest.raises(YehuError) as refused:
+                yehu.sweep({"duration": 0.05}, vary)
+            assert names in str(refused.value)
+            assert "\n" not in str(refused.value)

@@ -334,9 +334,8 @@ def test_the_tree_has_each_part_with_all_that_is_its_own(still, players):
     assert writable == known
 
 
-@pytest.mark.parametrize(
-    ("address", "is_one"),
-    [
+def test_one_may_listen_to_what_the_parts_have(subtests):
+    for address, is_one in [
         ("/part/1/playing/volume", True),
         ("/part/3/playing/volume/unit", True),
         ("/part/2/status/note", True),
@@ -347,10 +346,9 @@ def test_the_tree_has_each_part_with_all_that_is_its_own(still, players):
         ("/part/2/room/size", False),
         ("/part/2", False),
         ("/part/2/part/2/playing/volume", False),
-    ],
-)
-def test_one_may_listen_to_what_the_parts_have(address, is_one):
-    assert is_listenable(address, 3) == is_one
+    ]:
+        with subtests.test(address=address, is_one=is_one):
+            assert is_listenable(address, 3) == is_one
 
 
 def test_parts_sit_side_by_side_within_the_room():

@@ -70,9 +70,8 @@ def test_of_very_many_unknown_addresses_some_are_told_and_the_rest_counted():
     assert remarks[-1] == "mine: and 990 more"
 
 
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [
+def test_what_is_wrong_is_said_and_nothing_is_read(subtests):
+    for text, reason in [
         ("", "no line version = 1"),
         ("version = true\n", "no line version = 1"),
         ("version = 2\nnew = 3\n", "2 is newer"),
@@ -86,11 +85,12 @@ def test_of_very_many_unknown_addresses_some_are_told_and_the_rest_counted():
         (HEAD + '[values]\n"/playing/speed" = "fast"\n', "/playing/speed: expected a number"),
         (HEAD + '[values]\n"/bow/speed" = 0.1\n', "/bow/speed: is moved by the player"),
         (HEAD + '[values]\n"/finger/1/press" = 1\n', "/finger/1/press: is moved by the player"),
-    ],
-)
-def test_what_is_wrong_is_said_and_nothing_is_read(text, reason):
-    with pytest.raises(PresetError, match=re.escape(reason)):
-        parse(text, "mine")
+    ]:
+        with (
+            subtests.test(text=text, reason=reason),
+            pytest.raises(PresetError, match=re.escape(reason)),
+        ):
+            parse(text, "mine")
 
 
 # ---------------------------------------------------------------- between two

@@ -104,9 +104,8 @@ def test_what_is_like_nothing_is_told_no_more_than_that():
     assert str(caught.value) == "unknown parameter 'zzzzz'"
 
 
-@pytest.mark.parametrize(
-    ("text", "wrong"),
-    [
+def test_a_setting_that_makes_no_sense_is_refused(subtests):
+    for text, wrong in [
         ("/bow/position", "ADDRESS=VALUE"),
         ("", "ADDRESS=VALUE"),
         ("/bow/position=", "not a number"),
@@ -118,11 +117,12 @@ def test_what_is_like_nothing_is_told_no_more_than_that():
         ("/bow/force=-1", "0 to 5 N"),
         ("/bow/positio=0.1", "/bow/position"),
         ("=0.1", "unknown"),
-    ],
-)
-def test_a_setting_that_makes_no_sense_is_refused(text, wrong):
-    with pytest.raises(ParameterError, match=wrong):
-        assignment(text)
+    ]:
+        with (
+            subtests.test(text=text, wrong=wrong),
+            pytest.raises(ParameterError, match=wrong),
+        ):
+            assignment(text)
 
 
 def test_a_setting_may_have_blanks_around_its_words():

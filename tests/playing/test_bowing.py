@@ -64,9 +64,10 @@ def test_ordinarily_notes_are_bowed_as_asked_and_on_the_f_string_not_near_the_br
         assert share(*DEFAULT_RECIPE[AT_FLAUTANDO : AT_FIRM + 1], wish, 0) == pytest.approx(wish)
 
 
-@pytest.mark.parametrize(("string", "note"), STOPS)
-def test_a_note_is_bowed_as_its_table_says(string, note):
-    assert bowed(string, float(note)) == usual(string, note)
+def test_a_note_is_bowed_as_its_table_says(subtests):
+    for string, note in STOPS:
+        with subtests.test(string=string, note=note):
+            assert bowed(string, float(note)) == usual(string, note)
 
 
 def test_notes_beyond_the_table_are_bowed_as_the_last():
@@ -74,14 +75,15 @@ def test_notes_beyond_the_table_are_bowed_as_the_last():
     assert bowed(1, 120.0) == bowed(1, 91.0)
 
 
-@pytest.mark.parametrize(("string", "note"), STOPS)
-def test_a_note_leans_between_the_ends_of_its_table(string, note):
-    flautando, light, firm = usual(string, note)[AT_FLAUTANDO : AT_FIRM + 1]
-    assert pressure(string, FLAUTANDO, float(note)) == pytest.approx(flautando)
-    assert pressure(string, LIGHT, float(note)) == pytest.approx(light)
-    assert pressure(string, FIRM, float(note)) == pytest.approx(firm)
-    middle = pressure(string, 0.5 * (LIGHT + FIRM), float(note))
-    assert middle == pytest.approx(0.5 * (light + firm))
+def test_a_note_leans_between_the_ends_of_its_table(subtests):
+    for string, note in STOPS:
+        with subtests.test(string=string, note=note):
+            flautando, light, firm = usual(string, note)[AT_FLAUTANDO : AT_FIRM + 1]
+            assert pressure(string, FLAUTANDO, float(note)) == pytest.approx(flautando)
+            assert pressure(string, LIGHT, float(note)) == pytest.approx(light)
+            assert pressure(string, FIRM, float(note)) == pytest.approx(firm)
+            middle = pressure(string, 0.5 * (LIGHT + FIRM), float(note))
+            assert middle == pytest.approx(0.5 * (light + firm))
 
 
 def test_each_of_the_three_shares_counts():

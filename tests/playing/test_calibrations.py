@@ -117,9 +117,8 @@ SHORT = asdict(MEASURED)["levels"][:1]
 WRONG = np.array(MEASURED.sharpening)
 
 
-@pytest.mark.parametrize(
-    "data",
-    [
+def test_what_no_measuring_could_have_found_is_no_calibration(subtests):
+    for data in [
         None,
         [],
         {},
@@ -138,12 +137,9 @@ WRONG = np.array(MEASURED.sharpening)
         spoiled(sharpening=np.where(WRONG > 0, np.inf, 0.0).tolist()),
         spoiled(sharpening=np.where(WRONG > 0, 1e6, 0.0).tolist()),
         spoiled(sharpening=np.where(WRONG > 0, None, None).tolist()),
-    ],
-    ids=str,
-)
-def test_what_no_measuring_could_have_found_is_no_calibration(data):
-    with pytest.raises(ParameterError):
-        read_calibration(data, Quantities(), 441.0)
+    ]:
+        with subtests.test(data=data), pytest.raises(ParameterError):
+            read_calibration(data, Quantities(), 441.0)
 
 
 def test_what_was_measured_is_a_calibration():

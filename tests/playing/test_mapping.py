@@ -39,9 +39,8 @@ def test_every_shipped_mapping_loads_by_its_name(path):
     assert mapping == load(str(path))
 
 
-@pytest.mark.parametrize(
-    ("source", "targets"),
-    [
+def test_the_keyboard_mapping_gives_each_controller_its_role(subtests):
+    for source, targets in [
         ("bend", ["/playing/bend"]),
         ("pressure", ["/playing/press"]),
         ("poly-pressure", ["/playing/press"]),
@@ -51,14 +50,13 @@ def test_every_shipped_mapping_loads_by_its_name(path):
         ("cc 10", ["/room/pan"]),
         ("cc 11", ["/playing/dynamics"]),
         ("cc 16", ["/playing/speed"]),
-    ],
-)
-def test_the_keyboard_mapping_gives_each_controller_its_role(source, targets):
-    binds = load("keyboard").of(source)
-    assert [bind.target for bind in binds] == targets
-    for bind in binds:
-        if source != "bend":
-            assert from_unit(bind, 0.0) < from_unit(bind, 0.5) < from_unit(bind, 1.0)
+    ]:
+        with subtests.test(source=source, targets=targets):
+            binds = load("keyboard").of(source)
+            assert [bind.target for bind in binds] == targets
+            for bind in binds:
+                if source != "bend":
+                    assert from_unit(bind, 0.0) < from_unit(bind, 0.5) < from_unit(bind, 1.0)
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "mappings").glob("*.toml")), ids=lambda p: p.stem)

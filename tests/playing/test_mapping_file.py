@@ -98,9 +98,8 @@ def test_a_file_says_all_that_a_bind_has(read):
 # ---------------------------------------------------------------- errors and their lines
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "error"),
-    [
+def test_an_error_names_its_line(subtests, read):
+    for old, new, error in [
         ('"mine"', '"a\\nb"', "2: name: expected a line of text"),
         (
             'name = "mine"',
@@ -156,15 +155,14 @@ def test_a_file_says_all_that_a_bind_has(read):
         ('curve = "s"', "channel = 1", "32: bind 3: channel: an OSC address has no channel"),
         ('source = "/fader1"\n', "", "28: bind 3: needs a source and a target"),
         ('"mine"', '"mine', "2: not a mapping file"),
-    ],
-)
-def test_an_error_names_its_line(read, old, new, error):
-    assert old in FULL
-    with pytest.raises(MappingError) as caught:
-        read(FULL.replace(old, new, 1))
-    lines = (str(caught.value), *caught.value.more)
-    assert any(f"mine.toml:{error}" in line for line in lines)
-    assert all(line.isprintable() for line in lines)
+    ]:
+        with subtests.test(old=old, new=new, error=error):
+            assert old in FULL
+            with pytest.raises(MappingError) as caught:
+                read(FULL.replace(old, new, 1))
+            lines = (str(caught.value), *caught.value.more)
+            assert any(f"mine.toml:{error}" in line for line in lines)
+            assert all(line.isprintable() for line in lines)
 
 
 def test_all_errors_of_a_file_are_told_in_the_order_of_its_lines(read):

@@ -80,9 +80,10 @@ def test_where_no_later_period_is_like_the_first_the_first_one_stays():
     assert pitch_and_level._refine(falling, 13.77) == 13.77
 
 
-@pytest.mark.parametrize(("frequency", "decibels"), A_CURVE.items())
-def test_the_curve_is_the_standards(frequency, decibels):
-    assert 20.0 * np.log10(a_weighting(frequency)) == pytest.approx(decibels, abs=0.1)
+def test_the_curve_is_the_standards(subtests):
+    for frequency, decibels in A_CURVE.items():
+        with subtests.test(frequency=frequency, decibels=decibels):
+            assert 20.0 * np.log10(a_weighting(frequency)) == pytest.approx(decibels, abs=0.1)
 
 
 @pytest.mark.parametrize("rate", [44100.0, 48000.0])

@@ -58,11 +58,12 @@ def test_players_sit_in_two_rows_about_as_loud_as_at_the_distance_of_the_part():
     assert abs(10.0 * np.log10(power)) < 0.25
 
 
-@pytest.mark.parametrize("people", range(2, 17))
-def test_both_sides_of_a_section_are_as_far_away(people):
-    distances = own(DISTANCE, 4.0, people)
-    assert distances == distances[::-1]
-    assert len(set(distances)) == (1 if people == 2 else 2)
+def test_both_sides_of_a_section_are_as_far_away(subtests):
+    for people in range(2, 17):
+        with subtests.test(people=people):
+            distances = own(DISTANCE, 4.0, people)
+            assert distances == distances[::-1]
+            assert len(set(distances)) == (1 if people == 2 else 2)
 
 
 def test_one_player_sits_and_plays_as_the_part():
@@ -77,16 +78,17 @@ def test_players_have_seeds_of_their_own():
     assert not set(seeds) & {*own(OWN_SEED, 0.0, 16), *own(OWN_SEED, 1.0, 16)}
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_instruments_of_one_maker_are_in_tune_with_each_other(seed):
-    calibration, base = ideal(), Quantities()
-    tuned, own = vary(calibration, base, seed)
-    for string in (0, 1):
-        speeds = [
-            wave_speed(of.tuned(quantities), string)
-            for of, quantities in ((calibration, base), (tuned, own))
-        ]
-        assert abs(1200.0 * np.log2(speeds[1] / speeds[0])) <= TUNED_CENTS * 1.001
+def test_instruments_of_one_maker_are_in_tune_with_each_other(subtests):
+    for seed in SEEDS:
+        with subtests.test(seed=seed):
+            calibration, base = ideal(), Quantities()
+            tuned, own = vary(calibration, base, seed)
+            for string in (0, 1):
+                speeds = [
+                    wave_speed(of.tuned(quantities), string)
+                    for of, quantities in ((calibration, base), (tuned, own))
+                ]
+                assert abs(1200.0 * np.log2(speeds[1] / speeds[0])) <= TUNED_CENTS * 1.001
 
 
 def test_strings_hair_and_rosin_differ_within_the_tolerances_of_one_maker():
@@ -123,29 +125,32 @@ def test_each_player_of_a_section_has_an_instrument_and_sides_of_their_own():
     assert turns[0] == turns[-1]
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_bodies_are_passive_and_their_modes_within_the_tolerances(seed):
-    _, own = vary(ideal(), Quantities(), seed)
-    body, measured = own.body, Quantities().body
-    assert min(*body.mass, *body.damping) > 0.0
-    ratio = np.array(body.frequency_hz) / measured.frequency_hz
-    assert abs(ratio - 1.0).max() <= (1.0 + SIZE) * (1.0 + MODE) - 1.0
-    assert ratio.std() <= MODE
-    for (*_, a1, a2), (*_, before) in zip(body.sections, measured.sections, strict=True):
-        assert a2 == pytest.approx(before)  # decays as quickly
-        assert a1 * a1 < 4.0 * a2 < 4.0
+def test_bodies_are_passive_and_their_modes_within_the_tolerances(subtests):
+    for seed in SEEDS:
+        with subtests.test(seed=seed):
+            _, own = vary(ideal(), Quantities(), seed)
+            body, measured = own.body, Quantities().body
+            assert min(*body.mass, *body.damping) > 0.0
+            ratio = np.array(body.frequency_hz) / measured.frequency_hz
+            assert abs(ratio - 1.0).max() <= (1.0 + SIZE) * (1.0 + MODE) - 1.0
+            assert ratio.std() <= MODE
+            for (*_, a1, a2), (*_, before) in zip(body.sections, measured.sections, strict=True):
+                assert a2 == pytest.approx(before)  # decays as quickly
+                assert a1 * a1 < 4.0 * a2 < 4.0
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_bodies_radiate_about_alike(seed):
-    _, own = vary(ideal(), Quantities(), seed)
-    hertz = np.geomspace(300.0, 8000.0, 400)
-    of_measured, of_own = (
-        abs(response(np.array(body.sections), np.array([body.direct_gain]), 44100.0, hertz)) ** 2
-        for body in (Quantities().body, own.body)
-    )
-    assert abs(10.0 * np.log10(of_own.mean() / of_measured.mean())) < 2.0
-    assert abs(10.0 * np.log10(of_own / of_measured)).mean() > 0.3  # and yet not the same
+def test_bodies_radiate_about_alike(subtests):
+    for seed in SEEDS:
+        with subtests.test(seed=seed):
+            _, own = vary(ideal(), Quantities(), seed)
+            hertz = np.geomspace(300.0, 8000.0, 400)
+            of_measured, of_own = (
+                abs(response(np.array(body.sections), np.array([body.direct_gain]), 44100.0, hertz))
+                ** 2
+                for body in (Quantities().body, own.body)
+            )
+            assert abs(10.0 * np.log10(of_own.mean() / of_measured.mean())) < 2.0
+            assert abs(10.0 * np.log10(of_own / of_measured)).mean() > 0.3  # and yet not the same
 
 
 def test_a_mapping_preset_or_setting_asks_for_players():

@@ -44,9 +44,8 @@ def note(midi, number: int, velocity: int = 64, channel: int = 1) -> None:
 # ---------------------------------------------------------------- names
 
 
-@pytest.mark.parametrize(
-    ("text", "name"),
-    [
+def test_each_source_has_one_name(subtests):
+    for text, name in [
         ("cc 0", "cc 0"),
         ("cc 119", "cc 119"),
         ("cc 0/32", "cc 0/32"),
@@ -60,27 +59,59 @@ def note(midi, number: int, velocity: int = 64, channel: int = 1) -> None:
         ("/fader1", "/fader1"),
         ("/1/xy.2/a-b", "/1/xy.2/a-b"),
         ("/yehus", "/yehus"),
-    ],
-)
-def test_each_source_has_one_name(text, name):
-    assert canonical(text) == name
-    assert canonical(name) == name
+    ]:
+        with subtests.test(text=text, name=name):
+            assert canonical(text) == name
+            assert canonical(name) == name
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "cc", "CC 1", "cc 01", "cc \uff11", "breath",
-        "cc 120", "cc 128", "cc 1/34", "cc 1/1", "cc 32/64", "cc 33/1", "cc 6/38", "cc 6", "cc 98",
-        "cc 1/", "cc 1/033", "cc  1", "nrpn", "nrpn 16383", "nrpn 127/127", "nrpn 128/0",
-        "nrpn 0/128", "nrpn 300/1", "nrpn 99999", "rpn 0", "note 3", "", "/", "//a", "/a/", "/a b",
-        "/a*", "/a?", "/{a,b}", "/[a]", "/a#", "/å", "/yehu", "/yehu/note", "/" + 300 * "a",
-    ],
-)  # fmt: skip
-def test_what_is_no_source_is_refused_in_one_line(text):
-    with pytest.raises(ParameterError) as caught:
-        canonical(text)
-    assert str(caught.value).isprintable()
+def test_what_is_no_source_is_refused_in_one_line(subtests):
+    for text in [
+        "cc",
+        "CC 1",
+        "cc 01",
+        "cc \uff11",
+        "breath",
+        "cc 120",
+        "cc 128",
+        "cc 1/34",
+        "cc 1/1",
+        "cc 32/64",
+        "cc 33/1",
+        "cc 6/38",
+        "cc 6",
+        "cc 98",
+        "cc 1/",
+        "cc 1/033",
+        "cc  1",
+        "nrpn",
+        "nrpn 16383",
+        "nrpn 127/127",
+        "nrpn 128/0",
+        "nrpn 0/128",
+        "nrpn 300/1",
+        "nrpn 99999",
+        "rpn 0",
+        "note 3",
+        "",
+        "/",
+        "//a",
+        "/a/",
+        "/a b",
+        "/a*",
+        "/a?",
+        "/{a,b}",
+        "/[a]",
+        "/a#",
+        "/å",
+        "/yehu",
+        "/yehu/note",
+        "/" + 300 * "a",
+    ]:
+        with subtests.test(text=text):
+            with pytest.raises(ParameterError) as caught:
+                canonical(text)
+            assert str(caught.value).isprintable()
 
 
 # ---------------------------------------------------------------- 14 bits

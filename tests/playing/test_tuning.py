@@ -98,9 +98,8 @@ def test_between_keys_the_pitch_is_between_theirs(read):
     assert tuning.pitch(61.25, 440.0) == pytest.approx(60 + 0.75 * tone + 0.25 * third)
 
 
-@pytest.mark.parametrize(
-    ("line", "expected"),
-    [
+def test_a_note_is_cents_or_a_ratio_and_what_follows_is_ignored(subtests, read):
+    for line, expected in [
         ("81/64", 407.82),
         ("408.0", 408),
         ("408.", 408),
@@ -117,10 +116,9 @@ def test_between_keys_the_pitch_is_between_theirs(read):
         ("3/2! fifth", 701.955),
         ("4294967296/2147483648", 1200),
         (f"{2**400}/{2**399}", 1200),
-    ],
-)
-def test_a_note_is_cents_or_a_ratio_and_what_follows_is_ignored(read, line, expected):
-    assert cents(read(scl(line)), 60, 61)[1] == pytest.approx(expected, abs=1e-3)
+    ]:
+        with subtests.test(line=line, expected=expected):
+            assert cents(read(scl(line)), 60, 61)[1] == pytest.approx(expected, abs=1e-3)
 
 
 def test_a_scale_without_notes_has_its_first_only(read):
@@ -218,9 +216,8 @@ def test_keys_left_out_at_the_end_of_a_map_are_unmapped(read):
 # ---------------------------------------------------------------- errors
 
 
-@pytest.mark.parametrize(
-    ("text", "line", "says"),
-    [
+def test_a_malformed_scale_is_refused_by_line(subtests, read):
+    for text, line, says in [
         ("", 1, "ends before the number of notes"),
         ("! only\n! comments", 2, "ends before the description"),
         ("A scale", 1, "ends before the number of notes"),
@@ -247,16 +244,16 @@ def test_keys_left_out_at_the_end_of_a_map_are_unmapped(read):
         (scl("9" * 400 + "."), 5, "too far"),
         (scl("9" * 1000), 5, "too far"),
         (scl("9" * 5000), 5, "expected cents or a ratio"),
-    ],
-)
-def test_a_malformed_scale_is_refused_by_line(read, text, line, says):
-    with pytest.raises(ParameterError, match=rf"mine\.scl: line {line}: .*{says}"):
-        read(text)
+    ]:
+        with (
+            subtests.test(text=text, line=line, says=says),
+            pytest.raises(ParameterError, match=rf"mine\.scl: line {line}: .*{says}"),
+        ):
+            read(text)
 
 
-@pytest.mark.parametrize(
-    ("text", "line", "says"),
-    [
+def test_a_malformed_map_is_refused_by_line(subtests, read):
+    for text, line, says in [
         ("", 1, "ends before the size of the map"),
         ("0\n0\n127", 3, "ends before the middle key"),
         (kbm(size=-1), 1, "size of the map: -1 is not within"),
@@ -275,11 +272,12 @@ def test_a_malformed_scale_is_refused_by_line(read, text, line, says):
         (kbm("0 1 2", size=3), 8, "expected a degree"),
         (kbm("-1"), 8, "-1 is not within"),
         (kbm("0", "x", reference=61), 5, "reference key 61 is not mapped"),
-    ],
-)
-def test_a_malformed_map_is_refused_by_line(read, text, line, says):
-    with pytest.raises(ParameterError, match=rf"mine\.kbm: line {line}: .*{says}"):
-        read(scl(*TWELVE), text)
+    ]:
+        with (
+            subtests.test(text=text, line=line, says=says),
+            pytest.raises(ParameterError, match=rf"mine\.kbm: line {line}: .*{says}"),
+        ):
+            read(scl(*TWELVE), text)
 
 
 def test_a_map_must_map_a_key(read):

@@ -54,9 +54,8 @@ def test_a_room_has_values_or_a_name(read):
     assert read(f'room = "hall"\n{PART}').room_name == "hall"
 
 
-@pytest.mark.parametrize(
-    ("text", "line", "error"),
-    [
+def test_what_is_wrong_is_told_with_its_line(subtests, read):
+    for text, line, error in [
         (
             "[[part]]\nchannel = 17\n",
             2,
@@ -78,13 +77,12 @@ def test_a_room_has_values_or_a_name(read):
         ("part = []\n", 1, "part: expected 1 to 16 of [[part]], got 0"),
         ("part = 3\n", 1, "write each as [[part]]"),
         ("[[part]\n", 1, "not an ensemble file"),
-    ],
-)
-def test_what_is_wrong_is_told_with_its_line(read, text, line, error):
-    with pytest.raises(EnsembleError, match=re.escape(f"band.toml:{line}: ")) as raised:
-        read(text)
-    assert error in str(raised.value)
-    assert is_one_line(f"{raised.value}\n")
+    ]:
+        with subtests.test(text=text, line=line, error=error):
+            with pytest.raises(EnsembleError, match=re.escape(f"band.toml:{line}: ")) as raised:
+                read(text)
+            assert error in str(raised.value)
+            assert is_one_line(f"{raised.value}\n")
 
 
 @pytest.mark.parametrize("text", ["", b"\xff\xfe", "about = 'nobody'\n", b"\0"])

@@ -39,20 +39,21 @@ def lengths(text: str) -> list[float]:
 # ---------------------------------------------------------------- agreement
 
 
-@pytest.mark.parametrize("name", JUDGED)
-def test_notes_are_those_that_jianpu_ly_and_lilypond_write_as_midi(name):
-    score = written(JUDGED[name]["text"])
-    found = sorted(
-        [float(note.beat), float(note.length), note.pitch]
-        for part in score.parts
-        for note in part.notes
-    )
-    assert [note[2] for note in found] == [note[2] for note in JUDGED[name]["notes"]]
-    for mine, theirs in zip(found, JUDGED[name]["notes"], strict=True):
-        # their ticks are a 384th of a quarter
-        assert mine[:2] == pytest.approx(theirs[:2], abs=1 / 380)
-    assert not score.unknown
-    assert not score.warnings
+def test_notes_are_those_that_jianpu_ly_and_lilypond_write_as_midi(subtests):
+    for name in JUDGED:
+        with subtests.test(name=name):
+            score = written(JUDGED[name]["text"])
+            found = sorted(
+                [float(note.beat), float(note.length), note.pitch]
+                for part in score.parts
+                for note in part.notes
+            )
+            assert [note[2] for note in found] == [note[2] for note in JUDGED[name]["notes"]]
+            for mine, theirs in zip(found, JUDGED[name]["notes"], strict=True):
+                # their ticks are a 384th of a quarter
+                assert mine[:2] == pytest.approx(theirs[:2], abs=1 / 380)
+            assert not score.unknown
+            assert not score.warnings
 
 
 def test_the_example_tune_has_the_notes_of_its_midi_file():
@@ -223,9 +224,8 @@ def test_not_more_than_some_words_are_named():
     assert score.unknown["other words"] == 50
 
 
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [
+def test_what_cannot_be_read_is_refused_with_its_place(subtests):
+    for text, reason in [
         ("1 2\n R{ 3", "line 2, column 2: has no } that ends it"),
         ("1 }", "line 1, column 3: } without a {"),
         ("1 A{ 2 }", "line 1, column 3: A{ belongs after the } of a repeat"),
@@ -242,13 +242,12 @@ def test_not_more_than_some_words_are_named():
         ("", "has no notes of jianpu"),
         ("1\0", "is not text"),
         ("99[ 1 ]", "more than 64 notes in a tuplet"),
-    ],
-)
-def test_what_cannot_be_read_is_refused_with_its_place(text, reason):
-    with pytest.raises(ScoreError) as refused:
-        written(text)
-    assert reason in str(refused.value)
-    assert "\n" not in str(refused.value)
+    ]:
+        with subtests.test(text=text, reason=reason):
+            with pytest.raises(ScoreError) as refused:
+                written(text)
+            assert reason in str(refused.value)
+            assert "\n" not in str(refused.value)
 
 
 def test_errors_name_the_file(tmp_path):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.scores.jianpu.mark_words import AHEAD, COMMANDS, FINGERING, TEXTS
 from yehu_server.scores.jianpu.reader import parse_jianpu
@@ -36,9 +34,8 @@ def test_every_word_means_something_that_a_score_can_say():
             }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("word", "mark"),
-    [
+def test_a_mark_belongs_to_the_note_before_it(subtests):
+    for word, mark in [
         ("\\upbow", Mark("up-bow")),
         ("^\\downbow", Mark("down-bow")),
         ("\\staccato", Mark("staccato")),
@@ -58,14 +55,13 @@ def test_every_word_means_something_that_a_score_can_say():
         ("up", Mark("slide-in-up")),
         ("Fr=down", Mark("slide-in-down")),
         ("tilde", Mark("vibrato")),
-    ],
-)
-def test_a_mark_belongs_to_the_note_before_it(word, mark):
-    first, second, third = part(f"1 2 {word} 3").notes
-    assert second.marks == (mark,)
-    assert not first.marks
-    assert not third.marks
-    assert part(f"1 - {word}").notes[0].marks == (mark,)
+    ]:
+        with subtests.test(word=word, mark=mark):
+            first, second, third = part(f"1 2 {word} 3").notes
+            assert second.marks == (mark,)
+            assert not first.marks
+            assert not third.marks
+            assert part(f"1 - {word}").notes[0].marks == (mark,)
 
 
 def test_slides_and_glissandi_are_written_before_their_note():

@@ -133,11 +133,10 @@ def begun(messages: list[tuple[float, list[int]]]) -> int:
     return sum(0x90 <= status < 0xA0 and velocity > 0 for _, (status, _, velocity) in messages)
 
 
-@pytest.mark.parametrize(
-    "case", [case for case in CASES if case.mido != UNASKED], ids=lambda case: case.name
-)
-def test_mido_agrees_message_for_message_where_it_is_said_to(case: Case, written):
-    assert made_by_mido(case, written(case.data)) == case.mido
+def test_mido_agrees_message_for_message_where_it_is_said_to(subtests, written):
+    for case in [case for case in CASES if case.mido != UNASKED]:
+        with subtests.test(case=case):
+            assert made_by_mido(case, written(case.data)) == case.mido
 
 
 # ---------------------------------------------------------------- the corpus

@@ -64,9 +64,8 @@ def signs_of(written) -> list[tuple[str, float]]:
 # -- marks --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("notation", "name", "value"),
-    [
+def test_marks_are_understood(subtests, read):
+    for notation, name, value in [
         (articulation("staccato"), "staccato", None),
         (articulation("strong-accent"), "marcato", None),
         (articulation("detached-legato"), "portato", None),
@@ -90,12 +89,11 @@ def signs_of(written) -> list[tuple[str, float]]:
         (ornament("inverted-mordent"), "inverted-mordent", 2.0),
         ("<ornaments><tremolo>3</tremolo></ornaments>", "tremolo", 3.0),
         ('<ornaments><tremolo type="unmeasured">0</tremolo></ornaments>', "tremolo", None),
-    ],
-)
-def test_marks_are_understood(read, notation, name, value):
-    written = read(score(note("C5", 4, notation)))
-    assert marks_of(written) == [(name, value)]
-    assert not written.unknown
+    ]:
+        with subtests.test(notation=notation, name=name, value=value):
+            written = read(score(note("C5", 4, notation)))
+            assert marks_of(written) == [(name, value)]
+            assert not written.unknown
 
 
 @pytest.mark.parametrize(
@@ -243,9 +241,8 @@ def test_a_direction_stands_where_its_offset_says_and_sounds_there_if_told(read,
     assert [float(each.beat) for each in written.tempi] == [beat]
 
 
-@pytest.mark.parametrize(
-    ("text", "kind", "name"),
-    [
+def test_words_have_a_meaning(subtests):
+    for text, kind, name in [
         ("pizz.", "sign", "pizz"),
         ("Arco", "sign", "arco"),
         ("sul pont.", "sign", "sul-ponticello"),
@@ -264,11 +261,10 @@ def test_a_direction_stands_where_its_offset_says_and_sounds_there_if_told(read,
         ("a tempo", "back", ""),
         ("Allegro ma non troppo", "tempo", ""),
         ("sempre pp", "sign", "pp"),
-    ],
-)
-def test_words_have_a_meaning(text, kind, name):
-    meaning = meaning_of(text)
-    assert (meaning.kind, meaning.name) == (kind, name)
+    ]:
+        with subtests.test(text=text, kind=kind, name=name):
+            meaning = meaning_of(text)
+            assert (meaning.kind, meaning.name) == (kind, name)
 
 
 @pytest.mark.parametrize(

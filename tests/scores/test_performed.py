@@ -158,9 +158,8 @@ def test_the_direction_of_a_bow_is_for_its_note_alone(mark, value):
     assert settings(play(*four(1, mark)), "/playing/direction") == [(0.5, value), (1.0, None)]
 
 
-@pytest.mark.parametrize(
-    ("marks", "address", "value"),
-    [
+def test_a_mark_sets_its_parameter_and_puts_it_back(subtests):
+    for marks, address, value in [
         (["pizzicato"], "/playing/pizzicato", 1.0),
         (["tremolo"], "/playing/tremolo", QUICK_TREMOLO),
         ([Mark("tremolo", 2)], "/playing/tremolo", 8.0),
@@ -172,10 +171,9 @@ def test_the_direction_of_a_bow_is_for_its_note_alone(mark, value):
         (["slide-in-down"], "/playing/articulation", float(NUMBER["slide-down"])),
         (["inner-string"], "/playing/string", 1.0),
         (["outer-string"], "/playing/string", 2.0),
-    ],
-)
-def test_a_mark_sets_its_parameter_and_puts_it_back(marks, address, value):
-    assert settings(play(*four(2, *marks)), address) == [(1.0, value), (1.5, None)]
+    ]:
+        with subtests.test(marks=marks, address=address, value=value):
+            assert settings(play(*four(2, *marks)), address) == [(1.0, value), (1.5, None)]
 
 
 def test_articulations_of_the_bow_hold_and_those_of_the_fingers_are_for_one_note():
@@ -236,10 +234,11 @@ def test_a_finger_on_the_pitch_of_the_open_string_asks_for_the_other():
 # -- loudness -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", DYNAMICS)
-def test_dynamics_are_velocities(name):
-    notes = notes_of(play(*FOUR, signs=[sign(1, name)]))
-    assert [each.velocity for each in notes] == [80, *[DYNAMICS[name]] * 3]
+def test_dynamics_are_velocities(subtests):
+    for name in DYNAMICS:
+        with subtests.test(name=name):
+            notes = notes_of(play(*FOUR, signs=[sign(1, name)]))
+            assert [each.velocity for each in notes] == [80, *[DYNAMICS[name]] * 3]
 
 
 def test_a_forced_note_is_loud_alone():
@@ -488,22 +487,24 @@ def test_a_harmonic_that_does_not_speak_is_told():
 # -- all of it ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", MARKS)
-def test_every_mark_changes_what_is_played_or_says_nothing_about_it(name):
-    silent = {"finger", "open-string", "tenuto", "arpeggio", "articulation"}  # of this note
-    plain, marked = play(*FOUR), play(*four(1, name))
-    same = [*map(str, marked.events)] == [*map(str, plain.events)]
-    assert same == (name in silent)
+def test_every_mark_changes_what_is_played_or_says_nothing_about_it(subtests):
+    for name in MARKS:
+        with subtests.test(name=name):
+            silent = {"finger", "open-string", "tenuto", "arpeggio", "articulation"}  # of this note
+            plain, marked = play(*FOUR), play(*four(1, name))
+            same = [*map(str, marked.events)] == [*map(str, plain.events)]
+            assert same == (name in silent)
 
 
-@pytest.mark.parametrize("name", MARKS)
-def test_settings_are_within_the_range_of_their_parameters(name):
-    for value in (None, 0.0, 1.0, 5.0, -1e9, 1e9):
-        score = play(*four(1, Mark(name, value)))
-        for event in score.events:
-            if isinstance(event.message, Setting) and event.message.value is not None:
-                param = find(event.message.address)
-                assert param.lo <= event.message.value <= param.hi
+def test_settings_are_within_the_range_of_their_parameters(subtests):
+    for name in MARKS:
+        with subtests.test(name=name):
+            for value in (None, 0.0, 1.0, 5.0, -1e9, 1e9):
+                score = play(*four(1, Mark(name, value)))
+                for event in score.events:
+                    if isinstance(event.message, Setting) and event.message.value is not None:
+                        param = find(event.message.address)
+                        assert param.lo <= event.message.value <= param.hi
 
 
 def test_each_part_has_a_channel_and_none_is_percussion():

@@ -82,9 +82,8 @@ def test_a_change_changes_that_quantity_and_no_other():
     assert YEHU.bow.epsilon_0 == 3.186e4
 
 
-@pytest.mark.parametrize(
-    ("changes", "named"),
-    [
+def test_a_mistake_is_refused_by_name(subtests):
+    for changes, named in [
         ({"bows": {}}, "instrument.bows: unknown entry; did you mean bow?"),
         ({"bow": {"epsilon1": 1.0}}, "bow.epsilon1: unknown entry; did you mean epsilon_1?"),
         ({"string_1": {"rho_A": 1e-3}}, "string_1.rho_A: unknown entry"),
@@ -107,30 +106,27 @@ def test_a_change_changes_that_quantity_and_no_other():
         ({"bow": {"mu_S": 0.4}}, "mu_S must not be below mu_C"),
         ({"body": "no/such/file.json"}, "body: no/such/file.json"),
         ({"body": 7}, "body: 7: No such"),
-    ],
-    ids=str,
-)
-def test_a_mistake_is_refused_by_name(changes, named):
-    with pytest.raises(ParameterError) as error:
-        override(YEHU, changes)
-    assert named in str(error.value)
-    assert "\n" not in str(error.value)
+    ]:
+        with subtests.test(changes=changes, named=named):
+            with pytest.raises(ParameterError) as error:
+                override(YEHU, changes)
+            assert named in str(error.value)
+            assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize(
-    ("section", "item"), BOUNDED, ids=lambda value: getattr(value, "name", value)
-)
-def test_every_quantity_refuses_what_is_beyond_its_bounds(section, item):
-    lo, hi = item.metadata["lo"], item.metadata["hi"]
-    pair = isinstance(item.default, tuple)
-    beyond = [lo - max(abs(lo), 1e-3), 2.0 * hi, math.nan, math.inf, -math.inf, 10**400]
-    for value in beyond:
-        given = [value, value] if pair else value
-        with pytest.raises(ParameterError, match=rf"^instrument\.{section}\.{item.name}: "):
-            override(YEHU, {section: {item.name: given}})
-    assert lo <= (item.default[0] if pair else item.default) <= hi
-    assert item.metadata["unit"]
-    assert item.metadata["source"]
+def test_every_quantity_refuses_what_is_beyond_its_bounds(subtests):
+    for section, item in BOUNDED:
+        with subtests.test(section=section, item=item):
+            lo, hi = item.metadata["lo"], item.metadata["hi"]
+            pair = isinstance(item.default, tuple)
+            beyond = [lo - max(abs(lo), 1e-3), 2.0 * hi, math.nan, math.inf, -math.inf, 10**400]
+            for value in beyond:
+                given = [value, value] if pair else value
+                with pytest.raises(ParameterError, match=rf"^instrument\.{section}\.{item.name}: "):
+                    override(YEHU, {section: {item.name: given}})
+            assert lo <= (item.default[0] if pair else item.default) <= hi
+            assert item.metadata["unit"]
+            assert item.metadata["source"]
 
 
 @pytest.mark.parametrize("name", ["bridge_x", "tension_headroom"])

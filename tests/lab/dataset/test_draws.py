@@ -75,9 +75,8 @@ def test_normal_draws_stay_within_their_ends():
     assert values.std() == pytest.approx(0.5396, abs=0.02)
 
 
-@pytest.mark.parametrize(
-    "entry",
-    [
+def test_what_is_no_draw_is_refused_by_its_name(subtests):
+    for entry in [
         "1",
         True,
         math.nan,
@@ -97,9 +96,6 @@ def test_normal_draws_stay_within_their_ends():
         {"mean": 0, "deviation": 0, "from": -1, "to": 1},
         {"mean": 0, "deviation": 1, "from": 100, "to": 101},
         {"mean": 0, "deviation": 1},
-    ],
-    ids=str,
-)
-def test_what_is_no_draw_is_refused_by_its_name(entry):
-    with pytest.raises(ParameterError, match=r"^here"):
-        Fields({"here": entry}).read("here", read_distribution, None)
+    ]:
+        with subtests.test(entry=entry), pytest.raises(ParameterError, match=r"^here"):
+            Fields({"here": entry}).read("here", read_distribution, None)

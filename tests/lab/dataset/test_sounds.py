@@ -124,9 +124,10 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("wrong", WRONG)
-def test_a_wrong_description_is_refused_by_its_entry(wrong):
-    with pytest.raises(ParameterError) as error:
-        description_of(WRONG[wrong])
-    assert wrong in str(error.value)
-    assert "\n" not in str(error.value)
+def test_a_wrong_description_is_refused_by_its_entry(subtests):
+    for wrong, entries in WRONG.items():
+        with subtests.test(wrong=wrong):
+            with pytest.raises(ParameterError) as error:
+                description_of(entries)
+            assert wrong in str(error.value)
+            assert "\n" not in str(error.value)

@@ -43,9 +43,8 @@ LATE = np.cumsum(RNG.uniform(1.2, 3.4, 40) * PERIOD).astype(int)
 OFTEN = np.cumsum(RNG.uniform(0.2, 0.9, 200) * PERIOD).astype(int)
 
 
-@pytest.mark.parametrize(
-    ("regime", "velocity"),
-    [
+def test_a_motion_has_the_regime_that_its_slips_make(subtests):
+    for regime, velocity in [
         ("helmholtz", slips(every(PERIOD))),
         ("helmholtz", slips(every(104))),  # 68 cents flat
         ("multiple slip", slips([*every(PERIOD), *every(PERIOD, 37)])),
@@ -58,11 +57,10 @@ OFTEN = np.cumsum(RNG.uniform(0.2, 0.9, 200) * PERIOD).astype(int)
         ("silent", np.full(LENGTH, -SPEED)),
         ("silent", -SPEED + 0.01 * np.sin(2 * np.pi * np.arange(LENGTH) / PERIOD)),
         ("silent", -3.0 + 0.5 * np.sin(2 * np.pi * np.arange(LENGTH) / PERIOD)),  # never sticks
-    ],
-)
-def test_a_motion_has_the_regime_that_its_slips_make(regime, velocity):
-    assert found(velocity).regime == regime
-    assert judge(-velocity, -SPEED, velocity, RATE, NOTE).regime == regime  # the other way
+    ]:
+        with subtests.test(regime=regime, velocity=velocity):
+            assert found(velocity).regime == regime
+            assert judge(-velocity, -SPEED, velocity, RATE, NOTE).regime == regime  # the other way
 
 
 @pytest.mark.parametrize("level", [0.02, 0.05])

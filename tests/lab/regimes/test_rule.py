@@ -32,9 +32,8 @@ def correlation(peaks):
     return alike
 
 
-@pytest.mark.parametrize(
-    ("regime", "lag", "how_many", "peaks"),
-    [
+def test_slips_and_correlation_name_the_regime(subtests):
+    for regime, lag, how_many, peaks in [
         (HELMHOLTZ, 100, 1.0, {100: 0.79}),
         (HELMHOLTZ, 100, 1.3, {100: 0.95, 200: 0.96}),
         (MULTIPLE_SLIP, 100, 1.5, {100: 0.79}),
@@ -51,11 +50,10 @@ def correlation(peaks):
         (RAUCOUS, NOWHERE, 0.9, {200: 0.78}),
         (RAUCOUS, NOWHERE, 0.9, {100: 0.7}),
         (APERIODIC, NOWHERE, 1.2, {200: 0.78}),
-    ],
-)
-def test_slips_and_correlation_name_the_regime(regime, lag, how_many, peaks):
-    alike = correlation(peaks)
-    assert name_regime(how_many, 0.9, alike, COUNT, 100.0, 1.0, SPEED) == (regime, lag)
+    ]:
+        with subtests.test(regime=regime, lag=lag, how_many=how_many, peaks=peaks):
+            alike = correlation(peaks)
+            assert name_regime(how_many, 0.9, alike, COUNT, 100.0, 1.0, SPEED) == (regime, lag)
 
 
 @pytest.mark.parametrize(

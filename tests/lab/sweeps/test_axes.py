@@ -30,25 +30,40 @@ def test_a_word_is_a_value():
     assert axis.values == ("elasto-plastic", "thermal")
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["force", "=1", "force=", "force=1:2", "force=1:2:1", "a..b=1", "x=1:2:z", "x=0:2:5:log",
-     "x=1:2:5:cubic", "x=1:2:5:log:6", "x=1:inf:4", "x=1:2:1000001"],
-)  # fmt: skip
-def test_what_is_no_axis_is_refused_in_a_line(text):
-    with pytest.raises(ParameterError) as error:
-        axis_of(text)
-    assert "\n" not in str(error.value)
+def test_what_is_no_axis_is_refused_in_a_line(subtests):
+    for text in [
+        "force",
+        "=1",
+        "force=",
+        "force=1:2",
+        "force=1:2:1",
+        "a..b=1",
+        "x=1:2:z",
+        "x=0:2:5:log",
+        "x=1:2:5:cubic",
+        "x=1:2:5:log:6",
+        "x=1:inf:4",
+        "x=1:2:1000001",
+    ]:
+        with subtests.test(text=text):
+            with pytest.raises(ParameterError) as error:
+                axis_of(text)
+            assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize(
-    "entry",
-    [3, [], {"from": 1}, {"from": 1, "to": 2, "steps": 2.5}, {"from": 1, "to": 2, "step": 3},
-     {"from": "a", "to": 2, "steps": 3}, [True], [[1]]],
-)  # fmt: skip
-def test_what_is_no_axis_of_a_study_is_refused(entry):
-    with pytest.raises(ParameterError, match=r"^force"):
-        Fields({"force": entry}).each(axis_from)
+def test_what_is_no_axis_of_a_study_is_refused(subtests):
+    for entry in [
+        3,
+        [],
+        {"from": 1},
+        {"from": 1, "to": 2, "steps": 2.5},
+        {"from": 1, "to": 2, "step": 3},
+        {"from": "a", "to": 2, "steps": 3},
+        [True],
+        [[1]],
+    ]:
+        with subtests.test(entry=entry), pytest.raises(ParameterError, match=r"^force"):
+            Fields({"force": entry}).each(axis_from)
 
 
 def test_halving_steps_keeps_the_values_that_were_there():

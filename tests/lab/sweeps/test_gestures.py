@@ -89,9 +89,8 @@ def test_an_open_string_has_no_finger():
     assert strokes["frequency_hz"][0] == pytest.approx(345, rel=0.02)
 
 
-@pytest.mark.parametrize(
-    ("vary", "wrong"),
-    [
+def test_what_cannot_be_varied_is_told(subtests):
+    for vary, wrong in [
         ({"bow_force": [0.1, 99.0]}, "bow_force: 99.0 is not within"),
         ({"bow_farce": [1.0]}, "bow_farce: unknown entry"),
         ({"instrument.bow.nothing": [1.0]}, "nothing: unknown entry"),
@@ -100,8 +99,9 @@ def test_an_open_string_has_no_finger():
         ({"bow_acceleration": [0.0]}, "bow_acceleration: 0.0 is not within"),
         ({"finger_position": [0.1, 0.39]}, "is not between the loop"),
         ({"bow_force": ["much"]}, "bow_force"),
-    ],
-)
-def test_what_cannot_be_varied_is_told(vary, wrong):
-    with pytest.raises(ParameterError, match=wrong):
-        study(**vary)
+    ]:
+        with (
+            subtests.test(vary=vary, wrong=wrong),
+            pytest.raises(ParameterError, match=wrong),
+        ):
+            study(**vary)

@@ -55,9 +55,8 @@ def test_edges_lie_between_the_values():
     assert edges(np.array([1.0, 4.0]), log=True) == pytest.approx([0.5, 2.0, 8.0])
 
 
-@pytest.mark.parametrize(
-    ("values", "spread", "log"),
-    [
+def test_values_are_drawn_by_logarithms_where_they_have_equal_ratios_or_go_far(subtests):
+    for values, spread, log in [
         ([1.0, 2.0, 3.0, 4.0, 5.0, 6.0], "", False),
         ([1.0, 2.0, 4.0], "", True),
         ([4.0, 1.0, 2.0], "", True),
@@ -69,10 +68,9 @@ def test_edges_lie_between_the_values():
         ([1.0, 10.0], "linear", False),
         ([0.5], "", False),
         (["a", "b"], "", False),
-    ],
-)
-def test_values_are_drawn_by_logarithms_where_they_have_equal_ratios_or_go_far(values, spread, log):
-    assert is_log(np.array(values), spread) is log
+    ]:
+        with subtests.test(values=values, spread=spread, log=log):
+            assert is_log(np.array(values), spread) is log
 
 
 def test_a_title_is_text_and_no_code(tmp_path, result):

@@ -25,9 +25,8 @@ def test_the_default_is_the_systems():
     assert choose(DEVICES, None).index == 7
 
 
-@pytest.mark.parametrize(
-    ("wanted", "index"),
-    [
+def test_a_device_is_found_by_its_name_or_words_of_it(subtests):
+    for wanted, index in [
         ("system", 7),
         ("system, JACK Audio Connection Kit", 7),
         ("jack", 7),
@@ -37,10 +36,9 @@ def test_the_default_is_the_systems():
         ("hdmi 0 alsa", 3),
         ("HDMI", 8),  # its whole name, though others have the word
         ("hdmi oss", 8),
-    ],
-)
-def test_a_device_is_found_by_its_name_or_words_of_it(wanted, index):
-    assert choose(DEVICES, wanted).index == index
+    ]:
+        with subtests.test(wanted=wanted, index=index):
+            assert choose(DEVICES, wanted).index == index
 
 
 def test_words_that_fit_several_are_refused_with_their_names():

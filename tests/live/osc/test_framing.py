@@ -116,20 +116,21 @@ SAID_BY_OTHERS = [
 ]
 
 
-@pytest.mark.parametrize("said", SAID_BY_OTHERS)
-def test_what_is_no_osc_ends_a_stream_however_it_begins(said):
-    with pytest.raises(FramingError):
-        read(Framing(), said + b"\xc0/a\0\0\xc0")
+def test_what_is_no_osc_ends_a_stream_however_it_begins(subtests):
+    for said in SAID_BY_OTHERS:
+        with subtests.test(said=said), pytest.raises(FramingError):
+            read(Framing(), said + b"\xc0/a\0\0\xc0")
 
 
-@pytest.mark.parametrize("said", [said for said in SAID_BY_OTHERS if said[0]])
-def test_the_first_byte_that_no_packet_begins_with_ends_a_stream(said):
-    wrong = next(at for at in range(len(said)) if said[at : at + 1] != END)
-    for before in (b"", END, slipped(SOME), slipped_bare(SOME)):
-        got: list[bytes] = []
-        with pytest.raises(FramingError, match="not OSC"):
-            got.extend(Framing().packets(before + said[: wrong + 1]))
-        assert got == (SOME if len(before) > 1 else [])
+def test_the_first_byte_that_no_packet_begins_with_ends_a_stream(subtests):
+    for said in [said for said in SAID_BY_OTHERS if said[0]]:
+        with subtests.test(said=said):
+            wrong = next(at for at in range(len(said)) if said[at : at + 1] != END)
+            for before in (b"", END, slipped(SOME), slipped_bare(SOME)):
+                got: list[bytes] = []
+                with pytest.raises(FramingError, match="not OSC"):
+                    got.extend(Framing().packets(before + said[: wrong + 1]))
+                assert got == (SOME if len(before) > 1 else [])
 
 
 def test_what_is_no_osc_after_a_length_ends_a_stream_with_its_first_byte():

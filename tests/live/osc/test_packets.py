@@ -137,9 +137,8 @@ def test_bundles_go_as_deep_in_bundles_as_is_allowed_and_no_deeper(wire):
 # ---------------------------------------------------------------- what is not
 
 
-@pytest.mark.parametrize(
-    "packet",
-    [
+def test_what_is_no_packet_is_refused(subtests):
+    for packet in [
         b"",
         b"\0",
         b"\0\0\0\0",
@@ -164,12 +163,9 @@ def test_bundles_go_as_deep_in_bundles_as_is_allowed_and_no_deeper(wire):
         b"#bundle\0" + b"\0" * 7 + b"\1\0\0",
         b"#bundle\0" + b"\0" * 7 + b"\1\0\0\0\x08/a\0\0,i\0\0",
         b"#bundlf\0" + b"\0" * 7 + b"\1",
-    ],
-    ids=repr,
-)
-def test_what_is_no_packet_is_refused(packet):
-    with soon(), pytest.raises(PacketError):
-        unpack(packet)
+    ]:
+        with subtests.test(packet=packet), soon(), pytest.raises(PacketError):
+            unpack(packet)
 
 
 def test_of_a_bundle_with_a_broken_message_nothing_counts(wire):

@@ -64,9 +64,8 @@ def test_a_pattern_fits_just_what_the_same_regular_expression_fits(made):
     assert fitting == [address for address in ADDRESSES if expression.fullmatch(address)]
 
 
-@pytest.mark.parametrize(
-    ("pattern", "address", "fits"),
-    [
+def test_patterns_fit_as_the_specification_says(subtests):
+    for pattern, address, fits in [
         ("/yehu/bow/*", "/yehu/bow/force", True),
         ("/yehu/*", "/yehu/bow/force", False),
         ("/yehu*force", "/yehu/bow/force", False),
@@ -85,17 +84,17 @@ def test_a_pattern_fits_just_what_the_same_regular_expression_fits(made):
         ("*", "", True),
         ("", "", True),
         ("?", "", False),
-    ],
-)
-def test_patterns_fit_as_the_specification_says(pattern, address, fits):
-    assert matches(pattern, address) is fits
+    ]:
+        with subtests.test(pattern=pattern, address=address, fits=fits):
+            assert matches(pattern, address) is fits
 
 
-@pytest.mark.parametrize("pattern", ["[", "/a[", "/a[bc", "{", "{a,b", "/{a,b", "[a}", "{a]"])
-def test_a_bracket_that_never_closes_is_refused(pattern):
-    assert is_pattern(pattern)
-    with pytest.raises(RefusedError):
-        matches(pattern, "/a" + pattern)
+def test_a_bracket_that_never_closes_is_refused(subtests):
+    for pattern in ["[", "/a[", "/a[bc", "{", "{a,b", "/{a,b", "[a}", "{a]"]:
+        with subtests.test(pattern=pattern):
+            assert is_pattern(pattern)
+            with pytest.raises(RefusedError):
+                matches(pattern, "/a" + pattern)
 
 
 @given(st.text("/*?[]{}!-,ab", max_size=30), st.text("/ab-", max_size=10))
@@ -122,9 +121,8 @@ def test_no_address_of_the_table_is_a_pattern(subtests):
             ]
 
 
-@pytest.mark.parametrize(
-    "pattern",
-    [
+def test_a_twisted_pattern_takes_no_longer_than_a_plain_one_should(subtests):
+    for pattern in [
         "*" * LONGEST_PATTERN,
         "/yehu" + "/*" * 100,
         "/yehu/" + "*?" * 120,
@@ -134,13 +132,12 @@ def test_no_address_of_the_table_is_a_pattern(subtests):
         "/yehu/" + "[!z]*" * 50,
         "/yehu/bow/" + "{f,}{o,}{r,}{c,}{e,}" * 12,
         "/*" + "[a-zA-Z0-9!-~]" * 17,
-    ],
-)
-def test_a_twisted_pattern_takes_no_longer_than_a_plain_one_should(pattern):
-    started = time.thread_time()
-    for param in TABLE:
-        matches(pattern[:LONGEST_PATTERN], "/yehu" + param.address)
-    assert time.thread_time() - started < 0.5
+    ]:
+        with subtests.test(pattern=pattern):
+            started = time.thread_time()
+            for param in TABLE:
+                matches(pattern[:LONGEST_PATTERN], "/yehu" + param.address)
+            assert time.thread_time() - started < 0.5
 
 
 def test_a_pattern_is_read_once_for_all_addresses_and_stars_in_a_row_are_as_one():

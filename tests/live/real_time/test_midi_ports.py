@@ -467,9 +467,8 @@ def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listenin
 # ---------------------------------------------------------------- names
 
 
-@pytest.mark.parametrize(
-    ("names", "stable"),
-    [
+def test_a_port_has_the_same_name_whenever_it_is_there(subtests):
+    for names, stable in [
         ([], []),
         (["Keystep:Keystep MIDI 1 24:0"], ["Keystep MIDI 1"]),
         (["Keystep:Keystep MIDI 1 128:0"], ["Keystep MIDI 1"]),
@@ -482,15 +481,13 @@ def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listenin
         (["x"] * 3, ["x", "x #2", "x #3"]),
         (["7"], ["7"]),
         (["琴 1:琴 MIDI 1 20:0"], ["琴 1:琴 MIDI 1"]),
-    ],
-)
-def test_a_port_has_the_same_name_whenever_it_is_there(names, stable):
-    assert stable_names(names) == stable
+    ]:
+        with subtests.test(names=names, stable=stable):
+            assert stable_names(names) == stable
 
 
-@pytest.mark.parametrize(
-    ("name", "patterns", "wanted"),
-    [
+def test_ports_are_wanted_by_words_of_their_name(subtests):
+    for name, patterns, wanted in [
         ("Keystep MIDI", [], True),
         ("Midi Through Port-0", [], False),
         ("MIDI THRU", [], False),
@@ -499,10 +496,9 @@ def test_a_port_has_the_same_name_whenever_it_is_there(names, stable):
         ("Keystep MIDI", ["key midi"], True),
         ("Keystep MIDI", ["piano", "STEP"], True),
         ("Keystep MIDI", ["key piano"], False),
-    ],
-)
-def test_ports_are_wanted_by_words_of_their_name(name, patterns, wanted):
-    assert is_wanted(name, patterns) is wanted
+    ]:
+        with subtests.test(name=name, patterns=patterns, wanted=wanted):
+            assert is_wanted(name, patterns) is wanted
 
 
 def feed() -> MidiFeed:

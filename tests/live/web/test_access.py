@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import socket
 
-import pytest
-
 from yehu_server.live.web.access import own_names, refusal
 
 NAMES = frozenset({"localhost", "stage", "stage.local"})
 
 
-@pytest.mark.parametrize(
-    "host",
-    [
+def test_a_host_that_nobody_else_can_be_is_answered(subtests):
+    for host in [
         "127.0.0.1",
         "127.0.0.1:9001",
         "192.168.1.5:9001",
@@ -25,15 +22,13 @@ NAMES = frozenset({"localhost", "stage", "stage.local"})
         "stage.local:9001",
         "stage",
         "stage.local.",
-    ],
-)
-def test_a_host_that_nobody_else_can_be_is_answered(host):
-    assert refusal([host], [], NAMES) == ""
+    ]:
+        with subtests.test(host=host):
+            assert refusal([host], [], NAMES) == ""
 
 
-@pytest.mark.parametrize(
-    "hosts",
-    [
+def test_a_name_that_another_may_have_is_refused(subtests):
+    for hosts in [
         [],
         [""],
         ["evil.example"],
@@ -49,15 +44,13 @@ def test_a_host_that_nobody_else_can_be_is_answered(host):
         ["stage.evil.example"],
         [" " * 10_000],
         ["\u2160"],
-    ],
-)
-def test_a_name_that_another_may_have_is_refused(hosts):
-    assert "by its address" in refusal(hosts, [], NAMES)
+    ]:
+        with subtests.test(hosts=hosts):
+            assert "by its address" in refusal(hosts, [], NAMES)
 
 
-@pytest.mark.parametrize(
-    ("host", "origin"),
-    [
+def test_a_page_of_this_machine_may_ask(subtests):
+    for host, origin in [
         ("127.0.0.1:9001", "http://127.0.0.1:9001"),
         ("localhost:9001", "https://localhost:9001"),
         ("[::1]:9001", "http://[::1]:9001"),
@@ -66,15 +59,13 @@ def test_a_name_that_another_may_have_is_refused(hosts):
         ("stage.local", "https://stage.local."),
         ("stage.local:80", "http://stage.local"),
         ("stage.local:443", "https://stage.local"),
-    ],
-)
-def test_a_page_of_this_machine_may_ask(host, origin):
-    assert refusal([host], [origin], NAMES) == ""
+    ]:
+        with subtests.test(host=host, origin=origin):
+            assert refusal([host], [origin], NAMES) == ""
 
 
-@pytest.mark.parametrize(
-    ("host", "origin"),
-    [
+def test_a_page_from_elsewhere_may_not(subtests):
+    for host, origin in [
         ("127.0.0.1:9001", "http://127.0.0.1:3000"),  # any program may serve pages there
         ("127.0.0.1:9001", "http://127.0.0.1"),
         ("127.0.0.1", "http://127.0.0.1:9001"),
@@ -90,10 +81,9 @@ def test_a_page_of_this_machine_may_ask(host, origin):
         ("127.0.0.1:9001", "chrome-extension://127.0.0.1"),
         ("127.0.0.1:9001", "http://evil.example@127.0.0.1"),
         ("192.0.2.7:9001", "http://192.0.2.7:9001"),  # an address, but not of this machine
-    ],
-)
-def test_a_page_from_elsewhere_may_not(host, origin):
-    assert "foreign" in refusal([host], [origin], NAMES)
+    ]:
+        with subtests.test(host=host, origin=origin):
+            assert "foreign" in refusal([host], [origin], NAMES)
 
 
 def test_two_origins_are_none():

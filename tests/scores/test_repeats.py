@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from yehu_server.scores.written.repeats import BarLines, left_out, order_of
@@ -184,6 +184,7 @@ def test_any_form_is_unrolled_as_it_was_made_and_no_bar_is_lost(form):
         max_size=12,
     )
 )
+@example([BarLines(jumps={"dalsegno"}), BarLines(), BarLines(jumps={"segno"})])
 def test_whatever_signs_there_are_each_bar_sounds(bars):
     """Only a coda may be left out, and only what lies between it and a jump to it."""
     assert not left_out(len(bars), order_of(bars))

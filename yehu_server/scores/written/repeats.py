@@ -280,7 +280,6 @@ class _Player:
         return to
 
     def _segno(self, before: int) -> int:
-        """The last segno up to a bar; else the first one, or the beginning."""
-        found = [at for at, bar in enumerate(self._bars) if "segno" in bar.jumps]
-        place = bisect_right(found, before)
-        return found[max(place - 1, 0)] if found else self._movement
+        """The last segno up to a bar; else the beginning: to one ahead, bars would be lost."""
+        found = [at for at in range(before + 1) if "segno" in self._bars[at].jumps]
+        return found[-1] if found else self._movement

@@ -60,8 +60,8 @@ def docstrings(source: str) -> frozenset[tuple[int, int]]:
     return frozenset((node.lineno, node.col_offset) for node in found)
 
 
-def test_comments_and_docstrings_are_left_out_and_nothing_else(subtests):
-    for path in KEYED:
+def test_comments_and_docstrings_are_left_out_and_nothing_else(subtests, everything):
+    for path in KEYED if everything else KEYED[::5]:
         with subtests.test(path.stem):
             source = path.read_text(encoding="utf-8")
             assert words(without_prose(source)) == words(source, docstrings(source))

@@ -164,6 +164,10 @@ def test_where_matplotlib_is_missing_the_extra_is_named(tune, refused, tmp_path,
 
 
 def test_a_folder_has_a_folder_of_pictures(tmp_path, command, monkeypatch):
+    def stand_in(target: Path, *_: object, **_how: object) -> None:
+        target.write_bytes(b"\x89PNG by yehu-server")
+
+    monkeypatch.setattr("yehu_server.lab.plot.png.write_picture", stand_in)
     monkeypatch.setattr(
         "yehu_server.rendering.workers.perform_all",
         lambda perform, tasks, _: (

@@ -84,8 +84,10 @@ def test_c_gives_the_same_wishes_and_records_to_the_bit(streams, here, library, 
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="there is no node")
-def test_web_assembly_gives_the_same_but_for_the_last_bit_of_a_power(streams, here, node, tmp_path):
-    for stream, rig in zip(streams, here, strict=True):
+def test_web_assembly_gives_the_same_but_for_the_last_bit_of_a_power(
+    streams, here, node, tmp_path, everything
+):
+    for stream, rig in list(zip(streams, here, strict=True))[: None if everything else 1]:
         steps, tables = map(str, stream.write(tmp_path))
         job = {"rate": RATE, "steps": steps, "tables": tables, "count": len(stream.tables)}
         job |= {"blocks": stream.frames // BLOCK, "reporting": REPORTING}

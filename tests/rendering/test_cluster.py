@@ -31,8 +31,8 @@ def _as_it_is_now() -> None:
 
 
 @pytest.fixture(scope="module")
-def processes(tmp_path_factory) -> Processes:
-    with cluster_in(tmp_path_factory.mktemp("cluster")) as found:
+def processes(tmp_path_factory, everything) -> Processes:
+    with cluster_in(tmp_path_factory.mktemp("cluster"), 2 if everything else 1) as found:
         yield found
 
 

@@ -128,7 +128,7 @@ def fit(
     Examples
     --------
     >>> import yehu_server as yehu
-    >>> measured = yehu.body.average(yehu.body.made_taps(count=3, noise_db=60.0))
+    >>> measured = yehu.body.average(yehu.body.made_taps(count=2, seconds=0.3))
     >>> found = yehu.body.fit(measured, band_hz=(250.0, 2000.0), sections=8)
     >>> found.admittance_db is not None and found.admittance_db.rms < 0.5
     True

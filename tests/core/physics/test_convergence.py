@@ -16,9 +16,10 @@ from core.physics.runs import bump, rows, shaped
 from yehu_server.core.physics import kernel, layout, time_loop
 from yehu_server.core.physics.quantities import Quantities
 
-# The finger out of reach: only strings and bridge move.
+# The finger out of reach: only strings and bridge move, and nothing is radiated.
 YEHU = replace(
     Quantities(),
+    body=replace(Quantities().body, sections=()),
     finger=replace(Quantities().finger, rest_height=0.05),
     tension_modulation=0.0,
     felt_loss=0.0,

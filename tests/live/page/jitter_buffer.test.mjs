@@ -61,6 +61,6 @@ console.log(
     fast: listen({ ppm: 200, seconds: Number(seconds), lateS: 0.003 }),
     slow: listen({ ppm: -200, seconds: Number(seconds), lateS: 0.003 }),
     otherRate: listen({ ppm: 0, seconds: Number(seconds), lateS: 0.003, ownRate: 44100 }),
-    late: listen({ ppm: 0, seconds: 60, lateS: 0.05 }),
+    late: listen({ ppm: 0, seconds: 30, lateS: 0.05 }),
   }),
 );

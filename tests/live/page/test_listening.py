@@ -21,7 +21,7 @@ def heard(node, tmp_path_factory, everything) -> dict[str, Any]:
     (folder / "package.json").write_text('{"type": "module"}')
     for file in (MODULE, MODULE.with_name("kernel.js")):
         shutil.copy(file, folder)
-    seconds = "600" if everything else "40"
+    seconds = "600" if everything else "30"
     command = [
         node,
         str(HERE / "jitter_buffer.test.mjs"),

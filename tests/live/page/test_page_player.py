@@ -31,7 +31,7 @@ from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, STANDARD_A4, Tuning, read_tuning
 from yehu_server.playing.wishes import UNMAPPED, Key, WishPoster
 
-STREAMS, MANY_STREAMS = 80, 4_000
+STREAMS, MANY_STREAMS = 50, 4_000
 SOME_MAPPINGS = 12
 HAND = -1  # channel of the only hand
 # Those of named controls, which nothing moves on a page, and of programs, which it ignores; points

@@ -158,11 +158,10 @@ def test_however_it_ends_notes_are_ended_and_files_are_whole(number, jackd, serv
     capture = read_capture(tmp_path / "take.jsonl")
     stage = capture.beginning.ensemble()
     instrument = stage.first
-    for _ in blocks(capture, stage):
-        pass
+    again = np.concatenate([*blocks(capture, stage)])
     assert instrument.target("/bow/speed") == instrument.target("/bow/side") == 0.0
     assert instrument._rig["player"]["held"] == 0
-    np.testing.assert_array_equal(replayed(tmp_path), played)
+    np.testing.assert_array_equal(again, played)
 
 
 def test_a_killed_server_leaves_no_process_and_a_capture_that_can_be_replayed(
@@ -297,7 +296,6 @@ def test_without_any_device_it_says_so_and_plays_in_silence(jackd, serve, tmp_pa
     assert server.wait() == 0
     played = take(tmp_path / "take.wav")
     assert np.abs(played).max() > 0.02
-    np.testing.assert_array_equal(replayed(tmp_path), played)
 
 
 COMPILING = """

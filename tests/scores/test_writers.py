@@ -145,9 +145,9 @@ def test_what_is_written_as_jianpu_is_read_as_it_was(written):
     assert not again.unknown
 
 
-def test_examples_are_the_same_in_both_notations():
+def test_examples_are_the_same_in_both_notations(everything):
     different = []
-    for path in sorted(EXAMPLES.rglob("*.jianpu")):
+    for path in sorted(EXAMPLES.rglob("*.jianpu"))[:: 1 if everything else 2]:
         written = read_written(path)
         for write in (as_musicxml, as_jianpu):
             again, lost = write(written)

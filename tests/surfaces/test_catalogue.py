@@ -26,7 +26,7 @@ def test_all_are_written_and_fresh_over_older_ones(tmp_path, capsys):
     assert sorted(path.name for path in folder.iterdir()) == sorted(NAMES)
     assert all(str(folder / name) in out for name in NAMES)
     (folder / NAMES[0]).write_bytes(b"old")
-    assert main(["surfaces", "-o", str(folder)]) == 0
+    assert main(["surfaces", "-o", str(folder), "--only", NAMES[0]]) == 0
     assert main(["surfaces", "-o", str(folder), "--check"]) == 0
     assert sorted(path.name for path in folder.iterdir()) == sorted(NAMES)
 
@@ -53,7 +53,7 @@ def test_the_server_is_in_what_speaks_to_it(tmp_path):
     assert "connect 10.0.0.7 9123" in (tmp_path / "yehu.pd").read_text()
     assert "udpsend 10.0.0.7 9123" in (tmp_path / "yehu.maxpat").read_text()
     assert "10.0.0.7:9123" in (tmp_path / "open-stage-control.json").read_text()
-    assert main(["surfaces", "-o", str(tmp_path), "--check"]) == 1
+    assert main(["surfaces", "-o", str(tmp_path), "--only", "yehu.pd", "--check"]) == 1
 
 
 @pytest.mark.parametrize("server", ["10.0.0.7", "localhost", "studio.local", "studio:9000", "::1"])

@@ -65,8 +65,8 @@ def phases(rate: float, frequency: float, frames: int = 0) -> np.ndarray:
 
 @pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize("slips", [1, 2])
-def test_a_slipping_string_is_heard_within_half_a_cent(rate, slips):
-    for note in NOTES:
+def test_a_slipping_string_is_heard_within_half_a_cent(rate, slips, everything):
+    for note in NOTES if everything else NOTES[::3]:
         for off in OFFSETS:
             sounding = hertz(note + off / 100.0)
             phase = phases(rate, sounding)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -88,15 +88,16 @@ def sung(
     return whole + random.normal(0.0, rms * 10.0 ** (-noise_db / 20.0), len(whole))
 
 
-def test_each_voice_is_heard_at_each_rate():
+def test_each_voice_is_heard_at_each_rate(everything):
     wrong = []
-    for rate in (8000.0, 22050.0, 44100.0, 48000.0, 96000.0, 192000.0):
-        for pitch in (42.0, 57.0, 72.0, 90.0):
-            heard = followed(sung(lambda t, p=pitch: np.full(len(t), p), 0.6, rate=rate), rate)
-            steady = heard.pitch[(heard.times > 0.4) & (heard.times < 0.85)]
-            cents = 100.0 * np.abs(steady - pitch)
-            if not (np.isfinite(steady).all() and np.quantile(cents, 0.9) < 6.0):
-                wrong.append((rate, pitch, np.isfinite(steady).mean(), np.median(cents)))
+    rates = (8000.0, 22050.0, 44100.0, 48000.0, 96000.0, 192000.0)
+    cases = list(product(rates, (42.0, 57.0, 72.0, 90.0)))
+    for rate, pitch in cases if everything else cases[::3]:  # each rate, and each pitch
+        heard = followed(sung(lambda t, p=pitch: np.full(len(t), p), 0.6, rate=rate), rate)
+        steady = heard.pitch[(heard.times > 0.4) & (heard.times < 0.85)]
+        cents = 100.0 * np.abs(steady - pitch)
+        if not (np.isfinite(steady).all() and np.quantile(cents, 0.9) < 6.0):
+            wrong.append((rate, pitch, np.isfinite(steady).mean(), np.median(cents)))
     assert wrong == []
 
 

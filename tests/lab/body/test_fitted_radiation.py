@@ -26,7 +26,7 @@ def test_without_noise_the_whole_audible_band_is_met():
     assert np.abs(off_db(found.response(hz), radiation(hz))).max() < 0.5
 
 
-@pytest.mark.parametrize("delay_s", [0.0007, 0.003])
+@pytest.mark.parametrize("delay_s", [0.0007, pytest.param(0.003, marks=pytest.mark.slow)])
 def test_the_way_to_the_microphone_is_taken_off(delay_s):
     """It is the same fit as from near, but for the phase."""
     hz = np.arange(100.0, 7000.0, 3.0)

@@ -29,11 +29,12 @@ def test_the_right_kind_is_taken_and_the_wrong_way_round_is_named():
             checked(-values, kind)
 
 
-def test_the_wrong_kind_is_named_also_from_500_hz_up_and_with_noise():
+def test_the_wrong_kind_is_named_also_from_500_hz_up_and_with_noise(everything):
     """Above its first resonance a body is mostly a mass, whose accelerance is a number."""
     hz = HZ[HZ > 500.0]
     noise = 1e-3 * np.random.default_rng(3).standard_normal((2, len(hz))).T @ [1.0, 1j]
-    for kind, told in product(MEASURED, MEASURED):
+    cases = list(product(MEASURED, MEASURED))
+    for kind, told in cases if everything else cases[::4] + cases[1::4]:  # with their neighbours
         measured = to_mobility(hz, admittance(hz) + noise, kind, back=True)
         curve = Curve(hz, to_mobility(hz, measured, told))
         if kind == told:

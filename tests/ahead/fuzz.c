@@ -16,7 +16,7 @@
 
 #define BLOCK 128
 #define AT_ONCE 1000 /* messages before a block */
-#define ROUND 25     /* blocks until all notes end */
+#define ROUND 10     /* blocks until all notes end */
 #define GUARD 4096   /* bytes around the instrument */
 #define WORDS (sizeof(struct yehu_tables) / sizeof(double))
 

@@ -19,7 +19,7 @@ from yehu_server.core.midi.record import MIDI
 HERE = Path(__file__).parent
 midi_fields = MIDI.fields or {}
 HELD, SOUNDING = ((MIDI_AT + midi_fields[name][1]) // 8 for name in ("held", "sounding"))
-SOME, MANY = 100_000, 1_000_000
+SOME, MANY = 50_000, 1_000_000
 TABLES = 30  # that plain Python plays through
 
 

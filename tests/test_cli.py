@@ -141,6 +141,13 @@ def test_a_call_that_is_not_complete_gets_one_line(subtests, refused):
         ("simulate",),
         ("simulate", "g.json"),
         ("simulate", "one.json", "two.json", "-o", "x.npz"),
+        ("body", "taps.csv"),
+        ("build", "wasm"),
+        ("dataset", "sounds.toml"),
+        ("follow", "hum.wav"),
+        ("practise",),
+        ("score", "tune.mid"),
+        ("sweep", "study.toml"),
     ]:
         with subtests.test(words=words):
             assert "--help" in refused(*words)

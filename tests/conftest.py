@@ -174,7 +174,8 @@ def _as_before() -> Iterator[None]:
 
     Without the latter, scripts that are started later would not find what lies beside them.
     """
-    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
+    changed = (signal.SIGTERM, signal.SIGINT, getattr(signal, "SIGHUP", signal.SIGTERM))
+    before = {number: signal.getsignal(number) for number in changed}
     yield
     for number, handler in before.items():
         signal.signal(number, handler)

@@ -153,6 +153,14 @@ def test_a_call_that_is_not_complete_gets_one_line(subtests, refused):
             assert "--help" in refused(*words)
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="no terminal is hung up here")
+def test_behind_nohup_a_command_outlives_its_terminal(command):
+    for before, is_handled in ((signal.SIG_IGN, False), (signal.SIG_DFL, True)):
+        signal.signal(signal.SIGHUP, before)
+        command("mappings")
+        assert (signal.getsignal(signal.SIGHUP) is not before) == is_handled
+
+
 # ---------------------------------------------------------------- what is said when all is well
 
 

@@ -35,6 +35,7 @@ from yehu_server.cli.terminal import (
 )
 from yehu_server.errors import YehuError
 from yehu_server.live.network import lan_address, lan_interface
+from yehu_server.util.signals import when_asked_to_end
 
 if TYPE_CHECKING:
     from yehu_server.live.page.pages import PageOptions
@@ -78,9 +79,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     allow_files(FILES_NEEDED)
     ending = _Ending()
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), ending)
+    signal.signal(signal.SIGINT, ending)
+    when_asked_to_end(ending)
     set_up_log(arguments)
     return _serve(arguments, ending)
 

@@ -5,7 +5,6 @@ import os
 import pickle
 import re
 import signal
-import sys
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator
@@ -199,10 +198,10 @@ def command(capsys) -> Callable[..., tuple[int, str, str]]:
 
 
 @pytest.fixture
-def _forked_workers(monkeypatch) -> None:
-    """Let what `multiprocessing` spawns in this process begin as forks, where that is known."""
-    if sys.platform == "linux":
-        monkeypatch.setattr("multiprocessing.util.spawnv_passfds", forks.spawn)
+def _forked_workers() -> Iterator[None]:
+    """Let workers of `multiprocessing` begin as forks."""
+    with forks.in_the_place_of_workers():
+        yield
 
 
 @pytest.fixture

@@ -29,7 +29,6 @@ import sys
 import threading
 import types
 from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -88,17 +87,17 @@ def run(
     return subprocess.CompletedProcess(process.args, process.returncode, out, err)
 
 
-def spawn(_python: object, words: list[str], files: Sequence[int]) -> int:
+def _spawn(_python: object, words: list[str], files: Sequence[int]) -> int:
     """Start a process of `multiprocessing`; in the place of its `util.spawnv_passfds`."""
     code = words.index("-c") + 1
     return _forked(words[code], words[code + 1 :], {each: each for each in (0, 1, 2, *files)})
 
 
-def in_the_place_of_workers() -> AbstractContextManager[object]:
+def in_the_place_of_workers() -> contextlib.AbstractContextManager[object]:
     """Let what `multiprocessing` spawns within a block begin as forks, where that is known."""
     if sys.platform != "linux":
         return contextlib.nullcontext()
-    return mock.patch("multiprocessing.util.spawnv_passfds", spawn)
+    return mock.patch("multiprocessing.util.spawnv_passfds", _spawn)
 
 
 class _Forked(subprocess.Popen):

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from yehu_server.ahead import build_hash as hashing
 from yehu_server.ahead.build import build, page_linker
-from yehu_server.ahead.build_hash import section_of, with_section
+from yehu_server.ahead.build_hash import build_hash, section_of, with_section
 from yehu_server.ahead.memory_images import image
 from yehu_server.cli import main
 from yehu_server.core.engine.mailbox import SERVER
@@ -24,7 +25,23 @@ from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls
 from yehu_server.playing.tuning import RangePolicy, read_tuning
 
+BEGUN_BY = ("options.py", "tables.py", "calibrations.json", "practices.json")
 EMPTY = b"\0asm\1\0\0\0"
+
+
+def test_what_memory_begins_with_counts_in_the_hash(tmp_path, monkeypatch):
+    playing = tmp_path / "playing"
+    playing.mkdir()
+    for name in BEGUN_BY:
+        shutil.copy(hashing.PACKAGE / "playing" / name, playing)
+    monkeypatch.setattr(hashing, "PACKAGE", tmp_path)
+    hashes = {build_hash.__wrapped__()}
+    assert hashes == {build_hash()}
+    for name in BEGUN_BY:
+        with (playing / name).open("a") as file:
+            file.write("more = 1\n")
+        hashes.add(build_hash.__wrapped__())
+    assert len(hashes) == 1 + len(BEGUN_BY)
 
 
 @pytest.mark.parametrize("text", ["", "0.1.0 0123456789abcdef", "x" * 300])

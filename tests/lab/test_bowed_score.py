@@ -53,7 +53,9 @@ def test_a_note_is_on_the_string_where_the_player_has_it(pitch, marks, string):
     assert string_of(Note(Fraction(0), Fraction(1), pitch, marks)) == string
 
 
-def test_a_score_is_drawn_and_its_picture_replaced_by_that_of_another(command, refused, tmp_path):
+def test_a_score_is_drawn_and_its_picture_replaced_by_that_of_another(
+    command, refused, tmp_path, everything
+):
     pytest.importorskip("matplotlib")
     tune, target = tmp_path / "t.jianpu", tmp_path / "score.png"
     tune.write_text("title=短\n1=F 4/4,4 1 3[ q1 q2 q3 ] R*1 5' - - -\nNextPart\n0 0\n", "utf-8")
@@ -61,6 +63,9 @@ def test_a_score_is_drawn_and_its_picture_replaced_by_that_of_another(command, r
     assert command(*words)[0] == 0
     data = target.read_bytes()
     assert data.startswith(b"\x89PNG")
+    if everything:
+        assert command(*words)[0] == 0
+        assert target.read_bytes() == data  # the same again
     tune.write_text(tune.read_text("utf-8").replace("q3", "q5"), "utf-8")
     assert command(*words)[0] == 0  # its own picture is replaced
     assert target.read_bytes() != data

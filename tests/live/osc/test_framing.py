@@ -123,7 +123,7 @@ def test_what_is_no_osc_ends_a_stream_however_it_begins(subtests):
 
 
 def test_the_first_byte_that_no_packet_begins_with_ends_a_stream(subtests):
-    for said in [said for said in SAID_BY_OTHERS if said[0]]:
+    for said in (said for said in SAID_BY_OTHERS if said[0]):
         with subtests.test(said=said):
             wrong = next(at for at in range(len(said)) if said[at : at + 1] != END)
             for before in (b"", END, slipped(SOME), slipped_bare(SOME)):

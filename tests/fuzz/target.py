@@ -85,6 +85,11 @@ def target(
     return add
 
 
+def words(*rows: bytes) -> tuple[bytes, ...]:
+    """Words for mutations, from rows with a bar between two words."""
+    return tuple(b"|".join(rows).split(b"|"))
+
+
 @functools.cache
 def scratch() -> Path:
     """A folder for this run's files, in memory if possible."""

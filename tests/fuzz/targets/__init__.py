@@ -1,41 +1,7 @@
 """All targets, by importing them."""
 
-from fuzz.targets import (
-    abc,
-    calibrations,
-    captures,
-    clusters,
-    jianpu,
-    laboratory,
-    midi,
-    midi_files,
-    osc,
-    osc_calls,
-    physical,
-    recordings,
-    rings,
-    scores_musicxml,
-    settings,
-    tunings,
-    web,
-)
+import importlib
+import pkgutil
 
-__all__ = [
-    "abc",
-    "calibrations",
-    "captures",
-    "clusters",
-    "jianpu",
-    "laboratory",
-    "midi",
-    "midi_files",
-    "osc",
-    "osc_calls",
-    "physical",
-    "recordings",
-    "rings",
-    "scores_musicxml",
-    "settings",
-    "tunings",
-    "web",
-]
+for _found in pkgutil.iter_modules(__path__):
+    importlib.import_module(f"{__name__}.{_found.name}")

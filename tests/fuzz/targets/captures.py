@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from fuzz.instrument import Instrument
-from fuzz.target import scratch, target, written
+from fuzz.target import scratch, target, words, written
 
 from yehu_server.core.controls.slots import HIGHEST, LOWEST, SILENCE
 from yehu_server.core.engine.rig import MOST_PARTS
@@ -18,26 +18,12 @@ from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
 
 WORDS = (
-    b'{"end": ',
-    b'{"rest": ',
-    b', "since": ',
-    b'{"lost": 1, "events": 1}',
-    b"\n[0, ",
-    b", 0]\n",
-    b'"version": 1',
-    b'"version": 2',
-    b'"version": 3',
-    b'"players": ',
-    b'"quantities": ',
-    b"\n[0, 1, ",
+    *words(
+        b'{"end": |{"rest": |, "since": |{"lost": 1, "events": 1}|\n[0, |, 0]\n|"version": 1',
+        b'"version": 2|"version": 3|"players": |"quantities": |\n[0, 1, |"/bow/speed"',
+        b'"/playing/bend"|"/finger/1/position"|"silence"|1e308|NaN|Infinity',
+    ),
     *(f'"{kind}", '.encode() for kind in KINDS),
-    b'"/bow/speed"',
-    b'"/playing/bend"',
-    b'"/finger/1/position"',
-    b'"silence"',
-    b"1e308",
-    b"NaN",
-    b"Infinity",
 )
 MOST_FULFILLED = 2000
 

@@ -5,20 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from fuzz.target import target
+from fuzz.target import target, words
 
 from yehu_server.live.osc.answering import Framing, FramingError
 from yehu_server.live.osc.packets import Message, PacketError, answer, pack, unpack
 
 MOST_WRAPPED_BYTES = 60_000  # fit a packet of either framing
-WORDS = (
-    b"#bundle\0",
-    b"/yehu/note\0\0",
-    b",ff\0",
-    b",[f]",
-    b",b\0\0",
-    b"\0\0\0\1",
-    b"\xff\xff\xff",
+WORDS = words(
+    b"#bundle\x00|/yehu/note\x00\x00|,ff\x00|,[f]|,b\x00\x00|\x00\x00\x00\x01|\xff\xff\xff"
 )
 
 

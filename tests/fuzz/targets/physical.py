@@ -8,7 +8,7 @@ import math
 from typing import Any
 
 import numpy as np
-from fuzz.target import target, written
+from fuzz.target import target, words, written
 
 from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import ParameterError, ScoreError
@@ -44,17 +44,9 @@ def check_quantities(quantities: Any) -> None:
     "gesture",
     ScoreError,
     ParameterError,
-    words=(
-        b'"sample_rate": ',
-        b'"duration": ',
-        b'"instrument": {',
-        b'"controls": {',
-        b'"bow_force": [[0, 1]]',
-        b'"pluck": {"string": 1, "position": 0.1}',
-        b'"hammer": [[0, 1]]',
-        b"1e308",
-        b"NaN",
-        b"-1",
+    words=words(
+        b'"sample_rate": |"duration": |"instrument": {|"controls": {|"bow_force": [[0, 1]]',
+        b'"pluck": {"string": 1, "position": 0.1}|"hammer": [[0, 1]]|1e308|NaN|-1',
     ),
     also=("examples/gesture.json",),
 )
@@ -76,16 +68,8 @@ def without_source(read: Gesture) -> Gesture:
 @target(
     "instrument",
     ParameterError,
-    words=(
-        b"[bow]\n",
-        b"[string_1]\n",
-        b"[finger]\n",
-        b"T = ",
-        b"bridge_x = 0.3",
-        b"epsilon_0 = 3e4",
-        b"body = ",
-        b"1e999",
-        b"nan",
+    words=words(
+        b"[bow]\n|[string_1]\n|[finger]\n|T = |bridge_x = 0.3|epsilon_0 = 3e4|body = |1e999|nan"
     ),
 )
 def instrument(data: bytes) -> None:
@@ -97,18 +81,9 @@ def instrument(data: bytes) -> None:
 @target(
     "body",
     ParameterError,
-    words=(
-        b'"bridge_modes": [',
-        b'"frequency_hz": ',
-        b'"mass_kg": ',
-        b'"damping_kg_per_s": ',
-        b'"radiation": {',
-        b'"sections": [',
-        b'"direct_gain": ',
-        b'"sample_rate_hz": ',
-        b"1e308",
-        b"NaN",
-        b"Infinity",
+    words=words(
+        b'"bridge_modes": [|"frequency_hz": |"mass_kg": |"damping_kg_per_s": |"radiation": {',
+        b'"sections": [|"direct_gain": |"sample_rate_hz": |1e308|NaN|Infinity',
     ),
     also=("yehu_server/core/physics/body.json",),
 )

@@ -91,6 +91,13 @@ def built(program: Program) -> str:
     return "".join((*parts, "</measure></part></score-partwise>"))
 
 
+def check(score: Written) -> None:
+    """What was read is in order and within bounds, and can be played and written again."""
+    check_written(score)
+    check_played(score)
+    check_again(score)
+
+
 def check_written(score: Written) -> None:
     for part in score.parts:
         beats = [note.beat for note in part.notes]
@@ -141,20 +148,14 @@ def check_again(score: Written) -> None:
 @target("musicxml", ScoreError, words=WORDS, also=("examples/*.musicxml",))
 def musicxml(data: bytes) -> None:
     """A file is a score of notes in order, within bounds, that can be played, or a ScoreError."""
-    score = read_musicxml(written(data, "file.musicxml"))
-    check_written(score)
-    check_played(score)
-    check_again(score)
+    check(read_musicxml(written(data, "file.musicxml")))
 
 
 @target("musicxml-built", ScoreError)
 def musicxml_built(data: bytes) -> None:
     """Bars of any notes and directions are a score that can be played, or a ScoreError."""
     text = built(Program(data[:MOST_CHOICES]))
-    score = read_musicxml(written(text.encode(), "file.musicxml"))
-    check_written(score)
-    check_played(score)
-    check_again(score)
+    check(read_musicxml(written(text.encode(), "file.musicxml")))
 
 
 @target("mxl", ScoreError, words=(b"PK\x03\x04", b"PK\x01\x02", b"PK\x05\x06"))

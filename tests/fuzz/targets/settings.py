@@ -9,7 +9,7 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
-from fuzz.target import scratch, target, written
+from fuzz.target import scratch, target, words, written
 from interpreted import Leader
 
 from yehu_server import cli
@@ -36,18 +36,7 @@ from yehu_server.playing.tuning import EQUAL, STANDARD_A4, RangePolicy
 from yehu_server.scores.ensemble_file import read_ensemble
 
 ADDRESSES = tuple(f'"{address}"'.encode() for address in list(BY_ADDRESS)[::4])
-TOML = (
-    b"1e999",
-    b"nan",
-    b"true",
-    b'"""',
-    b"'''",
-    b"[[",
-    b"]]",
-    b"{ a = 1 }",
-    b"\\u0000",
-    b"1979-05-27",
-)
+TOML = words(b"1e999|nan|true|\"\"\"|'''|[[|]]|{ a = 1 }|\\u0000|1979-05-27")
 
 
 @functools.cache
@@ -59,16 +48,10 @@ def parser():
     "config",
     ParameterError,
     words=(
-        b"midi-in = [",
-        b"audio-device = ",
-        b"osc = ",
-        b"blocksize = ",
-        b"set = { ",
-        b"\n[set]\n",
-        b"rate = ",
-        b"http = false",
-        b"config = ",
-        b"help = true",
+        *words(
+            b"midi-in = [|audio-device = |osc = |blocksize = |set = { |\n[set]\n|rate = ",
+            b"http = false|config = |help = true",
+        ),
         *ADDRESSES,
         *TOML,
     ),
@@ -94,11 +77,7 @@ def config(data: bytes) -> None:
     "preset",
     PresetError,
     words=(
-        b"version = 1\n",
-        b"about = ",
-        b"program = 5\n",
-        b"[values]\n",
-        b"values = {",
+        *words(b"version = 1\n|about = |program = 5\n|[values]\n|values = {"),
         *ADDRESSES,
         *TOML,
     ),
@@ -131,21 +110,10 @@ def preset(data: bytes) -> None:
     "ensemble",
     EnsembleError,
     words=(
-        b"\n[[part]]\n",
-        b"[room]\n",
-        b"room = ",
-        b"size = ",
-        b"channel = ",
-        b"track = ",
-        b"name = ",
-        b"preset = ",
-        b"instrument = ",
-        b"section = ",
-        b"seed = ",
-        b"pan = ",
-        b"distance = ",
-        b"gain = ",
-        b"set = { ",
+        *words(
+            b"\n[[part]]\n|[room]\n|room = |size = |channel = |track = |name = |preset = ",
+            b"instrument = |section = |seed = |pan = |distance = |gain = |set = { ",
+        ),
         *ADDRESSES,
         *TOML,
     ),
@@ -163,28 +131,11 @@ def ensemble(data: bytes) -> None:
 
 
 MAPPING_WORDS = (
-    b"name = ",
-    b"about = ",
-    b"base = ",
-    b"mpe = true\n",
-    b"[start]\n",
-    b"\n[[bind]]\n",
-    b"source = ",
-    b"target = ",
-    b"input = [",
-    b"span = [",
-    b'curve = "exp"',
-    b"curve = [[0, 0], [1, 1]]",
-    b"invert = true",
-    b"smoothing = ",
-    b"channel = ",
-    b"soft = true",
-    b"alone = true",
-    b'"cc 1"',
-    b'"cc 1/33"',
-    b'"bend"',
-    b'"nrpn 5"',
-    b'"/a/b"',
+    *words(
+        b"name = |about = |base = |mpe = true\n|[start]\n|\n[[bind]]\n|source = |target = ",
+        b'input = [|span = [|curve = "exp"|curve = [[0, 0], [1, 1]]|invert = true|smoothing = ',
+        b'channel = |soft = true|alone = true|"cc 1"|"cc 1/33"|"bend"|"nrpn 5"|"/a/b"',
+    ),
     *ADDRESSES,
     *TOML,
 )
@@ -249,16 +200,9 @@ def mapping(data: bytes) -> None:
     "mapping-json",
     MappingError,
     words=(
-        b'{"bind": [',
-        b'"source": ',
-        b'"target": ',
-        b'"from": ',
-        b'"to": ',
-        b'"span": ',
-        b'"curve": ',
-        b"null",
-        b"1e999",
-        b'"cc 1"',
+        *words(
+            b'{"bind": [|"source": |"target": |"from": |"to": |"span": |"curve": |null|1e999|"cc 1"'
+        ),
         *ADDRESSES,
     ),
 )

@@ -11,7 +11,7 @@ from typing import Any
 
 from aiohttp import web as aiohttp_web
 from aiohttp.test_utils import make_mocked_request
-from fuzz.target import ROOT, target
+from fuzz.target import ROOT, target, words
 
 from yehu_server.errors import RefusedError
 from yehu_server.live.osc.clients import Clients
@@ -165,22 +165,10 @@ def no_constant(name: str) -> None:
     raise AssertionError(f"{name} is no JSON")
 
 
-WORDS = (
-    b"GET ",
-    b"HEAD ",
-    b"POST ",
-    b" HTTP/1.1\r\n",
-    b"Host: 127.0.0.1\r\n",
-    b"Origin: http://127.0.0.1\r\n",
-    b"Upgrade: websocket\r\n",
-    b"Content-Length: ",
-    b"Transfer-Encoding: chunked\r\n",
-    b"\r\n\r\n",
-    b"?VALUE",
-    b"/yehu/bow/force",
-    b"?HOST_INFO",
-    b"/metrics",
-    b"Accept: text/html\r\n",
+WORDS = words(
+    b"GET |HEAD |POST | HTTP/1.1\r\n|Host: 127.0.0.1\r\n|Origin: http://127.0.0.1\r\n",
+    b"Upgrade: websocket\r\n|Content-Length: |Transfer-Encoding: chunked\r\n|\r\n\r\n|?VALUE",
+    b"/yehu/bow/force|?HOST_INFO|/metrics|Accept: text/html\r\n",
 )
 
 
@@ -195,17 +183,7 @@ def http_request(data: bytes) -> None:
 
 @target(
     "http-path",
-    words=(
-        b"/yehu/",
-        b"?VALUE",
-        b"?HOST_INFO",
-        b"&",
-        b"%2f",
-        b"%00",
-        b"..",
-        b"/parameters.html",
-        b"/bow/force",
-    ),
+    words=words(b"/yehu/|?VALUE|?HOST_INFO|&|%2f|%00|..|/parameters.html|/bow/force"),
 )
 def http_path(data: bytes) -> None:
     """Any path and query is answered with JSON, a page, or a client's error."""
@@ -230,14 +208,7 @@ def http_path(data: bytes) -> None:
 
 @target(
     "websocket",
-    words=(
-        b"\x81\x85",
-        b"\x82\x7e",
-        b"\x88\x80",
-        b"\x89\x00",
-        b"\x7f\xff\xff",
-        b'{"COMMAND":"LISTEN","DATA":"',
-    ),
+    words=words(b'\x81\x85|\x82~|\x88\x80|\x89\x00|\x7f\xff\xff|{"COMMAND":"LISTEN","DATA":"'),
 )
 def websocket(data: bytes) -> None:
     """After any frames a WebSocket goes on or is closed, and ends with its connection."""
@@ -250,14 +221,7 @@ def websocket(data: bytes) -> None:
 @target(
     "websocket-command",
     RefusedError,
-    words=(
-        b'{"COMMAND": ',
-        b'"LISTEN"',
-        b'"IGNORE"',
-        b', "DATA": ',
-        b'"/yehu/bow/force"',
-        b'"/yehu/status/load"',
-    ),
+    words=words(b'{"COMMAND": |"LISTEN"|"IGNORE"|, "DATA": |"/yehu/bow/force"|"/yehu/status/load"'),
 )
 def websocket_command(data: bytes) -> None:
     """A text frame is a command for an existing address, or a RefusedError."""

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 import pytest
-from sound import alone, bow, run
+from sound import alone, run
 
 from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.engine import intake, mixing, sounding
@@ -92,16 +92,6 @@ def test_a_player_on_the_left_is_heard_on_the_left():
     assert right[2] > 1.3 * left[2]
 
 
-def test_without_a_room_both_sides_are_the_dry_sound():
-    ensemble = trio(has_room=False)
-    for instrument in ensemble.instruments:
-        instrument.write("/room/pan", 0.0, ramp_ms=0.0)
-    out, stems, dry = apart(ensemble, 4000)
-    np.testing.assert_array_equal(out[:, 0], out[:, 1])
-    np.testing.assert_array_equal(stems[:, 0, 0], dry[0])
-    assert not stems[:, -1].any()
-
-
 def test_after_a_process_died_all_go_on_at_one_frame_and_nothing_sounds():
     ensemble = trio()
     both(ensemble, 4096)
@@ -129,26 +119,15 @@ def test_all_tell_the_time_by_one_clock():
     assert told[0] > 0.0
 
 
-def test_the_tape_has_what_was_heard_on_both_sides():
-    ensemble = trio()
-    heard = both(ensemble, 4000, block=333)
-    begin, taped = ensemble.taped(0)
-    assert begin == 0
-    np.testing.assert_array_equal(taped, heard)
-    assert np.abs(heard[:, 0] - heard[:, 1]).max() > 0.001
-
-
-def test_a_single_channel_has_the_mean_of_both():
-    one = np.zeros(4000, np.float32)
+def test_one_channel_has_the_mean_of_both_and_further_ones_have_left_and_right_in_turn():
+    one, many, both_sides = np.zeros(1000, np.float32), np.zeros((1000, 5), np.float32), trio()
     trio(channels=1).process(one)
-    np.testing.assert_allclose(one, both(trio(), 4000).mean(axis=1), atol=1e-7)
-
-
-def test_further_channels_have_left_and_right_in_turn():
-    out = np.zeros((1000, 5), np.float32)
-    trio(channels=5).process(out)
-    expected = both(trio(), 1000)
-    np.testing.assert_array_equal(out, expected[:, [0, 1, 0, 1, 0]])
+    trio(channels=5).process(many)
+    expected = both(both_sides, 1000)
+    np.testing.assert_allclose(one, expected.mean(axis=1), atol=1e-7)
+    np.testing.assert_array_equal(many, expected[:, [0, 1, 0, 1, 0]])
+    np.testing.assert_array_equal(both_sides.taped(0)[1], expected)
+    assert np.abs(expected[:, 0] - expected[:, 1]).max() > 0.001
 
 
 def test_its_level_is_that_of_the_mix():
@@ -162,19 +141,11 @@ def test_its_level_is_that_of_the_mix():
     assert rms == pytest.approx(np.sqrt(np.mean(np.square(window, dtype=float))), rel=1e-5)
 
 
-@pytest.mark.parametrize("parts", [0, MOST_PARTS + 1])
-def test_a_stage_has_room_for_1_to_16(parts):
-    with pytest.raises(ParameterError, match=f"{parts} parts: a stage has 1 to 16"):
-        Ensemble([InstrumentSpec(RATE)] * parts)
-
-
-def test_instruments_of_one_stage_have_one_rate():
+def test_a_stage_has_room_for_1_to_16_of_one_rate_that_it_plays_itself():
+    for parts in (0, MOST_PARTS + 1):
+        with pytest.raises(ParameterError, match=f"{parts} parts: a stage has 1 to 16"):
+            Ensemble([InstrumentSpec(RATE)] * parts)
     with pytest.raises(ParameterError, match="one sample rate"):
         Ensemble([InstrumentSpec(22050.0), InstrumentSpec(44100.0)])
-
-
-def test_an_instrument_of_an_ensemble_is_not_played_by_itself():
-    ensemble = alone(RATE)
-    bow(ensemble.first)
     with pytest.raises(TypeError, match="played by the ensemble"):
-        ensemble.first.process(np.zeros(64, np.float32))
+        alone(RATE).first.process(np.zeros(64, np.float32))

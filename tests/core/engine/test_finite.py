@@ -112,17 +112,6 @@ def check_it_comes_back(ensemble: Ensemble, field: str, bad: float) -> None:
         assert ensemble._stage["invalid_samples"] - before <= 2 * CHUNK, (field, bad)
 
 
-def test_what_was_no_number_is_counted_and_the_sound_comes_back(instrument, playing):
-    instrument._rig[:] = playing
-    instrument._rig["output"]["ghost"] = math.nan
-    out = np.zeros(44100, np.float32)
-    instrument.process(out)
-    assert instrument.lost_states == 1
-    assert instrument.meters()["lost"] == 1
-    assert out[0] == 0.0
-    assert np.abs(out[-4410:]).max() > 0.01
-
-
 def test_no_ramp_leads_out_of_a_parameters_range(instrument, playing):
     for target, ramp in product((9e18, -9e18, *BAD[1:]), (0, 1, 4410, 9 * 10**18)):
         instrument._rig[:] = playing

@@ -61,6 +61,8 @@ def test_the_bow_follows_the_finger_nearest_to_it_that_is_down(instrument):
     assert rows(instrument, 0.2)[-1][X_B] == pytest.approx(BRIDGE_X - 0.1 * 0.15, abs=1e-6)
     put(instrument, finger_2_press=0.0)
     assert rows(instrument, 0.2)[-1][X_B] == pytest.approx(BRIDGE_X - 0.1 * 0.25, abs=1e-6)
+    put(instrument, finger_1_press=0.0, finger_4_press=0.0)
+    assert rows(instrument, 0.2)[-1][X_B] == pytest.approx(BRIDGE_X - 0.1 * BRIDGE_X, abs=1e-6)
 
 
 def test_vibrato_rocks_the_fingers_that_are_down_by_so_many_cents(instrument):

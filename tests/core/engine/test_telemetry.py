@@ -24,7 +24,6 @@ from yehu_server.core.physics.layout import GHOST, STRINGS
 from yehu_server.core.player.wishes import RAMP
 
 RATE = 44100
-PATIENCE_S = 60.0  # for another thread, on a busy machine
 run = partial(sound.run, block=4096)
 # PortAudio's flags: the one that counts; input under- and overflow, output overflow, priming.
 OUTPUT_UNDERFLOW, OTHER_FLAGS = 4, [0, 1, 2, 8, 16]
@@ -70,25 +69,10 @@ def test_peak_and_rms_are_those_of_the_last_whole_window(rate, block):
 
 def test_each_window_tells_of_its_own_samples_only():
     instrument = bowed()
-    loud = run(instrument, RATE // 2)
-    instrument.silence()
-    run(instrument, RATE // 10)
-    assert np.abs(loud).max() > 0.01
-    instrument.write("/bow/side", 0.0)
-    instrument.write("/bow/speed", 0.0)
+    assert np.abs(run(instrument, RATE // 2)).max() > 0.01
     instrument.write("/output/level", 0.0, ramp_ms=0.0)
     run(instrument, RATE // 10)
-    assert instrument.meters()["peak"] == 0.0
-    assert instrument.meters()["rms"] == 0.0
-
-
-def test_a_silent_instrument_has_no_level_and_straight_strings():
-    instrument = Instrument(InstrumentSpec(RATE))
-    run(instrument, RATE // 10)
-    meters = instrument.meters()
-    assert meters["window"] > 0
-    assert (meters["peak"], meters["rms"]) == (0.0, 0.0)
-    assert not meters["shapes"].any()
+    assert (instrument.meters()["peak"], instrument.meters()["rms"]) == (0.0, 0.0)
 
 
 # ---------------------------------------------------------------- shapes
@@ -175,11 +159,12 @@ def test_the_load_shown_follows_in_about_a_second():
     assert meters["load"][0] == pytest.approx(0.5, rel=0.001)
 
 
-def test_under_runs_are_counted_as_the_device_flags_them():
+def test_under_runs_are_counted_as_the_device_flags_them_and_it_goes_on():
     instrument, out = Instrument(InstrumentSpec(RATE)), np.zeros(64, np.float32)
     for count, others in enumerate(itertools.product(OTHER_FLAGS, OTHER_FLAGS)):
         for flags in (sum(set(others)), sum(set(others)) + OUTPUT_UNDERFLOW):
-            native.callback.call(None, out.ctypes.data, 64, None, flags, instrument.address)
+            call = native.callback.call(None, out.ctypes.data, 64, None, flags, instrument.address)
+            assert call == 0  # paContinue
         assert instrument.meters()["underruns"] == count + 1
 
 
@@ -215,31 +200,6 @@ class Clock:
             loop = self.meters["loop"][0]
             rows.append((started - exact, loop["due_ns"] - exact, loop["ns_per_frame"]))
         return np.array(rows).T
-
-
-@pytest.mark.parametrize(("block", "smoother"), [(64, 12.0), (256, 7.0), (1024, 3.0)])
-@pytest.mark.parametrize("drift", [0.9999, 1.0, 1.0005])
-def test_the_loop_smoothes_the_callbacks_jitter_and_follows_the_devices_rate(
-    block, smoother, drift
-):
-    clock = Clock(48000.0, block, drift, jitter_ns=0.5e6)
-    clock.follow(6.0)
-    jitter, error, rate = clock.follow(8.0)
-    assert np.std(jitter) > 0.25e6
-    assert np.std(error) < np.std(jitter) / smoother
-    assert np.std(np.diff(error)) < 0.1 * np.std(np.diff(jitter))
-    assert abs(np.mean(error)) < 0.1e6
-    assert np.mean(rate) == pytest.approx(clock.ns_per_frame, rel=3e-5)
-    assert clock.meters["late_callbacks"] == 0
-
-
-@pytest.mark.parametrize("drift", [0.9999, 1.0005])
-def test_without_jitter_the_loop_comes_to_the_devices_rate_and_time(drift):
-    clock = Clock(48000.0, 256, drift)
-    clock.follow(8.0)
-    _, error, rate = clock.follow(1.0)
-    assert np.abs(error).max() < 100.0
-    np.testing.assert_allclose(rate, clock.ns_per_frame, rtol=1e-6)
 
 
 def test_blocks_of_changing_size_are_followed_too():
@@ -402,18 +362,6 @@ def test_the_first_frame_of_a_block_falls_on_when_it_was_due():
             assert before <= meters["loop"]["due_ns"] <= after  # the clock is the same
 
 
-def test_a_moment_falls_on_its_frame_and_frames_follow_in_order():
-    clock = Clock(48000.0, 256, 0.9999, jitter_ns=0.5e6)
-    clock.follow(8.0)
-    instrument = told(Instrument(InstrumentSpec(48000.0)), clock.meters)
-    first, due = int(clock.meters["frame"][0]), int(clock.meters["loop"]["due_ns"][0])
-    length = 256 * clock.ns_per_frame
-    moments = [due + round(length * part) for part in np.linspace(0.0, 1.0, 500)]
-    frames = np.array([instrument.frame_at(moment) for moment in moments])
-    assert (np.diff(frames) > 0.0).all()
-    np.testing.assert_allclose(frames, first + np.linspace(0.0, 256.0, 500), atol=0.05)
-
-
 def test_what_comes_at_a_steady_pace_is_stamped_at_a_steady_pace():
     clock = Clock(48000.0, 256, 0.9999, jitter_ns=0.5e6)
     clock.follow(6.0)
@@ -428,17 +376,17 @@ def test_what_comes_at_a_steady_pace_is_stamped_at_a_steady_pace():
     assert np.std(pace) < 0.5  # frames; the callbacks' own starts vary by 20
 
 
-def test_in_a_stall_time_stands_still_a_little_after_the_last_block():
-    clock = Clock(48000.0, 480)
-    clock.follow(1.0)
+def test_time_goes_on_evenly_and_in_a_stall_stands_still_a_little_after_the_last_block():
+    clock = Clock(48000.0, 480, 0.9999)
+    clock.follow(8.0)
     instrument = told(Instrument(InstrumentSpec(48000.0)), clock.meters)
     first, due = int(clock.meters["frame"][0]), int(clock.meters["loop"]["due_ns"][0])
-    end = first + 480 + native.STALL_NS * 48e-6
+    end = first + 480 + native.STALL_NS / clock.ns_per_frame
     moments = [due + round(1e6 * ms) for ms in np.linspace(0.0, 100.0, 301)]
     frames = np.array([instrument.frame_at(moment) for moment in moments])
     assert (np.diff(frames) >= 0.0).all()
-    elapsed = 1e-9 * (np.array(moments) - due)
-    np.testing.assert_allclose(frames, np.minimum(first + 48000.0 * elapsed, end), atol=0.01)
+    elapsed = (np.array(moments) - due) / clock.ns_per_frame
+    np.testing.assert_allclose(frames, np.minimum(first + elapsed, end), atol=0.01)
     assert instrument.frame_at(due + 10**15) == pytest.approx(end, abs=0.01)
 
 
@@ -494,44 +442,6 @@ def test_a_reader_never_sees_half_of_a_record():
     assert min(found) >= 0
     assert sum(found) > 1000
     assert instrument.meters()["frame"] == times - 1
-
-
-def test_a_reader_is_told_when_a_record_is_just_being_written():
-    instrument, into = Instrument(InstrumentSpec(RATE)), np.zeros(1, METERS)
-    for version in range(4):
-        instrument._rig["version"][0, 0] = version
-        is_whole = native.read_meters.call(instrument.address, into.ctypes.data)
-        assert is_whole == (version % 2 == 0)
-
-
-def test_a_reader_never_sees_half_of_a_block():
-    instrument, block = bowed(), 16
-    out = np.zeros(block, np.float32)
-    instrument.process(out)  # and whatever is not compiled yet, is compiled now
-    instrument.meters()
-    over = threading.Event()
-
-    def play() -> None:
-        while not over.is_set():
-            instrument.process(out)
-
-    player = threading.Thread(target=play)
-    player.start()
-    into = np.zeros(1, METERS)
-    meters, whole = into[0], 0
-    try:
-        end = time.monotonic() + PATIENCE_S
-        while whole < 1000 and time.monotonic() < end:
-            is_whole = native.read_meters.call(instrument.address, into.ctypes.data)
-            if is_whole and meters["callbacks"] > 0:
-                whole += 1
-                assert meters["loads"].sum() + meters["running"] == meters["callbacks"]
-                assert meters["frame"] == (meters["callbacks"] - 1) * block
-                assert meters["rate"] == RATE
-    finally:
-        over.set()
-        player.join()
-    assert whole == 1000
 
 
 def test_while_a_block_is_being_told_of_the_one_before_is_read():

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from functools import cache
+from unittest.mock import Mock
 
 import pytest
 
@@ -15,43 +16,21 @@ from yehu_server.core.engine.sounding import sound
 from yehu_server.util.processes import python_command
 
 
-def beginnings(monkeypatch) -> list[list[str]]:
-    """The command lines of processes that would be started from now on."""
-    begun: list[list[str]] = []
-
-    class Beside:
-        def __init__(self, command: list[str], **_: object) -> None:
-            begun.append(command)
-
-        def wait(self) -> int:
-            return 0
-
-        kill = wait
-
-    monkeypatch.setattr(warming.subprocess, "Popen", Beside)
-    monkeypatch.setattr(warming.os, "cpu_count", lambda: 2)
-    return begun
-
-
-def test_no_process_is_started_when_all_is_kept(monkeypatch):
+def test_what_is_not_kept_is_compiled_by_two_processes_where_there_are_two_processors(monkeypatch):
     warming.warm_up()
-    assert warming.is_warm()
-    begun = beginnings(monkeypatch)
-    warming.warm_up()
-    assert begun == []
-
-
-@pytest.mark.parametrize("processors", [2, 1])
-def test_the_model_is_compiled_beside_where_there_is_a_second_processor(monkeypatch, processors):
-    warming.warm_up()
-    begun = beginnings(monkeypatch)
-    monkeypatch.setattr(warming.os, "cpu_count", lambda: processors)
-    monkeypatch.setattr(Native, "is_cached", property(lambda self: self is not sound))
-    monkeypatch.setattr(warming.machine_code, "loaded", cache(lambda *_: {}))
-    assert not warming.is_warm()
-    warming.warm_up()
-    expected = [python_command("yehu_server.core.engine.warming")]
-    assert begun == (expected if processors > 1 else [])
+    command = python_command("yehu_server.core.engine.warming")
+    for is_kept, processors, expected in ((True, 2, []), (False, 1, []), (False, 2, [command])):
+        with monkeypatch.context() as patch:
+            popen = Mock()
+            popen.return_value.wait.return_value = 0
+            patch.setattr(warming.subprocess, "Popen", popen)
+            patch.setattr(warming.os, "cpu_count", lambda count=processors: count)
+            if not is_kept:
+                patch.setattr(Native, "is_cached", property(lambda self: self is not sound))
+                patch.setattr(warming.machine_code, "loaded", cache(lambda *_: {}))
+            assert warming.is_warm() == is_kept
+            warming.warm_up()
+            assert [call.args[0] for call in popen.call_args_list] == expected
 
 
 WARM_UP = """

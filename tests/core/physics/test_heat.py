@@ -1,7 +1,5 @@
 """The temperature of the contact, where an instrument has one."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from core.physics.runs import play
@@ -9,27 +7,24 @@ from core.physics.runs import play
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.physics.rosin_heat import static_coefficient
-from yehu_server.errors import ParameterError
 
-YEHU = Quantities()
-THERMAL = override(YEHU, {"bow": {"friction": "thermal"}})
+THERMAL = override(Quantities(), {"bow": {"friction": "thermal"}})
 
 
-def bowed(quantities=THERMAL, v_b=0.2, seconds=0.5, rate=44100.0, force=0.5):
+def bowed(seconds=0.5, rate=44100.0):
     def curves(time):
         rise = np.minimum(1.0, time / 0.04)
-        return {"F_N": force * rise, "v_b": v_b * rise, "x_f": [0.1], "press": [1.5]}
+        return {"F_N": 0.5 * rise, "v_b": 0.2 * rise, "x_f": [0.1], "press": [1.5]}
 
-    return play(curves, seconds, rate, quantities=quantities)
+    return play(curves, seconds, rate, quantities=THERMAL)
 
 
-@pytest.mark.parametrize("v_r", [0.01, 0.1, 0.228, 0.5])
-def test_steady_slipping_has_the_friction_of_the_stribeck_curve(v_r):
-    bow = THERMAL.bow
-    mu = bow.mu_C + (bow.mu_S - bow.mu_C) * np.exp(-((v_r / bow.v_s) ** 2))
-    model = kernel.prepare(THERMAL, 44100.0)[0]
-    found = static_coefficient.py_func(Named(model), mu * v_r)
-    assert found == pytest.approx(mu, abs=2e-3)
+def test_steady_slipping_has_the_friction_of_the_stribeck_curve_and_rest_that_of_static_friction():
+    bow, law = THERMAL.bow, Named(kernel.prepare(THERMAL, 44100.0)[0])
+    for v_r in (0.01, 0.1, 0.228, 0.5):
+        mu = bow.mu_C + (bow.mu_S - bow.mu_C) * np.exp(-((v_r / bow.v_s) ** 2))
+        assert static_coefficient.py_func(law, mu * v_r) == pytest.approx(mu, abs=2e-3), v_r
+    assert static_coefficient.py_func(law, 0.0) == pytest.approx(bow.mu_S)
 
 
 class Named:
@@ -42,24 +37,12 @@ class Named:
         return self.record[name]
 
 
-def test_a_contact_at_rest_is_cold_and_has_static_friction():
-    model = kernel.prepare(THERMAL, 44100.0)
-    assert static_coefficient.py_func(Named(model[0]), 0.0) == pytest.approx(YEHU.bow.mu_S)
-
-
 def test_slipping_heats_the_contact_and_rest_cools_it():
     run = bowed()
     hot = run.state[0]["motion"]["w"][0]
     assert 0.0 < hot < 3.0
     after = play({"F_N": 0.0}, 0.01, quantities=THERMAL, state=run.state)
     assert after.state[0]["motion"]["w"][0] < 1e-9
-
-
-@pytest.mark.parametrize("rate", [44100.0, 48000.0, 96000.0])
-def test_the_ledger_closes(rate):
-    run = bowed(rate=rate)
-    assert np.abs(run["energy_error"]).max() < 2e-9 * run.power
-    assert run["loss_friction"].min() > -1e-12 * run.power
 
 
 @pytest.mark.parametrize("v_b", [0.5, 1.0])
@@ -75,7 +58,7 @@ def test_a_bow_that_always_slips_is_as_hot_as_the_power_per_newton_that_it_loses
 def test_it_converges_with_the_rate():
     # The start of a note, before chaos: the bridge force over 12 ms.
     def start(rate):
-        run = bowed(seconds=0.012, rate=rate)
+        run = bowed(0.012, rate)
         time = np.arange(len(run["bridge_force"])) / rate
         return np.interp(np.arange(0.0, 0.0115, 1e-4), time, run["bridge_force"])
 
@@ -83,13 +66,3 @@ def test_it_converges_with_the_rate():
     errors = [np.abs(start(rate) - fine).max() for rate in (24000.0, 48000.0, 96000.0)]
     assert errors[0] > errors[1] > errors[2]
     assert errors[2] < 0.5 * errors[0]
-
-
-def test_the_plain_law_knows_no_temperature():
-    np.testing.assert_array_equal(bowed(YEHU).state[0]["motion"]["w"], 0.0)
-
-
-def test_a_law_that_is_not_known_is_refused():
-    with pytest.raises(ParameterError, match=r"bow.friction: 'hot' is not one of elasto-plastic"):
-        override(YEHU, {"bow": {"friction": "hot"}})
-    assert replace(YEHU.bow, friction="thermal").friction == "thermal"

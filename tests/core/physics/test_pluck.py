@@ -1,4 +1,4 @@
-"""A string pulled aside by a force: its shape, its energy, its sound."""
+"""A string pulled aside by a force or a finger: its shape, its sound, its tension."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,6 @@ from yehu_server.core.physics.quantities import Quantities
 
 YEHU = Quantities()
 RATE = 44100.0
-PULL = {"pluck": 1.0, "x_pluck": 0.2}
 
 
 def shape(run, string):
@@ -32,27 +31,20 @@ def test_a_steady_pull_bends_the_string_into_a_triangle(string):
     assert np.abs(shape(run, 1 - string)).max() < 0.05 * ideal
 
 
-@pytest.mark.parametrize("string", [0, 1], ids=["F4", "C5"])
-def test_plucking_creates_no_energy(string):
-    sign = 1.0 if string == 0 else -1.0
-
-    def plucks(t):
-        phase = (4.0 * t) % 1.0
-        return {
-            "pluck": sign * np.where(phase < 0.05, phase / 0.05, 0.0) * 2.0,
-            "x_pluck": 0.2 + 0.03 * np.sin(3.0 * t),
-            "x_f": [np.full(len(t), 0.1)],
-            "press": [np.where((t % 1.0) < 0.5, 1.5, 0.0)],
-        }
-
-    run = play(plucks, 2.0)
-    assert np.abs(run["energy_error"]).max() <= 1e-9 * run.power
-    assert run["power_in"].max() > 0.01
-    assert run["constraint_residual"].max() <= 1e-15
-
-
 def test_a_string_let_go_sounds_its_pitch():
     run = play(lambda t: {"pluck": np.where(t < 0.01, t / 0.01, 0.0), "x_pluck": 0.2}, 0.6)
     silk = YEHU.string_1
     ideal = (silk.T / silk.rho_A) ** 0.5 / (2.0 * YEHU.bridge_x)
     assert abs(cents(pitch_of(run["bridge_force"][round(0.1 * RATE) :], RATE), ideal)) < 40.0
+
+
+def test_a_pressed_string_is_tighter_by_its_stretch():
+    """T' = EA/(2 L) int u_x^2 dx once all is at rest."""
+    for press in (0.5, 3.0):
+        run = play({"press": [press], "x_f": [0.1]}, 1.5, ledger=False)
+        for i, string in enumerate(YEHU.strings):
+            h = run.model["h"][0, i]
+            expected = string.EA / (2.0 * string.L) * np.sum(np.diff(shape(run, i)) ** 2) / h
+            assert expected > 0.0
+            T_more = run.state["work"]["tau"][0, i] * h / run.model["spread"][0, i]
+            assert T_more == pytest.approx(expected, rel=1e-3)

@@ -51,15 +51,6 @@ def test_each_octave_decays_within_five_percent_of_what_is_asked(asked, rate):
             assert measured == pytest.approx(wished, rel=0.05), centre
 
 
-def test_high_octaves_decay_sooner_the_more_a_room_is_damped():
-    bright, dull = (
-        decay_time(octave(responses(Asked(5.0, 0.6, damping), 44100.0), 44100.0, 8000.0), 44100.0)
-        for damping in (0.0, 0.8)
-    )
-    assert bright == pytest.approx(0.6, rel=0.05)
-    assert dull < 0.5 * bright
-
-
 @pytest.mark.parametrize("before", [
     Asked(5.0, 1.6, 0.4), Asked(5.0, 0.4, 0.9), Asked(25.0, 0.4, 0.4),
 ], ids=["decay", "damping", "size"])  # fmt: skip
@@ -84,16 +75,13 @@ def test_the_mix_of_the_lines_is_orthogonal_and_feeds_all_alike():
 def stored(room: Room) -> float:
     """Energy of all that is on its way in the lines."""
     record = room.record[0]
-    total = 0.0
-    for line, length in zip(record["line"], record["length"], strict=True):
-        at = (room.frame - 1 - np.arange(length)) & record["mask"]
-        total += float(np.sum(np.square(line[at])))
-    return total
+    lines = zip(record["line"], record["length"], strict=True)
+    on_their_way = (line[(room.frame - 1 - np.arange(n)) & record["mask"]] for line, n in lines)
+    return float(sum(np.square(samples).sum() for samples in on_their_way))
 
 
-@pytest.mark.parametrize("asked", [STUDY, HALL])
-def test_a_network_without_loss_keeps_its_energy(asked):
-    room = Room(48000.0, asked)
+def test_a_network_without_loss_keeps_its_energy():
+    room = Room(48000.0, HALL)
     room.record["b_0"], room.record["b_1"], room.record["a_1"] = 1.0, 0.0, 0.0
     room.response(0.5)
     before = stored(room)
@@ -137,13 +125,13 @@ def test_the_late_field_is_as_loud_as_a_diffuse_one(size, decay):
     assert level == pytest.approx(10.0 * np.log10(4.0 / absorbing / direct), abs=1.0)
 
 
-@pytest.mark.parametrize("name", PRESETS)
-def test_both_ears_hear_another_late_field_just_as_loud(name):
-    asked, rate = PRESETS[name], 48000.0
-    heard = Room(rate, asked).response(asked.decay + 0.05)[round(0.05 * rate) :]
-    assert abs(np.corrcoef(heard.T)[0, 1]) < 0.1
-    left, right = np.sum(np.square(heard), axis=0)
-    assert 10.0 * np.log10(left / right) == pytest.approx(0.0, abs=1.0)
+def test_both_ears_hear_another_late_field_just_as_loud():
+    rate = 48000.0
+    for name, asked in PRESETS.items():
+        heard = Room(rate, asked).response(asked.decay + 0.05)[round(0.05 * rate) :]
+        assert abs(np.corrcoef(heard.T)[0, 1]) < 0.1, name
+        left, right = np.sum(np.square(heard), axis=0)
+        assert 10.0 * np.log10(left / right) == pytest.approx(0.0, abs=1.0), name
 
 
 @pytest.mark.parametrize("name", PRESETS)

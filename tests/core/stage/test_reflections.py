@@ -113,15 +113,6 @@ def test_reflections_come_from_the_mirror_images_to_the_sample(place, rate):
         assert np.allclose(heard[:, ear], wished, rtol=0.01, atol=1e-12)
 
 
-def test_an_ear_hears_more_of_its_own_side():
-    heard = Player(48000.0, PLACES[0]).response()
-    images, ears, direct = mirrored(PLACES[0])
-    for wall in range(2):  # the left one, the right one
-        ways = np.linalg.norm(images[wall] - ears, axis=1)
-        frames = np.round((ways - direct) / SOUND * 48000.0).astype(int)
-        assert heard[frames[wall], wall] > 1.5 * heard[frames[1 - wall], 1 - wall]
-
-
 def test_a_wall_of_a_damped_room_takes_the_high_notes():
     plain, damped = (
         np.abs(np.fft.rfft(Player(48000.0, PLACES[0], damping).response()[:, 0]))
@@ -147,18 +138,22 @@ def test_reflections_move_to_another_place_without_a_step():
     assert np.allclose(after[-5000:], rested[-5000:], atol=1e-9)
 
 
-@pytest.mark.parametrize("change", [
-    ((6.0, 0.4, 2.0, 0.0), 0.4), ((5.0, 0.8, 2.0, 0.0), 0.4), ((5.0, 0.4, 2.0, 0.0), 0.9),
-    ((5.0, 0.4, 3.0, 0.0), 0.4), ((5.0, 0.4, 2.0, 0.5), 0.4),
-], ids=["size", "decay", "damping", "distance", "pan"])  # fmt: skip
-def test_reflections_follow_whatever_is_changed(change):
-    player = Player(48000.0, PLACES[0], 0.4)
-    before = player.response()
-    player.stand(*change)
-    player.hear(np.zeros(9600))
-    after = player.response()
-    assert np.allclose(after, Player(48000.0, *change).response(), atol=1e-9)
-    assert np.abs(after - before).max() > 0.01
+def test_reflections_follow_whatever_is_changed(subtests):
+    for name, change in {
+        "size": ((6.0, 0.4, 2.0, 0.0), 0.4),
+        "decay": ((5.0, 0.8, 2.0, 0.0), 0.4),
+        "damping": ((5.0, 0.4, 2.0, 0.0), 0.9),
+        "distance": ((5.0, 0.4, 3.0, 0.0), 0.4),
+        "pan": ((5.0, 0.4, 2.0, 0.5), 0.4),
+    }.items():
+        with subtests.test(name):
+            player = Player(48000.0, PLACES[0], 0.4)
+            before = player.response()
+            player.stand(*change)
+            player.hear(np.zeros(9600))
+            after = player.response()
+            assert np.allclose(after, Player(48000.0, *change).response(), atol=1e-9)
+            assert np.abs(after - before).max() > 0.01
 
 
 @pytest.mark.parametrize("moves_to", [PLACES[2], (2.0, 0.2, 1.0, 0.0)], ids=["stays", "moves"])

@@ -36,6 +36,9 @@ def missing() -> str | None:
     return None if PLAYWRIGHT.is_dir() else "needs playwright-core: npm ci"
 
 
+in_browser = pytest.mark.skipif(missing() is not None, reason=str(missing()))
+
+
 class _Handler(http.server.SimpleHTTPRequestHandler):
     """Serves `web/`, the generated files from where they were written, and the imitation."""
 
@@ -113,11 +116,15 @@ class Driver:
         """End it, with its browser, by the end of its input."""
         if self._process is not None:
             self._process.communicate()
+            self._process = None
 
     def play(
         self, scenario: str, url: str, *words: str, reach: Callable[[str], Any] | None = None
     ) -> Any:
-        """Play a scenario; do something at each step that it reaches; return what it found."""
+        """Play a scenario; do something at each step that it reaches; return what it found.
+
+        Whatever the browser's console told of as an error or a warning fails it.
+        """
         requests, answers = self._lines()
         limit = threading.Timer(LIMIT_S, self._stop)
         limit.start()
@@ -127,14 +134,22 @@ class Driver:
             for line in answers:
                 answer = json.loads(line)
                 if "step" not in answer:
-                    assert "found" in answer, answer["failed"]
-                    return answer["found"]
+                    break
                 if reach is not None:
                     reach(answer["step"])
                 print("go", file=requests, flush=True)
+            else:
+                pytest.fail(f"{scenario} did not end within {LIMIT_S:.0f} s, or Node broke off")
+        except BaseException:  # what is left of the scenario would answer to the next one
+            self._stop()
+            self.close()
+            raise
         finally:
             limit.cancel()
-        pytest.fail(f"{scenario} did not end within {LIMIT_S:.0f} s, or Node broke off")
+        assert "found" in answer, answer["failed"]
+        found = answer["found"]
+        assert not isinstance(found, dict) or not found.get("errors"), found["errors"]
+        return found
 
 
 _driver = Driver()

@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from live.page.browser import missing, running, served
 
 from yehu_server.ahead.build import page_linker, page_module
 from yehu_server.live.page import facts
-from yehu_server.live.page.site import MODULE, page_files, page_folder
+from yehu_server.live.page.examples import write_capture_headers
+from yehu_server.live.page.site import (
+    MODULE,
+    page_files,
+    page_folder,
+    server_of,
+    url_of,
+    write_page,
+)
 
 
 @pytest.fixture(scope="session")
@@ -40,3 +50,31 @@ def playing(page) -> Path:
         pytest.skip("there is no wasm-ld")
     shutil.copy(page_module(), page / MODULE)
     return page
+
+
+@pytest.fixture(scope="session")
+def imitated(tmp_path_factory) -> Iterator[str]:
+    """The address of the page, with an imitation of its sound."""
+    if missing():
+        pytest.skip(str(missing()))
+    generated = tmp_path_factory.mktemp("generated")
+    write_capture_headers(generated / "captures")
+    with served(generated) as url:
+        yield url
+
+
+@pytest.fixture(scope="session")
+def written(tmp_path_factory) -> Path:
+    """The folder of the page, written as static files with all that sounds."""
+    if missing():
+        pytest.skip(str(missing()))
+    folder = tmp_path_factory.mktemp("page")
+    write_page(folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def sounding(written) -> Iterator[str]:
+    """The address of that page."""
+    with running(server := server_of(written, 0)):
+        yield url_of(server)

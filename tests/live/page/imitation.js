@@ -69,7 +69,7 @@ export class Sound extends EventTarget {
       },
       stop: async () => ({
         from: this.keptFrom,
-        to: this.state?.frame ?? 0,
+        to: this.#frame(),
         wishes: this.kept,
       }),
     };
@@ -108,6 +108,11 @@ export class Sound extends EventTarget {
   /** @param {string} address */
   target(address) {
     return this.values.get(ROWS.get(address) ?? -1);
+  }
+
+  /** The frame that is played now; those of the states are some milliseconds old. */
+  #frame() {
+    return Math.round(((performance.now() - this.begun) / 1000) * RATE);
   }
 
   /** @returns {Snapshot} */

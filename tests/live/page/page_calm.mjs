@@ -154,5 +154,7 @@ export default async function (browser, url) {
   await browser.addInitScript(countDrawings);
   const calm = await look(browser, url, "reduce"); // first: nothing is remembered yet
   const lively = await look(browser, url, "no-preference");
-  return { calm, lively, drag: await drag(browser, url) };
+  const dragged = await drag(browser, url);
+  const errors = [calm, lively, dragged].flatMap((each) => each.errors);
+  return { calm, lively, drag: dragged, errors };
 }

@@ -108,7 +108,8 @@ export default async function (browser, url) {
       }),
   );
   found.loaded = [];
-  const asked = (request) => request.serviceWorker() || found.loaded.push(request.url());
+  const isOfNoUse = (request) => request.serviceWorker() || request.url().endsWith("/icon.svg");
+  const asked = (request) => isOfNoUse(request) || found.loaded.push(request.url());
   page.on("request", asked);
   await page.mouse.down();
   found.firstMs = await heard;

@@ -3,38 +3,29 @@
 from __future__ import annotations
 
 import socket
-import time
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.page.pages import PageOptions
 from yehu_server.live.server import Server
+from yehu_server.live.web.server import WebOptions
 
 HOST = "127.0.0.1"
-PATIENCE_S = 30.0
+ONE = (PartOptions(),)
 
 
-def until(condition: Callable[[], Any]) -> bool:
-    """Wait until something is so; return whether it came to be."""
-    deadline = time.monotonic() + PATIENCE_S
-    while not condition():
-        if time.monotonic() > deadline:
-            return False
-        time.sleep(0.01)
-    return True
-
-
-def start(port: int, parts: int = 1) -> Server:
+def start(parts: tuple[PartOptions, ...] = ONE, port: int = 0) -> Server:
     """A server of some parts, without a device, with its page at a port."""
     server = Server(
         ServeOptions(
             output=OutputOptions(device="null"),
             midi=None,
             osc=(HOST, 0),
+            http=WebOptions((HOST, 0)),
             page=PageOptions((HOST, port), is_wished=True),
-            parts=[PartOptions() for _ in range(parts)],
+            parts=list(parts),
         )
     )
     server.start()
@@ -45,6 +36,16 @@ def stop(server: Server) -> None:
     """End it."""
     server.skip_fade_out()
     server.stop()
+
+
+@contextmanager
+def serving(parts: tuple[PartOptions, ...] = ONE) -> Iterator[tuple[Server, str]]:
+    """A server, and the address of its page."""
+    server = start(parts)
+    try:
+        yield server, f"http://{HOST}:{server.pages.port}/"
+    finally:
+        stop(server)
 
 
 def free_port() -> int:

@@ -6,51 +6,31 @@ import gzip
 from typing import Any
 
 import pytest
-from live.page.browser import drive, missing, running
+from live.page.browser import drive
 
-from yehu_server.live.page.site import server_of, url_of, write_page
-
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(missing() is not None, reason=str(missing())),
-]
+pytestmark = pytest.mark.slow
 
 RANGE_DB = 18.0
 MOST_BYTES = 350_000
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """The page, written as static files."""
-    folder = tmp_path_factory.mktemp("page")
-    write_page(folder)
-    return folder
+def found(sounding) -> Any:
+    return drive("page_expression.mjs", sounding)
 
 
-@pytest.fixture(scope="module")
-def found(folder) -> Any:
-    with running(server := server_of(folder, 0)):
-        yield drive("page_expression.mjs", url_of(server))
+def test_a_note_is_as_loud_as_it_is_touched(found) -> None:
+    assert set(found["dynamics"]) == {"touch", "mouse", "pen"}
+    for way in found["dynamics"].values():
+        for levels in way.values():
+            assert levels == sorted(levels)
+            assert levels[-1] - levels[0] >= RANGE_DB
 
 
-def test_nothing_goes_wrong(found) -> None:
-    assert found["errors"] == []
-
-
-@pytest.mark.parametrize("way", ["touch", "mouse", "pen"])
-def test_a_note_is_as_loud_as_it_is_touched(found, way: str) -> None:
-    for levels in found["dynamics"][way].values():
-        assert levels == sorted(levels)
-        assert levels[-1] - levels[0] >= RANGE_DB
-
-
-def test_at_rest_nothing_is_drawn_nor_computed(found) -> None:
+def test_at_rest_nothing_is_drawn_nor_computed_and_a_key_wakes_it(found) -> None:
     assert found["drawnAtRest"] == 0
     assert found["state"] == "suspended"
     assert found["resting"] < 0.4 * found["playing"]
-
-
-def test_a_key_wakes_it(found) -> None:
     assert found["awake"] > -40.0
 
 
@@ -65,6 +45,6 @@ def test_it_plays_without_a_network(found) -> None:
     assert found["language"] == "椰胡"
 
 
-def test_the_whole_page_is_small(folder) -> None:
-    files = [file for file in folder.rglob("*") if file.is_file()]
+def test_the_whole_page_is_small(written) -> None:
+    files = [file for file in written.rglob("*") if file.is_file()]
     assert sum(len(gzip.compress(file.read_bytes())) for file in files) <= MOST_BYTES

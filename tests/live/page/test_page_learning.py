@@ -6,33 +6,26 @@ from typing import Any
 
 import pytest
 from live.page.bound import placeless, rows_of
-from live.page.browser import drive, missing, served
+from live.page.browser import drive
 
 from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import load
-
-pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
 ROW = {param.address: row for row, param in enumerate(TABLE)}
 VIBRATO, BOW_POSITION = ROW["/playing/vibrato"], ROW["/playing/bow_position"]
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory) -> Any:
+def found(imitated) -> Any:
     """What followed as the page was taught."""
-    generated = tmp_path_factory.mktemp("generated")
-    with served(generated) as url:
-        return drive("page_learning.mjs", url)
+    return drive("page_learning.mjs", imitated)
 
 
-def test_a_knob_that_moves_is_bound_and_one_that_trembles_is_not(found) -> None:
+def test_a_knob_that_moves_is_bound_over_the_whole_range_and_one_that_trembles_is_not(found):
     assert found["waiting"] == "Vibrato: now move a control"
     assert found["trembled"] == []
     assert found["learned"]["list"] == ["CC 74 Vibrato"]
     assert found["learned"]["word"] == "Vibrato: CC 74 moves it"
-
-
-def test_the_parameter_follows_over_its_whole_range(found) -> None:
     param = TABLE[VIBRATO]
     ((row, value),) = found["learned"]["written"]
     assert (row, value) == (VIBRATO, pytest.approx(param.curve.from_unit(30 / 127, 0.0, param.hi)))
@@ -45,13 +38,10 @@ def test_the_ends_of_a_bind_are_written_by_keys(found) -> None:
     assert found["spanned"] == [[VIBRATO, 40], [VIBRATO, 5]]
 
 
-def test_a_button_beside_each_parameter_teaches_too(found) -> None:
+def test_a_button_beside_each_parameter_teaches_too_by_all_kinds_of_controls(found) -> None:
     assert found["asked"] == {"told": "now move a control", "pressed": "true"}
     assert found["told"] == "Aftertouch moves it"
     assert found["owned"] == 0  # what the player moves itself cannot be taught
-
-
-def test_all_kinds_of_controls_are_learned(found) -> None:
     assert found["all"] == [
         "CC 74 Vibrato",
         "Aftertouch Body to bridge",
@@ -59,10 +49,7 @@ def test_all_kinds_of_controls_are_learned(found) -> None:
         "Aftertouch of a key Attack",
         "CC 20 Gain",
     ]
-
-
-def test_whoever_stops_waiting_has_taught_nothing(found) -> None:
-    assert found["stopped"] == found["all"]
+    assert found["stopped"] == found["all"]  # whoever stops waiting has taught nothing
 
 
 def test_the_file_is_a_mapping_of_the_server_s(found, tmp_path) -> None:
@@ -77,21 +64,11 @@ def test_the_file_is_a_mapping_of_the_server_s(found, tmp_path) -> None:
     assert [bind.is_soft for bind in mapping.of("pressure") + mapping.of("bend")] == [True, False]
 
 
-def test_what_was_taught_belongs_to_its_mapping_and_is_remembered(found) -> None:
+def test_what_was_taught_belongs_to_its_mapping_and_is_remembered_until_it_is_forgotten(found):
     assert found["ofWind"] == []
     assert found["reloaded"] == found["all"]
     assert found["again"] == [[VIBRATO, 5]]
-
-
-def test_a_tune_leaves_what_was_taught(found) -> None:
     assert found["afterTune"] == [[VIBRATO, 40]]
-
-
-def test_a_control_that_is_forgotten_moves_what_the_mapping_says(found) -> None:
     assert found["forgotten"] == found["all"][1:]
     assert found["focusAfter"] == "Forget: Aftertouch, Body to bridge"
     assert [row for row, _ in found["backToMapping"]] == [BOW_POSITION]
-
-
-def test_nothing_goes_wrong(found) -> None:
-    assert found["errors"] == []

@@ -3,35 +3,21 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 from aiohttp import web
-from live.page.browser import drive, missing, served
+from live.page.browser import drive
 
 from yehu_server.live.page.site import Site
 
 pytestmark = pytest.mark.slow
 
-in_browser = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
-
-@pytest.fixture(scope="module")
-def found(tmp_path_factory) -> Any:
-    """What the page said and did."""
-    with served(tmp_path_factory.mktemp("generated")) as url:
-        return drive("page_loading.mjs", url)
-
-
-@in_browser
-def test_while_it_is_prepared_the_page_says_so_and_asks_again(found) -> None:
+def test_the_page_says_that_the_instrument_is_prepared_or_why_there_is_none(imitated) -> None:
+    found = drive("page_loading.mjs", imitated)
     assert "still preparing" in found["preparing"]
     assert found["answers"] == 3
     assert found["ready"] == {"notice": None, "plays": True}
-
-
-@in_browser
-def test_where_there_is_none_the_page_says_why_and_shows_its_pictures(found) -> None:
     for said in (found["lacking"], found["lackingInChinese"]):
         assert "there is no wasm-ld here" in said
     assert found["lacking"].startswith("The instrument cannot be played")

@@ -7,68 +7,46 @@ import re
 from typing import Any
 
 import pytest
-from live.page.browser import drive, missing, served
+from live.page.browser import ROOT, drive
 
-from yehu_server.live.page.examples import write_capture_headers
 from yehu_server.params.table import TABLE
 from yehu_server.playing.preset_folders import Presets
 
-pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
-
 ROW = {param.address: row for row, param in enumerate(TABLE)}
+# What every language writes with Latin letters, or that is no word.
+LATIN = re.compile(
+    r"yehu-server serve --mapping|/[a-z_/]+|Keys|Switch to English|English|MIDI|MPE|AudioWorklet|"
+    r"Hz|dBFS|dB|ms|m/s|CC|N?RPN|WAV|Esc|Web|https|\b(?:[A-Z][♯♭]?#?|N|s|mm|st|ct)\b"
+)
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory) -> Any:
+def found(imitated) -> Any:
     """What a visitor found."""
-    generated = tmp_path_factory.mktemp("generated")
-    write_capture_headers(generated / "captures")
-    with served(generated) as url:
-        return drive("page_views.mjs", url)
+    return drive("page_views.mjs", imitated)
 
 
-def test_the_page_loads_and_works_without_an_error(found) -> None:
-    assert found["errors"] == []
+def test_on_any_screen_all_has_room_and_a_name_and_the_hands_need_no_scrolling(found, subtests):
+    assert set(found["layouts"]) == {"phone", "tablet", "desk"}
+    for size, layout in found["layouts"].items():
+        for name, panel in layout["panels"].items():
+            with subtests.test(size=size, panel=name):
+                assert (panel["wide"], panel["small"], panel["nameless"]) == (0, [], [])
+        assert layout["hands"] < layout["height"], size
+    assert found["beside"] == {"more": True, "shift": False}  # a panel on a laptop hides no note
 
 
-@pytest.mark.parametrize("size", ["phone", "tablet", "desk"])
-def test_nothing_is_wider_than_the_screen(found, size: str) -> None:
-    panels = found["layouts"][size]["panels"]
-    assert {name: panel["wide"] for name, panel in panels.items()} == dict.fromkeys(panels, 0)
-
-
-@pytest.mark.parametrize("size", ["phone", "tablet", "desk"])
-def test_whatever_is_touched_has_room_for_a_finger(found, size: str) -> None:
-    assert [
-        small for panel in found["layouts"][size]["panels"].values() for small in panel["small"]
-    ] == []
-
-
-@pytest.mark.parametrize("size", ["phone", "tablet", "desk"])
-def test_every_control_has_a_name(found, size: str) -> None:
-    panels = found["layouts"][size]["panels"].values()
-    assert [nameless for panel in panels for nameless in panel["nameless"]] == []
-
-
-@pytest.mark.parametrize("size", ["phone", "tablet", "desk"])
-def test_fingerboard_and_bow_are_seen_without_scrolling(found, size: str) -> None:
-    layout = found["layouts"][size]
-    assert layout["hands"] < layout["height"]
-
-
-def test_the_tab_key_goes_from_the_header_over_the_hands_to_the_rest(found) -> None:
+def test_the_tab_key_goes_from_the_header_over_the_hands_to_the_rest_and_is_seen(found) -> None:
     ids = [each["id"] for each in found["focus"]]
     way = ["help", "language", "theme", "start", "fingerboard", "bow"]
     assert [each for each in ids if each in way] == way
     assert ids[:4] == way[:4]
-
-
-def test_what_has_the_focus_is_seen_to_have_it(found) -> None:
     assert {each["ring"] for each in found["focus"]} == {"solid"}
 
 
-def test_all_notes_are_there_beside_a_panel_on_a_laptop(found) -> None:
-    assert found["beside"] == {"more": True, "shift": False}
+@pytest.mark.skipif(not (ROOT / "node_modules/axe-core").is_dir(), reason="needs axe-core")
+def test_axe_finds_nothing_that_keeps_people_out(imitated, everything):
+    assert drive("page_axe.mjs", imitated, "all" if everything else "some") == []
 
 
 def test_load_and_latency_are_told_where_they_are_high(found) -> None:
@@ -93,38 +71,21 @@ def test_the_tuner_measures_from_the_notes_of_the_tuning(found) -> None:
     assert abs(int(cents)) <= 5  # as far as the imitation is out of tune
 
 
-def test_a_preset_writes_its_values(found) -> None:
+def test_presets_and_parameters_write_their_values(found) -> None:
     third = sorted(Presets().all()[0], key=lambda preset: preset.program or 0)[2]
     assert {row: value for _kind, row, value, *_ in found["preset"]} == {
         ROW[address]: value for address, value in third.values.items()
     }
-
-
-def test_a_search_finds_parameters_by_their_words(found) -> None:
     assert {"/bow/speed", "/playing/speed"} <= set(found["search"])
     assert "/output/gain" not in found["search"]
+    # A number beyond the range becomes its end; a button brings back the default.
+    for name, value in (("clamped", 500), ("reset", 40)):
+        assert found[name]["shown"] == str(value)
+        wishes = [wish[:3] for wish in found[name]["wishes"]]
+        assert wishes == [["WRITE", ROW["/playing/attack"], value]]
 
 
-def test_a_number_beyond_the_range_becomes_its_end(found) -> None:
-    assert found["clamped"]["shown"] == "500"
-    assert [wish[:3] for wish in found["clamped"]["wishes"]] == [
-        ["WRITE", ROW["/playing/attack"], 500]
-    ]
-
-
-def test_a_parameter_returns_to_its_default(found) -> None:
-    assert found["reset"]["shown"] == "40"
-    assert [wish[:3] for wish in found["reset"]["wishes"]] == [
-        ["WRITE", ROW["/playing/attack"], 40]
-    ]
-
-
-def test_a_tune_plays_and_stops_without_a_note_left(found) -> None:
-    assert found["tune"] > 0
-    assert found["tuneStopped"]["held"] == 0
-
-
-def test_what_was_kept_is_played_again(found) -> None:
+def test_what_was_kept_is_played_again_and_what_is_no_performance_is_refused(found) -> None:
     def notes(wishes: list[list[Any]]) -> list[list[Any]]:
         return [wish[:4] for wish in wishes if wish[0] in ("BEGIN", "END")]
 
@@ -134,9 +95,6 @@ def test_what_was_kept_is_played_again(found) -> None:
     assert end["end"] > 0
     assert [line[2] for line in kept if line[2] in ("begin", "end")] == ["begin", "end"] * 2
     assert {line[1] for line in kept} == {1}  # the one player
-
-
-def test_a_file_that_is_no_performance_is_refused_in_words(found) -> None:
     assert found["wrong"] == "wrong.jsonl is no performance of this instrument."
 
 
@@ -145,26 +103,30 @@ def test_a_midi_keyboard_plays_and_leaves_no_note_when_it_is_pulled_out(found) -
     assert found["inputs"] == ["All that are connected"]
 
 
-def test_a_tune_that_is_played_along_waits_for_its_notes(found) -> None:
+def test_a_tune_plays_waits_for_whoever_plays_along_and_stops(found) -> None:
+    assert found["tune"] > 0
+    assert found["tuneStopped"]["held"] == 0
     at_first, after_a_wrong_note, after_the_right_one = found["along"]
     assert at_first == after_a_wrong_note == 0.0
     assert after_the_right_one > 0.0
-
-
-def test_a_button_that_stops_says_so_to_screen_readers(found) -> None:
-    assert found["listening"] == "Listen: Shi Bei Jiu"
+    assert found["listening"] == "Listen: Shi Bei Jiu"  # to screen readers
     assert found["stopping"] == "Stop: Shi Bei Jiu"
+    assert found["alongEnded"]  # by Escape
 
 
-def test_escape_ends_what_plays(found) -> None:
-    assert found["alongEnded"]
-
-
-def test_the_theme_is_remembered(found) -> None:
+def test_the_theme_is_remembered_and_the_page_speaks_chinese(found) -> None:
     assert found["theme"] == found["language"]["theme"] == "dark"
-
-
-def test_the_page_speaks_chinese(found) -> None:
     assert found["language"]["lang"] == "zh-Hans"
     assert found["language"]["start"] == "静音"  # it goes on sounding
     assert found["language"]["bare"] == []
+
+
+@pytest.mark.slow
+def test_in_another_language_nothing_that_sounds_or_was_written_is_lost(imitated) -> None:
+    found = drive("page_language.mjs", imitated)
+    assert found["stays"]
+    assert found["held"] == 1
+    assert found["searched"] == "bow"
+    assert found["before"] != found["after"] == found["anew"]  # as loaded in that language
+    left = [re.sub(LATIN, "", line.partition("|")[2]) for line in found["anew"]]
+    assert [line for line in left if re.search(r"[A-Za-z]{2}", line)] == []

@@ -21,16 +21,6 @@ from yehu_server.scores.smf.reader import read_score
 LONG = 1_000_000  # bytes
 PAGE = "docs/midi_files.md"
 ROW = re.compile(r"^\| `([a-z0-9-]+)` \| (?:.+?) \| (.*?) \|$", re.MULTILINE)
-each_case = pytest.mark.parametrize(
-    "case",
-    [
-        pytest.param(case, marks=[pytest.mark.slow] if len(case.data) > LONG else [], id=case.name)
-        for case in CASES
-    ],
-)
-playable = pytest.mark.parametrize(
-    "case", [case for case in CASES if case.hears is not None], ids=lambda case: case.name
-)
 
 
 @pytest.fixture
@@ -51,42 +41,38 @@ def notes_of(score: Score) -> tuple[tuple[float, int], ...]:
     )
 
 
-@each_case
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(case, marks=[pytest.mark.slow] if len(case.data) > LONG else [], id=case.name)
+        for case in CASES
+    ],
+)
 def test_a_fault_has_the_outcome_that_is_written_of_it(case: Case, written):
+    """Strict refuses what is warned of, at the first place, and nothing else."""
     path = written(case.data)
+    places = [int(at) for at in re.findall(r"at byte (\d+)", case.says)]
+    assert all(at <= len(case.data) for at in places)
     if case.hears is None:
         with pytest.raises(ScoreError) as refusal:
             read_score(path)
         assert str(refusal.value) == f"{path}: {case.says}"
-    else:
-        score = read_score(path)
-        assert case.hears == notes_of(score)
-        assert "; ".join(score.warnings) == case.says
-
-
-def test_the_page_tells_what_is_said_of_each_fault():
-    rows = dict(ROW.findall(page(PAGE).text))
-    assert rows == {case.name: f"`{case.says}`" if case.says else "nothing" for case in CASES}
-
-
-@playable
-def test_strict_refuses_what_is_warned_of_and_nothing_else(case: Case, written):
-    path = written(case.data)
+        return
+    score = read_score(path)
+    assert case.hears == notes_of(score)
+    assert "; ".join(score.warnings) == case.says
     if not case.says:
         assert case.hears == notes_of(read_score(path, strict=True))
         return
     with pytest.raises(DamagedError) as refusal:
         read_score(path, strict=True)
-    words = re.fullmatch(
-        rf"{re.escape(str(path))}: .*, at byte (\d+): refused by --strict", str(refusal.value)
-    )
-    assert words
-    assert int(words[1]) == min(map(int, re.findall(r"at byte (\d+)", case.says)))
+    words = rf"{re.escape(str(path))}: .*, at byte {min(places)}: refused by --strict"
+    assert re.fullmatch(words, str(refusal.value))
 
 
-@each_case
-def test_every_byte_that_is_told_is_in_the_file(case: Case):
-    assert all(int(at) <= len(case.data) for at in re.findall(r"at byte (\d+)", case.says))
+def test_the_page_tells_what_is_said_of_each_fault():
+    rows = dict(ROW.findall(page(PAGE).text))
+    assert rows == {case.name: f"`{case.says}`" if case.says else "nothing" for case in CASES}
 
 
 # ---------------------------------------------------------------- another reader

@@ -37,21 +37,9 @@ def test_a_tempo_change_in_another_track_moves_later_notes(read):
     assert [event.time_s for event in score.events] == [0.0, 0.25, 0.75, 1.375]
 
 
-def test_a_tempo_change_after_the_notes_in_file_order_still_moves_them(read):
-    score = read(midi(on(0, 60) + off(100, 60) + END, tempo(0, 1_000_000) + END))
-    assert score.duration_s == 1.0
-
-
 def test_the_last_of_two_tempos_at_one_tick_holds(read):
     score = read(midi(tempo(0, 1) + tempo(0, 1_000_000) + on(100, 60) + END))
     assert score.events[0].time_s == 1.0
-
-
-def test_events_at_one_tick_keep_the_order_of_tracks_and_of_the_file(read):
-    low = on(10, 60, channel=1) + on(0, 61, channel=2) + END
-    high = on(0, 70, channel=3) + on(10, 71, channel=4) + END
-    score = read(midi(low, high, on(10, 80, channel=5) + END))
-    assert [event.message.note for event in score.events] == [70, 60, 61, 71, 80]
 
 
 def test_the_end_of_the_longest_track_is_the_duration(read):
@@ -73,15 +61,6 @@ def test_smpte_time_counts_frames_and_ignores_tempo(read, frames, ticks, expecte
     division = (256 - frames) << 8 | ticks
     score = read(midi(tempo(0, 1_000_000) + on(1000, 60) + END, division=division))
     assert score.events[0].time_s == pytest.approx(expected_s, rel=1e-15)
-
-
-@pytest.mark.parametrize(("division", "assumed"), [(0, 480), (0xE700, 0xE728)])
-def test_a_division_of_zero_plays_as_the_one_assumed(read, division, assumed):
-    track = tempo(0, 600_000) + on(0, 60) + off(100, 60) + END
-    score = read(midi(track, division=division))
-    assert told(score) == told(read(midi(track, division=assumed)))
-    assert score.metres == read(midi(track, division=assumed)).metres
-    assert len(score.warnings) == 1
 
 
 def test_no_score_lasts_longer_than_was_asked_for(tmp_path):
@@ -125,6 +104,8 @@ def test_ordinary_files_have_the_times_mido_gives_them(tmp_path):
                             mido.MetaMessage("text", text="la", time=time),
                             mido.Message("sysex", data=[1, 2, 3], time=time),
                             mido.Message("note_on", note=rng.randrange(128), time=time),
+                            mido.Message("note_off", note=rng.randrange(128), time=time),
+                            mido.Message("polytouch", note=9, value=8, time=time),
                             mido.Message("program_change", program=7, channel=channel, time=time),
                             mido.Message("pitchwheel", pitch=rng.randrange(-8192, 8192), time=time),
                             mido.Message("aftertouch", value=9, channel=channel, time=time),
@@ -168,20 +149,6 @@ def test_running_status_goes_on_after_anything(read, between):
     assert score.warnings == ()
 
 
-def test_every_kind_of_channel_message_is_read(read):
-    sounds = [
-        [0x83, 60, 5],
-        [0x94, 60, 5],
-        [0xA5, 60, 5],
-        [0xB6, 1, 5],
-        [0xC7, 5],
-        [0xD8, 5],
-        [0xEF, 0, 64],
-    ]
-    score = read(midi(b"".join(b"\x00" + bytes(sound) for sound in sounds) + END))
-    assert [sound for _, sound in told(score)] == sounds
-
-
 def test_system_messages_are_stepped_over(read):
     score = read(midi(b"\x00\xf2\x01\x02\x00\xf3\x01\x00\xfe\x00\xf8" + on(100, 60) + END))
     assert told(score) == [(0.5, [0x90, 60, 80])]
@@ -210,11 +177,10 @@ def test_a_track_of_any_length_whatever_hides_no_other(read):
             assert score.warnings or (length == len(first) and not junk), (junk, length)
 
 
-@pytest.mark.parametrize("place", [1, 65_535, 65_536])
-def test_a_header_is_found_in_the_first_64_kb(read, place):
-    score = read(b"\xff" * place + midi(on(0, 60) + off(100, 60) + END))
+def test_a_header_is_found_in_the_first_64_kb(read):
+    score = read(b"\xff" * 65_536 + midi(on(0, 60) + off(100, 60) + END))
     assert len(score.events) == 2
-    assert score.warnings == (f"{place} bytes before the header skipped, at byte 0",)
+    assert score.warnings == ("65536 bytes before the header skipped, at byte 0",)
 
 
 def test_an_archive_is_refused_though_a_file_lies_open_in_it(read):
@@ -255,18 +221,13 @@ def test_one_song_of_several_is_chosen(songs):
         read_score(songs, song=4)
 
 
-def test_a_file_of_one_song_has_no_other(tmp_path):
+def test_a_file_of_one_song_has_no_other_and_files_that_were_joined_have_theirs(tmp_path):
     path = tmp_path / "x.mid"
     path.write_bytes(midi(on(0, 60) + END, on(0, 62) + END))
     assert read_score(path, song=1).events == read_score(path).events
     with pytest.raises(ScoreError, match="has one song: there is no song 2"):
         read_score(path, song=2)
-
-
-def test_a_song_is_chosen_of_files_that_were_joined(tmp_path):
-    path = tmp_path / "x.mid"
-    one, two = (midi(on(0, note) + off(9, note) + END) for note in (60, 62))
-    path.write_bytes(one + two)
+    path.write_bytes(b"".join(midi(on(0, note) + off(9, note) + END) for note in (60, 62)))
     assert [event.message.note for event in read_score(path, song=2).events] == [62, 62]
 
 

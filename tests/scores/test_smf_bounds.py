@@ -24,29 +24,16 @@ def read(tmp_path: Path) -> Callable[[bytes], Score]:
 
 # ---------------------------------------------------------------- refusals
 
-NO_HEADER = "is not a MIDI file: there is no header (MThd) in the first 64 kB"
 
-
-@pytest.mark.parametrize(
-    ("data", "reason"),
-    [
-        (b"Dear player, here is the tune: la la la.\n", NO_HEADER),
-        (b"RIFF\x24\0\0\0RMIDLIST\x00\0\0\0", NO_HEADER),
-        (b"MThd", "has a damaged header at byte 0"),
-        (midi(b""), "has no playable track"),
-    ],
-)
-def test_what_is_not_a_tune_is_refused_in_one_line(read, tmp_path, data, reason):
-    with pytest.raises(ScoreError) as refusal:
-        read(data)
-    assert str(refusal.value) == f"{tmp_path / 'tune.mid'}: {reason}"
-
-
-def test_a_missing_file_and_a_folder_are_refused_by_name(tmp_path):
-    with pytest.raises(ScoreError, match=r"gone\.mid: cannot be read \(no such file"):
-        read_score(tmp_path / "gone.mid")
-    with pytest.raises(ScoreError, match=r"cannot be read \(is a directory\)"):
-        read_score(str(tmp_path))
+def test_a_path_that_is_no_file_is_refused_in_a_printable_line(tmp_path):
+    for path, reason in [
+        (tmp_path / "gone.mid", r"gone\.mid: cannot be read \(no such file"),
+        (str(tmp_path), r"cannot be read \(is a directory\)"),
+        *((name, "") for name in ("two\nlines.mid", "stray\udcff.mid", "nul\0.mid")),
+    ]:
+        with pytest.raises(ScoreError, match=reason or None) as refusal:
+            read_score(path)
+        assert str(refusal.value).isprintable()
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
@@ -58,26 +45,12 @@ def test_a_file_one_may_not_read_is_refused(tmp_path):
         read_score(path)
 
 
-@pytest.mark.parametrize("name", ["two\nlines.mid", "stray\udcff.mid", "nul\0.mid"])
-def test_an_odd_name_still_makes_one_printable_line(name):
-    with pytest.raises(ScoreError) as refusal:
-        read_score(name)
-    assert str(refusal.value).isprintable()
-
-
 def test_a_huge_file_is_refused_unread(tmp_path):
     path = tmp_path / "huge.mid"
     with path.open("wb") as file:
         file.truncate(64 * 2**20 + 1)
     with pytest.raises(ScoreError, match=r"huge\.mid: larger than 64 MiB"):
         read_score(path)
-
-
-def test_more_messages_than_memory_should_hold_are_refused(read, monkeypatch):
-    monkeypatch.setattr(smf_chunks, "MAX_EVENTS", 3)
-    assert len(read(midi(on(0, 60) + off(0, 60) + END, on(0, 62) + END)).events) == 3
-    with pytest.raises(ScoreError, match="has more than 3 events"):
-        read(midi(on(0, 60) + on(0, 61) + END, tempo(0, 9) + on(0, 63) + END))
 
 
 def test_more_tracks_than_a_header_can_count_are_refused(read):
@@ -138,40 +111,27 @@ def test_scores_in_a_row_may_not_last_longer_than_anybody_may_ask_for():
         concatenate([half, half])
 
 
-HEAD = b"MThd" + bytes((0, 0, 0, 6, 0, 0, 0, 1, 1, 224))
-NOTE = bytes((0, 0x90, 67, 90))
+NOTE = on(0, 67)
 
 
-@pytest.mark.parametrize(
-    "event",
-    [
-        bytes((0, 0x90, 0xFF, 0xFF)),
-        bytes((0, 0xFF, 0x01, 0)),
-        bytes((0, 0xF0, 0)),
-        bytes((0, 0xF8)),
-        bytes((0, 0xFF, 0x51, 3, 0, 0, 1)),
-        NOTE,
-    ],
-    ids=["damaged", "text", "sysex", "system", "tempo", "note"],
-)
-def test_events_of_any_kind_are_bounded(tmp_path, monkeypatch, event):
+def test_events_of_any_kind_are_bounded(subtests, read, monkeypatch):
     monkeypatch.setattr(smf_chunks, "MAX_EVENTS", 100)
-    path = tmp_path / "x.mid"
-    for count, is_read in ((99, True), (100, False)):
-        track = NOTE + event * count
-        path.write_bytes(HEAD + b"MTrk" + len(track).to_bytes(4, "big") + track)
-        if is_read:
-            assert read_score(path).events
-        else:
+    for kind, event in {
+        "damaged": bytes((0, 0x90, 0xFF, 0xFF)),
+        "text": bytes((0, 0xFF, 0x01, 0)),
+        "sysex": bytes((0, 0xF0, 0)),
+        "system": bytes((0, 0xF8)),
+        "tempo": tempo(0, 1),
+        "note": NOTE,
+    }.items():
+        with subtests.test(kind=kind):
+            assert read(midi(NOTE + event * 49, event * 50)).events
             with pytest.raises(ScoreError, match="more than 100 events"):
-                read_score(path)
+                read(midi(NOTE + event * 50, event * 50))
 
 
-def test_chunks_are_bounded(tmp_path, monkeypatch):
+def test_chunks_are_bounded(read, monkeypatch):
     monkeypatch.setattr(smf_chunks, "MAX_CHUNKS", 10)
-    path = tmp_path / "x.mid"
-    path.write_bytes(HEAD + b"MTrk\0\0\0\4" + NOTE + b"XXXX\0\0\0\0" * 9)
-    assert read_score(path).events
-    path.write_bytes(HEAD + b"MTrk\0\0\0\4" + NOTE + b"XXXX\0\0\0\0" * 10)
+    assert read(midi(NOTE) + chunk(b"XXXX", b"") * 9).events
     with pytest.raises(ScoreError, match="more than 10 chunks"):
-        read_score(path)
+        read(midi(NOTE) + chunk(b"XXXX", b"") * 10)

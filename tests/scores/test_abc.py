@@ -98,18 +98,6 @@ def differences(tunes, read, folder) -> list[tuple]:
     return wrong
 
 
-@pytest.mark.skipif(ABC2MIDI is None, reason="abc2midi is not installed")
-def test_typed_tunes_are_those_of_abc2midi(read, tmp_path):
-    assert not differences([HEAD.format(key) + music for key, music in TYPED], read, tmp_path)
-
-
-@pytest.mark.skipif(ABC2MIDI is None, reason="abc2midi is not installed")
-def test_fifty_whole_tunes_are_those_of_abc2midi(read, tmp_path):
-    tunes = re.split(r"\n(?=X:)", TUNES.read_text(encoding="utf-8"))[1:]
-    assert len(tunes) == 50
-    assert not differences([tune + "\n" for tune in tunes], read, tmp_path)
-
-
 def generated(chance: random.Random) -> str:
     """A tune of whole bars of eight eighths."""
     key = chance.choice(["C", "G", "D", "F", "Bb", "Am", "Em", "Ddor", "Amix"])
@@ -132,9 +120,18 @@ def re_filled(beat: str, letters: str, chance: random.Random) -> str:
 
 
 @pytest.mark.skipif(ABC2MIDI is None, reason="abc2midi is not installed")
-def test_generated_tunes_are_those_of_abc2midi(read, tmp_path, everything):
+def test_tunes_are_those_of_abc2midi(subtests, read, tmp_path, everything):
+    whole = re.split(r"\n(?=X:)", TUNES.read_text(encoding="utf-8"))[1:]
+    assert len(whole) == 50
     chance, count = random.Random(20), 200 if everything else 40
-    assert not differences([generated(chance) for _ in range(count)], read, tmp_path)
+    for name, tunes in {
+        "typed": [HEAD.format(key) + music for key, music in TYPED],
+        "whole": [f"{tune}\n" for tune in whole],
+        "generated": [generated(chance) for _ in range(count)],
+    }.items():
+        with subtests.test(name):
+            (tmp_path / name).mkdir()
+            assert not differences(tunes, read, tmp_path / name)
 
 
 def test_marks_voices_parts_and_jumps_are_understood(read):

@@ -1,4 +1,4 @@
-"""Parts are moved into range as a whole, and those that are asked for are played."""
+"""Parts are moved into range as a whole; the tune is played, or those that are asked for."""
 
 from __future__ import annotations
 
@@ -6,18 +6,22 @@ import mido
 import pytest
 from musicxml_text import note, score
 
+from yehu_server.core.player.note_range import NoteRange
 from yehu_server.errors import ScoreError
 from yehu_server.scores.octaves import Sounding, octaves_of
 from yehu_server.scores.reading import How, read_any
 from yehu_server.scores.score import DO_BY_FIFTHS, notes_of
+from yehu_server.scores.tune_part import melodic_part, take_turns
 
 LOW = [60, 62, 64, 65, 67]
 
 
-def sounding(*pitches: float | None) -> list[Sounding]:
-    """Notes of one unit each, None for a rest."""
+def sounding(*pitches: float | None, length: float = 1.0, begin: float = 0.0) -> list[Sounding]:
+    """Notes one after another, None for a rest."""
     return [
-        Sounding(at, at + 1.0, (pitch,)) for at, pitch in enumerate(pitches) if pitch is not None
+        Sounding(begin + length * at, begin + length * (at + 1), (pitch,))
+        for at, pitch in enumerate(pitches)
+        if pitch is not None
     ]
 
 
@@ -60,6 +64,7 @@ def test_a_written_score_plays_its_first_part_in_one_piece(duet):
     assert played.remarks[0].startswith("plays P1; also there: Viola (--part NAME")
     assert played.remarks[1] == "moved to fit F4 to F6: P1 an octave up"
     assert not played.warnings
+    assert keys(read_any(duet, How(in_range=False))) == [60, 62, 64, 67]
 
 
 def test_parts_are_asked_for_by_name_beginning_or_number(duet):
@@ -71,23 +76,35 @@ def test_parts_are_asked_for_by_name_beginning_or_number(duet):
         read_any(duet, How(("Cello",)))
 
 
-def test_keys_stay_where_range_is_not_by_octaves(duet):
-    assert keys(read_any(duet, How(in_range=False))) == [60, 62, 64, 67]
+def controls(*values: tuple[int, int]) -> list[mido.Message]:
+    return [mido.Message("control_change", control=each, value=value) for each, value in values]
+
+
+def notes(*keys: int, channel: int = 0) -> list[mido.Message]:
+    return [
+        mido.Message(kind, channel=channel, note=key, time=time)
+        for key in keys
+        for kind, time in (("note_on", 0), ("note_off", 480))
+    ]
 
 
 @pytest.fixture
-def tracks(tmp_path):
-    file = mido.MidiFile(type=1)
-    for number, name in enumerate(("Flute", "Cello", "")):
-        track = file.add_track(name or None)
-        for key in (LOW, [40, 43], [70])[number]:
-            track.append(mido.Message("note_on", channel=number, note=key))
-            track.append(mido.Message("note_off", channel=number, note=key, time=480))
-    file.save(tmp_path / "trio.mid")
-    return tmp_path / "trio.mid"
+def file(tmp_path):
+    """Write a MIDI file of tracks, by their names."""
+
+    def write(**tracks: list[mido.Message]):
+        file = mido.MidiFile(type=1)
+        for name, messages in tracks.items():
+            file.add_track(name.strip("_") or None).extend(messages)
+        file.save(tmp_path / "tune.mid")
+        return tmp_path / "tune.mid"
+
+    return write
 
 
-def test_tracks_of_a_midi_file_are_moved_each_as_a_whole(tracks):
+def test_tracks_of_a_midi_file_are_moved_each_as_a_whole(file):
+    bass, other = notes(40, 43, channel=1), notes(70, channel=2)
+    tracks = file(Flute=notes(*LOW), Cello=bass, _=other)
     played = read_any(tracks, How(all_parts=True))
     by_channel = [[each.key for each in notes_of(played) if each.channel == n] for n in range(3)]
     assert by_channel == [[72, 74, 76, 77, 79], [76, 79], [70]]
@@ -99,49 +116,69 @@ def test_tracks_of_a_midi_file_are_moved_each_as_a_whole(tracks):
     assert keys(read_any(tracks, How(("Cello",)))) == [76, 79]
 
 
-def test_a_file_that_says_it_is_mpe_plays_all_its_channels(tmp_path):
-    file = mido.MidiFile()
-    track = file.add_track()
-    for control, value in ((101, 0), (100, 6), (6, 15)):
-        track.append(mido.Message("control_change", control=control, value=value))
-    for channel, key in ((1, 70), (2, 72)):
-        track.append(mido.Message("note_on", channel=channel, note=key))
-    for channel, key in ((1, 70), (2, 72)):
-        track.append(mido.Message("note_off", channel=channel, note=key, time=480))
-    file.save(tmp_path / "mpe.mid")
-    assert keys(read_any(tmp_path / "mpe.mid")) == [70, 72]
+def test_channels_of_mpe_are_one_part_whether_the_file_says_it_or_the_player(file):
+    tune = [each for n, key in enumerate(LOW) for each in notes(key, channel=n + 1)]
+    moved = [key + 12 for key in LOW]
+    assert keys(read_any(file(_=[*controls((101, 0), (100, 6), (6, 15)), *tune]))) == moved
+    assert keys(read_any(file(_=tune), How(is_mpe=True))) == moved
 
 
-def test_channels_of_mpe_are_one_part(tmp_path):
-    file = mido.MidiFile()
-    track = file.add_track()
-    for number, key in enumerate(LOW):
-        track.append(mido.Message("note_on", channel=number + 1, note=key))
-        track.append(mido.Message("note_off", channel=number + 1, note=key, time=480))
-    file.save(tmp_path / "mpe.mid")
-    assert keys(read_any(tmp_path / "mpe.mid", How(is_mpe=True))) == [key + 12 for key in LOW]
+def test_a_file_with_controllers_alone_says_that_it_is_silent(file):
+    remarks = read_any(file(_=controls((1, 3)))).remarks
+    assert remarks == ("has controllers and no note: nothing sounds",)
 
 
-def test_a_file_with_controllers_alone_says_that_it_is_silent(tmp_path):
-    file = mido.MidiFile()
-    file.add_track().append(mido.Message("control_change", control=1, value=3))
-    file.save(tmp_path / "knob.mid")
-    assert read_any(tmp_path / "knob.mid").remarks == (
-        "has controllers and no note: nothing sounds",
-    )
-
-
-def test_coarse_tuning_counts_for_the_range(tmp_path):
-    file = mido.MidiFile()
-    track = file.add_track()
-    for control, value in ((101, 0), (100, 2), (6, 76)):
-        track.append(mido.Message("control_change", control=control, value=value))
-    for key in LOW:
-        track.append(mido.Message("note_on", note=key))
-        track.append(mido.Message("note_off", note=key, time=480))
-    file.save(tmp_path / "tuned.mid")
-    assert keys(read_any(tmp_path / "tuned.mid")) == LOW
+def test_coarse_tuning_counts_for_the_range(file):
+    up = controls((101, 0), (100, 2), (6, 76))
+    assert keys(read_any(file(_=[*up, *notes(*LOW)]))) == LOW
 
 
 def test_keys_have_the_names_of_their_do():
     assert (DO_BY_FIFTHS[0], DO_BY_FIFTHS[1], DO_BY_FIFTHS[-1]) == ("C", "G", "F")
+
+
+# ---------------------------------------------------------------- the part with the tune
+
+TUNE = sounding(67, 69, 71, 72, 74, 71, 69, 67)
+BASS = sounding(36, 43, 36, 43, 41, 36, 43, 36)
+DRONE = sounding(*[67] * 8)
+CHORDS = [Sounding(at, at + 1.0, (60.0 + step,)) for at in range(8) for step in (0, 4, 7)]
+WIDE = sounding(40, 60, 80, 100, 40, 60, 80, 100)
+BRIEF = sounding(79, 81)
+
+
+def test_the_tune_is_found_among_what_accompanies_it():
+    cases = {
+        "alone": ([TUNE], ["a"], 0),
+        "first of two": ([TUNE, TUNE], ["a", "b"], 0),
+        "over a bass": ([BASS, TUNE], ["a", "b"], 1),
+        "beside a drone": ([DRONE, TUNE], ["a", "b"], 1),
+        "over chords": ([CHORDS, TUNE], ["a", "b"], 1),
+        "after a few notes": ([BRIEF, TUNE], ["a", "b"], 1),
+        "beside leaps": ([WIDE, TUNE], ["a", "b"], 1),
+        "named": ([TUNE, TUNE], ["Flute", "Lead Vocal"], 1),
+        "named in Chinese": ([TUNE, TUNE], ["甲", "主旋律"], 1),
+        "voice of a staff": ([TUNE, TUNE], ["Piano", "Piano, voice 2"], 0),
+        "named as accompaniment": ([TUNE, TUNE], ["Chords", "b"], 1),
+        "none is one": ([[], BASS, DRONE], ["a", "b", "c"], 1),
+        "nothing": ([[], []], ["a", "b"], None),
+    }
+    wrong = {
+        name: melodic_part(names, parts)
+        for name, (parts, names, expected) in cases.items()
+        if melodic_part(names, parts) != expected
+    }
+    assert not wrong
+
+
+def test_a_tune_fits_the_instrument_that_plays_it():
+    erhu = NoteRange((62, 69), (32.0, 32.0))
+    wide = sounding(62, 69, 76, 83, 90, 97, 101, 97)
+    assert melodic_part(["a", "b"], [wide, TUNE]) == 1
+    assert melodic_part(["a", "b"], [wide, TUNE], erhu) == 0
+
+
+def test_parts_that_take_turns_are_told_from_parts_that_sound_together():
+    assert take_turns([TUNE, sounding(60, 62, begin=8.0), sounding(64, begin=20.0)])
+    assert not take_turns([TUNE, sounding(60, 62, begin=7.0)])
+    assert take_turns([TUNE, []])

@@ -1,4 +1,4 @@
-"""The reader of a file is chosen by what the file holds, else by its name."""
+"""A file is read by what it holds, else by its name; what a channel or a track has to play."""
 
 from __future__ import annotations
 
@@ -6,12 +6,21 @@ import os
 import shutil
 from pathlib import Path
 
+import mido
 import pytest
 from musicxml_text import note, score, words
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.reading import is_capture, is_written, read_any, read_written
-from yehu_server.scores.score import notes_of
+from yehu_server.scores.reading import (
+    channels_with_notes,
+    is_capture,
+    is_written,
+    part_of,
+    read_any,
+    read_written,
+    tracks_with_notes,
+)
+from yehu_server.scores.score import COMMON_TIME, Metre, Score, ScoreEvent, concatenate, notes_of
 from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
 
@@ -19,24 +28,21 @@ TUNE = Path(__file__).resolve().parents[2] / "examples" / "shi_bei_jiu.mid"
 BAR = note("G4", 2) + note("A4", 2)
 
 
-@pytest.mark.parametrize("name", ["tune.musicxml", "tune.XML", "tune", "tune.score"])
-@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
-def test_musicxml_is_known_by_its_ending_or_its_beginning(tmp_path, name, mark):
-    path = tmp_path / name
-    path.write_bytes(mark + score(BAR).encode())
-    assert is_written(path)
-    assert [each.key for each in notes_of(read_any(path))] == [67, 69]
-    assert read_any(path).name == "tune"
+def test_musicxml_is_known_by_its_ending_or_its_beginning(tmp_path):
+    for name in ("tune.musicxml", "tune.XML", "tune", "tune.score"):
+        for mark in (b"", b"\xef\xbb\xbf"):
+            path = tmp_path / name
+            path.write_bytes(mark + score(BAR).encode())
+            assert is_written(path), (name, mark)
+            assert [each.key for each in notes_of(read_any(path))] == [67, 69]
+            assert read_any(path).name == "tune"
 
 
-@pytest.mark.parametrize("name", ["tune.mid", "tune.kar", "tune", "tune.txt", "tune.xml"])
-def test_a_midi_file_is_read_as_before(tmp_path, name):
-    path = shutil.copy(TUNE, tmp_path / name)
-    assert not is_written(path)
-    assert read_any(path).events == read_score(TUNE).events
-
-
-def test_a_midi_file_has_no_marks_to_show():
+def test_a_midi_file_of_any_name_is_read_as_before_and_has_no_marks_to_show(tmp_path):
+    for name in ("tune.mid", "tune.kar", "tune", "tune.txt", "tune.xml"):
+        path = shutil.copy(TUNE, tmp_path / name)
+        assert not is_written(path), name
+        assert read_any(path).events == read_score(TUNE).events, name
     with pytest.raises(ScoreError, match="is no written score"):
         read_written(TUNE)
 
@@ -70,3 +76,65 @@ def test_a_score_without_notes_names_its_file(tmp_path):
     path.write_text(score(note("r", 4)), encoding="utf-8")
     with pytest.raises(ScoreError, match=r"silence\.musicxml: has no note"):
         read_any(path)
+
+
+# ---------------------------------------------------------------- parts
+
+
+def on(channel: int, track: int, note: int = 70) -> ScoreEvent:
+    return ScoreEvent(0.0, mido.Message("note_on", channel=channel, note=note), 0.0, track)
+
+
+def control(channel: int, track: int) -> ScoreEvent:
+    return ScoreEvent(0.0, mido.Message("control_change", channel=channel, control=1), 0.0, track)
+
+
+RESET = ScoreEvent(0.5, mido.Message("reset"))
+SCORE = Score((control(0, 1), control(3, 1), on(0, 2), on(1, 2), on(0, 3), on(9, 4), RESET), 1.0)
+
+
+def test_channels_and_tracks_with_notes_are_found():
+    assert channels_with_notes([SCORE]) == [0, 1, 9]
+    assert tracks_with_notes([SCORE]) == [2, 3]
+
+
+def test_a_part_has_its_events_and_what_moves_all_and_is_as_long_as_its_score():
+    """A track also has the controllers of its channels from tracks without notes."""
+    for which, events in [
+        ({"channel": 0}, (control(0, 1), on(0, 2), on(0, 3), RESET)),
+        ({"track": 2}, (control(0, 1), on(0, 2), on(1, 2), RESET)),
+        ({"track": 4}, (on(9, 4), RESET)),
+        ({"channel": 1, "track": 2}, (on(1, 2), RESET)),
+        ({"channel": 7}, (RESET,)),
+    ]:
+        part = part_of(SCORE, **which)
+        assert (part.events, part.duration_s) == (events, SCORE.duration_s), which
+
+
+def test_events_of_a_file_know_their_track(tmp_path):
+    file = mido.MidiFile(type=1)
+    for channel in (None, 2, 4):
+        track = file.add_track()
+        if channel is not None:
+            track.append(mido.Message("note_on", channel=channel, note=70, time=10))
+    file.save(tmp_path / "three.mid")
+    score = read_score(tmp_path / "three.mid")
+    assert [(event.message.channel, event.track) for event in score.events] == [(2, 2), (4, 3)]
+    joined = concatenate([score, score])
+    assert [event.track for event in joined.events] == [2, 3, 0, 2, 3]
+
+
+def test_joined_scores_of_one_metre_keep_it():
+    """Their beats begin anew with each, so their bars do."""
+    waltz, march = (Score((), 1.0, metres=(COMMON_TIME, Metre(0.0, n))) for n in (3.0, 2.0))
+    assert concatenate([waltz, waltz]).bar_at(4.0) == (0.0, 3.0)
+    assert concatenate([waltz, march]).bar_at(4.0) == (0.0, 4.0)
+
+
+def test_the_songs_of_format_2_are_tracks(tmp_path):
+    file = mido.MidiFile(type=2)
+    for key in (70, 72):
+        file.add_track().append(mido.Message("note_on", note=key, time=10))
+    file.save(tmp_path / "songs.mid")
+    events = read_score(tmp_path / "songs.mid").events
+    assert [event.track for event in events if event.message.type == "note_on"] == [1, 2]

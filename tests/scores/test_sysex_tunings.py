@@ -5,7 +5,6 @@ from __future__ import annotations
 import mido
 import pytest
 
-from yehu_server.scores.reading import How, read_any
 from yehu_server.scores.score import Setting
 from yehu_server.scores.smf.reader import read_score
 
@@ -87,11 +86,3 @@ def test_what_is_not_obeyed_is_told(pitches):
     assert "rounded to semitones" in remarks[0]
     assert pitches(((0x41, 16, 66, 18, 64, 0, 127, 0, 65), 60, 0)) == ([60.0], ())  # of one maker
     assert pitches(((0x7E, 0x7F, 8, 8, 3, 127), 60, 0))[0] == [60.0]  # cut short
-
-
-def test_a_file_with_controllers_only_says_that_nothing_sounds(tmp_path):
-    file = mido.MidiFile()
-    file.add_track().append(mido.Message("control_change", control=11, value=90))
-    file.save(tmp_path / "silent.mid")
-    told = read_any(tmp_path / "silent.mid", How()).remarks
-    assert told == ("has controllers and no note: nothing sounds",)

@@ -169,18 +169,19 @@ def performed_part(written: Written, how: How = USUAL) -> Score:
 
 
 def _midi_played(score: Score, how: How) -> Score:
-    tune = score if how.is_mpe else chosen_parts.usual_midi_part(score)
+    is_mpe = how.is_mpe or chosen_parts.says_mpe(score)
+    tune = score if is_mpe else chosen_parts.usual_midi_part(score)
     score = replace(score, delays=midi_delays(score, tune))
     if how.parts:
         score = chosen_parts.parts_chosen(score, how.parts)
-    elif len(score.parts) > 1 and not (how.all_parts or how.is_mpe or chosen_parts.says_mpe(score)):
+    elif len(score.parts) > 1 and not (how.all_parts or is_mpe):
         score = chosen_parts.usual_midi_part(score, how.within)
     if not has_notes([score]):
         line = "has controllers and no note: nothing sounds"
         return replace(score, remarks=(*score.remarks, line))
     if not how.in_range:
         return score
-    return chosen_parts.midi_in_range(score, is_mpe=how.is_mpe, within=how.within)
+    return chosen_parts.midi_in_range(score, is_mpe=is_mpe, within=how.within)
 
 
 def read_written(path: Path, song: int | None = None) -> Written:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from yehu_server.live.audio.output import OutputOptions
@@ -16,7 +16,9 @@ HOST = "127.0.0.1"
 ONE = (PartOptions(),)
 
 
-def start(parts: tuple[PartOptions, ...] = ONE, port: int = 0) -> Server:
+def start(
+    parts: tuple[PartOptions, ...] = ONE, port: int = 0, say: Callable[[str], object] = str
+) -> Server:
     """A server of some parts, without a device, with its page at a port."""
     server = Server(
         ServeOptions(
@@ -26,7 +28,8 @@ def start(parts: tuple[PartOptions, ...] = ONE, port: int = 0) -> Server:
             http=WebOptions((HOST, 0)),
             page=PageOptions((HOST, port), is_wished=True),
             parts=list(parts),
-        )
+        ),
+        say,
     )
     server.start()
     return server

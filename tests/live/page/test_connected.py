@@ -1,4 +1,4 @@
-"""Pages that a server serves: they see its instrument, hear it, and play it."""
+"""Pages that a server serves: they see its instruments, hear them, and play them."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ import aiohttp
 import mido
 import numpy as np
 import pytest
+from live.page.serving import HOST, start, stop
 from midi_input import receive
 from waiting import PATIENCE_S, until
 from web_client import Refused, WebSocket
@@ -24,19 +25,17 @@ from web_client import Refused, WebSocket
 from yehu_server.ahead.interpreter import look_layout, look_length
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
-from yehu_server.live.audio.output import OutputOptions
-from yehu_server.live.options import ServeOptions
-from yehu_server.live.page.pages import PageOptions
+from yehu_server.live.options import PartOptions
 from yehu_server.live.page.players import CHANNELS, LOWEST
-from yehu_server.live.page.sockets import LOOK, NOW, WISHES, WRONG
+from yehu_server.live.page.sockets import LOOK, NO_PART, NOW, WISHES, WRONG
 from yehu_server.live.server import Server
 from yehu_server.live.web.access import MOST_OF_A_HOST, MOST_SOCKETS_OF_A_HOST
-from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import TABLE
+from yehu_server.playing.options import PlayingOptions
 
 PROCESSES = Path("/proc")
-HOST = "127.0.0.1"
-PRESSURE = "/playing/pressure"
+PRESSURE, VIBRATO = "/playing/pressure", "/playing/vibrato"
+SIZE, PAN = "/room/size", "/room/pan"
 IDENTITY = {"Accept-Encoding": "identity"}
 
 
@@ -47,23 +46,26 @@ def said() -> list[str]:
 
 @pytest.fixture(scope="module")
 def server(said) -> Iterator[Server]:
-    options = ServeOptions(
-        output=OutputOptions(device="null"),
-        midi=None,
-        osc=(HOST, 0),
-        http=WebOptions((HOST, 0)),
-        page=PageOptions((HOST, 0)),
-    )
-    server = Server(options, said.append)
-    server.start()
+    """A server of two parts, of which the second is a section of two."""
+    section = PlayingOptions(start=(("/playing/section", 2.0),))
+    server = start((PartOptions(), PartOptions(section)), say=said.append)
     yield server
-    server.skip_fade_out()
-    server.stop()
+    stop(server)
 
 
 @pytest.fixture(autouse=True)
 def _silent(server) -> None:
-    server.player.reset(frame=server.player.frame_of())
+    """Every part begins as at the start: what a page wishes comes by another ring than resets."""
+    for player in server.players:
+        player.reset(frame=player.frame_of())
+        frame, instrument = player.frame_of(), player.instrument
+        posted = instrument.posted
+
+        def is_done(instrument=instrument, posted=posted, frame=frame) -> bool:
+            meters = instrument.meters()
+            return meters["drained"] >= posted and meters["next_frame"] > frame
+
+        until(is_done, "no reset")
 
 
 def url(server: Server, path: str = "/") -> str:
@@ -104,6 +106,22 @@ class Page:
                 return np.frombuffer(message.data, "<f8")
             assert message.type is aiohttp.WSMsgType.TEXT, message
 
+    async def look(self, address: str, expected: Callable[[float], bool]) -> Any:
+        """The first look in which a parameter's value is as expected."""
+        await self.want(looks=True)
+        while True:
+            kind, *look = await self.numbers()
+            assert kind == LOOK
+            if expected(look[look_length() + ROW[address]]):
+                return look
+
+    async def end(self) -> tuple[int, str]:
+        """The code and the reason with which the server closes the connection."""
+        while (message := await self.socket.receive()).type is aiohttp.WSMsgType.TEXT:
+            pass
+        assert message.type is aiohttp.WSMsgType.CLOSE
+        return message.data, message.extra
+
     async def told(self, key: str) -> Any:
         """What the next text that has it tells."""
         while True:
@@ -112,12 +130,14 @@ class Page:
                 return text[key]
 
 
-def with_pages(server: Server, count: int, visit: Callable[..., Any]) -> Any:
-    """Call a coroutine function with some pages that are connected."""
+def with_pages(server: Server, visit: Callable[..., Any], *parts: object) -> Any:
+    """Call a coroutine function with pages that play some parts."""
 
     async def meet() -> Any:
         async with aiohttp.ClientSession() as session:
-            sockets = [await session.ws_connect(url(server, "/socket")) for _ in range(count)]
+            sockets = [
+                await session.ws_connect(url(server, f"/socket?part={part}")) for part in parts
+            ]
             try:
                 async with asyncio.timeout(2 * PATIENCE_S):
                     return await visit(*map(Page, sockets))
@@ -142,46 +162,32 @@ def get(server: Server, path: str, **headers: str) -> Any:
 # ---------------------------------------------------------------- files
 
 
-@pytest.mark.parametrize(
-    ("path", "content_type"),
-    [
+def test_files_have_their_types_and_run_no_foreign_script_and_nothing_else_is_there(server):
+    for path, content_type in [
         ("/", "text/html"),
         ("/main.js", "text/javascript"),
         ("/facts.js", "text/javascript"),
-        ("/examples.js", "text/javascript"),
         ("/style/base.css", "text/css"),
         ("/icon.svg", "image/svg+xml"),
-    ],
-)
-def test_files_have_their_types_and_run_no_foreign_script(server, path, content_type) -> None:
-    status, headers, body = get(server, path)
-    assert status == 200
-    assert headers["Content-Type"].startswith(content_type)
-    assert "default-src 'none'" in headers["Content-Security-Policy"]
-    assert "'unsafe-inline'" not in headers["Content-Security-Policy"]
-    assert body
+    ]:
+        status, headers, body = get(server, path)
+        assert status == 200, path
+        assert headers["Content-Type"].startswith(content_type)
+        assert "default-src 'none'" in headers["Content-Security-Policy"]
+        assert "'unsafe-inline'" not in headers["Content-Security-Policy"]
+        assert body
+    absent = ["/../pyproject.toml", "/facts", "/web", "/main.js/"]
+    assert [get(server, path)[0] for path in absent] == [404] * 4
+    assert b'name="yehu-server"' in get(server, "/", **IDENTITY)[2]  # so the page knows of it
 
 
-def test_a_file_that_has_not_changed_is_not_sent_again(server) -> None:
-    _, headers, _ = get(server, "/main.js")
-    status, _, body = get(server, "/main.js", **{"If-None-Match": headers["ETag"]})
+def test_a_file_is_compressed_for_whoever_reads_that_and_sent_again_only_if_it_changed(server):
+    _, headers, plain = get(server, "/examples.js", **IDENTITY)
+    _, how, small = get(server, "/examples.js", **{"Accept-Encoding": "gzip"})
+    assert how["Content-Encoding"] == "gzip"
+    assert len(small) < 0.5 * len(plain)
+    status, _, body = get(server, "/examples.js", **{"If-None-Match": headers["ETag"]})
     assert (status, body) == (304, b"")
-
-
-def test_texts_are_compressed_for_those_that_can_read_it(server) -> None:
-    plain = get(server, "/examples.js", **IDENTITY)
-    small = get(server, "/examples.js", **{"Accept-Encoding": "gzip"})
-    assert small[1]["Content-Encoding"] == "gzip"
-    assert len(small[2]) < 0.5 * len(plain[2])
-
-
-def test_the_page_knows_that_it_has_a_server_by_its_first_file(server) -> None:
-    assert b'name="yehu-server"' in get(server, "/", **IDENTITY)[2]
-
-
-@pytest.mark.parametrize("path", ["/../pyproject.toml", "/facts", "/web", "/main.js/"])
-def test_there_is_nothing_else(server, path) -> None:
-    assert get(server, path)[0] == 404
 
 
 def test_pages_get_the_module_and_what_captures_begin_with_once_they_are_there(server) -> None:
@@ -237,38 +243,14 @@ def test_looks_come_sixty_times_a_second_to_pages_that_want_them(server) -> None
             await asyncio.wait_for(other.numbers(), 0.2)
         return looks
 
-    looks = with_pages(server, 2, watch)
+    looks = with_pages(server, watch, 1, 1)
     assert {(look[0], len(look)) for look in looks} == {(LOOK, 1 + look_length() + 2 * len(TABLE))}
     frames = np.array([look[1 + look_layout()["frame"][0]] for look in looks])
     assert (np.diff(frames) >= 0).all()
     assert 40 < 59 / ((frames[-1] - frames[0]) / server.instrument.rate) < 70
 
 
-def test_what_others_change_is_in_the_next_looks(server) -> None:
-    async def watch(page: Page) -> float:
-        await page.want(looks=True)
-        server.player.write(PRESSURE, 0.625, frame=server.player.frame_of())
-        for _ in range(60):
-            look = await page.numbers()
-            if look[1 + look_length() + ROW[PRESSURE]] == 0.625:
-                return True
-        return False
-
-    assert with_pages(server, 1, watch)
-
-
 # ---------------------------------------------------------------- wishes
-
-
-def test_a_page_plays_and_lets_go_as_it_leaves(server) -> None:
-    async def play(page: Page) -> None:
-        await page.wish(wish(BEGIN, 3, 69.0, 69.0))
-        await asyncio.to_thread(until, lambda: sounds(server, 69.0), "no note")
-        assert len(server.player._wishes.held()) == 1
-
-    with_pages(server, 1, play)
-    until(lambda: not server.player._wishes.held(), "it is still held")
-    until(lambda: server.player.pitch is None, "it still sounds")
 
 
 def test_a_page_does_not_end_the_keys_of_others(server) -> None:
@@ -279,21 +261,9 @@ def test_a_page_does_not_end_the_keys_of_others(server) -> None:
         await page.wish(wish(BEGIN, 0, 72.0, 72.0), wish(END, 0, 72.0, 0.0))
         await asyncio.to_thread(until, lambda: server.player._wishes.notes_played, "no note")
 
-    with_pages(server, 1, play)
+    with_pages(server, play, 1)
     time.sleep(0.1)
     assert sounds(server, 72.0)
-
-
-def test_parameters_and_panic_act_on_the_server(server) -> None:
-    server.player.note_on(67.0, 90.0, frame=server.player.frame_of())
-
-    async def play(page: Page) -> None:
-        await page.wish(wish(WRITE, ROW[PRESSURE], 0.25))
-        await asyncio.to_thread(until, lambda: server.player.value(PRESSURE) == 0.25, "not written")
-        await page.wish(wish(STOP, 0, 1.0))
-        await asyncio.to_thread(until, lambda: server.player.pitch is None, "no panic")
-
-    with_pages(server, 1, play)
 
 
 def test_a_wish_ahead_is_fulfilled_at_its_frame(server) -> None:
@@ -316,12 +286,16 @@ def test_a_wish_ahead_is_fulfilled_at_its_frame(server) -> None:
                 break
         return found
 
-    assert with_pages(server, 1, play)[-1] == 0
+    assert with_pages(server, play, 1)[-1] == 0
 
 
-@pytest.mark.parametrize(
-    "data",
-    [
+def test_what_is_no_wish_and_no_question_ends_the_connection(server, subtests) -> None:
+    async def ending(page: Page, said: str | bytes) -> Any:
+        await (page.socket.send_str if isinstance(said, str) else page.socket.send_bytes)(said)
+        return (await page.end())[0]
+
+    for said in [
+        *("", "[]", "{}", '{"looks": 1}', "[" * 5000),
         packed(wish(RAMP, 0, 1.0)),
         packed(wish(11)),
         packed(wish(-1)),
@@ -336,27 +310,9 @@ def test_a_wish_ahead_is_fulfilled_at_its_frame(server) -> None:
         packed(wish(WRITE, 0, 1.0, at=1e300)),
         packed(wish(WRITE))[:-1],
         b"",
-    ],
-)
-def test_what_is_no_wish_ends_the_connection(server, data) -> None:
-    async def err(page: Page) -> Any:
-        await page.socket.send_bytes(data)
-        while (message := await page.socket.receive()).type is aiohttp.WSMsgType.TEXT:
-            pass
-        return message.data
-
-    assert with_pages(server, 1, err) == WRONG
-
-
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"looks": 1}', "[" * 5000])
-def test_what_cannot_be_asked_ends_the_connection(server, text) -> None:
-    async def err(page: Page) -> Any:
-        await page.socket.send_str(text)
-        while (message := await page.socket.receive()).type is aiohttp.WSMsgType.TEXT:
-            pass
-        return message.data
-
-    assert with_pages(server, 1, err) == WRONG
+    ]:
+        with subtests.test(said=said[:40]):
+            assert with_pages(server, lambda page, said=said: ending(page, said), 1) == WRONG
 
 
 def test_pages_that_sound_get_the_wishes_of_others_and_hear_that_they_left(server) -> None:
@@ -370,8 +326,74 @@ def test_pages_that_sound_get_the_wishes_of_others_and_hear_that_they_left(serve
         assert await other.told("left") == number
         return found.tolist(), number
 
-    found, number = with_pages(server, 2, share)
+    found, number = with_pages(server, share, 1, 1)
     assert found == [WISHES, number, *wish(BEGIN, 0, 69.0, 69.0)]
+
+
+# ---------------------------------------------------------------- parts
+
+
+def test_the_status_tells_which_part_it_is_and_one_that_is_not_there_ends_the_connection(server):
+    for part in (1, 2):
+        status = with_pages(server, lambda page: page.told("status"), part)
+        assert (status["part"], status["parts"]) == (part, 2)
+    for part in ("0", "3", "-1", "x", "", "1.0"):
+        assert with_pages(server, Page.end, part) == (NO_PART, "there are 2 parts"), part
+
+
+def test_a_page_plays_its_part_and_lets_go_of_it_as_it_leaves(server) -> None:
+    first, second = server.players
+
+    async def play(page: Page) -> None:
+        await page.wish(wish(BEGIN, 3, 72.0, 72.0))
+        await asyncio.to_thread(until, lambda: second.pitch is not None, "no note")
+        assert len(second._wishes.held()) == 1
+
+    with_pages(server, play, 2)
+    assert first.pitch is None
+    until(lambda: not second._wishes.held() and second.pitch is None, "it still sounds")
+
+
+def test_silence_in_a_page_silences_its_part(server) -> None:
+    for player in server.players:
+        player.note_on(69.0, 90.0, frame=player.frame_of())
+    until(lambda: all(player.pitch for player in server.players), "no notes")
+
+    async def panic(page: Page) -> None:
+        await page.wish(wish(STOP, 0, 1.0))
+        await asyncio.to_thread(until, lambda: server.players[1].pitch is None, "still there")
+
+    with_pages(server, panic, 2)
+    assert server.players[0].pitch is not None
+
+
+def test_a_look_is_at_the_parts_own_instrument_and_the_level_that_of_the_mix(server) -> None:
+    for player, value in zip(server.players, (25.0, 75.0), strict=True):
+        player.write(VIBRATO, value, frame=player.frame_of())
+    server.player.note_on(69.0, 90.0, frame=server.player.frame_of())
+
+    async def look(page: Page, value: float) -> None:
+        while (await page.look(VIBRATO, value.__eq__))[look_layout()["rms"][0]] < 1e-3:
+            pass
+
+    for part, value in ((1, 25.0), (2, 75.0)):
+        with_pages(server, lambda page, value=value: look(page, value), part)
+
+
+def test_the_room_is_one_for_all_and_a_section_tells_the_parts_place(server) -> None:
+    first, second = server.players
+
+    async def furnish(page: Page) -> None:
+        await page.wish(wish(WRITE, ROW[SIZE], 12.0))
+        await page.look(SIZE, (12.0).__eq__)
+        await page.look(PAN, second.value(PAN).__eq__)
+        await page.wish(wish(WRITE, ROW[PAN], 0.25))
+        await page.look(PAN, (0.25).__eq__)
+
+    with_pages(server, furnish, 2)
+    assert first.value(SIZE) == 12.0
+    until(lambda: second.value(PAN) == 0.25, "the pan")
+    assert server.parts[1].instruments[0].target(PAN) != 0.25  # the first player's own place
 
 
 # ---------------------------------------------------------------- sound
@@ -430,6 +452,6 @@ def test_a_process_that_dies_ends_its_pages_notes_and_is_replaced(server, said) 
         os.kill(process_of_pages(), signal.SIGKILL)
         await asyncio.to_thread(until, lambda: server.player.pitch is None, "it still sounds")
 
-    with_pages(server, 1, play)
+    with_pages(server, play, 1)
     assert get(server, "/")[0] == 200
     assert [line for line in said if line.startswith("pages: ")]

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import os
 import shutil
-from collections.abc import Iterator
+import subprocess
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import pytest
@@ -23,12 +26,26 @@ from yehu_server.live.page.site import (
 
 
 @pytest.fixture(scope="session")
-def node() -> str:
-    """The command of Node."""
-    found = shutil.which("node")
-    if found is None:
+def run_node() -> Callable[..., str]:
+    """Run Node with words, and lines of JSON as its input, in this folder; what it prints."""
+    if (node := shutil.which("node")) is None:
         pytest.skip("there is no Node here")
-    return found
+
+    def run(*words: object, lines: Iterable[object] = (), **environment: str) -> str:
+        done = subprocess.run(
+            [node, *map(str, words)],
+            input="\n".join(map(json.dumps, lines)),
+            env=os.environ | environment,
+            cwd=Path(__file__).parent,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout[-3000:] + done.stderr
+        return done.stdout
+
+    return run
 
 
 @pytest.fixture(scope="session")

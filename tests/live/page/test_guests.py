@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from ipaddress import IPv4Interface
 
 import numpy as np
 import pytest
@@ -11,69 +10,18 @@ from aiohttp import WSMsgType, web
 from aiohttp.test_utils import TestClient, TestServer
 from wire import StillTime
 
-from yehu_server import cli
-from yehu_server.cli import serve_options
-from yehu_server.cli.config import parse
-from yehu_server.cli.report import page_for_phones, page_lines
-from yehu_server.cli.serve_options import options_of
 from yehu_server.core.midi.events import LEAVE, RELEASE_ALL
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, STOP, WRITE
 from yehu_server.live.page import guests as admitting
-from yehu_server.live.page.guests import DIGITS, ROLES, TRIES, Admission, Guests, new_pin
+from yehu_server.live.page.guests import DIGITS, TRIES, Admission, Guests, new_pin
 from yehu_server.live.page.players import permitted
 from yehu_server.live.page.sockets import NO_PIN, PageSockets
 
 HOST, ELSEWHERE = "127.0.0.1", "192.0.2.7"
 
 
-# ---------------------------------------------------------------- options
-
-
-@pytest.fixture(autouse=True)
-def _lan(monkeypatch) -> None:
-    monkeypatch.setattr(serve_options, "lan_interface", lambda: IPv4Interface("192.168.1.5/22"))
-
-
-def page_of(*words: str):
-    return options_of(parse(["serve", *words], cli._parser())).page
-
-
-@pytest.mark.parametrize(
-    ("words", "role"),
-    [(["--lan"], "play"), (["--lan", "--open"], "play"), *(([f"--lan={r}"], r) for r in ROLES)],
-)
-def test_guests_are_what_the_option_says(words, role) -> None:
-    assert page_of(*words).guests.role == role
-
-
-def test_without_the_option_there_are_no_guests() -> None:
-    assert page_of().guests is None
-
-
-@pytest.mark.parametrize(("text", "role"), [("true", "play"), ('"listen"', "listen"), ("false", 0)])
-def test_a_config_file_may_say_it_too(tmp_path, text, role) -> None:
-    file = tmp_path / "serve.toml"
-    file.write_text(f"lan = {text}\n")
-    found = page_of("--config", str(file)).guests
-    assert found is None if role == 0 else found.role == role
-
-
-def test_a_role_that_there_is_not_is_told(capsys) -> None:
-    with pytest.raises(SystemExit):
-        page_of("--lan=admin")
-    assert "choose from" in (err := capsys.readouterr().err)
-    assert err.count("\n") == 1
-
-
-def test_the_address_for_phones_carries_the_pin() -> None:
-    guests = Guests("listen", "012345")
-    assert page_for_phones("0.0.0.0", 9002, "192.168.1.5", guests) == (  # noqa: S104
-        "http://192.168.1.5:9002/?pin=012345"
-    )
-    lines = page_lines("0.0.0.0", 9002, "192.168.1.5", networks=["192.168.0.0/22"], guests=guests)  # noqa: S104
-    assert lines[0] == "the page at http://127.0.0.1:9002/"
-    assert lines[2] == "whoever at 192.168.0.0/22 has the PIN 012345 may listen"
+# ---------------------------------------------------------------- the PIN
 
 
 def test_each_server_has_a_pin_of_its_own() -> None:
@@ -82,44 +30,21 @@ def test_each_server_has_a_pin_of_its_own() -> None:
     assert all(len(pin) == DIGITS and pin.isdecimal() for pin in pins)
 
 
-# ---------------------------------------------------------------- the PIN
-
-
-@pytest.fixture
-def clock(monkeypatch) -> StillTime:
+def test_another_machine_needs_the_pin_and_has_to_wait_if_it_guesses(monkeypatch) -> None:
     clock = StillTime(1000.0)
     monkeypatch.setattr(admitting, "time", clock)
-    return clock
-
-
-@pytest.fixture
-def admission(clock) -> Admission:
-    del clock
-    return Admission(Guests("play", "123456"))
-
-
-def test_this_machine_owns_the_server_without_a_pin(admission) -> None:
+    admission = Admission(Guests("play", "123456"))
     assert admission.role_of(HOST, "") == "own"
-
-
-def test_another_machine_needs_the_pin(admission) -> None:
-    assert admission.role_of(ELSEWHERE, "") is None
-    assert admission.role_of(ELSEWHERE, "123457") is None
-    assert admission.role_of(ELSEWHERE, "\u0661" * 6) is None
+    wrong = ("", "123457", "\u0661" * 6)
+    assert [admission.role_of(ELSEWHERE, pin) for pin in wrong] == [None] * 3
     assert admission.role_of(ELSEWHERE, "123456") == "play"
-
-
-def test_without_guests_all_may_do_all() -> None:
-    assert Admission(None).role_of(ELSEWHERE, "") == "own"
-
-
-def test_who_guesses_has_to_wait_and_others_do_not(admission, clock) -> None:
     for _ in range(TRIES):
         assert admission.role_of(ELSEWHERE, "000000") is None
     assert admission.role_of(ELSEWHERE, "123456") is None
     assert admission.role_of("192.0.2.8", "123456") == "play"
     clock.now += admitting.ANOTHER_AFTER_S + 0.1
     assert admission.role_of(ELSEWHERE, "123456") == "play"
+    assert Admission(None).role_of(ELSEWHERE, "") == "own"  # without guests all may do all
 
 
 # ---------------------------------------------------------------- roles
@@ -202,21 +127,9 @@ def visit(role: str | None, *wishes: tuple[int, int, float]) -> tuple[list[int],
     return asyncio.run(meet())
 
 
-def test_who_has_no_role_is_sent_away() -> None:
+def test_silence_is_a_players_own_an_owners_for_all_and_a_listener_or_a_stranger_plays_nothing():
     assert visit(None) == ([], NO_PIN, "")
-
-
-def test_a_listener_plays_nothing() -> None:
     assert visit("listen", *WISHES.values()) == ([], None, "listen")
-
-
-def test_a_players_silence_is_the_players_own() -> None:
-    posted, _, told = visit("play", WISHES["a note"], WISHES["silence"])
-    assert posted == [BEGIN, LEAVE]
-    assert told == "play"
-    posted, _, _ = visit("play", WISHES["silence"])
-    assert posted == []
-
-
-def test_an_owners_silence_is_for_all() -> None:
+    assert visit("play", WISHES["a note"], WISHES["silence"]) == ([BEGIN, LEAVE], None, "play")
+    assert visit("play", WISHES["silence"])[0] == []
     assert RELEASE_ALL in visit("own", WISHES["silence"])[0]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import random
-import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -80,19 +79,12 @@ def expected(given: dict[str, Any], folder: Path) -> tuple[list[str | None], Map
     return sources, mapping, folder / "yehu-server" / "mappings" / f"{given['name']}.toml"
 
 
-def test_the_page_learns_what_the_server_learns(node, page, settings):
+def test_the_page_learns_what_the_server_learns(run_node, page, settings):
     chance = random.Random(3)
     streams = [stream(chance) for _ in range(STREAMS)]
-    result = subprocess.run(
-        [node, Path(__file__).with_name("learning.mjs"), page],
-        input="\n".join(map(json.dumps, streams)),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert result.returncode == 0, result.stderr
+    answers = run_node("learning.mjs", page, lines=streams).splitlines()
     kinds: set[str] = set()
-    for given, line in zip(streams, result.stdout.splitlines(), strict=True):
+    for given, line in zip(streams, answers, strict=True):
         told = json.loads(line)
         sources, mapping, path = expected(given, settings)
         assert told["sources"] == sources, given

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -38,22 +36,19 @@ def seen(instrument) -> Any:
 
 
 @pytest.fixture(scope="module")
-def snapshots(node, seen, page) -> Any:
+def snapshots(run_node, seen, page) -> Any:
     """What the page makes of it, and of an instrument at rest."""
     at_rest = np.zeros(1, LOOK)
     silent = Instrument(InstrumentSpec(RATE))
     look.call(silent.address, at_rest.ctypes.data)
     rows = [np.frombuffer(record.tobytes(), np.float64) for record in (seen, at_rest[0])]
-    lines = [json.dumps([None if math.isnan(x) else x for x in row.tolist()]) for row in rows]
-    result = subprocess.run(
-        [node, Path(__file__).with_name("looking.mjs"), page],
-        input="\n".join(lines), capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert result.returncode == 0, result.stderr
-    return [json.loads(line) for line in result.stdout.splitlines()]
+    lines = [[None if math.isnan(x) else x for x in row.tolist()] for row in rows]
+    return [*map(json.loads, run_node("looking.mjs", page, lines=lines).splitlines())]
 
 
-def test_strings_bow_and_fingers_are_where_they_are(snapshots, seen):
+def test_strings_bow_and_fingers_are_where_they_are_and_what_is_heard_is_told(
+    snapshots, instrument, seen
+):
     sounding = snapshots[0]
     assert (sounding["frame"], sounding["time"]) == (22050, 0.5)
     assert sounding["pitch"] == seen["pitch"]
@@ -69,10 +64,7 @@ def test_strings_bow_and_fingers_are_where_they_are(snapshots, seen):
     assert finger["x"] in seen["finger_x"]
     assert sounding["shape"] == [pytest.approx(shape, abs=1e-9) for shape in seen["shapes"]]
     assert sounding["string"] == {"length": seen["length"]}
-
-
-def test_what_the_player_hears_is_told(snapshots, seen):
-    sounding = snapshots[0]
+    assert sounding["target"] == instrument.target("/bow/position")
     assert sounding["heard"] == {
         "certainty": seen["certainty"],
         "errorCents": seen["error"],
@@ -103,7 +95,3 @@ def test_at_rest_the_bow_is_on_no_string(snapshots):
     assert silent["pitch"] is None  # NaN
     assert silent["fingers"] == []
     assert silent["level"] == -160
-
-
-def test_a_parameter_of_the_bow_is_told_as_it_moves(snapshots, instrument):
-    assert snapshots[0]["target"] == instrument.target("/bow/position")

@@ -1,19 +1,25 @@
-"""Where `serve` offers the page, and what it says about it."""
+"""Where `serve` offers the page and to whom, what it says of it, and the address as a QR code."""
 
 from __future__ import annotations
 
+import io
+import re
 from ipaddress import IPv4Interface
 
 import pytest
+import segno
 
 from yehu_server import cli
 from yehu_server.cli import serve_options
 from yehu_server.cli.config import parse
-from yehu_server.cli.report import page_lines
+from yehu_server.cli.page import BLACK_ON_WHITE, PLAIN, QUIET, drawn, show
+from yehu_server.cli.report import page_for_phones, page_lines
 from yehu_server.cli.serve_options import options_of
 from yehu_server.errors import ParameterError
+from yehu_server.live.page.guests import ROLES, Guests
 
-LAN = "192.168.1.5"
+ALL, HERE, LAN = "0.0.0.0", "127.0.0.1", "192.168.1.5"  # noqa: S104 - nothing is bound
+URL = f"http://{LAN}:9002/"
 
 
 @pytest.fixture(autouse=True)
@@ -21,43 +27,51 @@ def _lan(monkeypatch) -> None:
     monkeypatch.setattr(serve_options, "lan_interface", lambda: IPv4Interface(f"{LAN}/22"))
 
 
-def page_of(*words: str):
-    return options_of(parse(["serve", *words], cli._parser())).page
+def page_of(words: str):
+    return options_of(parse(["serve", *words.split()], cli._parser())).page
 
 
-@pytest.mark.parametrize(
-    ("words", "address", "is_wished"),
-    [
-        ([], ("127.0.0.1", 9002), False),
-        (["--http", "127.0.0.1:9100"], ("127.0.0.1", 9101), False),
-        (["--http", ":0"], ("127.0.0.1", 0), False),
-        (["--http", ":65535"], ("127.0.0.1", 0), False),
-        (["--panel-port", "8000"], ("127.0.0.1", 8000), True),
-        (["--no-http", "--panel-port", "8000"], ("127.0.0.1", 8000), True),
-        (["--lan"], ("0.0.0.0", 9002), False),  # noqa: S104 - nothing is bound
-    ],
-)
-def test_the_page_is_beside_oscquery(words, address, is_wished) -> None:
-    page = page_of(*words)
-    assert (page.address, page.is_wished) == (address, is_wished)
+def test_the_page_is_beside_oscquery_or_where_it_is_wished() -> None:
+    for words, address, is_wished in [
+        ("", (HERE, 9002), False),
+        ("--http 127.0.0.1:9100", (HERE, 9101), False),
+        ("--http :0", (HERE, 0), False),
+        ("--http :65535", (HERE, 0), False),
+        ("--panel-port 8000", (HERE, 8000), True),
+        ("--no-http --panel-port 8000", (HERE, 8000), True),
+        ("--lan", (ALL, 9002), False),
+    ]:
+        page = page_of(words)
+        assert (page.address, page.is_wished) == (address, is_wished), words
 
 
-@pytest.mark.parametrize("words", [["--no-panel"], ["--no-http"]])
-def test_there_may_be_no_page(words) -> None:
-    assert page_of(*words) is None
-
-
-@pytest.mark.parametrize("words", [["--no-panel", "--lan"], ["--no-panel", "--open"]])
-def test_no_page_cannot_be_opened(words) -> None:
-    with pytest.raises(ParameterError, match="no page"):
-        page_of(*words)
+def test_there_may_be_no_page_which_cannot_be_opened() -> None:
+    assert page_of("--no-panel") is page_of("--no-http") is None
+    for words in ("--no-panel --lan", "--no-panel --open"):
+        with pytest.raises(ParameterError, match="no page"):
+            page_of(words)
 
 
 def test_the_lan_is_this_machines_network_and_nobody_else() -> None:
     assert list(page_of("--lan").networks) == ["192.168.0.0/22", "127.0.0.0/8", "::1"]
-    assert list(page_of("--http-allow", "10.0.0.0/8").networks) == ["10.0.0.0/8"]
-    narrow = page_of("--lan", "--http-allow", "192.168.1.64/26")
+    assert list(page_of("--http-allow 10.0.0.0/8").networks) == ["10.0.0.0/8"]
+    narrow = page_of("--lan --http-allow 192.168.1.64/26")
     assert list(narrow.networks) == ["192.168.1.64/26", "127.0.0.0/8", "::1"]
+
+
+def test_guests_are_what_the_option_says_or_a_config_file(tmp_path, capsys) -> None:
+    assert page_of("").guests is None
+    assert page_of("--lan").guests.role == page_of("--lan --open").guests.role == "play"
+    assert tuple(page_of(f"--lan={role}").guests.role for role in ROLES) == tuple(ROLES)
+    file = tmp_path / "serve.toml"
+    for text, role in [("true", "play"), ('"listen"', "listen"), ("false", None)]:
+        file.write_text(f"lan = {text}\n")
+        guests = page_of(f"--config {file}").guests
+        assert (guests and guests.role) == role
+    with pytest.raises(SystemExit):
+        page_of("--lan=admin")
+    assert "choose from" in (err := capsys.readouterr().err)
+    assert err.count("\n") == 1
 
 
 def test_what_is_said_tells_who_may_play() -> None:
@@ -71,4 +85,73 @@ def test_what_is_said_tells_who_may_play() -> None:
         "the page at http://192.168.1.5:9002/",
         "anyone on this network may play and listen, without a password",
     ]
-    assert page_lines("127.0.0.1", 9002, LAN, networks=[])[1].endswith("yehu-server serve --lan")
+    assert page_lines(HERE, 9002, LAN, networks=[])[1].endswith("yehu-server serve --lan")
+    guests = Guests("listen", "012345")
+    lines = page_lines(ALL, 9002, LAN, networks=["192.168.0.0/22"], guests=guests)
+    assert lines[0] == "the page at http://127.0.0.1:9002/"
+    assert lines[2] == "whoever at 192.168.0.0/22 has the PIN 012345 may listen"
+
+
+def test_the_address_for_phones_is_one_that_they_reach_with_the_pin() -> None:
+    found = [page_for_phones(host, 9002, LAN) for host in (ALL, LAN, HERE, "::1")]
+    assert found == [URL, URL, "", ""]
+    assert page_for_phones(ALL, 9002, LAN, Guests("listen", "012345")) == f"{URL}?pin=012345"
+
+
+# ---------------------------------------------------------------- the QR code
+
+# As Unicode names them: upper half, lower half, full block.
+SHOWN = {" ": (0, 0), "\u2580": (1, 0), "\u2584": (0, 1), "\u2588": (1, 1)}
+
+
+class Stream(io.StringIO):
+    def __init__(self, encoding: str, *, is_terminal: bool) -> None:
+        super().__init__()
+        self._encoding = encoding
+        self._is_terminal = is_terminal
+
+    @property
+    def encoding(self) -> str:
+        return self._encoding
+
+    def isatty(self) -> bool:
+        return self._is_terminal
+
+
+def modules(lines: list[str]) -> list[list[int]]:
+    """The black modules, as a terminal shows them."""
+    rows = []
+    for line in lines:
+        signs = line.removeprefix(BLACK_ON_WHITE).removesuffix(PLAIN)
+        rows += [[SHOWN[sign][half] for sign in signs] for half in (0, 1)]
+    return rows
+
+
+def test_its_modules_are_those_of_the_code_within_a_quiet_zone() -> None:
+    expected = [list(row) for row in segno.make_qr(URL).matrix_iter(border=QUIET)]
+    found = modules(drawn(URL))
+    assert found[: len(expected)] == expected
+    assert not any(map(any, found[len(expected) :]))
+    assert not any(map(any, found[:QUIET]))
+    assert not any(row[0] or row[QUIET - 1] or row[-1] or row[-QUIET] for row in found)
+
+
+def test_it_is_small_and_black_on_white_whatever_the_terminals_colours() -> None:
+    lines = drawn(URL)
+    assert len(lines) <= 18
+    assert {len(line) - len(BLACK_ON_WHITE + PLAIN) for line in lines} == {33}
+    for line in lines:
+        colours = re.findall(r"\x1b\[([\d;]*)m", line)
+        assert colours == ["38;5;16;48;5;231", "0"]
+        assert line.startswith("\x1b")
+        assert line.endswith("\x1b[0m")
+
+
+def test_only_a_terminal_that_shows_it_gets_it() -> None:
+    file = Stream("utf-8", is_terminal=False)
+    old = Stream("iso-8859-1", is_terminal=True)
+    terminal = Stream("UTF-8", is_terminal=True)
+    for stream in (file, old, terminal):
+        show(URL, stream)
+    assert file.getvalue() == old.getvalue() == ""
+    assert terminal.getvalue().splitlines() == drawn(URL)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import random
 import shutil
-import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -138,27 +136,19 @@ def mappings(taught) -> dict[str, Mapping]:
 
 
 @pytest.fixture(scope="module")
-def page_told(node, playing, mappings, taught, everything):
+def page_told(run_node, playing, mappings, taught, everything):
     """Streams of calls, the tables that the page makes, and the wishes that each comes to."""
     made = streams.Streams(2, list(mappings))
     played = [made.next() for _ in range(MANY_STREAMS if everything else STREAMS)]
     own = {name: facts.mapping(mapping) for name, mapping in mappings.items()}
     own |= {name: each["page"] for name, each in taught.items()}
-    tables, *wishes = play(node, playing, own, *played)
+    tables, *wishes = play(run_node, playing, own, *played)
     return played, tables, wishes
 
 
-def play(node: str, folder: Path, *lines: Any) -> list[Any]:
+def play(run_node, folder: Path, *lines: Any) -> list[Any]:
     """What the page of a folder answers to mappings and streams: see ``playing.mjs``."""
-    result = subprocess.run(
-        [node, Path(__file__).with_name("playing.mjs"), folder],
-        input="\n".join(json.dumps(each) for each in lines),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert result.returncode == 0, result.stderr
-    return [json.loads(line) for line in result.stdout.splitlines()]
+    return [*map(json.loads, run_node("playing.mjs", folder, lines=lines).splitlines())]
 
 
 def test_the_page_wishes_what_the_server_wishes(page_told, mappings, tmp_path):
@@ -199,23 +189,23 @@ def points_of(table: Any) -> list[list[tuple[float, float]]]:
     return [points[first : first + count] for first, count in zip(firsts, counts, strict=True)]
 
 
-def test_the_page_of_another_fiddle_plays_that_fiddles_notes(node, playing, tmp_path):
+def test_the_page_of_another_fiddle_plays_that_fiddles_notes(run_node, playing, tmp_path):
     folder = tmp_path / "web"
     shutil.copytree(playing, folder)
     erhu = NoteRange((62, 69), (11.5, 24.0))
     (folder / "facts.js").write_text(facts.module(facts.facts(erhu)))
     calls = [["midi", [0x90, key, 90], number, 0] for number, key in enumerate((61, 62, 93, 94))]
-    _, wishes = play(node, folder, {}, calls)
+    _, wishes = play(run_node, folder, {}, calls)
     begun = [wish[4] for wish in np.reshape(wishes, (-1, 5)) if wish[1] == BEGIN]
     assert begun == [73.0, 62.0, 93.0, 82.0]  # an octave from what it has not
 
 
-def test_the_page_s_own_player_has_hands(node, playing, everything):
-    result = subprocess.run(
-        [node, "--test", Path(__file__).with_name("player.test.mjs")],
-        env=os.environ | {"WEB": str(playing), "EVERYTHING": "yes" * everything},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert result.returncode == 0, result.stdout
+def test_the_page_s_own_player_has_hands(run_node, playing, everything):
+    run_node("--test", "player.test.mjs", WEB=str(playing), EVERYTHING="yes" * everything)
+
+
+def test_performances_in_links_and_files_are_bounded_and_reach_nothing_but_the_sound(
+    run_node, page, everything
+):
+    many = "2000" if everything else "200"
+    run_node("--test", "performances.test.mjs", WEB=str(page), MANY=many)

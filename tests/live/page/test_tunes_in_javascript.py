@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,29 +12,19 @@ STUDIES = {"slow_air", "bow_pressure", "mpe_phrase"}
 
 
 @pytest.fixture(scope="module")
-def found(node, page) -> Any:
-    script = Path(__file__).with_name("tune.test.mjs")
-    done = subprocess.run(
-        [node, str(script), str(page)], capture_output=True, text=True, check=True, timeout=60
-    )
-    return json.loads(done.stdout)
+def found(run_node, page) -> Any:
+    return json.loads(run_node("tune.test.mjs", page))
 
 
-def test_it_waits_for_each_note_and_for_repeated_ones_to_begin_again(found) -> None:
+def test_it_waits_for_each_note_and_tells_what_went_well_and_what_was_hard(found) -> None:
     assert found["waiting"]["way"] == [1, 1, 2, 2, 3, 4]
     assert found["waiting"]["wrong"] == [69]
     assert not found["waiting"]["isOn"]
-
-
-def test_another_stroke_of_the_hand_repeats_a_note(found) -> None:
-    assert found["bowed"] == [1, 2]
-
-
-def test_it_tells_what_went_well_and_what_was_hard(found) -> None:
     result = found["waiting"]["result"]
     assert (result["right"], result["count"], result["run"]) == (3, 4, 2)
     assert [note["pitch"] for note in result["hardest"]] == [65, 67]
     assert found["left"] is None
+    assert found["bowed"] == [1, 2]  # another stroke of the hand repeats a note
 
 
 def test_in_time_it_goes_on_and_tells_how_late(found) -> None:
@@ -65,9 +53,7 @@ def test_tunes_are_written_in_their_own_key_and_slurs_are_seen(found) -> None:
     assert tunes["auld_lang_syne"]["jianpu"] == "5\u0323 1 1 1 3 2 1"
     assert tunes["twinkle"]["tied"] == 0
     assert tunes["amazing_grace"]["tied"] == 4  # as its file has slurs
-
-
-def test_fingers_are_those_of_the_first_position(found) -> None:
+    # Fingers are those of the first position.
     assert found["fingers"] == [0, 1, 2, 3, 0, 1, 2, 3, 4]
 
 

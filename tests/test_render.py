@@ -104,70 +104,42 @@ MATRIX = [("wav", "16"), ("wav", "24"), ("wav", "float"), ("flac", "16"), ("flac
 
 
 @pytest.mark.parametrize(("kind", "subtype"), MATRIX)
-def test_the_summary_says_what_the_file_holds(play, tmp_path, phrase, kind, subtype):
+def test_the_summary_says_what_the_file_holds_which_is_the_same_the_next_time(
+    play, tmp_path, phrase, kind, subtype
+):
     words = (phrase, "--tail", 0, "--format", kind, "--subtype", subtype, "--rate", 48000)
-    summary, sound = play(*words, target="out")
-    info = soundfile.info(tmp_path / "out")
+    summary, sound = play(*words, target="once")
+    info = soundfile.info(tmp_path / "once")
     assert info.format == kind.upper()
     assert info.subtype == {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}[subtype]
-    assert info.samplerate == 48000
-    assert info.channels == 1
+    assert (info.samplerate, info.channels) == (48000, 1)
     assert summary["duration_s"] == info.frames / 48000
     assert summary["peak"] == pytest.approx(np.abs(sound).max(), abs=STEP[subtype])
     assert summary["rms"] == pytest.approx(rms(sound), abs=STEP[subtype])
     assert summary["rms"] > 0.01
-
-
-def test_the_summary_has_every_figure_promised(play, phrase):
-    summary, _ = play(phrase)
-    promised = {
-        "duration_s": float,
-        "real_time_factor": float,
-        "peak": float,
-        "rms": float,
-        "notes_played": int,
-        "notes_out_of_range": int,
-        "unconverged_solves": int,
-        "lost_states": int,
-    }
-    assert {name: type(summary[name]) for name in promised} == promised
     assert summary["real_time_factor"] > 0.0
-    assert summary["notes_played"] == 3
+    counts = ("notes_played", "notes_out_of_range", "unconverged_solves", "lost_states")
+    assert [summary[name] for name in counts] == [3, 0, 0, 0]
+    np.testing.assert_array_equal(play(*words, target="twice")[1], sound)
+    if subtype != "float":  # such a header holds a time stamp
+        assert (tmp_path / "once").read_bytes() == (tmp_path / "twice").read_bytes()
 
 
-def test_the_usual_file_is_a_wav_of_24_bits_at_44100_hz(play, tmp_path, phrase):
-    play(phrase)
-    info = soundfile.info(tmp_path / "out.wav")
-    assert (info.format, info.subtype, info.samplerate) == ("WAV", "PCM_24", 44100)
-
-
-@pytest.mark.parametrize(
-    ("target", "words", "kind"),
-    [
+def test_the_format_is_asked_for_or_goes_by_the_ending(play, tmp_path, midi):
+    tune = midi(*notes((0, 0.1, 70, 64)))
+    for target, words, kind in [
         ("a.wav", (), "WAV"),
-        ("a.flac", (), "FLAC"),
         ("a.FLAC", (), "FLAC"),
         ("a", (), "WAV"),
         ("a.flac", ("--format", "wav"), "WAV"),
-        ("a.wav", ("--format", "flac"), "FLAC"),
-    ],
-)
-def test_the_format_is_asked_for_or_goes_by_the_ending(play, tmp_path, midi, target, words, kind):
-    play(midi(*notes((0, 0.1, 70, 64))), "--tail", 0, *words, target=target)
-    assert soundfile.info(tmp_path / target).format == kind
+        ("b.wav", ("--format", "flac"), "FLAC"),
+    ]:
+        play(tune, "--tail", 0, *words, target=target)
+        info = soundfile.info(tmp_path / target)
+        assert (info.format, info.subtype, info.samplerate) == (kind, "PCM_24", 44100), target
 
 
-# ---------------------------------------------------------------- the same again
-
-
-@pytest.mark.parametrize(("kind", "subtype"), MATRIX)
-def test_rendering_twice_gives_the_same_file(play, tmp_path, phrase, kind, subtype):
-    words = (phrase, "--format", kind, "--subtype", subtype, "--tail", 0)
-    _, once = play(*words, target="once")
-    _, twice = play(*words, target="twice")
-    np.testing.assert_array_equal(once, twice)
-    if subtype != "float":  # such a header holds a time stamp
-        assert (tmp_path / "once").read_bytes() == (tmp_path / "twice").read_bytes()
+# ---------------------------------------------------------------- what is heard, and what is not
 
 
 @pytest.mark.parametrize("block", [1, 333, 10**6])
@@ -180,43 +152,21 @@ def test_the_block_size_within_is_not_heard(phrase, block):
     np.testing.assert_array_equal(fixed, expected[: len(fixed)])
 
 
-def test_the_seed_changes_the_performance_and_only_by_its_chance(phrase):
-    usual = samples(phrase)
-    np.testing.assert_array_equal(samples(phrase, seed=0), usual)
-    other = samples(phrase, seed=1)
-    assert not np.array_equal(other[:10_000], usual[:10_000])
-    still = (("/playing/variation", 0.0),)
-    np.testing.assert_array_equal(
-        samples(phrase, seed=0, settings=still), samples(phrase, seed=1, settings=still)
-    )
-
-
-def test_the_seed_is_a_word_on_the_command_line(play, phrase):
+def test_the_seed_changes_the_performance_and_only_by_its_chance(play, phrase):
     _, usual = play(phrase)
-    _, same = play(phrase, "--seed", 0)
-    _, other = play(phrase, "--seed", 7)
-    np.testing.assert_array_equal(same, usual)
-    assert not np.array_equal(other[:10_000], usual[:10_000])
+    np.testing.assert_array_equal(play(phrase, "--seed", 0)[1], usual)
+    assert not np.array_equal(play(phrase, "--seed", 1)[1][:10_000], usual[:10_000])
+    still = ("--set", "/playing/variation=0")
+    one, other = (play(phrase, *still, "--seed", seed)[1] for seed in (0, 1))
+    np.testing.assert_array_equal(one, other)
 
 
 # ---------------------------------------------------------------- levels
 
 
-@pytest.mark.parametrize(
-    ("kind", "subtype", "gain_db"), [("wav", "float", 24), ("wav", "16", -30), ("flac", "24", 0)]
-)
-def test_normalize_puts_the_true_peak_at_minus_1_dbfs(play, phrase, kind, subtype, gain_db):
-    words = (
-        "--tail",
-        0,
-        "--normalize",
-        "--format",
-        kind,
-        "--subtype",
-        subtype,
-        "--gain-db",
-        gain_db,
-    )
+@pytest.mark.parametrize(("subtype", "gain_db"), [("float", 24), ("16", -30)])
+def test_normalize_puts_the_true_peak_at_minus_1_dbfs(play, phrase, subtype, gain_db):
+    words = ("--tail", 0, "--normalize", "--subtype", subtype, "--gain-db", gain_db)
     summary, sound = play(phrase, *words)
     # An interpolation of our own, by a spectrum without what is above half the rate.
     between = 8.0 * np.fft.irfft(np.fft.rfft(sound), 8 * len(sound))
@@ -301,21 +251,18 @@ def duet(midi) -> Path:
     return midi(*first, *third, *drums)
 
 
-@pytest.mark.parametrize(
-    ("words", "channels"),
-    [
+def test_all_channels_but_the_tenth_play_unless_some_are_chosen(play, duet):
+    for words, channels in [
         ((), {"1": 2, "3": 1}),
         (("--channel", 3), {"3": 1}),
         (("--channel", 3, "--channel", 1), {"1": 2, "3": 1}),
         (("--channel", 10), {"10": 3}),
         (("--channel", 16), {}),
-    ],
-)
-def test_all_channels_but_the_tenth_play_unless_some_are_chosen(play, duet, words, channels):
-    summary, sound = play(duet, *words)
-    assert summary["channels"] == channels
-    assert summary["notes_played"] == sum(channels.values())
-    assert sound.any() == bool(channels)
+    ]:
+        summary, sound = play(duet, *words)
+        assert summary["channels"] == channels
+        assert summary["notes_played"] == sum(channels.values())
+        assert sound.any() == bool(channels)
 
 
 def test_what_the_tenth_channel_leaves_out_is_told(play, duet, midi, tmp_path, command):
@@ -339,12 +286,6 @@ def test_the_other_channels_are_not_heard_at_all(play, duet, midi):
 
 
 # ---------------------------------------------------------------- settings, mapping, instrument
-
-
-def test_a_setting_is_heard(phrase):
-    usual = samples(phrase)
-    near = samples(phrase, settings=(("/playing/bow_position", 0.06),))
-    assert not np.allclose(near[:20_000], usual[:20_000], atol=1e-3)
 
 
 def test_a_setting_is_held_whatever_notes_and_controllers_say(play, midi):
@@ -374,43 +315,39 @@ def test_a_mapping_file_says_what_controllers_do(play, midi, tmp_path):
     assert rms(play(tune, "--tail", 1, "--mapping", mapping)[1]) > 0.001
 
 
-@pytest.mark.parametrize(
-    ("name", "text"),
-    [
-        ("slack.toml", "[string_1]\nT = 40.0\n"),
-        ("slack.json", '{"string_1": {"T": 40.0}}'),
-    ],
-)
-def test_an_instrument_file_changes_the_instrument(play, midi, tmp_path, name, text):
-    (tmp_path / name).write_text(text)
+def test_an_instrument_file_changes_the_instrument(play, midi, tmp_path):
+    (tmp_path / "slack.toml").write_text("[string_1]\nT = 40.0\n")
+    (tmp_path / "slack.json").write_text('{"string_1": {"T": 40.0}}')
     tune = midi(*notes((0, 1.0, 65, 64)))
     _, usual = play(tune, "--tail", 0)
-    summary, slack = play(tune, "--tail", 0, "--instrument", tmp_path / name)
+    summary, slack = play(tune, "--tail", 0, "--instrument", tmp_path / "slack.toml")
     assert summary["range"] == "D#4 to F6"  # by its strings: the slack one is stopped for F4 now
     off = cents(pitch_of(slack[22050:], 44100), pitch_of(usual[22050:], 44100))
     assert off == pytest.approx(0.0, abs=25.0)
     assert not np.array_equal(slack, usual)
+    of_json = play(tune, "--tail", 0, "--instrument", tmp_path / "slack.json")[1]
+    np.testing.assert_array_equal(of_json, slack)
 
 
 # ---------------------------------------------------------------- range
 
 
-@pytest.mark.parametrize(
-    ("policy", "note", "fitted", "alone"),
-    [
+def test_a_note_out_of_range_sounds_where_the_policy_puts_it(play, midi):
+    for policy, note, fitted, alone in (
         ("transpose", 127, 79, 0),  # as a whole part
         ("clamp", 20, 65, 1),
         ("clamp", 70, 70, 0),
-    ],
-)
-def test_a_note_out_of_range_sounds_where_the_policy_puts_it(
-    play, midi, policy, note, fitted, alone
-):
-    words = ("--range", policy, "--tail", 0.2)
-    summary, sound = play(midi(*notes((0, 0.3, note, 64))), *words)
-    assert summary["notes_out_of_range"] == alone
-    _, expected = play(midi(*notes((0, 0.3, fitted, 64))), "--tail", 0.2)
-    np.testing.assert_array_equal(sound, expected)
+    ):
+        words = ("--range", policy, "--tail", 0.2)
+        summary, sound = play(midi(*notes((0, 0.3, note, 64))), *words)
+        assert summary["notes_out_of_range"] == alone
+        _, expected = play(midi(*notes((0, 0.3, fitted, 64))), "--tail", 0.2)
+        np.testing.assert_array_equal(sound, expected)
+
+
+def test_notes_moved_into_the_range_are_told(command, midi, tmp_path):
+    _, _, err = command("render", midi(*notes((0.0, 0.1, 32, 64))), "-o", tmp_path / "x.wav")
+    assert "moved to fit F4 to F6" in err
 
 
 def test_skipped_notes_are_counted_but_not_played(play, midi):
@@ -467,15 +404,6 @@ def test_other_rates_play_the_same_tune(play, tmp_path, midi, rate):
     assert rms(part) == pytest.approx(rms(usual[11025:24255]), rel=0.2)
 
 
-# ---------------------------------------------------------------- modes heard
-
-
-def test_volume_zero_is_silence(midi):
-    sound = samples(midi(*notes((0, 1.0, 70, 64)), cc(0.5, 7, 0)), tail_s=0.0)
-    assert rms(sound[11025:22050]) > 0.01
-    assert not sound[22050 + 2205 :].any()
-
-
 # ---------------------------------------------------------------- progress
 
 
@@ -495,46 +423,20 @@ def test_progress_is_told_in_seconds_up_to_the_end(phrase, tmp_path):
 
 # ---------------------------------------------------------------- tunings, MPE
 
-MEANTONE = """\
-! meantone.scl
-quarter-comma meantone
- 12
- 76.04900
- 193.15686
- 310.26471
- 5/4
- 503.42157
- 579.47057
- 696.57843
- 25/16
- 889.73529
- 1006.84314
- 1082.89214
- 2/1
-"""
+MEANTONE = "76.05 193.16 310.26 5/4 503.42 579.47 696.58 25/16 889.74 1006.84 1082.89 2/1"
 
 
-@pytest.fixture
-def meantone(tmp_path) -> Path:
-    path = tmp_path / "meantone.scl"
-    path.write_text(MEANTONE, encoding="utf-8")
-    return path
-
-
-def test_a_scala_scale_tunes_the_notes(play, midi, meantone):
+def test_a_scala_scale_tunes_the_notes(play, midi, tmp_path):
     """E5 is a pure third above C5: 14 cents below equal temperament."""
+    scale = tmp_path / "meantone.scl"
+    scale.write_text("quarter-comma meantone\n12\n" + "\n".join(MEANTONE.split()))
     score = midi(*notes((0, 1.0, 76, 80)))
     still = ("--set", "/playing/variation=0", "--tail", 0.1)
     pitches = [
         pitch_of(play(score, *still, *words)[1][13000:35000], 44100.0)
-        for words in ((), ("--tuning", meantone))
+        for words in ((), ("--tuning", scale))
     ]
     assert cents(pitches[1], pitches[0]) == pytest.approx(-13.7, abs=5.0)
-
-
-def test_a_keyboard_map_needs_a_scale(midi, tmp_path, refused):
-    words = ("render", midi(*notes((0, 0.1, 76, 80))), "-o", tmp_path / "out.wav")
-    assert "--tuning" in refused(*words, "--keyboard-map", "white.kbm")
 
 
 def test_mpe_bends_a_note_by_48_semitones(play, midi):
@@ -575,10 +477,6 @@ def test_plain_notes_are_shaped_and_may_be_left_as_they_are(midi, play):
     assert vibrato(alive) > 15.0
 
 
-def test_the_phrasing_of_a_setting_counts_and_one_out_of_range_is_refused(midi, play, command):
-    tune = midi(*notes(*PLAIN))
-    told = play(tune, "--set", "/playing/phrasing=0.2", "--rubato", 0.7)[0]
+def test_the_phrasing_of_a_setting_counts(midi, play):
+    told = play(midi(*notes(*PLAIN)), "--set", "/playing/phrasing=0.2", "--rubato", 0.7)[0]
     assert (told["phrasing"], told["rubato"]) == (0.2, 0.7)
-    code, _, err = command("render", tune, "-o", tune.with_suffix(".wav"), "--phrasing", "1.5")
-    assert code == 2
-    assert "1.5 is not within 0 to 1" in err

@@ -82,13 +82,7 @@ def test_every_promised_signal_has_one_finite_value_a_sample(kept):
     assert kept["contact_force"].shape == (88200, 2)
     assert kept["contact_force"].any(axis=0).all()
     assert np.issubdtype(kept["iterations"].dtype, np.integer)
-
-
-def test_time_runs_from_zero_in_samples(kept):
     np.testing.assert_allclose(kept["time"], np.arange(88200) / 44100, rtol=0, atol=1e-12)
-
-
-def test_the_bridge_feels_both_strings(kept):
     both = kept["bridge_force_1"] + kept["bridge_force_2"]
     np.testing.assert_allclose(kept["bridge_force"], both, rtol=0, atol=1e-12)
 
@@ -143,11 +137,11 @@ def test_the_strings_are_kept_as_often_as_asked(kept):
         assert np.diff(x) == pytest.approx(0.38 / intervals)
 
 
-@pytest.mark.parametrize(("every", "frames", "shapes"), [(1, 50, 50), (7, 50, 8), (100, 50, 1)])
-def test_string_shapes_begin_with_the_first_sample(every, frames, shapes):
-    arrays = run({"duration": frames / 44100, "pluck": PLUCK}, strings_every=every)
-    assert len(arrays["string_1"]) == len(arrays["strings_time"]) == shapes
-    assert arrays["string_1"][0].max() == pytest.approx(0.001, rel=0.1)
+def test_string_shapes_begin_with_the_first_sample():
+    for every, shapes in ((1, 50), (7, 8), (100, 1)):
+        arrays = run({"duration": 50 / 44100, "pluck": PLUCK}, strings_every=every)
+        assert len(arrays["string_1"]) == len(arrays["strings_time"]) == shapes
+        assert arrays["string_1"][0].max() == pytest.approx(0.001, rel=0.1)
 
 
 def test_keeping_more_does_not_change_the_run():
@@ -199,26 +193,7 @@ def test_nothing_asked_for_is_a_second_of_rest():
     np.testing.assert_allclose(arrays["finger_displacement"], 0.5e-3, rtol=0, atol=1e-15)
 
 
-def test_the_sign_of_the_bow_force_chooses_the_string():
-    power = {}
-    for force in (0.5, -0.5):
-        controls = {"bow_force": force, "bow_velocity": [[0, 0.0], [0.03, 0.2]]}
-        arrays = run({"duration": 0.5, "controls": controls})
-        power[force] = [np.var(arrays[f"bridge_force_{string}"][11025:]) for string in (1, 2)]
-        assert np.abs(arrays["friction_force"]).max() > 0.1
-    assert power[0.5][0] > 10.0 * power[0.5][1]
-    assert power[-0.5][1] > 10.0 * power[-0.5][0]
-
-
-def test_pressing_brings_the_finger_down_onto_both_strings():
-    arrays = run({"duration": 0.3, "controls": {"press_force": [[0, 0.0], [0.05, 1.0]]}})
-    assert arrays["finger_displacement"][0] == pytest.approx(0.5e-3, rel=1e-3)
-    assert arrays["finger_displacement"][-1] < 0.0
-    assert (arrays["contact_force"][-1] > 0.0).all()
-    assert arrays["contact_force"][-1].sum() == pytest.approx(1.0, rel=0.05)  # it holds the press
-
-
-@pytest.mark.parametrize("rate", [22050, 48000, 96000.0, 192000])
+@pytest.mark.parametrize("rate", [22050, 192000.0])
 def test_other_rates_run_the_same_gesture(rate):
     gesture = GESTURE | {"sample_rate": rate, "duration": 0.2}
     arrays = run(gesture, energy=True)
@@ -231,7 +206,7 @@ def test_other_rates_run_the_same_gesture(rate):
 
 
 def plucked(seconds: float = 1.0, **more) -> dict:
-    return run({"duration": seconds, "pluck": PLUCK, **more})
+    return run({"duration": seconds, "pluck": PLUCK} | more)
 
 
 def pitch(arrays: dict) -> float:
@@ -248,41 +223,12 @@ def test_a_plucked_string_starts_as_a_triangle_at_rest_up_to_the_bridge():
     np.testing.assert_allclose(arrays["string_1"][1], shape, rtol=0, atol=2e-4)
 
 
-def test_a_plucked_string_sounds_at_its_pitch_and_dies_away():
-    arrays = plucked(2.0)
-    assert abs(cents(pitch(arrays), 349.23)) < 35.0
+@pytest.mark.parametrize(("string", "hz"), [(1, 349.23), (2, 523.25)])
+def test_a_plucked_string_sounds_at_its_pitch_and_dies_away(string, hz):
+    arrays = plucked(2.0, pluck=PLUCK | {"string": string})
+    assert abs(cents(pitch(arrays), hz)) < 35.0
     force = arrays["bridge_force"]
     assert np.abs(force[-22050:]).max() < 0.3 * np.abs(force[:22050]).max()
-
-
-def test_the_second_string_can_be_plucked_too():
-    arrays = run({"duration": 1.0, "pluck": {"string": 2, "position": 0.1, "amplitude": 0.001}})
-    assert abs(cents(pitch(arrays), 523.25)) < 35.0
-
-
-def test_without_bow_and_finger_energy_only_falls():
-    arrays = run({"duration": 0.5, "pluck": PLUCK}, energy=True)
-    energy = arrays["energy"]
-    assert energy[0] > 0.0
-    assert (np.diff(energy) <= 1e-9 * energy[0]).all()
-
-
-def test_without_tension_modulation_the_bridge_answers_the_hammer_in_proportion():
-    def struck(force: float) -> np.ndarray:
-        hammer = [[0.0, 0.0], [0.0005, force], [0.001, 0.0]]
-        gesture = {"duration": 0.05, "hammer": hammer, "instrument": {"tension_modulation": 0.0}}
-        return run(gesture)["bridge_velocity"]
-
-    once, twice = struck(0.2), struck(0.4)
-    assert np.abs(once).max() > 1e-3
-    np.testing.assert_allclose(twice, 2.0 * once, rtol=0, atol=1e-9 * np.abs(once).max())
-
-
-def test_a_hammer_that_comes_later_is_felt_later_and_not_before():
-    late = [[0.01, 0.0], [0.0105, 5.0], [0.011, 0.0]]
-    velocity = run({"duration": 0.02, "hammer": late})["bridge_velocity"]
-    assert not velocity[:440].any()
-    assert np.abs(velocity[441:]).max() > 1e-3
 
 
 def test_a_hammer_is_lifted_before_and_after_its_curve():
@@ -300,25 +246,6 @@ def test_a_tighter_string_sounds_higher_by_the_root_of_its_tension():
     usual = pitch(plucked())
     tight = pitch(plucked(instrument={"string_1": {"T": 1.1 * 50.61}}))
     assert cents(tight, usual) == pytest.approx(600.0 * math.log2(1.1), abs=10.0)
-
-
-@pytest.mark.parametrize("bridge_x", [0.297, 0.302, 0.304])
-def test_the_bridge_is_where_it_is_said_to_be_between_nodes_too(bridge_x):
-    # The nodes are some 11 mm apart: rounded to one, all these would sound the same or jump.
-    usual = pitch(plucked())
-    moved = pitch(plucked(instrument={"bridge_x": bridge_x}))
-    assert cents(moved, usual) == pytest.approx(-1200.0 * math.log2(bridge_x / 0.30), abs=6.0)
-
-
-def test_other_rosin_bows_differently():
-    controls = {"bow_force": 0.5, "bow_velocity": [[0, 0.0], [0.03, 0.2]]}
-    forces = [
-        run({"duration": 0.1, "controls": controls, "instrument": {"bow": {"epsilon_0": value}}})
-        for value in (31860.0, 20000.0)
-    ]
-    usual = run({"duration": 0.1, "controls": controls})
-    np.testing.assert_array_equal(forces[0]["bridge_force"], usual["bridge_force"])
-    assert not np.allclose(forces[1]["bridge_force"], usual["bridge_force"], atol=1e-3)
 
 
 # ---------------------------------------------------------------- what is refused
@@ -385,23 +312,20 @@ def test_what_would_not_fit_into_memory_is_refused_before_it_runs():
         simulate(gesture_from({"duration": 3600, "sample_rate": 192000}))
 
 
-@pytest.mark.parametrize(
-    ("content", "wrong"),
-    [
+def test_a_file_that_is_no_gesture_says_so_with_its_name(tmp_path):
+    path = tmp_path / "gesture.json"
+    for content, wrong in [
         (b"bow harder", "not a gesture file"),
         (b"[]", "gesture"),
         (b'{"duration": NaN}', "duration"),
         (b'{"controls": {"bow_force": [[0, Infinity]]}}', "bow_force"),
-    ],
-)
-def test_a_file_that_is_no_gesture_says_so_with_its_name(tmp_path, content, wrong):
-    path = tmp_path / "gesture.json"
-    path.write_bytes(content)
-    with pytest.raises((ParameterError, ScoreError)) as caught:
-        read_gesture(path)
-    assert str(path) in str(caught.value)
-    assert wrong in str(caught.value)
-    assert str(caught.value).isprintable()
+    ]:
+        path.write_bytes(content)
+        with pytest.raises((ParameterError, ScoreError)) as caught:
+            read_gesture(path)
+        assert str(path) in str(caught.value)
+        assert wrong in str(caught.value)
+        assert str(caught.value).isprintable()
 
 
 def test_a_missing_file_and_a_folder_are_named(tmp_path):

@@ -8,9 +8,6 @@ from pathlib import Path
 import pytest
 from midi_bytes import END, midi, off, on
 
-from yehu_server.cli import _parser
-from yehu_server.scores.score import LONGEST_DURATION_H, MAX_DURATION_H
-
 SONGS = midi(on(0, 67) + off(20, 67) + END, on(0, 69) + off(60, 69) + END, kind=2)
 DAMAGED = midi(on(0, 71, 200) + on(0, 67) + off(20, 67) + END, count=2)
 
@@ -53,12 +50,6 @@ def test_a_strict_rendering_refuses_damage_and_writes_nothing(render, tmp_path):
     assert not out(tmp_path)
 
 
-def test_a_strict_rendering_of_no_file_at_all_is_an_error_as_ever(render):
-    code, _, err = render(b"la la la", options=("--strict",))
-    assert code == 2
-    assert "is not a MIDI file" in err
-
-
 def test_a_song_is_rendered_alone(render):
     lengths = {}
     for song in (None, 1, 2):
@@ -69,14 +60,12 @@ def test_a_song_is_rendered_alone(render):
     assert lengths == pytest.approx({None: 0.4, 1: 0.1, 2: 0.3}, abs=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("song", "told"), [(3, "0.mid: has 2 songs: there is no song 3"), (0, "0 is not 1 or more")]
-)
-def test_a_song_that_is_not_there_is_refused(render, tmp_path, song, told):
-    code, _, err = render(SONGS, options=("--song", song))
-    assert code == 2
-    assert told in err
-    assert not out(tmp_path)
+def test_a_song_that_is_not_there_is_refused(render, tmp_path):
+    for song, told in ((3, "0.mid: has 2 songs: there is no song 3"), (0, "0 is not 1 or more")):
+        code, _, err = render(SONGS, options=("--song", song))
+        assert code == 2
+        assert told in err
+        assert not out(tmp_path)
 
 
 def test_the_longest_duration_is_of_each_file_and_of_all_together(render, tmp_path):
@@ -90,12 +79,3 @@ def test_the_longest_duration_is_of_each_file_and_of_all_together(render, tmp_pa
         "yehu-server: all scores last 0.000556 hours, more than 0.0005: see --max-duration\n"
     )
     assert not out(tmp_path)
-
-
-def test_the_option_allows_what_the_reader_does():
-    words = ["render", "a.mid", "-o", "b.wav"]
-    assert _parser().parse_args(words).max_duration == MAX_DURATION_H
-    longest = [*words, "--max-duration", f"{LONGEST_DURATION_H:g}"]
-    assert _parser().parse_args(longest).max_duration == LONGEST_DURATION_H
-    with pytest.raises(SystemExit):
-        _parser().parse_args([*words, "--max-duration", f"{LONGEST_DURATION_H + 1:g}"])

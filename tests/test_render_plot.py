@@ -10,8 +10,11 @@ import numpy as np
 import pytest
 from midi_files import midi_file, notes
 
+from yehu_server.rendering.options import Options, Part
+from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.plot_data import COLUMNS, PlotData
 from yehu_server.rendering.workers import Event
+from yehu_server.scores.smf.reader import read_score
 
 DRY = ("--dry", "--tail", 0)  # in little time
 RATE = 44100.0
@@ -107,10 +110,6 @@ def test_a_picture_is_drawn_beside_the_sound_which_is_the_same_and_may_be_replac
 
 
 def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
-    from yehu_server.rendering.options import Options
-    from yehu_server.rendering.performance import Performance
-    from yehu_server.scores.smf.reader import read_score
-
     options = Options(is_dry=True, is_mono=True, tail_s=0.0, block=512)
     performance = Performance(read_score(tune), options)
     watch = PlotData(RATE, 0.6, 1)
@@ -125,35 +124,24 @@ def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
 
 
 def test_each_part_of_an_ensemble_is_asked_for_its_own_pitch(tune):
-    from yehu_server.rendering.options import Options, Part
-    from yehu_server.rendering.performance import Performance
-    from yehu_server.scores.smf.reader import read_score
-
     options = Options(is_dry=True, tail_s=0.0, block=512)
     performance = Performance([Part(read_score(tune)), Part(read_score(tune))], options)
     next(iter(performance.blocks()))
     assert performance.target_pitches == [67.0, 67.0]
 
 
-def test_what_is_no_picture_of_ours_is_not_replaced(tune, refused, tmp_path):
-    picture = tmp_path / "a.png"
-    picture.write_bytes(b"\x89PNG of mine")
-    words = ("render", tune, "-o", tmp_path / "a.wav", "--plot", picture)
-    assert "a.png: exists; --overwrite replaces it" in refused(*words)
-    assert not (tmp_path / "a.wav").exists()
-
-
-@pytest.mark.parametrize(
-    ("plot", "wrong"),
-    [
+def test_what_is_no_picture_of_ours_is_not_replaced_and_a_wrong_name_gets_one_line(
+    tune, refused, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.png").write_bytes(b"\x89PNG of mine")
+    for plot, wrong in (
+        ("mine.png", "mine.png: exists; --overwrite replaces it"),
         ("a.jpg", "a picture is a .png file"),
         ("none/a.png", "does not exist"),
-        ("-", "nothing is written to standard output"),
-    ],
-)
-def test_a_wrong_name_gets_one_line(tune, refused, tmp_path, monkeypatch, plot, wrong):
-    monkeypatch.chdir(tmp_path)
-    assert wrong in refused("render", tune, "-o", "a.wav", "--plot", plot)
+    ):
+        assert wrong in refused("render", tune, "-o", "a.wav", "--plot", plot)
+        assert not (tmp_path / "a.wav").exists()
 
 
 def test_where_matplotlib_is_missing_the_extra_is_named(tune, refused, tmp_path, monkeypatch):

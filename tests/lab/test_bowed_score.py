@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
 
@@ -13,44 +12,34 @@ from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.written.mark_settings import DOWN, UP
 from yehu_server.scores.written.notated import Mark, Note
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
-
-def strokes(text: str) -> list[tuple[int, int, float]]:
-    written = parse_jianpu(text.encode())
-    found = strokes_of(written, 0, phrasing=0.0)
-    return [(each.first, each.last, each.direction, *each.turns) for each in found]
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
+def test_the_bow_turns_with_each_stroke_and_stays_under_slurs(subtests):
+    pizz = '1 2 ^"pizz." 3 4 ^"arco" 1'
+    for text, expected in (
         ("1 2 3 4", [(0, 0, DOWN), (1, 1, UP), (2, 2, DOWN), (3, 3, UP)]),
         ("1 ( 2 3 ) 4", [(0, 2, DOWN), (3, 3, UP)]),
         ("1 ( 2 ) 3 ( 4 )", [(0, 1, DOWN), (2, 3, UP)]),
         ("1 \\upbow 2 3", [(0, 0, UP), (1, 1, DOWN), (2, 2, UP)]),
         ("1 2 \\downbow 3", [(0, 0, DOWN), (1, 1, DOWN), (2, 2, UP)]),
-        (
-            '1 2 ^"pizz." 3 4 ^"arco" 1',
-            [(0, 0, DOWN), (1, 1, 0), (2, 2, 0), (3, 3, UP), (4, 4, DOWN)],
-        ),
+        (pizz, [(0, 0, DOWN), (1, 1, 0), (2, 2, 0), (3, 3, UP), (4, 4, DOWN)]),
         ("1 ( 1 ) 2", [(0, 1, DOWN), (2, 2, UP)]),  # repeated under a slur: it goes on
         ('1 ^"legato" 2 3 ^"non legato" 4', [(0, 2, DOWN), (3, 3, UP)]),
         ("4=30 1 - - - 2", [(0, 0, DOWN, UP), (1, 1, DOWN)]),  # the bow has an end
         ("4=60 1 - 2 3", [(0, 0, DOWN), (1, 1, UP), (2, 2, DOWN)]),
-    ],
-)
-def test_the_bow_turns_with_each_stroke_and_stays_under_slurs(text, expected):
-    assert strokes(text) == expected
+    ):
+        with subtests.test(text):
+            found = strokes_of(parse_jianpu(text.encode()), 0, phrasing=0.0)
+            assert [(each.first, each.last, each.direction, *each.turns) for each in found] == (
+                expected
+            )
 
 
-@pytest.mark.parametrize(
-    ("pitch", "marks", "string"),
-    [(65.0, (), "F open"), (72.0, (), "C open"), (71.0, (), "F"), (74.0, (), "C"),
-     (74.0, (Mark("inner-string"),), "F"), (72.0, (Mark("finger", 4.0),), "F")],
-)  # fmt: skip
-def test_a_note_is_on_the_string_where_the_player_has_it(pitch, marks, string):
-    assert string_of(Note(Fraction(0), Fraction(1), pitch, marks)) == string
+def test_a_note_is_on_the_string_where_the_player_has_it():
+    for pitch, string, *marks in (
+        *((65.0, "F open"), (72.0, "C open"), (71.0, "F"), (74.0, "C")),
+        *((74.0, "F", Mark("inner-string")), (72.0, "F", Mark("finger", 4.0))),
+    ):
+        assert string_of(Note(Fraction(0), Fraction(1), pitch, tuple(marks))) == string
 
 
 def test_a_score_is_drawn_and_its_picture_replaced_by_that_of_another(

@@ -5,11 +5,11 @@ import pytest
 from lab.body.bodies import off_db, radiation, rms
 
 from yehu_server.core.physics import kernel
-from yehu_server.core.physics.quantities import Quantities, measured_body
+from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.radiation import response
 from yehu_server.errors import MeasurementError
 from yehu_server.lab.body import Curve
-from yehu_server.lab.body.sections import fit_sections
+from yehu_server.lab.body.sections import Lines, fit_sections, moved, numerators, usable
 
 GRID = np.geomspace(200.0, 5000.0, 4000)
 
@@ -50,13 +50,13 @@ def test_nothing_is_radiated_where_nobody_measured(whole_fit):
     assert np.abs(whole_fit.radiation(outside)).max() < 0.05 * loudest
 
 
-@pytest.mark.parametrize("rate", [22050.0, 48000.0, 96000.0])
-def test_at_other_rates_the_model_keeps_to_what_was_measured(whole_fit, rate):
-    model = kernel.prepare(Quantities(body=whole_fit.body), rate)[0]
-    sections = np.stack([model[name] for name in ("b_0", "b_1", "a_1", "a_2")], axis=1)
-    taps = model["taps"][: model["last_tap"] + 1]
-    off = off_db(response(sections, taps, rate, GRID), whole_fit.radiation(GRID))
-    assert np.abs(off).max() < 0.5
+def test_at_other_rates_the_model_keeps_to_what_was_measured(whole_fit):
+    for rate in (22050.0, 48000.0, 96000.0):
+        model = kernel.prepare(Quantities(body=whole_fit.body), rate)[0]
+        sections = np.stack([model[name] for name in ("b_0", "b_1", "a_1", "a_2")], axis=1)
+        taps = model["taps"][: model["last_tap"] + 1]
+        off = off_db(response(sections, taps, rate, GRID), whole_fit.radiation(GRID))
+        assert np.abs(off).max() < 0.5, rate
 
 
 def test_too_few_lines_are_told():
@@ -65,8 +65,33 @@ def test_too_few_lines_are_told():
         fit_sections(Curve(hz, radiation(hz)))
 
 
-def test_without_a_radiation_the_shipped_one_sounds(fitted):
-    noise_db, found = fitted
-    if noise_db != 40.0:
-        assert found.body.sections == measured_body().sections
-        assert any("no radiation" in line for line in found.warnings)
+# ---------------------------------------------------------------- the poles of sections
+
+RATE = 44100.0
+
+
+def test_poles_outside_the_circle_are_mirrored_into_it_and_real_ones_become_a_pair_that_rings():
+    """They keep their frequency, and ring as long as they grew."""
+    pairs = np.array([1.05 * np.exp(0.3j), 0.9 * np.exp(1j)])
+    found = usable(np.concatenate([pairs, pairs.conj()]), 2, RATE)
+    assert np.sort(np.abs(found)) == pytest.approx([0.9, 1.0 / 1.05])
+    assert np.sort(np.angle(found)) == pytest.approx([0.3, 1.0])
+    found = usable(np.array([0.9 + 0j, 0.5 + 0j, -0.2 + 0j, -0.4 + 0j]), 2, RATE)
+    assert len(found) == 2
+    assert found.imag.min() > 0.0
+    assert np.abs(found).max() < 1.0
+
+
+def test_the_poles_of_a_filter_are_found_from_elsewhere():
+    true = np.array([0.98 * np.exp(0.15j), 0.97 * np.exp(0.4j)])
+    hz = np.linspace(100.0, 8000.0, 300)
+    z = np.exp(2j * np.pi * hz / RATE)
+    wanted = 0.3 + sum((1.0 - 0.5 / z) / ((1 - p / z) * (1 - p.conjugate() / z)) for p in true)
+    lines = Lines(hz, wanted, np.ones(len(hz)), RATE)
+    poles = np.array([0.9 * np.exp(0.3j), 0.9 * np.exp(0.8j)])
+    for _ in range(6):
+        poles = moved(lines, poles)
+    assert np.sort_complex(poles) == pytest.approx(np.sort_complex(true), abs=1e-6)
+    sections, direct = numerators(lines, poles)
+    assert direct == pytest.approx(0.3, abs=1e-6)
+    assert sections[:, :2] == pytest.approx(np.array([[1.0, -0.5]] * 2), abs=1e-4)

@@ -52,20 +52,13 @@ def test_two_points_are_no_driving_point():
         checked(values, "mobility")
 
 
-@pytest.mark.parametrize("factor", [1e3, 1e-4])
-def test_wrong_units_are_named(factor):
-    with pytest.raises(MeasurementError, match="no fiddle's"):
-        checked(factor * MEASURED["mobility"], "mobility")
-    with pytest.raises(MeasurementError, match="no fiddle's"):
-        check_radiation(Curve(HZ, factor * factor * radiation(HZ)))
-
-
-@pytest.mark.parametrize("factor", [1e60, 1e-60])
-def test_what_no_unit_makes_of_a_measurement_is_refused(factor):
-    with pytest.raises(MeasurementError, match="too large or too small"):
-        checked(factor * MEASURED["mobility"], "mobility")
-    with pytest.raises(MeasurementError, match="too large or too small"):
-        check_radiation(Curve(HZ, factor * radiation(HZ)))
+def test_wrong_units_are_named():
+    for factors, told in (((1e3, 1e-4), "no fiddle's"), ((1e60, 1e-60), "too large or too small")):
+        for factor in factors:
+            with pytest.raises(MeasurementError, match=told):
+                checked(factor * MEASURED["mobility"], "mobility")
+            with pytest.raises(MeasurementError, match=told):
+                check_radiation(Curve(HZ, factor * factor * radiation(HZ)))
 
 
 def test_unusual_sizes_are_warned_of():
@@ -74,18 +67,15 @@ def test_unusual_sizes_are_warned_of():
     assert check_radiation(Curve(HZ, radiation(HZ))) == []
 
 
-def test_a_late_sensor_is_warned_of():
+def test_a_delay_is_warned_of_and_a_long_one_not_taken_for_another_kind():
+    """50 us are a quarter of a circle at 5 kHz."""
     late = MEASURED["mobility"] * np.exp(-TURN * 1e-5)
     assert any("late" in line for line in checked(late, "mobility"))
-
-
-@pytest.mark.parametrize("lines", [300, 3000])
-def test_a_delay_is_not_taken_for_another_kind(lines):
-    """50 us are a quarter of a circle at 5 kHz."""
-    hz = np.linspace(100.0, 6000.0, lines)
-    late = admittance(hz) * np.exp(-2j * np.pi * hz * 5e-5)
-    with pytest.raises(MeasurementError, match="without a delay"):
-        check_admittance(Curve(hz, late), "mobility")
+    for lines in (300, 3000):
+        hz = np.linspace(100.0, 6000.0, lines)
+        late = admittance(hz) * np.exp(-2j * np.pi * hz * 5e-5)
+        with pytest.raises(MeasurementError, match="without a delay"):
+            check_admittance(Curve(hz, late), "mobility")
 
 
 def test_noise_alone_does_not_turn_a_mobility_around():

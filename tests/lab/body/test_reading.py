@@ -1,7 +1,7 @@
 """Measurements from sound files, tables and universal files: the same body out of each."""
 
 import warnings
-from itertools import cycle
+from itertools import cycle, product
 
 import numpy as np
 import pytest
@@ -69,9 +69,9 @@ def test_radiation_may_be_measured_apart(taps, tmp_path):
     assert measured.radiation.taps == 5
 
 
-@pytest.mark.parametrize(
-    ("channels", "told"),
-    [
+def test_wrong_channels_are_told(taps, tmp_path):
+    files, _ = write_taps(taps[:1], tmp_path / "taps")
+    for channels, told in (
         (None, "--channels"),
         ("force=32,velocity=1", "has 3 channels, not 2"),
         ("force=32,speed=1,pressure=8", "unknown quantity 'speed'"),
@@ -81,12 +81,9 @@ def test_radiation_may_be_measured_apart(taps, tmp_path):
         ("force=32,velocity=x,pressure=8", "other than 0"),
         ("none,velocity=1,pressure=8", "needs a force"),
         ("force=32,velocity=1,acceleration=8", "one of velocity"),
-    ],
-)
-def test_wrong_channels_are_told(taps, tmp_path, channels, told):
-    files, _ = write_taps(taps[:1], tmp_path / "taps")
-    with pytest.raises(MeasurementError, match=told):
-        read(files, channels=channels)
+    ):
+        with pytest.raises(MeasurementError, match=told):
+            read(files, channels=channels)
 
 
 def test_files_that_claim_or_hold_too_much_are_refused_before_they_are_read(tmp_path, monkeypatch):
@@ -145,76 +142,60 @@ def test_the_kind_may_be_told_beside_the_file(tmp_path):
         read([path])
 
 
-def test_coherence_is_read(tmp_path):
-    path = table(
-        tmp_path / "y.csv",
-        ["frequency_hz", "mobility_real", "mobility_imag", "coherence"],
-        HZ, Y.real, Y.imag, np.where(HZ > 3000.0, 0.5, 1.0),
-    )  # fmt: skip
-    measured = read([path])
+def test_coherence_is_read_and_two_responses_are_averaged(tmp_path):
+    headings = ["frequency_hz", "mobility_real", "mobility_imag", "coherence"]
+    coherence = np.where(HZ > 3000.0, 0.5, 1.0)
+    columns = ((factor * Y.real, factor * Y.imag, coherence) for factor in (1.5, 0.5))
+    paths = [table(tmp_path / f"{n}.csv", headings, HZ, *each) for n, each in enumerate(columns)]
+    measured = read(paths)
+    assert_is_the_yehu(measured.admittance)
+    assert measured.admittance.taps == 2
     assert measured.admittance.coherence.min() == 0.5
     assert any("coherence is below" in line for line in measured.warnings)
 
 
-def test_two_responses_are_averaged(tmp_path):
-    one = table(tmp_path / "1.csv", ["f", "real mobility", "imag"], HZ, 1.5 * Y.real, 1.5 * Y.imag)
-    two = table(tmp_path / "2.csv", ["f", "real mobility", "imag"], HZ, 0.5 * Y.real, 0.5 * Y.imag)
-    measured = read([one, two])
-    assert_is_the_yehu(measured.admittance)
-    assert measured.admittance.taps == 2
-
-
-@pytest.mark.parametrize("units", ["N m/s mPa", "mN mm/s Pa", "(N) (um/s) (Pa)"])
-def test_taps_are_read_from_tables_with_units(taps, tmp_path, units):
-    names = [f"{name}_{unit}" for name, unit in zip(("force", "velocity", "pressure"),
-                                                    units.split(), strict=True)]  # fmt: skip
+def test_taps_are_read_from_tables_with_units(taps, tmp_path):
     sizes = {"mN": 1e-3, "mm/s": 1e-3, "mPa": 1e-3, "(um/s)": 1e-6}
     tap = taps[0]
-    columns = [
-        values / sizes.get(unit, 1.0)
-        for values, unit in zip((tap.force, tap.velocity, tap.pressure), units.split(), strict=True)
-    ]
-    time = np.arange(len(tap.force)) / tap.rate
-    path = table(tmp_path / "tap.csv", ["time_s", *names], time, *columns)
-    curve = read([path]).admittance.within(200.0, 4000.0)
-    assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2
+    time, columns = np.arange(len(tap.force)) / tap.rate, (tap.force, tap.velocity, tap.pressure)
+    for units in (["N", "m/s", "mPa"], ["mN", "mm/s", "Pa"], ["(N)", "(um/s)", "(Pa)"]):
+        names = map("_".join, zip(("force", "velocity", "pressure"), units, strict=True))
+        scaled = (c / sizes.get(unit, 1.0) for c, unit in zip(columns, units, strict=True))
+        path = table(tmp_path / "tap.csv", ["time_s", *names], time, *scaled)
+        curve = read([path]).admittance.within(200.0, 4000.0)
+        assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2, units
 
 
-NUMBERS = "\n".join(f"{100 + n},1.0,2.0" for n in range(40))
-
-
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
+def test_wrong_tables_are_told(tmp_path, subtests):
+    numbers = "\n".join(f"{100 + n},1.0,2.0" for n in range(40))
+    for text, told in (
         ("", "0 lines"),
         ("f,real,imag\n1,2,3", "2 lines"),
-        (NUMBERS, "names no columns"),
-        (f"height,real,imag\n{NUMBERS}", "neither time nor frequency"),
-        (f"f,real mobility\n{NUMBERS}", "2 columns, but not in"),
-        (f"f,real mobility,other\n{NUMBERS}", "real and imag"),
-        (f"f,magnitude mobility,phase\n{NUMBERS}", "phase_deg or phase_rad"),
-        (f"f,real mobility,imag\n{NUMBERS}\n7,x,1", "no numbers in"),
-        (f"f,real mobility,imag\n{NUMBERS}\n7,nan,1", "not finite"),
-        (f"f,real mobility,imag\n{NUMBERS}\n100,1,1", "two at one frequency"),
-        (f"t,force,velocity_kn\n{NUMBERS}", "unknown unit"),
-        (f"t,force,force\n{NUMBERS}", "given twice"),
-        (f"t,force,velocity\n{NUMBERS}\n7,1,1", "not evenly spaced"),
-    ],
-)
-def test_wrong_tables_are_told(tmp_path, text, told):
-    (tmp_path / "x.csv").write_text(text)
-    with pytest.raises(MeasurementError, match=told) as error:
-        read([tmp_path / "x.csv"])
-    assert "x.csv" in str(error.value)
+        (numbers, "names no columns"),
+        (f"height,real,imag\n{numbers}", "neither time nor frequency"),
+        (f"f,real mobility\n{numbers}", "2 columns, but not in"),
+        (f"f,real mobility,other\n{numbers}", "real and imag"),
+        (f"f,magnitude mobility,phase\n{numbers}", "phase_deg or phase_rad"),
+        (f"f,real mobility,imag\n{numbers}\n7,x,1", "no numbers in"),
+        (f"f,real mobility,imag\n{numbers}\n7,nan,1", "not finite"),
+        (f"f,real mobility,imag\n{numbers}\n100,1,1", "two at one frequency"),
+        (f"t,force,velocity_kn\n{numbers}", "unknown unit"),
+        (f"t,force,force\n{numbers}", "given twice"),
+        (f"t,force,velocity\n{numbers}\n7,1,1", "not evenly spaced"),
+    ):
+        with subtests.test(told):
+            (tmp_path / "x.csv").write_text(text)
+            with pytest.raises(MeasurementError, match=told) as error:
+                read([tmp_path / "x.csv"])
+            assert "x.csv" in str(error.value)
 
 
-@pytest.mark.parametrize("name", ["x.wav", "x.csv", "x.uff", "x.mp9"])
-def test_missing_and_foreign_files_are_told(tmp_path, name):
-    with pytest.raises(MeasurementError, match="x"):
-        read([tmp_path / name])
-    (tmp_path / name).mkdir()
-    with pytest.raises(MeasurementError, match="x"):
-        read([tmp_path / name])
+def test_missing_and_foreign_files_are_told(tmp_path):
+    for name in ("x.wav", "x.csv", "x.uff", "x.mp9"):
+        for make in (bool, (tmp_path / name).mkdir):  # it is missing, and a folder
+            make()
+            with pytest.raises(MeasurementError, match="x"):
+                read([tmp_path / name])
 
 
 def test_a_line_without_a_response_is_told(tmp_path):
@@ -252,13 +233,12 @@ UNITS_MM = {"type": 164, "units_code": 5, "units_description": "mm", "temp_mode"
             "length": 1e3, "force": 1.0, "temp": 1.0, "temp_offset": 0.0}  # fmt: skip
 
 
-@pytest.mark.parametrize("binary", [0, 1])
-@pytest.mark.parametrize(
-    ("kind", "values"), [(11, Y), (8, Y / TURN), (12, Y * TURN)], ids=["mob", "rec", "acc"]
-)
-def test_universal_files_tell_what_they_hold(tmp_path, kind, values, binary):
-    path = universal(tmp_path / "y.uff", data_set(values, kind=kind, binary=binary))
-    assert_is_the_yehu(read([path]).admittance, 1e-3)
+def test_universal_files_tell_what_they_hold(tmp_path):
+    kinds = ((11, Y), (8, Y / TURN), (12, Y * TURN))
+    for (kind, values), binary in product(kinds, (0, 1)):
+        name = tmp_path / f"{kind}-{binary}.uff"
+        path = universal(name, data_set(values, kind=kind, binary=binary))
+        assert_is_the_yehu(read([path]).admittance, 1e-3)
 
 
 def test_units_of_universal_files_count(tmp_path):
@@ -296,11 +276,11 @@ def test_taps_are_read_from_universal_files(taps, tmp_path):
     assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2
 
 
-@pytest.mark.parametrize("name", ["length", "force"])
-def test_a_unit_of_nothing_is_told(tmp_path, name):
-    path = universal(tmp_path / "y.uff", UNITS_MM | {name: 0.0}, data_set(Y))
-    with pytest.raises(MeasurementError, match=f"unit of {name}"):
-        read([path])
+def test_a_unit_of_nothing_is_told(tmp_path):
+    for name in ("length", "force"):
+        path = universal(tmp_path / f"{name}.uff", UNITS_MM | {name: 0.0}, data_set(Y))
+        with pytest.raises(MeasurementError, match=f"unit of {name}"):
+            read([path])
 
 
 def test_a_data_set_that_ends_early_is_told(tmp_path):

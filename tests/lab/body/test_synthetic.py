@@ -50,12 +50,12 @@ def test_pressure_is_the_force_radiated():
     assert np.abs(ratio / radiation(hz[band]) - 1.0).max() < 0.01
 
 
-@pytest.mark.parametrize("noise_db", [20.0, 60.0])
-def test_noise_is_as_far_below_as_asked(noise_db):
+def test_noise_is_as_far_below_as_asked():
     (clean,) = made_taps(count=1, noise_db=300.0)
-    (noisy,) = made_taps(count=1, noise_db=noise_db)
-    noise = noisy.velocity - clean.velocity
-    assert 20.0 * np.log10(rms(clean.velocity) / rms(noise)) == pytest.approx(noise_db, abs=0.2)
+    for noise_db in (20.0, 60.0):
+        (noisy,) = made_taps(count=1, noise_db=noise_db)
+        noise = noisy.velocity - clean.velocity
+        assert 20.0 * np.log10(rms(clean.velocity) / rms(noise)) == pytest.approx(noise_db, abs=0.2)
 
 
 def test_the_same_seed_gives_the_same_taps():

@@ -35,15 +35,12 @@ def test_chance_of_one_name_tells_nothing_of_another_seed_number_or_name():
         assert abs(np.corrcoef(ones, others)[0, 1]) < 5.0 / math.sqrt(MANY)
 
 
-def test_a_number_is_itself():
-    assert set(drawn(0.25)) == {0.25}
-
-
 def test_even_draws_have_their_middle_in_the_middle():
     values = drawn({"from": 2.0, "to": 4.0})
     assert 2.0 <= values.min() < 2.01
     assert 3.99 < values.max() < 4.0
     assert values.mean() == pytest.approx(3.0, abs=0.05)
+    assert set(drawn(0.25)) == {0.25}
 
 
 def test_draws_by_ratio_have_the_geometric_mean_in_the_middle():
@@ -76,26 +73,15 @@ def test_normal_draws_stay_within_their_ends():
 
 
 def test_what_is_no_draw_is_refused_by_its_name(subtests):
-    for entry in [
-        "1",
-        True,
-        math.nan,
-        10**400,
-        [],
-        {},
-        {"from": 1},
-        {"from": 2, "to": 1},
-        {"from": 1, "to": 2, "spacing": "log"},
-        {"from": 0, "to": 2, "spacing": "ratio"},
-        {"from": 0.5, "to": 2, "spacing": "whole"},
-        {"choose": []},
-        {"choose": [1, "2"]},
-        {"choose": [1, 2], "weights": [1]},
-        {"choose": [1, 2], "weights": [0, 0]},
-        {"choose": [1, 2], "weights": [-1, 2]},
-        {"mean": 0, "deviation": 0, "from": -1, "to": 1},
-        {"mean": 0, "deviation": 1, "from": 100, "to": 101},
-        {"mean": 0, "deviation": 1},
-    ]:
+    ends, normal, chosen = {"from": 1, "to": 2}, {"mean": 0, "deviation": 1}, {"choose": [1, 2]}
+    for entry in (
+        *("1", True, math.nan, 10**400, [], {}),
+        *({"from": 1}, {"from": 2, "to": 1}, ends | {"spacing": "log"}),
+        *(ends | {"from": 0, "spacing": "ratio"}, ends | {"from": 0.5, "spacing": "whole"}),
+        *({"choose": []}, {"choose": [1, "2"]}),
+        *(chosen | {"weights": weights} for weights in ([1], [0, 0], [-1, 2])),
+        *(normal, normal | {"deviation": 0, "from": -1, "to": 1}),
+        normal | {"from": 100, "to": 101},
+    ):
         with subtests.test(entry=entry), pytest.raises(ParameterError, match=r"^here"):
             Fields({"here": entry}).read("here", read_distribution, None)

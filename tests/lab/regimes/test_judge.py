@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from yehu_server.errors import ParameterError
 from yehu_server.lab.regimes.columns import REGIMES
 from yehu_server.lab.regimes.judge import judge
 
@@ -63,23 +62,16 @@ def test_a_motion_has_the_regime_that_its_slips_make(subtests):
             assert judge(-velocity, -SPEED, velocity, RATE, NOTE).regime == regime  # the other way
 
 
-@pytest.mark.parametrize("level", [0.02, 0.05])
-def test_a_rough_stroke_keeps_its_regime(level):
-    noise = level * np.random.default_rng(3).standard_normal(LENGTH)
+def test_a_rough_stroke_keeps_its_regime():
+    noise = 0.05 * np.random.default_rng(3).standard_normal(LENGTH)
     assert found(slips(every(PERIOD)) + noise).regime == "helmholtz"
     assert found(slips(every(2 * PERIOD)) + noise).regime == "anomalous low"
 
 
-@pytest.mark.parametrize(("distance", "ratio"), [(100, 1.0), (97, 100 / 97), (50, 2.0), (200, 0.5)])
-def test_the_pitch_is_that_of_the_slips(distance, ratio):
-    cents = 1200 * np.log2(found(slips(every(distance))).pitch_hz / (NOTE * ratio))
-    assert abs(cents) < 0.5
-
-
-def test_a_motion_without_a_period_has_no_pitch():
-    finding = found(slips(LATE[LATE < LENGTH - WIDTH]))
-    assert np.isnan(finding.pitch_hz)
-    assert finding.certainty == 0.0
+def test_the_pitch_is_that_of_the_slips():
+    for distance, ratio in ((100, 1.0), (97, 100 / 97), (50, 2.0), (200, 0.5)):
+        cents = 1200 * np.log2(found(slips(every(distance))).pitch_hz / (NOTE * ratio))
+        assert abs(cents) < 0.5, distance
 
 
 def test_helmholtz_motion_begins_at_the_first_slip_from_which_they_are_regular():
@@ -90,9 +82,10 @@ def test_helmholtz_motion_begins_at_the_first_slip_from_which_they_are_regular()
     assert finding.helmholtz_s == pytest.approx(begin / RATE, abs=WIDTH / RATE)
 
 
-def test_helmholtz_motion_never_begins_where_slips_stay_irregular():
+def test_where_slips_stay_irregular_there_is_no_pitch_and_helmholtz_motion_never_begins():
     finding = found(slips(LATE[LATE < LENGTH - WIDTH]))
-    assert np.isnan(finding.helmholtz_s)
+    assert np.isnan([finding.pitch_hz, finding.helmholtz_s]).all()
+    assert finding.certainty == 0.0
     assert np.isnan(found(np.full(LENGTH, -0.01), speed=0.01).first_slip_s)
 
 
@@ -104,11 +97,8 @@ def test_level_and_brightness_are_those_of_the_sound():
     assert finding.brightness_hz == pytest.approx(2 * NOTE, abs=2.0)
     both = found(slips(every(PERIOD)), pressure=tone + np.sin(2 * np.pi * 10 * NOTE * time))
     assert both.brightness_hz == pytest.approx(6 * NOTE, abs=5.0)
-
-
-def test_a_stroke_of_too_few_periods_is_refused():
-    with pytest.raises(ParameterError, match="too short"):
-        found(slips([0, PERIOD], length=6 * PERIOD))
+    low = found(slips(every(PERIOD)), pressure=np.sin(2 * np.pi * 130.0 * time))
+    assert low.brightness_hz == pytest.approx(130.0, abs=2.0)
 
 
 def labelled():

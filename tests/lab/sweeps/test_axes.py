@@ -9,71 +9,43 @@ from yehu_server.lab.sweeps.axes import axis_from, axis_of
 from yehu_server.util.documents import Fields
 
 
-@pytest.mark.parametrize(
-    ("text", "name", "values"),
-    [
+def test_an_axis_is_a_name_and_values():
+    for text, name, values in (
         ("bow_force=0.1,2", "bow_force", (0.1, 2.0)),
         ("controls.bow_force=-1e-1", "controls.bow_force", (-0.1,)),
         ("instrument.bow.epsilon_0=1e4:3e4:3", "instrument.bow.epsilon_0", (1e4, 2e4, 3e4)),
         ("force=0.1:10:3:log", "force", (0.1, 1.0, 10.0)),
         ("bow_force=-0.1:-10:3:log", "bow_force", (-0.1, -1.0, -10.0)),
-    ],
-)
-def test_an_axis_is_a_name_and_values(text, name, values):
-    axis = axis_of(text)
-    assert axis.name == name
-    assert axis.values == pytest.approx(values)
+    ):
+        axis = axis_of(text)
+        assert axis.name == name
+        assert axis.values == pytest.approx(values)
+    words = axis_of("instrument.bow.friction=elasto-plastic,thermal").values
+    assert words == ("elasto-plastic", "thermal")
 
 
-def test_a_word_is_a_value():
-    axis = axis_of("instrument.bow.friction=elasto-plastic,thermal")
-    assert axis.values == ("elasto-plastic", "thermal")
-
-
-def test_what_is_no_axis_is_refused_in_a_line(subtests):
-    for text in [
-        "force",
-        "=1",
-        "force=",
-        "force=1:2",
-        "force=1:2:1",
-        "a..b=1",
-        "x=1:2:z",
-        "x=0:2:5:log",
-        "x=1:2:5:cubic",
-        "x=1:2:5:log:6",
-        "x=1:inf:4",
-        "x=1:2:1000001",
-    ]:
-        with subtests.test(text=text):
-            with pytest.raises(ParameterError) as error:
-                axis_of(text)
-            assert "\n" not in str(error.value)
-
-
-def test_what_is_no_axis_of_a_study_is_refused(subtests):
-    for entry in [
-        3,
-        [],
-        {"from": 1},
-        {"from": 1, "to": 2, "steps": 2.5},
-        {"from": 1, "to": 2, "step": 3},
-        {"from": "a", "to": 2, "steps": 3},
-        [True],
-        [[1]],
-    ]:
-        with subtests.test(entry=entry), pytest.raises(ParameterError, match=r"^force"):
+def test_what_is_no_axis_is_refused_in_a_line():
+    for text in (
+        *("force", "=1", "force=", "force=1:2", "force=1:2:1", "a..b=1", "x=1:2:z"),
+        *("x=0:2:5:log", "x=1:2:5:cubic", "x=1:2:5:log:6", "x=1:inf:4", "x=1:2:1000001"),
+    ):
+        with pytest.raises(ParameterError) as error:
+            axis_of(text)
+        assert "\n" not in str(error.value), text
+    ends = {"from": 1, "to": 2}
+    for entry in (
+        *(3, [], {"from": 1}, ends | {"steps": 2.5}, ends | {"step": 3}),
+        *(ends | {"from": "a", "steps": 3}, [True], [[1]]),
+    ):
+        with pytest.raises(ParameterError, match=r"^force"):
             Fields({"force": entry}).each(axis_from)
 
 
-def test_halving_steps_keeps_the_values_that_were_there():
+def test_halving_steps_keeps_the_values_that_were_there_and_a_list_has_none():
     axis = axis_of("force=0.03:5:9:log")
     fine = axis.refined(2)
     assert len(fine.values) == 33
     assert fine.values[::4] == pytest.approx(axis.values)
     assert fine.values[-1] == 5.0
-
-
-def test_a_list_cannot_be_refined():
     with pytest.raises(ParameterError, match="cannot be refined"):
         axis_of("note=65,67").refined(1)

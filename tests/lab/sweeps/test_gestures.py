@@ -80,9 +80,6 @@ def test_the_note_of_a_gesture_is_that_of_its_string_and_finger():
     ]
     expected = [c / (2 * (0.3 - x)) for c in speeds for x in (0.1, 0.15)]
     assert strokes["frequency_hz"] == pytest.approx(expected)
-
-
-def test_an_open_string_has_no_finger():
     open_string = {"gesture": {"duration": 0.1, "controls": {"bow_velocity": 0.2}}}
     varied = study_of(open_string | {"vary": {"bow_force": [0.5]}})
     strokes = varied.bow.strokes(varied.axes, np.array([[0]]))[1]

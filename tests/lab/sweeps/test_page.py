@@ -26,21 +26,26 @@ def test_the_plane_has_the_force_upright():
     assert plane_of({"force": 5}) == ("force", None)
 
 
-def test_a_page_has_every_regime_in_its_place(result):
-    facts = facts_of(result, "position", "force")
-    column = facts["columns"][0]
-    cells = np.frombuffer(zlib.decompress(base64.b64decode(column["data"])), np.uint8)
-    assert (cells.reshape(9, 5) == result.grid("regime")).all()
-    assert [column["regimes"][k] for k in (2, 6)] == ["helmholtz", "raucous"]
+def test_a_page_has_regimes_levels_and_flattening_in_their_places(result):
+    columns = facts_of(result, "position", "force")["columns"]
 
+    def cells(column):
+        return np.frombuffer(zlib.decompress(base64.b64decode(column["data"])), np.uint8)
 
-def test_a_page_has_levels_to_a_step(result):
-    column = next(
-        c for c in facts_of(result, "position", "force")["columns"] if c["label"] == "level"
+    regime, level, flat = (
+        next(column for column in columns if column.get(key) == value)
+        for key, value in (("label", columns[0]["label"]), ("label", "level"), ("unit", "cents"))
     )
-    cells = np.frombuffer(zlib.decompress(base64.b64decode(column["data"])), np.uint8)
-    shown = column["low"] + column["step"] * cells.reshape(9, 5)
-    assert np.abs(shown - result.grid("level_db")).max() <= 0.51 * column["step"]
+    assert (cells(regime).reshape(9, 5) == result.grid("regime")).all()
+    assert [regime["regimes"][k] for k in (2, 6)] == ["helmholtz", "raucous"]
+    shown = level["low"] + level["step"] * cells(level).reshape(9, 5)
+    assert np.abs(shown - result.grid("level_db")).max() <= 0.51 * level["step"]
+    found = result.flattening().reshape(-1)
+    assert flat["step"] < 0.5
+    assert ((cells(flat) == 255) == np.isnan(found)).all()
+    inside = np.isfinite(found) & (found > flat["low"]) & (found < 30.0)
+    shown = flat["low"] + flat["step"] * cells(flat)
+    assert np.abs(shown - found)[inside].max() <= 0.51 * flat["step"]
 
 
 def test_periods_count_from_the_first_slip(result):
@@ -89,16 +94,3 @@ def test_a_browser_draws_the_page_from_the_file_alone(tmp_path, result):
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
     assert '<li><span style="background: rgb(47, 143, 91);"></span>helmholtz</li>' in done.stdout
     assert "upper (whole) and lower" in done.stdout
-
-
-def test_a_page_has_flattening_to_half_a_cent(result):
-    column = next(
-        c for c in facts_of(result, "position", "force")["columns"] if c.get("unit") == "cents"
-    )
-    assert column["step"] < 0.5
-    cells = np.frombuffer(zlib.decompress(base64.b64decode(column["data"])), np.uint8)
-    found = result.flattening().reshape(-1)
-    assert ((cells == 255) == np.isnan(found)).all()
-    inside = np.isfinite(found) & (found > column["low"]) & (found < 30.0)
-    shown = column["low"] + column["step"] * cells
-    assert np.abs(shown - found)[inside].max() <= 0.51 * column["step"]

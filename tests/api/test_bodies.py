@@ -9,9 +9,6 @@ import soundfile
 from lab.body import bodies
 
 import yehu_server as yehu
-from yehu_server import YehuError
-
-CHANNELS = "force=40,velocity=1"
 
 
 def test_the_measured_body_is_known_in_closed_form():
@@ -33,7 +30,7 @@ def test_a_body_of_files_is_fitted_drawn_kept_and_played(tmp_path):
     for name, tap in zip(names, taps, strict=True):
         columns = np.stack([tap.force / 40.0, tap.velocity], axis=1)
         soundfile.write(name, columns, round(tap.rate), subtype="FLOAT")
-    measured = yehu.body.read(names, channels=CHANNELS)
+    measured = yehu.body.read(names, channels="force=40,velocity=1")
     found = yehu.body.fit(measured, band_hz=(300.0, 1000.0), modes=np.int64(4))
     assert (len(found.modes.mass), found.band_hz) == (4, (300.0, 1000.0))
     assert found.admittance(439.0) == pytest.approx(bodies.admittance([439.0])[0], rel=0.02)
@@ -47,20 +44,12 @@ def test_a_body_of_files_is_fitted_drawn_kept_and_played(tmp_path):
     assert yehu.body.load(yehu.Instrument(instrument=found).quantities).body == found.body
 
 
-@pytest.mark.parametrize(
-    ("act", "names"),
-    [
-        (lambda: yehu.body.load("/no/such.toml"), "such.toml"),
-        (lambda: yehu.body.load(7), "source"),
-        (lambda: yehu.body.fit("tap1.wav"), "measurement"),
-        (lambda: yehu.body.read("tap1.wav"), "list of paths"),
-        (lambda: yehu.body.fit(yehu.body.load().measurement), "nothing was measured"),
-        (lambda: yehu.body.fit(yehu.body.load().measurement, modes=65), "modes"),
-        (lambda: yehu.body.fit(yehu.body.load().measurement, band_hz=(1.0, np.nan)), "band_hz"),
-    ],
-)
-def test_what_is_wrong_is_told_in_one_line(act, names):
-    with pytest.raises(YehuError) as refused:
-        act()
-    assert names in str(refused.value)
-    assert "\n" not in str(refused.value)
+def test_what_is_wrong_is_told_in_one_line(told):
+    measured = yehu.body.load().measurement
+    told("such.toml", yehu.body.load, "/no/such.toml")
+    told("source", yehu.body.load, 7)
+    told("measurement", yehu.body.fit, "tap1.wav")
+    told("list of paths", yehu.body.read, "tap1.wav")
+    told("nothing was measured", yehu.body.fit, measured)
+    told("modes", yehu.body.fit, measured, modes=65)
+    told("band_hz", yehu.body.fit, measured, band_hz=(1.0, np.nan))

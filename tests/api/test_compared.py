@@ -9,7 +9,6 @@ import pytest
 import soundfile
 
 import yehu_server as yehu
-from yehu_server import YehuError
 
 RATE = 22050
 
@@ -66,16 +65,9 @@ def test_it_is_drawn_in_one_call():
     assert all(len(axes.lines) >= 2 for axes in figure.axes)
 
 
-@pytest.mark.parametrize(
-    ("call", "told"),
-    [
-        (lambda: yehu.compare(tones(), tones()), "sample_rate"),
-        (lambda: yehu.compare("nowhere.wav", tones(), RATE), "nowhere.wav"),
-        (lambda: yehu.compare(tones(), np.zeros(RATE), RATE), "rendering: is silent"),
-        (lambda: yehu.compare(tones(), np.full(RATE, np.nan), RATE), "rendering: "),
-        (lambda: yehu.compare(np.zeros(0), tones(), RATE), "recording: is silent"),
-    ],
-)
-def test_what_cannot_be_compared_is_told(call, told):
-    with pytest.raises(YehuError, match=told):
-        call()
+def test_what_cannot_be_compared_is_told(told):
+    told("sample_rate", yehu.compare, tones(), tones())
+    told("nowhere.wav", yehu.compare, "nowhere.wav", tones(), RATE)
+    told("rendering: is silent", yehu.compare, tones(), np.zeros(RATE), RATE)
+    told("rendering: ", yehu.compare, tones(), np.full(RATE, np.nan), RATE)
+    told("recording: is silent", yehu.compare, np.zeros(0), tones(), RATE)

@@ -186,15 +186,17 @@ def test_the_shapes_belong_to_their_moments():
 def test_stereo_has_two_sides_and_a_room_and_one_channel_has_none():
     after = []
     for stereo in (True, False):
-        fiddle = yehu.Instrument(preset="hall", stereo=stereo, settings={"/room/pan": -0.8})
+        fiddle = yehu.Instrument(preset="hall", stereo=stereo)
         fiddle.note_on("A4")
-        sound = fiddle.play(0.5)
-        if stereo:
-            assert sound.shape == (round(0.5 * RATE), 2)
-            assert level(sound[:, 0]) > 1.5 * level(sound[:, 1])
+        fiddle.play(0.5)
         fiddle.note_off()
         after.append(level(fiddle.play(1.0)[-RATE // 4 :]))
     assert after[0] > 20.0 * after[1]
+    fiddle = yehu.Instrument(stereo=True, settings={"/room/pan": -0.8})
+    fiddle.note_on("A4")
+    sound = fiddle.play(0.5)
+    assert sound.shape == (round(0.5 * RATE), 2)
+    assert level(sound[:, 0]) > 1.5 * level(sound[:, 1])
 
 
 # ---------------------------------------------------------------- what is refused

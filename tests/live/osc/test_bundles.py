@@ -135,13 +135,6 @@ def test_a_bundle_that_comes_too_late_plays_at_once_and_is_counted(still, wire):
     assert still.player.pitch == 67.0
 
 
-def test_a_bundle_for_at_once_is_not_late(still, wire):
-    still.take(wire.bundle(None, wire.message("/yehu/note", 67, 90)))
-    still.pass_time(0.01)
-    assert still.player.pitch == 67.0
-    assert still.handler.counts.late_bundles == 0
-
-
 def test_messages_of_a_bundle_are_heard_at_one_frame_and_in_order(still, wire):
     still.pass_time(0.05)
     packets = [wire.message("/yehu/bow/position", 0.1 + 0.01 * number) for number in range(20)]

@@ -1,68 +1,105 @@
-"""Errors by OSC: unknown addresses, malformed packets, and how many errors are answered."""
+"""What cannot be done is answered with the reason, changes nothing, and costs little."""
 
 from __future__ import annotations
 
 import difflib
+import math
+from typing import Any
 
 import pytest
 from wire import errors
 
 from yehu_server.live.osc import clients
 
+NAN, INF = math.nan, math.inf
+NOTHING: tuple[Any, ...] = ()
 
-@pytest.mark.parametrize(
-    "address",
-    [
-        "/yehu",
-        "/yehu/",
-        "/yehu/bow",  # that takes two
-        "/yehu/bow/",
-        "/yehu/bow/forc",
-        "/yehu/bow/force/",
-        "/yehu//bow/force",
-        "/bow/force",
-        "/yehubow/force",
-        "/YEHU/bow/force",
-        "/yehu/bow/force ",
-        "/",
-        "//",
-        "/yehu/bow/fôrce",
-        "/ÿehu/" + "x" * 300,
-    ],
-)
-def test_an_unknown_address_is_answered_and_changes_nothing(shared_server, wire, address):
-    client = shared_server.client()
-    before, counted = shared_server.player.values(), shared_server.handler.counts.errors
-    client.take(wire.message(address, 0.123))
-    assert client.wait_for("/error")[0] == address
-    assert shared_server.player.values() == before
-    assert shared_server.handler.counts.errors == counted + 1
-    assert shared_server.is_well()
+# Calls below /yehu, arguments of each that are refused, and words of the reason.
+REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
+    ("/note", [NOTHING, (67,), (67, 90, 1)], "expected 2 arguments"),
+    ("/note", [("67", 90), (67, None)], "expected a number"),
+    ("/note", [(-1, 90), (127.5, 90), (67, -1), (67, 127.5)], "not within"),
+    ("/note", [(NAN, 90.0), (67.0, NAN), (67.0, INF)], "not finite"),
+    ("/bow", [NOTHING, (0.2,), (0.2, 0.5, 1.0)], "expected 2 arguments"),
+    ("/bow", [(0.2, "x"), (NAN, 0.5), (0.2, INF)], ""),
+    ("/bend", [("x",)], "expected a number"),
+    ("/press", [("x",)], "expected a number"),
+    ("/get", [NOTHING, (1,), ("/bow/force", "/bow/side"), (b"/bow/force",)], "one string"),
+    ("/get", [("",), ("/nothing",), ("/note",), ("/z*",), ("/yehu",)], ""),
+    ("/get", [("/bow/[fs",), ("/bow/{force,side",), ("[",), ("{",)], "never closed"),
+    ("/get", [("/bow/" + "*" * 5000,)], "too long"),
+    ("/get", [("/status/zither",)], "unknown status value '/status/zither'"),
+    ("/get", [("/status/nota",)], "'/status/nota'; did you mean /status/note?"),
+    ("/status/nota", [(1.0,)], "'/status/nota'; did you mean /status/note?"),
+    ("/status/note", [(60.0,)], "the status cannot be set; ask for it by /yehu/get"),
+    ("/subscribe", [("x",), (10, "x"), (10, 0), (10, -1), (10, 65536), (10, 7.5), (1, 2, 3)], ""),
+    ("/subscribe", [(NAN,), (10, INF)], ""),
+    ("/unsubscribe", [(-1,), (65536,), (99999,), (7.5,)], ""),
+    ("/record/start", [NOTHING, (1,), ("a", "b"), (b"a",)], ""),
+    ("/learn", [("/bow/speed",)], "is moved by the player"),
+    ("/learn", [("/playing/vibrat",)], "did you mean /playing/vibrato"),
+    ("/learn", [(3,)], "expected one string"),
+    ("/learn", [("/playing/speed", "x")], "expected a number"),
+    ("/unlearn", [NOTHING], "expected one string"),
+    ("/bindings", [(1.0,)], "expected 0 arguments"),
+    ("/preset/load", [NOTHING, (3.0,)], "expected one string"),
+    ("/preset/load", [("nothing",)], "no preset 'nothing'"),
+    ("/preset/save", [("tremolo",)], "save under another name"),
+    ("/preset/delete", [("tremolo",)], "comes with the program"),
+    ("/preset/delete", [("nothing",)], "no preset 'nothing'"),
+    ("/preset/morph", [("ordinary", "tremolo")], "expected two names and a number"),
+    ("/preset/morph", [("ordinary", 3.0, 0.5)], "expected one string"),
+    ("/preset/morph", [("ordinary", "nothing", 0.5)], "no preset 'nothing'"),
+    ("/preset/morph", [("ordinary", "tremolo", "half")], "expected a number"),
+    ("/preset/morph", [("ordinary", "tremolo", NAN)], "not finite"),
+    ("/preset/morph", [("ordinary", "../x", 0.5)], "is not a plain name"),
+    ("/bow", [(1.0,)], "expected 2 arguments"),
+    ("/bow/forc", [(0.5,)], "/bow/force"),  # a near name is suggested
+    *(
+        (address, [(0.123,)], "")
+        for address in (
+            *("", "/", "/bow/", "/bow/force/", "//bow/force", "/bow/force ", "/bow/fôrce"),
+            *("/bow/[z]*", "/nothing*", "/bow*", "/?", "/bow/[", "/bow/{a", "/" + "*" * 300),
+        )
+    ),
+]
+UNKNOWN = ["/bow/force", "/yehubow/force", "/YEHU/bow/force", "/", "//", "/ÿehu/" + "x" * 300]
 
 
-def test_a_near_name_is_suggested(shared_server):
-    client = shared_server.client()
-    client.tell("/bow/forc", 0.5)
-    assert "/bow/force" in client.wait_for("/error")[1]
+def test_what_cannot_be_done_is_answered_with_the_reason_and_changes_nothing(still, wire, subtests):
+    before, count = still.player.values(), 0
+    asked = [("/yehu" + call, words, why) for call, calls, why in REFUSED for words in calls]
+    for address, words, why in [*asked, *((address, (0.123,), "") for address in UNKNOWN)]:
+        with subtests.test(address=address[:80], words=words):
+            still.clock.now += clients.FORGIVEN_S
+            still.take(wire.message(address, *words))
+            (refused,) = still.peer.received()
+            assert (refused.address, refused.arguments[0]) == ("/yehu/error", address)
+            assert why in refused.arguments[1]
+            count += 1
+    assert still.handler.counts.errors == count
+    still.pass_time(0.05)
+    assert still.player.values() == before
+    assert still.player.pitch is None
+    assert not still.player.listens
+    assert still.frames("/bow/speed") == []
+    assert still.handler.clients.subscribers == 0
 
 
-@pytest.mark.parametrize(
-    "packet",
-    [b"", b"\0", b"hello", b"/yehu/bow/force", b"/yehu/bow/force\0,i\0\0\0", b"#bundle\0\0"],
-    ids=repr,
-)
-def test_a_malformed_packet_is_counted_and_answered(shared_server, packet):
-    client = shared_server.client()
-    counted = shared_server.handler.counts.malformed
-    client.take(packet)
-    assert "malformed" in client.wait_for("/error")[1]
-    assert shared_server.handler.counts.malformed == counted + 1
-
-
-def test_an_address_of_any_length_is_answered(shared_server):
-    client = shared_server.client()
-    client.tell("/" + "x" * 16_000)
-    assert client.next(0.5)
+def test_a_malformed_packet_is_counted_and_answered(still):
+    packets = [
+        b"",
+        b"\0",
+        b"hello",
+        b"/yehu/bow/force",
+        b"/yehu/bow/force\0,i\0\0\0",
+        b"#bundle\0\0",
+    ]
+    for packet in packets:
+        still.take(packet)
+        (refused,) = still.peer.received()
+        assert "malformed" in refused.arguments[1]
+    assert still.handler.counts.malformed == len(packets)
 
 
 @pytest.mark.parametrize(

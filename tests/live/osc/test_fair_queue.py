@@ -85,17 +85,21 @@ def done(monkeypatch) -> Done:
     return Done(clock)
 
 
-def test_what_is_short_is_handled_in_turn(done):
-    for peer, letters in (("1", "ab"), ("2", "c"), ("3", "d")):
-        done.add(peer, letters)
-    assert done.work() == "1a 1b 2c 3d"
+def test_what_is_large_waits_for_what_is_small(done):
+    done.add("1", "a", LONG_BYTES + 1)
+    done.add("2", "b", LONG_BYTES)
+    assert done.work() == "2b 1a"
 
 
-def test_what_is_long_goes_on_after_the_others_and_before_what_its_peer_says_next(done):
-    done.add("1", "ABC")
-    done.add("1", "d")
-    done.add("2", "e")
-    assert done.work() == "1A 2e 1B 1C 1d"
+def test_peers_are_heard_in_turn_and_what_is_long_goes_on_after_the_others(done):
+    for said, order in [
+        ([("1", "ab"), ("2", "c"), ("3", "d")], "1a 1b 2c 3d"),
+        ([("1", "ABC"), ("1", "d"), ("2", "e")], "1A 2e 1B 1C 1d"),
+    ]:
+        done.steps.clear()
+        for words in said:
+            done.add(*words)
+        assert done.work() == order
 
 
 def test_no_more_is_done_at_a_time_than_a_turn_takes(done):
@@ -103,12 +107,6 @@ def test_no_more_is_done_at_a_time_than_a_turn_takes(done):
         done.add(peer, "ABC")
     done.queue.work()
     assert len(done.steps) == -(-TURN_NS // LONG_NS)
-
-
-def test_what_is_large_waits_for_what_is_small(done):
-    done.add("1", "a", LONG_BYTES + 1)
-    done.add("2", "b", LONG_BYTES)
-    assert done.work() == "2b 1a"
 
 
 @pytest.mark.parametrize("crowd", [["flood"], [f"here@{port}" for port in range(100)]])
@@ -232,15 +230,11 @@ def test_a_burst_is_allowed_and_after_it_what_each_second_brings():
     assert [bucket.takes(1000.0) for _ in range(7)] == [True] * 5 + [False] * 2
     assert [bucket.takes(1001.0) for _ in range(4)] == [True] * 2 + [False] * 2
     assert [bucket.takes(1e6) for _ in range(7)] == [True] * 5 + [False] * 2
-
-
-def test_who_spends_more_than_there_is_waits_until_it_is_gained_again():
+    # Who spends more than there is waits until it is gained again.
     bucket = TokenBucket(10.0, 20.0)
     assert bucket.left(0.0) == 20.0
     bucket.spend(30.0)
-    assert bucket.left(0.5) == -5.0
-    assert bucket.left(1.0) == 0.0
-    assert bucket.left(1.5) == 5.0
+    assert [bucket.left(now) for now in (0.5, 1.0, 1.5)] == [-5.0, 0.0, 5.0]
 
 
 def test_there_is_always_room_for_a_peer_that_is_limited_otherwise():

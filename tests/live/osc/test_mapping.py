@@ -49,24 +49,18 @@ def test_patterns_reach_ones_own_addresses_too(own_still, wire):
     assert say(own_still, wire, "/fadr*", 1) == ["/fadr* the pattern matches no address"]
 
 
-@pytest.mark.parametrize(
-    ("address", "arguments", "reason"),
-    [
+def test_what_ones_own_address_cannot_mean_is_answered(own_still, wire):
+    for address, arguments, reason in [
         ("/fader1", (), "expected 1 argument, got 0"),
         ("/fader1", (0.5, 0.5), "expected 1 argument, got 2"),
         ("/fader1", ("loud",), "expected a number, got a string"),
         ("/fader1", (float("nan"),), "nan is not finite"),
         ("/fader3", (0.5,), "unknown address (all begin with /yehu/)"),
         ("/yehu/fader1", (0.5,), "unknown parameter"),
-    ],
-)
-def test_what_ones_own_address_cannot_mean_is_answered(own_still, wire, address, arguments, reason):
-    (error,) = say(own_still, wire, address, *arguments)
-    assert error.startswith(f"{address} {reason}")
+    ]:
+        (error,) = say(own_still, wire, address, *arguments)
+        assert error.startswith(f"{address} {reason}")
     assert own_still.value(VOLUME) == 1.0
-
-
-def test_an_address_that_the_mapping_gives_up_is_unknown(own_still, wire):
     own_still.player.remap(Mapping("other", ()), frame=0)
     (error,) = say(own_still, wire, "/fader1", 1)
     assert "unknown address" in error
@@ -81,21 +75,3 @@ def test_ones_own_address_is_heard_at_the_time_of_its_tag(own_still, wire):
     assert own_still.player.value(VOLUME) == 0.0
     (frame,) = own_still.frames("/output/level")
     assert frame == pytest.approx(0.1 * own_still.RATE, abs=own_still.RATE * 0.002)
-
-
-def test_subscribers_hear_of_what_ones_own_address_moves(own_still, wire):
-    own_still.ask("/subscribe")
-    own_still.take(wire.message("/fader1", 0.0))
-    own_still.pass_time(0.05)
-    assert ("/yehu/playing/volume", 0.0) in [
-        (heard.address, *heard.arguments) for heard in own_still.peer.received()
-    ]
-
-
-def test_a_faders_burst_costs_no_note(own_still, wire):
-    own_still.tell("/note", 67.0, 90.0)
-    for step in range(200):
-        say(own_still, wire, "/fader1", step % 128)
-    own_still.pass_time(0.01)
-    assert own_still.player.pitch is not None
-    assert own_still.handler.counts.errors == 0

@@ -65,16 +65,6 @@ def test_there_is_room_for_so_much_half_of_it_for_one_and_again_when_it_is_gone(
     assert waiting.due(MANY) == [(0.0, 6, ME)]
 
 
-def test_sixty_thousand_notes_wait_thirty_thousand_of_one_sender(wire):
-    waiting: Schedule[int] = Schedule()
-    note = len(wire.message("/yehu/note", 67.0, 90.0))
-    for host in range(8):
-        peer = FakePeer(1, f"192.0.2.{host}")
-        count = sum(waiting.add(0.0, number, peer, note) for number in range(40_000))
-        assert host > 0 or count > 30_000
-    assert 60_000 < len(waiting) < 80_000
-
-
 # ---------------------------------------------------------------- frames of moments
 
 

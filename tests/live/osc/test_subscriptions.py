@@ -1,15 +1,15 @@
-"""Subscriptions by OSC: to all parameters, by UDP and by streams."""
+"""Subscriptions by OSC: to parameters and the status, by UDP and by streams."""
 
 from __future__ import annotations
 
 import contextlib
-import math
 import socket
 import time
 
 import pytest
 from wire import f32, values
 
+from yehu_server.live.osc.status import STATUS
 from yehu_server.params.table import TABLE, find
 
 
@@ -70,35 +70,6 @@ def test_a_client_names_the_port_it_listens_on(live):
     assert listens.all() == []
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ("x",),
-        (10, "x"),
-        (10, 0),
-        (10, -1),
-        (10, 65536),
-        (10, 7.5),
-        (1, 2, 3),
-        (math.nan,),
-        (10, math.inf),
-    ],
-)
-def test_what_is_no_subscription_is_answered(shared_server, arguments):
-    client = shared_server.client()
-    client.tell("/subscribe", *arguments)
-    assert client.wait_for("/error")[0] == "/yehu/subscribe"
-    assert shared_server.handler.clients.subscribers == 0
-    assert shared_server.is_well()
-
-
-@pytest.mark.parametrize("port", [-1, 65536, 99999, 7.5])
-def test_an_unsubscription_of_no_port_is_answered(shared_server, port):
-    client = shared_server.client()
-    client.tell("/unsubscribe", port)
-    assert client.wait_for("/error")[0] == "/yehu/unsubscribe"
-
-
 @pytest.mark.parametrize("slip", [False, True], ids=["prefixed", "slip"])
 def test_a_subscriber_may_be_at_the_end_of_a_stream(live, slip):
     stream, other = live.stream(slip=slip), live.client()
@@ -143,3 +114,58 @@ def test_a_server_never_talks_to_itself(make_live, kit, host):
     time.sleep(0.2)
     client.close()
     assert live.handler.counts.messages == counted
+
+
+# ---------------------------------------------------------------- the status
+
+
+def test_the_status_is_asked_for_like_any_value(still):
+    assert values(still.ask("/get", "/yehu/status/load")) == {"/yehu/status/load": 0.5}
+    assert values(still.ask("/get", "/status/recordin[g]")) == {"/yehu/status/recording": ""}
+    heard = values(still.ask("/get", "/status/*"))
+    assert set(heard) == {f"/yehu/status/{value.name}" for value in STATUS}
+
+
+def test_who_subscribes_to_the_status_is_told_it_at_once_and_then_each_change(still):
+    heard = values(still.ask("/subscribe/status", 2.0))
+    assert heard.pop("/yehu/subscribed") == 2.0
+    assert set(heard) == {f"/yehu/status/{value.name}" for value in STATUS}
+    still.pass_time(0.5)
+    assert still.peer.received() == []
+    still.services.names.append("take")
+    still.tell("/playing/vibrato", 5.0)  # which it did not subscribe to
+    still.pass_time(0.3)
+    heard = values(still.peer.received())
+    assert heard.pop("/yehu/playing/vibrato") == 5.0  # but is told of what it sets
+    assert heard == {"/yehu/status/recording": "take"}
+    assert still.handler.clients.subscribers == 1
+    still.pass_time(2.0)
+    still.services.names.append("another")
+    still.pass_time(0.5)
+    assert still.peer.received() == []
+    assert still.handler.clients.subscribers == 0
+
+
+def test_who_subscribes_to_both_is_told_of_both_until_it_unsubscribes(still):
+    still.ask("/subscribe", 60.0)
+    still.ask("/subscribe/status", 60.0)
+    still.player.write("/playing/attack", 50.0, frame=0)
+    still.services.names.append("take")
+    still.pass_time(0.3)
+    heard = values(still.peer.received())
+    assert heard == {"/yehu/playing/attack": 50.0, "/yehu/status/recording": "take"}
+    still.ask("/unsubscribe")
+    still.player.write("/playing/attack", 60.0, frame=0)
+    still.services.names.append("another")
+    still.pass_time(0.5)
+    assert still.peer.received() == []
+
+
+def test_status_is_told_line_by_line(shared_server):
+    client = shared_server.client()
+    client.tell("/status")
+    heard = values(client.all())
+    status = shared_server.server.status()
+    assert set(heard) == {f"/yehu/status/{name}" for name in status}
+    assert heard["/yehu/status/rate"] == 48000.0
+    assert heard["/yehu/status/osc_buffer_bytes"] == shared_server.ports.traffic.buffer_bytes

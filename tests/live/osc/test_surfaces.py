@@ -100,7 +100,9 @@ def test_every_slider_of_the_patch_moves_its_parameter(live, until, patch):
     assert not [line for line in patch.printed if "create" in line or "error" in line]
 
 
-def test_a_slider_follows_the_server_and_says_nothing_back(live, until, patch):
+def test_a_slider_follows_the_server_says_nothing_back_and_shows_what_it_has_moved(
+    live, until, patch
+):
     client = live.client()
     client.tell("/playing/vibrato", 40.0)
     until(lambda: "watched: set 40" in patch.printed, "the change")
@@ -109,21 +111,13 @@ def test_a_slider_follows_the_server_and_says_nothing_back(live, until, patch):
     time.sleep(0.4)
     assert live.handler.counts.messages == count
     assert live.player.value("/playing/vibrato") == 40.0
-
-
-def test_what_a_slider_has_moved_comes_back_to_all_that_show_it(until, patch):
     patch.move(WATCHED, 25)
-    until(lambda: "watched: set 25" in patch.printed, "the echo")
     # The patch itself shows it at once, the server when the slider rests.
-    until(lambda: patch.printed.count("watched: set 25") >= 2, "what the server tells")
-
-
-def test_the_patch_lets_go_of_a_moving_slider_only_when_it_rests(live, until, patch):
-    client = live.client()
+    until(lambda: patch.printed.count("watched: set 25") >= 2, "echo, and the server")
     patch.move("/yehu/playing/speed", 0.3)
     until(lambda: live.player.value("/playing/speed") == pytest.approx(0.3), "the move")
     client.tell("/playing/vibrato", 77.0)
-    until(lambda: "watched: set 77" in patch.printed, "the change, told late")
+    until(lambda: "watched: set 77" in patch.printed, "the change, told when the slider rests")
 
 
 def test_a_key_begins_before_the_last_one_ends(live, until, patch, monkeypatch):
@@ -167,6 +161,9 @@ def along(axis: Axis, unit: float) -> float:
 
 def test_one_hand_on_the_string_and_one_on_the_bow_sound_until_the_bow_is_lifted(live, until):
     client = live.client()
+    client.tell("/bow", BOW_SPEED.start, BOW_FORCE.start)  # at rest
+    live.settle()
+    assert live.level() < 1e-6
     client.tell("/pitch", along(STRING_PITCH, 0.15))
     client.tell("/press", STRING_PRESS.start)
     client.tell("/bow", along(BOW_SPEED, 0.7), along(BOW_FORCE, 0.25))
@@ -174,10 +171,3 @@ def test_one_hand_on_the_string_and_one_on_the_bow_sound_until_the_bow_is_lifted
     client.tell("/bow", along(BOW_SPEED, 0.5), along(BOW_FORCE, 0.0))
     until(lambda: live.target("/bow/speed") == 0.0, "the bow lifted")
     until(lambda: live.level() < 1e-3, "silence")
-
-
-def test_the_pads_begin_with_a_bow_at_rest(live):
-    client = live.client()
-    client.tell("/bow", BOW_SPEED.start, BOW_FORCE.start)
-    live.settle()
-    assert live.level() < 1e-6

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import mmap
-import platform
 import random
 import re
 import threading
 from functools import cache
-from itertools import product
 
 import llvmlite.binding as llvm
 import numpy as np
@@ -52,33 +50,18 @@ APART = {
 }
 
 
-def unsafe(found: set[str], name: str) -> set[str]:
-    """Foreign names that are neither safe nor those of the calls that are compiled apart."""
-    return (found - REAL_TIME_SAFE) ^ {call.name for call in CALLS[name].calls}
-
-
-# x86-64 processors, by what LLVM calls them: the oldest; with --all, one of 2013 and with AVX-512.
-PROCESSORS = ["generic", "haswell", "skylake-avx512"]
-
-
-on_x86 = pytest.mark.skipif(platform.machine() != "x86_64", reason="reads x86-64 assembly")
-
 # ---------------------------------------------------------------- reading LLVM's code
-
-
-def parsed(name: str) -> llvm.ModuleRef:
-    """The optimised code of a call, in a context of its own: LLVM's global one is never freed.
-
-    It is what numba keeps beside the machine code, for callers that are compiled later.
-    """
-    kept = CALLS[name].compiled._library._get_module_for_linking()
-    return llvm.parse_bitcode(kept.as_bitcode(), llvm.create_context())
 
 
 @cache
 def parts(name: str) -> dict[str, str]:
-    """The optimised code of each function and global of a call, by name."""
-    module = parsed(name)
+    """The optimised code of each function and global of a call, by name.
+
+    It is what numba keeps beside the machine code, for callers that are compiled later; in a
+    context of its own, as LLVM's global one is never freed.
+    """
+    kept = CALLS[name].compiled._library._get_module_for_linking()
+    module = llvm.parse_bitcode(kept.as_bitcode(), llvm.create_context())
     return {part.name: str(part) for part in [*module.functions, *module.global_variables]}
 
 
@@ -106,8 +89,8 @@ def reached(name: str) -> dict[str, str]:
 
 def inside(name: str) -> list[str]:
     """The names of the compiled functions that a call consists of, its own first."""
-    code = reached(name)
-    return [part for part in code if re.search(r"^define ", code[part], re.MULTILINE)]
+    is_defined = re.compile("^define ", re.MULTILINE).search
+    return [part for part, code in reached(name).items() if is_defined(code)]
 
 
 def lines(name: str) -> list[str]:
@@ -154,14 +137,12 @@ def test_what_a_function_calls_that_is_compiled_apart_is_read_of_its_code():
 
 def test_no_call_reaches_python_an_allocation_or_a_lock():
     found = {}
-    for name in CALLS:
-        outside = {
-            part
-            for part, code in reached(name).items()
-            if not part.startswith("llvm.")
-            and not re.search(r"^define |constant ", code, re.MULTILINE)
-        }
-        found[name] = unsafe(outside, name)
+    is_inside = re.compile("^define |constant ", re.MULTILINE).search
+    for name, call in CALLS.items():
+        parts_of = reached(name).items()
+        foreign = {part for part, code in parts_of if not is_inside(code)} - REAL_TIME_SAFE
+        apart = {each.name for each in call.calls}  # that are compiled by themselves
+        found[name] = {part for part in foreign if not part.startswith("llvm.")} ^ apart
     assert not any(found.values()), found
 
 
@@ -201,41 +182,6 @@ def test_no_call_calls_anybody_by_address_or_waits_for_anybody():
             assert not by_address.search(others), (name, part)
 
 
-def names(listing: str, name: str) -> set[str]:
-    """The foreign functions and data that a call names in x86-64 assembly."""
-    found = set()
-    for part in inside(name):
-        code = listing.partition(f"\n{part}:")[2]
-        code = re.split(r"\.cfi_endproc|\.size\b", code, maxsplit=1)[0]
-        code = re.sub(r"#.*|^\s*\..*", "", code, flags=re.MULTILINE)
-        assert re.search(r"\b(ret|jmp)", code), part
-        found |= set(re.findall(r"(?<![%\w.])[A-Za-z_][\w.]*(?=@)|(?<=\$)[A-Za-z_][\w.]*", code))
-        found |= set(re.findall(r"(?:call|jmp)\w*\s+([A-Za-z_]\w*)", code))
-        found |= set(re.findall(r"([A-Za-z_][\w.]*)(?:[-+]\d+)?\(%rip", code))
-    return found - set(inside(name))
-
-
-@cache
-def assembly(name: str, processor: str, opt: int = 3) -> str:
-    """The assembly of a call for another x86-64 processor; this one need not be able to run it."""
-    code = parsed(name)  # which readies LLVM
-    target = llvm.Target.from_triple(llvm.get_process_triple())
-    maker = target.create_target_machine(cpu=processor, features="", opt=opt)
-    return maker.emit_assembly(code)
-
-
-@on_x86
-def test_their_assembly_names_nothing_else(everything):
-    """The oldest processor needs most help by functions; others take long, and registers well used.
-
-    Which functions it needs is decided before those are (but for sin and cos at once).
-    """
-    processors = [*PROCESSORS, llvm.get_host_cpu_name()] if everything else PROCESSORS[:1]
-    for name, processor in product(CALLS, processors):
-        listing = assembly(name, processor, opt=3 if everything else 0)
-        assert not unsafe(names(listing, name), name), (name, processor)
-
-
 # ---------------------------------------------------------------- memory between threads
 
 
@@ -262,18 +208,9 @@ def test_the_callback_reads_and_writes_the_cursors_atomically_and_in_order():
 
 
 def test_a_wish_is_written_before_the_cursor_tells_of_it():
-    block = []
-    for line in lines("post"):
-        if re.match(r"\S+:", line):
-            block = []
-        store = re.match(r"\s*store (atomic|)", line)
-        if store:
-            block.append(store[1])
-            if store[1]:
-                break
-    assert block.index("atomic") == len(block) - 1 > 0
-    rest = "\n".join(lines("post")).partition("store atomic")[2].partition("\n\n")[0]
-    assert "store" not in rest
+    before, after = "\n".join(lines("post")).split("store atomic")
+    assert "store" in re.split(r"^\S+:", before, flags=re.MULTILINE)[-1]  # in the same basic block
+    assert "store" not in after.partition("\n\n")[0]
 
 
 @pytest.mark.parametrize(
@@ -485,8 +422,7 @@ def test_who_comes_too_early_for_the_tape_gets_nothing():
     ensemble.process(np.zeros(100, np.float32))
     for early in (100, 1000):
         begin, samples = ensemble.taped(early)
-        assert begin == early
-        assert len(samples) == 0
+        assert (begin, len(samples)) == (early, 0)
     ensemble.reset()
     assert len(ensemble.taped(0)[1]) == 0
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
+from collections.abc import Callable
+from itertools import pairwise, product
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,26 +21,33 @@ from yehu_server.core.controls.slots import (
     TREMOLO,
     UPWARD,
 )
-from yehu_server.errors import ParameterError
-from yehu_server.params.articulations import ARTICULATIONS, NUMBER, number_of
+from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
 
 def played(name: str, note: float = 74, seconds: float = 1.0, **values: float) -> np.ndarray:
     """The values of the controls while a note of an articulation is held."""
-    playing = Playing(articulation=NUMBER[name], variation=0.0, listening=0.0, **values)
+    return held(name, note, **values).play(seconds, "value")[0]
+
+
+def held(name: str, note: float = 74, **values: float) -> Playing:
+    """A player who holds a note of an articulation."""
+    playing = Playing(articulation=NUMBER[name], **{"variation": 0.0, "listening": 0.0} | values)
     playing.on(note)
-    return playing.play(seconds, "value")[0]
+    return playing
+
+
+def every_5_ms(playing: Playing, seconds: float, read: Callable[[Any], float]) -> np.ndarray:
+    """What is read of the player's record while it plays on."""
+    found = []
+    for _ in range(round(seconds / 0.005)):
+        playing.play(0.005)
+        found.append(float(read(playing.player)))
+    return np.array(found)
 
 
 def bends(name: str, seconds: float = 1.0, note: float = 74, **values: float) -> np.ndarray:
     """Where the finger is from the pitch of the note (semitones), every 5 ms."""
-    playing = Playing(articulation=NUMBER[name], variation=0.0, listening=0.0, **values)
-    playing.on(note)
-    found = []
-    for _ in range(round(seconds / 0.005)):
-        playing.play(0.005)
-        found.append(float(playing.player["gesture"]["bend"]))
-    return np.array(found)
+    return every_5_ms(held(name, note, **values), seconds, lambda p: p["gesture"]["bend"])
 
 
 def at(seconds: float) -> int:
@@ -71,15 +80,11 @@ def test_a_sprung_bow_leaves_the_string_and_a_stopped_one_stands_on_it():
 def test_a_gesture_goes_on_while_dynamics_move():
     """Its bow was where it should come to at once."""
     speeds = []
-    for moves in (False, True):
-        playing = Playing(
-            articulation=NUMBER["swell"], note_length=2.0, variation=0.0, dynamics=0.7
-        )
-        playing.on(74)
+    for step_of_dynamics in (0.0, 0.0005):
+        playing = held("swell", listening=1.0, note_length=2.0, dynamics=0.7)
         found = []
         for step in range(40):
-            if moves:
-                playing.wishes.write("/playing/dynamics", 0.7 + 0.0005 * step)
+            playing.wishes.write("/playing/dynamics", 0.7 + step_of_dynamics * step)
             found.append(np.abs(playing.play(0.02, "value")[0][-1, SPEED]))
         speeds.append(np.array(found))
     still, moved = speeds
@@ -104,6 +109,9 @@ def test_slides_begin_away_and_end_on_the_pitch():
         if bend[1] != begins or bend[-1] != 0.0 or (steps < 0.0).any() or steps.max() > 0.4:
             wrong.append((name, bend))
     assert wrong == []
+    turning = bends("turning-slide")
+    assert turning[0] == turning[-1] == 0.0
+    assert turning.max() == pytest.approx(2.0, abs=0.02)
 
 
 def test_steps_come_sooner_in_a_note_that_is_too_short_for_them():
@@ -120,58 +128,37 @@ def test_no_finger_goes_where_none_fits_by_the_loop():
     assert bends("wavering", 0.3, note=65).min() == 0.0
 
 
-def test_a_slide_in_a_note_stays_on_one_string():
-    """Also on the open C5, which is stopped on the F string for it."""
+def test_a_slide_or_a_trill_in_a_note_stays_on_one_string():
+    """Also on the open C5, which is stopped on the F string, or where its finger would not fit."""
     wrong = []
-    for name in ("passed-slide", "fall", "turning-slide", "sliding-vibrato"):
-        for note in (71, 72, 79):
-            playing = Playing(articulation=NUMBER[name], variation=0.0, listening=0.0)
-            playing.on(76)
+    slides, trills = (
+        ("passed-slide", "fall", "turning-slide", "sliding-vibrato"),
+        (*("trill", "wide-trill", "mordent"),),
+    )
+    for names, first, notes in ((slides, 76, (71, 72, 79)), (trills, 70, (71, 72, 73, 76))):
+        for name, note in product(names, notes):
+            playing = held(name, first)
             playing.play(0.2)
             playing.on(note)
-            fingered = set()
-            for _ in range(110):
-                playing.play(0.005)
-                player = playing.player
-                fingered.add((int(player["string"]), bool(player["position"] > 0.0)))
-            if len(fingered) != 1 or not fingered.pop()[1]:
-                wrong.append((name, note))
-    assert wrong == []
-
-
-def test_a_trill_stays_on_one_string():
-    """Also near the inner string's end, where the trilling finger would not fit."""
-    wrong = []
-    for name in ("trill", "wide-trill", "mordent"):
-        for note in (71, 72, 73, 76):
-            playing = Playing(articulation=NUMBER[name], variation=0.0, listening=0.0)
-            strings = set()
-            for each in (70, note):
-                playing.on(each)
-                playing.play(0.1)
-            for _ in range(80):
-                playing.play(0.005)
-                strings.add(int(playing.player["string"]))
-            if len(strings) != 1:
+            strings = every_5_ms(playing, 0.4, lambda player: player["string"])
+            if len(set(strings)) != 1 or (name in slides and not playing.player["position"] > 0.0):
                 wrong.append((name, note))
     assert wrong == []
 
 
 def test_a_slide_goes_over_to_another_string_with_another_finger():
     for first, second in ((70, 79), (79, 70)):
-        playing = Playing(portamento=1.0, portamento_time=200.0, variation=0.0, listening=0.0)
-        playing.on(first)
+        playing = held("ordinary", first, portamento=1.0, portamento_time=200.0)
         playing.play(0.2)
         playing.on(second)
-        held = []
+        fingered = []
         for _ in range(60):
             playing.play(0.005)
-            player = playing.player
-            held.append((int(player["string"]), int(player["finger"]), float(player["position"])))
-        assert {string for string, _, _ in held} == {0, 1}
-        for (string, finger, _), (next_string, next_finger, _) in itertools.pairwise(held):
+            assert playing.player["position"] > 0.0
+            fingered.append((int(playing.player["string"]), int(playing.player["finger"])))
+        assert {string for string, _ in fingered} == {0, 1}
+        for (string, finger), (next_string, next_finger) in pairwise(fingered):
             assert (string != next_string) == (finger != next_finger)
-        assert all(position > 0.0 for _, _, position in held)
 
 
 def test_a_finger_touches_the_node_of_a_harmonic_and_no_other_note():
@@ -217,29 +204,18 @@ def test_strokes_in_a_hurry_come_sooner_and_lighter():
 
 
 def test_the_level_goes_with_the_bow_of_a_swell():
-    playing = Playing(articulation=NUMBER["swell"], variation=0.0, listening=0.0, note_length=1.0)
-    playing.on(74)
-    level = []
-    for _ in range(200):
-        playing.play(0.005)
-        level.append(float(playing.player["balance"]))
+    level = every_5_ms(held("swell", note_length=1.0), 1.0, lambda player: player["balance"])
     assert 80 < int(np.argmax(level)) < 130
-    assert max(level) - level[10] > 4.0
-    assert max(level) - level[-1] > 4.0
+    assert level.max() - level[10] > 4.0
+    assert level.max() - level[-1] > 4.0
 
 
-def test_a_trill_beats_a_second_above_some_seven_times_a_second():
+def test_a_trill_beats_a_second_above_some_seven_times_a_second_and_a_mordent_once():
     bend = bends("trill", 2.0)
     assert set(np.round(bend, 6)) == {0.0, 2.0}
     beats = np.count_nonzero((bend[1:] == 2.0) & (bend[:-1] == 0.0))
     assert 13 <= beats <= 22
-
-
-def test_a_mordent_beats_once_and_a_turning_slide_comes_back():
-    mordent, turning = bends("mordent"), bends("turning-slide")
-    assert np.count_nonzero(np.diff(mordent) != 0.0) == 2
-    assert turning[0] == turning[-1] == 0.0
-    assert turning.max() == pytest.approx(2.0, abs=0.02)
+    assert np.count_nonzero(np.diff(bends("mordent")) != 0.0) == 2
 
 
 def test_vibratos_of_their_own_go_before_what_is_wished():
@@ -265,26 +241,14 @@ def test_an_ordinary_note_is_shaped_as_far_as_phrasing_says():
 
 
 def test_a_portamento_is_a_smooth_curve_that_lasts_its_time():
-    playing = Playing(portamento=1.0, portamento_time=200.0, variation=0.0, listening=0.0)
-    playing.on(69)
+    playing = held("ordinary", 69, portamento=1.0, portamento_time=200.0)
     playing.play(0.3)
     playing.on(76)  # over C5: all on the F string
-    playing.play(0.005)
-    assert float(playing.player["gesture"]["bend"]) == pytest.approx(-7.0, abs=0.2)
-    strings = set()
-    for _ in range(37):
-        playing.play(0.005)
-        strings.add(int(playing.player["string"]))
-    assert float(playing.player["gesture"]["bend"]) != 0.0
-    playing.play(0.02)
-    assert float(playing.player["gesture"]["bend"]) == 0.0
-    assert strings == {0}
-
-
-def test_names_are_found_in_both_languages():
-    assert number_of("spiccato") == number_of("跳弓") == NUMBER["spiccato"]
-    with pytest.raises(ParameterError, match="did you mean spiccato"):
-        number_of("spicato")
+    bend = every_5_ms(playing, 0.21, lambda player: player["gesture"]["bend"])
+    assert playing.player["string"] == 0
+    assert bend[0] == pytest.approx(-7.0, abs=0.2)
+    assert bend[37] != 0.0
+    assert bend[-1] == 0.0
 
 
 def test_a_vibrato_fades_with_the_last_note_and_comes_in_anew_with_the_next():

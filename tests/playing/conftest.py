@@ -12,28 +12,28 @@ from yehu_server.playing.midi_poster import MidiPoster
 
 
 class Midi:
-    """A keyboard: methods send messages, by default on channel 1."""
+    """A keyboard: methods send messages, by default on channel 1 of the first port."""
 
     def __init__(self, player: MidiPoster) -> None:
-        self._player = player
+        self.player = player
 
-    def send(self, kind: str, **fields) -> None:
-        self._player.receive(mido.Message(kind, **fields))
+    def send(self, kind: str, channel: int = 1, port: int = 0, **fields: int) -> None:
+        self.player.receive(mido.Message(kind, channel=channel - 1, **fields), port=port)
 
-    def on(self, note: int, velocity: int = 64, channel: int = 1) -> None:
-        self.send("note_on", note=note, velocity=velocity, channel=channel - 1)
+    def on(self, note: int, velocity: int = 64, channel: int = 1, port: int = 0) -> None:
+        self.send("note_on", channel, port, note=note, velocity=velocity)
 
     def off(self, note: int, channel: int = 1) -> None:
-        self.send("note_off", note=note, channel=channel - 1)
+        self.send("note_off", channel, note=note)
 
     def cc(self, control: int, value: int, channel: int = 1) -> None:
-        self.send("control_change", control=control, value=value, channel=channel - 1)
+        self.send("control_change", channel, control=control, value=value)
 
-    def bend(self, pitch: int, channel: int = 1) -> None:
-        self.send("pitchwheel", pitch=pitch, channel=channel - 1)
+    def bend(self, pitch: int, channel: int = 1, port: int = 0) -> None:
+        self.send("pitchwheel", channel, port, pitch=pitch)
 
     def touch(self, value: int, channel: int = 1) -> None:
-        self.send("aftertouch", value=value, channel=channel - 1)
+        self.send("aftertouch", channel, value=value)
 
     def rpn(self, msb: int, lsb: int, *data: tuple[int, int], channel: int = 1) -> None:
         for control, value in ((101, msb), (100, lsb), *data):
@@ -72,3 +72,9 @@ def mapping() -> Mapping:
 @pytest.fixture
 def midi(player, mapping) -> Midi:
     return Midi(MidiPoster(player, mapping))
+
+
+@pytest.fixture
+def make(player):
+    """A keyboard with a mapping of its own."""
+    return lambda *binds, **more: Midi(MidiPoster(player, Mapping("test", binds, **more)))

@@ -4,35 +4,24 @@ from __future__ import annotations
 
 import os
 
-import mido
 import pytest
 
 from yehu_server.errors import MappingError
 from yehu_server.live.housekeeper import MappingWatch
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping, load
-from yehu_server.playing.midi_poster import MidiPoster
 
 VOLUME, EXPRESSION = "/playing/volume", "/playing/expression"
 
 
-@pytest.fixture
-def make(player):
-    return lambda *binds, **options: MidiPoster(player, Mapping("test", binds, **options))
-
-
-def cc(midi, control: int, value: int, channel: int = 1) -> None:
-    midi.receive(mido.Message("control_change", control=control, value=value, channel=channel - 1))
-
-
 def to(midi, *binds: Bind, **options) -> None:
-    midi.remap(Mapping("other", binds, **options), frame=7)
+    midi.player.remap(Mapping("other", binds, **options), frame=7)
 
 
 def test_the_same_mapping_again_moves_nothing(make, listener):
     midi = make(Bind("cc 1", VOLUME), start=((EXPRESSION, 0.5),))
-    midi.receive(mido.Message("note_on", note=75))
-    cc(midi, 1, 30)
+    midi.on(75)
+    midi.cc(1, 30)
     heard = len(listener.moves)
     to(midi, Bind("cc 1", VOLUME), start=((EXPRESSION, 0.5),))
     assert len(listener.moves) == heard
@@ -40,22 +29,22 @@ def test_the_same_mapping_again_moves_nothing(make, listener):
 
 def test_a_sounding_note_goes_on_and_follows_the_new_mapping(make, player, listener):
     midi = make(Bind("cc 1", VOLUME))
-    midi.receive(mido.Message("note_on", note=75))
+    midi.on(75)
     speed = len(listener.of("/bow/speed"))
     to(midi, Bind("cc 2", VOLUME))
     assert player.sounding is not None
     assert len(listener.of("/bow/speed")) == speed
-    cc(midi, 1, 0)
+    midi.cc(1, 0)
     assert player.value(VOLUME) == 1.0
-    cc(midi, 2, 0)
+    midi.cc(2, 0)
     assert player.value(VOLUME) == 0.0
 
 
 def test_what_was_moved_stays_where_its_source_is_still_bound(make, player):
     midi = make(Bind("cc 1", VOLUME), Bind("cc 2", EXPRESSION))
-    midi.receive(mido.Message("note_on", note=75))
-    cc(midi, 1, 127)
-    cc(midi, 2, 0)
+    midi.on(75)
+    midi.cc(1, 127)
+    midi.cc(2, 0)
     to(midi, Bind("cc 1", VOLUME, (0.0, 0.5)))
     assert player.value(VOLUME) == 0.5  # the wheel is where it was, and means less
     assert player.value(EXPRESSION) == 1.0  # as before anything moved it
@@ -65,69 +54,69 @@ def test_what_was_moved_stays_where_its_source_is_still_bound(make, player):
 
 def test_a_source_that_was_not_bound_moves_nothing_when_it_is(make, player):
     midi = make(Bind("cc 1", VOLUME))
-    cc(midi, 2, 0)
+    midi.cc(2, 0)
     to(midi, Bind("cc 2", VOLUME))
-    midi.receive(mido.Message("note_on", note=75))
+    midi.on(75)
     assert player.value(VOLUME) == 1.0
 
 
 def test_a_new_beginning_is_taken_where_nobody_has_moved_it(make, player):
     starts = {VOLUME: 0.5, EXPRESSION: 0.5, "/playing/attack": 50.0}
     midi = make(Bind("cc 1", EXPRESSION), start=tuple(starts.items()))
-    midi.receive(mido.Message("note_on", note=75))
-    midi.write(VOLUME, 0.1)
-    cc(midi, 1, 127)
+    midi.on(75)
+    midi.player.write(VOLUME, 0.1)
+    midi.cc(1, 127)
     to(midi, Bind("cc 1", EXPRESSION), start=((VOLUME, 0.7), (EXPRESSION, 0.7)))
     assert player.value(VOLUME) == 0.1  # written since
     assert player.value(EXPRESSION) == 1.0  # moved since
     assert player.value("/playing/attack") == 40.0  # begins at its default again
-    cc(midi, 121, 0)
+    midi.cc(121, 0)
     assert player.value(EXPRESSION) == 0.7
 
 
 def test_a_pedal_that_becomes_something_else_holds_nothing(make, player):
     midi = make()
-    cc(midi, 64, 127)
-    midi.receive(mido.Message("note_on", note=75))
-    midi.receive(mido.Message("note_off", note=75))
+    midi.cc(64, 127)
+    midi.on(75)
+    midi.off(75)
     to(midi, Bind("cc 64", VOLUME))
     assert player.sounding is None
 
 
 def test_zones_that_come_or_go_end_the_notes(make, player):
     midi = make()
-    midi.receive(mido.Message("note_on", note=75, channel=3))
+    midi.on(75, channel=4)
     to(midi, mpe=True)
     assert player.sounding is None
-    cc(midi, 64, 127, channel=1)
-    midi.receive(mido.Message("note_on", note=75, channel=3))
-    midi.receive(mido.Message("note_off", note=75, channel=3))
+    midi.cc(64, 127, channel=1)
+    midi.on(75, channel=4)
+    midi.off(75, channel=4)
     assert player.sounding is not None  # under its master's pedal
 
 
 def test_a_soft_bind_that_stays_keeps_its_hold(make, player):
     soft = Bind("cc 1", VOLUME, is_soft=True)
     midi = make(soft)
-    cc(midi, 1, 127)
-    cc(midi, 1, 20)
+    midi.cc(1, 127)
+    midi.cc(1, 20)
     to(midi, soft, Bind("cc 2", EXPRESSION))
-    cc(midi, 1, 90)
+    midi.cc(1, 90)
     assert player.value(VOLUME) == pytest.approx(90 / 127)
 
 
 def test_a_bind_that_becomes_soft_or_another_soft_one_keeps_its_hold(make, player):
     midi = make(Bind("cc 1", VOLUME))
-    cc(midi, 1, 127)
-    cc(midi, 1, 20)
-    midi.receive(mido.Message("note_on", note=75))
+    midi.cc(1, 127)
+    midi.cc(1, 20)
+    midi.on(75)
     to(midi, Bind("cc 1", VOLUME, is_soft=True), Bind("cc 1", EXPRESSION, is_soft=True))
     assert player.value(VOLUME) == pytest.approx(20 / 127)
     assert player.value(EXPRESSION) == 1.0  # a new target has to be met
-    cc(midi, 1, 90)
+    midi.cc(1, 90)
     assert player.value(VOLUME) == pytest.approx(90 / 127)
     to(midi, Bind("cc 1", VOLUME, (0.0, 0.5), is_soft=True))
     assert player.value(VOLUME) == pytest.approx(45 / 127)
-    cc(midi, 1, 20)
+    midi.cc(1, 20)
     assert player.value(VOLUME) == pytest.approx(10 / 127)
 
 

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-import mido
 import pytest
 from curves import from_unit
 
 from yehu_server.params.spec import Curve
 from yehu_server.playing.bind import Bind, Breakpoints
-from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.midi_poster import MidiPoster
 
 VOLUME = "/playing/volume"
 SOFT = Bind("cc 1", VOLUME, is_soft=True)
-
-
-@pytest.fixture
-def make(player):
-    return lambda *binds, **options: MidiPoster(player, Mapping("test", binds, **options))
 
 
 @pytest.fixture
@@ -26,9 +18,7 @@ def at(player):
 
     def move(midi, *values: int, control: int = 1, channel: int = 1) -> float:
         for value in values:
-            midi.receive(
-                mido.Message("control_change", control=control, value=value, channel=channel - 1)
-            )
+            midi.cc(control, value, channel)
         return player.value(VOLUME)
 
     return move
@@ -36,7 +26,7 @@ def at(player):
 
 def test_a_controller_waits_until_it_comes_to_its_target(make, at):
     midi = make(SOFT)
-    midi.write(VOLUME, 0.5)
+    midi.player.write(VOLUME, 0.5)
     assert at(midi, 0) == 0.5
     assert at(midi, 40) == 0.5
     assert at(midi, 61) == 0.5
@@ -48,7 +38,7 @@ def test_a_controller_waits_until_it_comes_to_its_target(make, at):
 @pytest.mark.parametrize(("values", "moved"), [((0, 127), 127), ((127, 3), 3), ((50, 80), 80)])
 def test_a_jump_over_the_targets_place_counts(make, at, values, moved):
     midi = make(SOFT)
-    midi.write(VOLUME, 0.5)
+    midi.player.write(VOLUME, 0.5)
     assert at(midi, values[0]) == 0.5
     assert at(midi, values[1]) == pytest.approx(moved / 127)
 
@@ -56,7 +46,7 @@ def test_a_jump_over_the_targets_place_counts(make, at, values, moved):
 @pytest.mark.parametrize(("value", "control"), [(0.0, 0), (1.0, 127)])
 def test_a_target_at_an_end_is_picked_up_there(make, at, value, control):
     midi = make(SOFT)
-    midi.write(VOLUME, value)
+    midi.player.write(VOLUME, value)
     assert at(midi, 64) == value
     assert at(midi, control) == value
     assert at(midi, 64) == pytest.approx(64 / 127)
@@ -76,7 +66,7 @@ def test_a_target_at_an_end_is_picked_up_there(make, at, value, control):
 @pytest.mark.parametrize("goes_up", [True, False])
 def test_every_way_leads_to_the_target_without_a_jump(make, at, bind, goes_up):
     midi = make(bind)
-    midi.write(VOLUME, 0.4)
+    midi.player.write(VOLUME, 0.4)
     way = range(128) if goes_up else range(127, -1, -1)
     heard = [at(midi, value) for value in way]
     picked = next(place for place, value in enumerate(heard) if value != 0.4)
@@ -87,42 +77,42 @@ def test_every_way_leads_to_the_target_without_a_jump(make, at, bind, goes_up):
 
 def test_whoever_moves_the_target_takes_it_from_the_controller(make, at):
     midi = make(SOFT, Bind("cc 2", VOLUME), Bind("/fader", VOLUME))
-    midi.write(VOLUME, 0.0)
+    midi.player.write(VOLUME, 0.0)
     assert at(midi, 0, 100) == pytest.approx(100 / 127)
     at(midi, 20, control=2)
     assert at(midi, 101) == pytest.approx(20 / 127)  # waits
     assert at(midi, 19) == pytest.approx(19 / 127)  # passed
-    midi.move("/fader", 0.9)
+    midi.player.move("/fader", 0.9)
     assert at(midi, 20) == 0.9
-    midi.write(VOLUME, 0.2)
+    midi.player.write(VOLUME, 0.2)
     assert at(midi, 30) == pytest.approx(30 / 127)  # passed, from 20 to 30
 
 
 def test_what_is_put_where_it_was_is_not_taken(make, at):
     midi = make(SOFT)
-    midi.write(VOLUME, 0.0)
+    midi.player.write(VOLUME, 0.0)
     value = at(midi, 0, 100)
-    midi.write(VOLUME, value)
+    midi.player.write(VOLUME, value)
     assert at(midi, 20) == pytest.approx(20 / 127)
 
 
 def test_each_channel_picks_up_for_itself(make, at, player):
     midi = make(SOFT)
-    midi.write(VOLUME, 0.5)
-    midi.receive(mido.Message("note_on", note=70, channel=0))
+    midi.player.write(VOLUME, 0.5)
+    midi.on(70)
     assert at(midi, 0, 127, channel=1) == 1.0
-    midi.receive(mido.Message("note_on", note=72, channel=1))
+    midi.on(72, channel=2)
     assert player.value(VOLUME) == 0.5
     assert at(midi, 127, channel=2) == 0.5
     assert at(midi, 0, channel=2) == 0.0
-    midi.receive(mido.Message("note_off", note=72, channel=1))
+    midi.off(72, channel=2)
     assert player.value(VOLUME) == 1.0
 
 
 def test_the_master_of_a_zone_picks_up_for_its_members(make, at, player):
     midi = make(SOFT, mpe=True)
-    midi.write(VOLUME, 0.5)
-    midi.receive(mido.Message("note_on", note=70, channel=3))
+    midi.player.write(VOLUME, 0.5)
+    midi.on(70, channel=4)
     assert at(midi, 0, channel=1) == 0.5
     assert at(midi, 127, 10, channel=1) == pytest.approx(10 / 127)
     assert player.value(VOLUME) == pytest.approx(10 / 127)
@@ -141,28 +131,28 @@ def test_a_reset_lets_the_controller_wait_again(make, at, player):
 
 def test_hard_and_soft_targets_of_one_controller_do_not_disturb_each_other(make, at, player):
     midi = make(SOFT, Bind("cc 1", "/playing/expression"))
-    midi.write(VOLUME, 0.5)
+    midi.player.write(VOLUME, 0.5)
     assert at(midi, 10) == 0.5
     assert player.value("/playing/expression") == pytest.approx(10 / 127)
 
 
 def test_an_osc_fader_waits_too(make, player):
     midi = make(Bind("/fader", VOLUME, input_range=(0.0, 10.0), is_soft=True))
-    midi.write(VOLUME, 0.5)
-    midi.move("/fader", 1.0)
+    midi.player.write(VOLUME, 0.5)
+    midi.player.move("/fader", 1.0)
     assert player.value(VOLUME) == 0.5
-    midi.move("/fader", 9.0)
+    midi.player.move("/fader", 9.0)
     assert player.value(VOLUME) == 0.9
-    midi.write(VOLUME, 0.1)
-    midi.move("/fader", 8.0)
+    midi.player.write(VOLUME, 0.1)
+    midi.player.move("/fader", 8.0)
     assert player.value(VOLUME) == 0.1
-    midi.move("/fader", 1.1)
+    midi.player.move("/fader", 1.1)
     assert player.value(VOLUME) == pytest.approx(0.11)
 
 
 def test_fourteen_bits_are_picked_up_by_either_half(make, at):
     midi = make(Bind("cc 1/33", VOLUME, is_soft=True))
-    midi.write(VOLUME, 0.5)
+    midi.player.write(VOLUME, 0.5)
     assert at(midi, 60) == 0.5
     assert at(midi, 127, control=33) == 0.5
     assert at(midi, 62) == pytest.approx(62 * 128 / 16383)

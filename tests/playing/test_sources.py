@@ -2,43 +2,32 @@
 
 from __future__ import annotations
 
-import mido
 import pytest
 
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
 from yehu_server.playing.bind import Bind
-from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.sources import canonical
 
 VOLUME = "/playing/volume"
 
 
 @pytest.fixture
-def playing(player):
-    """Send MIDI to a player with these binds; return the volume."""
+def playing(make, player):
+    """Send MIDI to a player with these binds, and controllers; return the volume."""
 
-    def make(*binds: Bind, **options):
-        midi = MidiPoster(player, Mapping("test", binds, **options))
+    def play(*binds: Bind):
+        midi = make(*binds)
 
         def cc(*moves: tuple[int, int], channel: int = 1) -> float:
             for control, value in moves:
-                midi.receive(
-                    mido.Message(
-                        "control_change", control=control, value=value, channel=channel - 1
-                    )
-                )
+                midi.cc(control, value, channel)
             return player.value(VOLUME)
 
         return midi, cc
 
-    return make
-
-
-def note(midi, number: int, velocity: int = 64, channel: int = 1) -> None:
-    midi.receive(mido.Message("note_on", note=number, velocity=velocity, channel=channel - 1))
+    return play
 
 
 # ---------------------------------------------------------------- names
@@ -189,7 +178,7 @@ def test_data_entry_for_anything_else_moves_no_nrpn(playing, moves):
 
 def test_an_nrpn_is_stepped_from_where_it_or_its_target_is(playing):
     midi, cc = playing(Bind("nrpn 300", VOLUME))
-    midi.write(VOLUME, 0.5)
+    midi.player.write(VOLUME, 0.5)
     assert cc((99, 2), (98, 44), (96, 0)) == pytest.approx(0.5 + 1 / 127)
     assert cc((97, 0), (97, 0)) == pytest.approx(0.5 - 1 / 127)
     assert cc(*[(96, 0)] * 127) == 1.0
@@ -209,22 +198,22 @@ def test_each_channel_selects_for_itself(playing):
 @pytest.mark.parametrize("key", [0, 1, 60, 126, 127])
 def test_a_note_moves_by_its_key(playing, player, key):
     midi, _ = playing(Bind("note", "/playing/attack", (10.0, 200.0)))
-    note(midi, key)
+    midi.on(key)
     assert player.value("/playing/attack") == pytest.approx(10.0 + 190.0 * key / 127)
 
 
 def test_a_note_that_comes_back_has_its_own_key_again(playing, player):
     midi, _ = playing(Bind("note", VOLUME))
-    note(midi, 70)
-    note(midi, 80)
+    midi.on(70)
+    midi.on(80)
     assert player.value(VOLUME) == pytest.approx(80 / 127)
-    midi.receive(mido.Message("note_off", note=80))
+    midi.off(80)
     assert player.value(VOLUME) == pytest.approx(70 / 127)
 
 
 def test_of_velocity_and_key_of_one_note_the_bind_named_last_counts(playing, player):
     midi, _ = playing(Bind("note", VOLUME), Bind("velocity", VOLUME))
-    note(midi, 70, velocity=127)
+    midi.on(70, velocity=127)
     assert player.value(VOLUME) == 1.0
 
 
@@ -235,13 +224,13 @@ def test_a_bind_hears_only_its_channels(playing, player):
     midi, cc = playing(
         Bind("cc 1", VOLUME, channels=(2, 3)), Bind("velocity", "/playing/attack", channels=(2,))
     )
-    note(midi, 70, channel=1)
+    midi.on(70, channel=1)
     assert cc((1, 0), channel=1) == 1.0
     assert player.value("/playing/attack") == 40.0
-    note(midi, 71, velocity=127, channel=2)
+    midi.on(71, velocity=127, channel=2)
     assert player.value("/playing/attack") == 500.0
     assert cc((1, 0), channel=2) == 0.0
-    note(midi, 72, channel=3)
+    midi.on(72, channel=3)
     assert cc((1, 127), channel=2) == 1.0  # that of a channel that does not sound
     assert cc((1, 0), channel=3) == 0.0
 
@@ -256,18 +245,18 @@ def test_one_source_may_go_to_other_targets_on_other_channels(playing, player):
 
 def test_an_inverted_wheel_bends_the_other_way(playing, player):
     midi, _ = playing(Bind("bend", "/playing/bend", invert=True))
-    note(midi, 77)
-    midi.receive(mido.Message("pitchwheel", pitch=8191))
+    midi.on(77)
+    midi.bend(8191)
     assert player.value("/playing/bend") == -2.0
 
 
 def test_a_curved_wheel_still_rests_in_its_middle_and_ends_at_the_range(playing, player):
     midi, _ = playing(Bind("bend", "/playing/bend", curve=Curve.S))
-    note(midi, 77)
+    midi.on(77)
     for pitch, bend in ((8191, 2.0), (0, 0.0), (-8192, -2.0)):
-        midi.receive(mido.Message("pitchwheel", pitch=pitch))
+        midi.bend(pitch)
         assert player.value("/playing/bend") == bend
-    midi.receive(mido.Message("pitchwheel", pitch=4096))
+    midi.bend(4096)
     assert player.value("/playing/bend") > 1.1
 
 
@@ -277,7 +266,7 @@ def test_a_curved_wheel_still_rests_in_its_middle_and_ends_at_the_range(playing,
 def test_a_smoothed_move_takes_its_time_at_least(playing, listener):
     smooth = Bind("cc 74", "/playing/bow_position", smoothing_ms=50.0)
     midi, cc = playing(smooth, Bind("cc 71", "/playing/bow_position"))
-    note(midi, 70)
+    midi.on(70)
     cc((74, 100))
     assert listener.of("/bow/position")[-1].ramp_ms == 50.0
     cc((71, 90))  # a bind without
@@ -289,22 +278,22 @@ def test_smoothing_makes_no_move_quicker_than_the_hand(playing, listener):
         Bind("cc 74", "/playing/bow_position", smoothing_ms=1.0),
         Bind("bend", "/playing/bend", smoothing_ms=80.0),
     )
-    note(midi, 77)
+    midi.on(77)
     cc((74, 100))
     assert listener.of("/bow/position")[-1].ramp_ms == 20.0
-    midi.receive(mido.Message("pitchwheel", pitch=1000))
+    midi.bend(1000)
     assert listener.of(f"/finger/{listener.finger}/position")[-1].ramp_ms == 80.0
 
 
 def test_whatever_comes_next_need_not_wait_for_the_glide(playing, listener):
     midi, cc = playing(Bind("cc 1", "/playing/speed", smoothing_ms=900.0))
-    note(midi, 70)
+    midi.on(70)
     cc((1, 20))
     assert listener.of("/bow/speed")[-1].ramp_ms == 900.0
     heard = len(listener.moves)
-    note(midi, 74)
+    midi.on(74)
     assert all(move.ramp_ms != 900.0 for move in listener.moves[heard:])
-    midi.write("/playing/speed", 0.15)
+    midi.player.write("/playing/speed", 0.15)
     assert listener.of("/bow/speed")[-1][1:] == (0.15, None, find("/bow/speed").smooth_ms)
 
 
@@ -317,15 +306,15 @@ def test_an_osc_address_moves_its_targets_on_all_channels(playing, player):
         Bind("/fader", "/playing/attack", (10.0, 110.0), invert=True),
         Bind("cc 7", VOLUME),
     )
-    midi.move("/fader", 127)
+    midi.player.move("/fader", 127)
     assert (player.value(VOLUME), player.value("/playing/attack")) == (1.0, 10.0)
-    midi.move("/fader", 0)
+    midi.player.move("/fader", 0)
     assert (player.value(VOLUME), player.value("/playing/attack")) == (0.0, 110.0)
     for channel in (1, 5):
-        note(midi, 70, channel=channel)
+        midi.on(70, channel=channel)
         assert player.value(VOLUME) == 0.0
     assert cc((7, 64), channel=5) == pytest.approx(64 / 127)  # moved last
-    midi.move("/fader", 127)
+    midi.player.move("/fader", 127)
     assert player.value(VOLUME) == 1.0
-    midi.move("/else", 0)
+    midi.player.move("/else", 0)
     assert player.value(VOLUME) == 1.0

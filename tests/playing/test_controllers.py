@@ -11,30 +11,25 @@ SLOWEST, FASTEST = 0.08, 0.35  # m/s
 # ---------------------------------------------------------------- pitch bend
 
 
-@pytest.mark.parametrize(("pitch", "semitones"), [(8191, 2), (-8192, -2), (0, 0)])
-def test_the_ends_of_the_wheel_are_the_whole_bend_range(midi, listener, pitch, semitones):
+def test_the_wheel_bends_by_its_range_in_fourteen_bits_also_between_notes(midi, player, listener):
     midi.on(77)
-    midi.bend(pitch)
-    assert listener.where() == ("C", 5 + semitones)
-
-
-def test_the_wheel_bends_in_fourteen_bits(midi, player):
-    midi.on(77)
+    for pitch, semitones in ((8191, 2), (-8192, -2), (0, 0)):
+        midi.bend(pitch)
+        assert listener.where() == ("C", 5 + semitones)
     midi.bend(1)
     assert player.value("/playing/bend") == pytest.approx(2 / 8191)
     midi.bend(4096)
     assert player.value("/playing/bend") == pytest.approx(1.0, abs=2e-4)
-
-
-def test_a_wheel_moved_between_notes_bends_the_next_one(midi, listener):
+    midi.off(77)
     midi.bend(8191)
     midi.on(77)
     assert listener.where() == ("C", 7)
 
 
-@pytest.mark.parametrize(
-    ("data", "semitones"),
-    [
+def test_rpn_0_sets_the_bend_range(midi, player):
+    midi.on(77)
+    midi.bend(8191)
+    for data, semitones in [
         ([(6, 12)], 12),
         ([(6, 0)], 0),
         ([(38, 50)], 2.5),
@@ -48,13 +43,9 @@ def test_a_wheel_moved_between_notes_bends_the_next_one(midi, listener):
         ([(38, 50), (96, 0)], 3.5),
         ([(6, 48)], 48),
         ([(6, 127)], 48),
-    ],
-)
-def test_rpn_0_sets_the_bend_range(midi, player, data, semitones):
-    midi.on(77)
-    midi.bend(8191)
-    midi.rpn(0, 0, *data)
-    assert player.value("/playing/bend") == pytest.approx(semitones)
+    ]:
+        midi.rpn(0, 0, (6, 2), (38, 0), *data)
+        assert player.value("/playing/bend") == pytest.approx(semitones), data
 
 
 def test_a_new_bend_range_is_heard_at_once_and_in_later_notes(midi, listener):
@@ -67,9 +58,10 @@ def test_a_new_bend_range_is_heard_at_once_and_in_later_notes(midi, listener):
     assert listener.where() == ("C", 5)
 
 
-@pytest.mark.parametrize(
-    "preamble",
-    [
+def test_data_entry_for_anything_else_leaves_the_bend_range_alone(midi, player):
+    midi.on(77)
+    midi.bend(8191)
+    for preamble in [
         [],  # nothing selected yet
         [(101, 0), (100, 0), (101, 127), (100, 127)],  # RPN null
         [(101, 0), (100, 1)],  # fine tuning
@@ -77,14 +69,10 @@ def test_a_new_bend_range_is_heard_at_once_and_in_later_notes(midi, listener):
         [(101, 0), (100, 0), (99, 1), (98, 8)],  # an NRPN takes data entry away
         [(99, 0), (98, 0)],
         [(101, 0), (100, 0), (98, 0)],
-    ],
-)
-def test_data_entry_for_anything_else_leaves_the_bend_range_alone(midi, player, preamble):
-    midi.on(77)
-    midi.bend(8191)
-    for control, value in [*preamble, (6, 12), (38, 50), (96, 0), (97, 0), (97, 0)]:
-        midi.cc(control, value)
-    assert player.value("/playing/bend") == 2.0
+    ]:
+        for control, value in [*preamble, (6, 12), (38, 50), (96, 0), (97, 0), (97, 0)]:
+            midi.cc(control, value)
+        assert player.value("/playing/bend") == 2.0, preamble
 
 
 def test_each_channel_has_its_own_bend_and_bend_range(midi, listener):
@@ -99,12 +87,6 @@ def test_each_channel_has_its_own_bend_and_bend_range(midi, listener):
     assert listener.where() == ("C", 7)
 
 
-def test_the_wheel_of_another_channel_does_not_bend_the_note(midi, listener):
-    midi.on(77, channel=1)
-    midi.bend(8191, channel=2)
-    assert listener.where() == ("C", 5)
-
-
 def test_the_bend_of_one_channel_does_not_choose_the_string_for_another(midi, listener):
     midi.bend(-8192, channel=1)
     midi.on(77, channel=1)
@@ -116,53 +98,34 @@ def test_the_bend_of_one_channel_does_not_choose_the_string_for_another(midi, li
 # ---------------------------------------------------------------- pressure
 
 
-def test_channel_pressure_presses_the_finger(midi, listener):
+def test_channel_pressure_presses_the_fingers_of_its_channel(midi, listener):
     midi.on(75)
+    midi.touch(127, channel=2)
+    assert listener.press == PRESS
+    midi.touch(0)
     assert listener.press == PRESS
     midi.touch(127)
     assert listener.press == HARDEST
-    midi.touch(0)
-    assert listener.press == PRESS
-
-
-def test_channel_pressure_lasts_through_the_next_note(midi, listener):
-    midi.on(75)
-    midi.touch(127)
     midi.off(75)
     midi.on(77)
     assert listener.press == HARDEST
-
-
-def test_the_pressure_of_another_channel_does_not_press_the_finger(midi, listener):
-    midi.on(75, channel=1)
-    midi.touch(127, channel=2)
+    midi.off(77)
+    midi.on(77, channel=3)
     assert listener.press == PRESS
 
 
-def test_the_pressure_of_one_channel_stays_on_it(midi, listener):
-    midi.on(75, channel=1)
-    midi.touch(127, channel=1)
-    midi.off(75, channel=1)
-    midi.on(77, channel=2)
-    assert listener.press == PRESS
-
-
-def test_poly_pressure_presses_the_finger_of_its_own_note_only(midi, listener):
+def test_poly_pressure_presses_the_finger_of_its_own_note_only_and_ends_with_it(midi, listener):
     midi.on(75)
     midi.on(77)
     midi.send("polytouch", note=75, value=127)
     assert listener.press == PRESS
     midi.send("polytouch", note=77, value=127)
     assert listener.press == HARDEST
-
-
-@pytest.mark.parametrize("after", [75, 77])
-def test_poly_pressure_ends_with_its_note(midi, listener, after):
-    midi.on(75)
-    midi.send("polytouch", note=75, value=127)
+    midi.off(77)
     midi.off(75)
-    midi.on(after)
-    assert listener.press == PRESS
+    for note in (77, 79):
+        midi.on(note)
+        assert listener.press == PRESS
 
 
 # ---------------------------------------------------------------- controllers
@@ -226,11 +189,18 @@ def test_reset_all_controllers_puts_back_all_but_volume_and_pan(midi, player, li
     assert listener.press == PRESS
 
 
-def test_reset_all_controllers_ends_poly_pressure(midi, listener):
+def test_reset_all_controllers_ends_poly_pressure_and_what_only_the_pedal_held(
+    midi, player, listener
+):
+    midi.cc(64, 127)
     midi.on(75)
-    midi.send("polytouch", note=75, value=127)
+    midi.on(77)
+    midi.off(75)
+    midi.send("polytouch", note=77, value=127)
     midi.cc(121, 0)
     assert listener.press == PRESS
+    midi.off(77)
+    assert player.sounding is None
 
 
 def test_reset_all_controllers_keeps_the_bend_range_but_closes_data_entry(midi, player):
@@ -240,14 +210,6 @@ def test_reset_all_controllers_keeps_the_bend_range_but_closes_data_entry(midi, 
     midi.on(77)
     midi.bend(8191)
     assert player.value("/playing/bend") == 12.0
-
-
-def test_reset_all_controllers_ends_what_only_the_pedal_held(midi, player):
-    midi.cc(64, 127)
-    midi.on(75)
-    midi.off(75)
-    midi.cc(121, 0)
-    assert player.sounding is None
 
 
 def test_reset_all_controllers_does_not_bend_the_note_of_another_channel(midi, listener):

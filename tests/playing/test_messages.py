@@ -42,11 +42,14 @@ def test_a_note_that_returns_has_its_own_velocity_again(midi, listener):
     assert listener["/bow/pressure"] == pytest.approx(0.55)
 
 
-def test_all_channels_but_the_tenth_play_on_the_one_instrument(midi, player):
-    for channel in range(1, 17):
-        midi.on(75, channel=channel)
-        midi.off(75, channel=channel)
-    assert player.notes_played == 15
+@pytest.mark.parametrize(("chosen", "playing"), [((), {*range(16)} - {9}), (({2, 9},), {2, 9})])
+def test_all_channels_but_the_tenth_play_or_those_chosen(player, mapping, chosen, playing):
+    midi = MidiPoster(player, mapping, *chosen)
+    for channel in range(16):
+        for velocity in (64, 64, 0):
+            midi.receive(mido.Message("note_on", note=75, velocity=velocity, channel=channel))
+    assert midi.notes_by_channel == dict.fromkeys(playing, 2)
+    assert player.notes_played == 2 * len(playing)
 
 
 def test_the_tenth_channel_moves_nothing(midi, listener):
@@ -59,22 +62,6 @@ def test_the_tenth_channel_moves_nothing(midi, listener):
         midi.cc(control, 127, channel=10)
     assert len(listener.moves) == heard
     assert not listener.silenced
-
-
-def test_only_the_channels_chosen_play(player, mapping):
-    chosen = MidiPoster(player, mapping, {2, 9})
-    for channel in range(16):
-        chosen.receive(mido.Message("note_on", note=75, channel=channel))
-        chosen.receive(mido.Message("note_off", note=75, channel=channel))
-    assert player.notes_played == 2
-    assert chosen.notes_by_channel == {2: 1, 9: 1}
-
-
-def test_notes_are_counted_by_channel(player, mapping):
-    midi = MidiPoster(player, mapping)
-    for channel, note in ((0, 66), (4, 70), (0, 20), (4, 71), (4, 71)):
-        midi.receive(mido.Message("note_on", note=note, channel=channel))
-    assert midi.notes_by_channel == {0: 2, 4: 3}
 
 
 def test_messages_that_are_none_of_the_players_business_change_nothing(player, listener, mapping):
@@ -115,12 +102,12 @@ def test_a_skipped_note_leaves_the_sounding_one_alone(listener, mapping):
 # ---------------------------------------------------------------- the pedal
 
 
-@pytest.mark.parametrize(("value", "down"), [(0, False), (63, False), (64, True), (127, True)])
-def test_the_pedal_is_down_from_64(midi, player, value, down):
-    midi.cc(64, value)
-    midi.on(75)
-    midi.off(75)
-    assert (player.sounding is not None) == down
+def test_the_pedal_is_down_from_64(midi, player):
+    for value, down in ((0, False), (63, False), (64, True), (127, True)):
+        midi.cc(64, value)
+        midi.on(75)
+        midi.off(75)
+        assert (player.sounding is not None) == down, value
 
 
 def test_a_key_pressed_again_under_the_pedal_is_held_by_the_hand(midi, player, listener):
@@ -154,10 +141,10 @@ def test_mode_messages_end_every_note(midi, player, listener, control, pedal):
     assert player.sounding == Key(0, 80)
 
 
-@pytest.mark.parametrize("control", [120, 123])
-def test_a_mode_message_leaves_the_notes_of_other_channels(midi, player, listener, control):
-    midi.on(75, channel=1)
-    midi.cc(control, 0, channel=2)
-    assert player.sounding == Key(0, 75)
-    assert listener["/bow/side"] == -1.0
-    assert not listener.silenced
+def test_a_mode_message_leaves_the_notes_of_other_channels(midi, player, listener):
+    midi.on(75)
+    for control in (120, 123):
+        midi.cc(control, 0, channel=2)
+        assert player.sounding == Key(0, 75)
+        assert listener["/bow/side"] == -1.0
+        assert not listener.silenced

@@ -32,96 +32,63 @@ def test_a_note_below_c5_is_stopped_on_the_f_string_and_one_above_on_the_c_strin
         assert (string, round(stop)) == (("F", note - 65) if note < 72 else ("C", note - 72))
 
 
-@pytest.mark.parametrize(("note", "string"), [(65, "F"), (72, "C")])
-@pytest.mark.parametrize("before", [None, 70, 80])
-def test_f4_and_c5_are_open_strings(player, listener, note, string, before):
-    if before is not None:
-        player.note_on(key(before))
-    player.note_on(key(note))
-    assert listener.where() == (string, None)
+def hands() -> tuple[Checked, Watched]:
+    """A player without random variation on an ideal instrument."""
+    listener = Watched(calibration=ideal())
+    player = Checked(listener)
+    player.write("/playing/variation", 0.0)
+    return player, listener
 
 
-def test_a_finger_high_on_the_f_string_stays_there_for_a_near_note(player, listener):
-    player.note_on(key(71))  # 9 cm up the neck; 74 is at 12 cm here and 4 cm on the C string
-    player.note_on(key(74))
-    assert listener.where() == ("F", 9)
+def test_a_finger_stays_on_its_string_for_a_near_note_and_goes_to_the_other_for_a_far_one():
+    """74 is 12 cm up the F string, and 4 cm up the C string."""
+    for notes, where in {
+        **{(*before, 65): ("F", None) for before in ((), (70,), (80,))},  # open strings
+        **{(*before, 72): ("C", None) for before in ((), (70,), (80,))},
+        (71, 74): ("F", 9),  # from 9 cm
+        (66, 74): ("C", 2),  # from 2 cm
+        (71, 65, 74): ("C", 2),  # a finger that is up has no way to go
+        (84, 77): ("C", 5),  # on the F string it would not have to move at all
+        (71, 74, 76): ("F", 11),
+        (71, 74, 76, 78): ("C", 6),  # no note is played far up the F string
+    }.items():
+        player, listener = hands()
+        for note in notes:
+            player.note_on(key(note))
+        assert listener.where() == where, notes
 
 
-def test_a_finger_low_on_the_f_string_crosses_to_the_c_string(player, listener):
-    player.note_on(key(66))  # 2 cm up the neck; 74 is at 12 cm here and 4 cm on the C string
-    player.note_on(key(74))
-    assert listener.where() == ("C", 2)
-
-
-def test_a_finger_that_is_up_has_no_way_to_go(player, listener):
-    player.note_on(key(71))
-    player.note_on(key(65))
-    player.note_on(key(74))
-    assert listener.where() == ("C", 2)
-
-
-def test_a_finger_on_the_c_string_stays_on_it(player, listener):
-    player.note_on(key(84))
-    player.note_on(key(77))  # on the F string the finger would not have to move at all
-    assert listener.where() == ("C", 5)
-
-
-def test_no_note_is_played_far_up_the_f_string(player, listener):
-    for note in (71, 74, 76):
+def test_a_string_may_be_wished_for():
+    sliding = "sliding-vibrato"  # which goes below the open C string
+    for wish, note, articulation, where in [
+        (1.0, 72, "ordinary", ("F", 7)),
+        (1.0, 79, "ordinary", ("F", 14)),
+        (1.0, 65, "ordinary", ("F", None)),
+        (2.0, 74, "ordinary", ("C", 2)),
+        (2.0, 72, "ordinary", ("C", None)),
+        (2.0, 70, "ordinary", ("F", 5)),  # the C string has no such note
+        (0.0, 74, "ordinary", ("F", 9)),
+        (0.0, 72, sliding, ("F", 7)),
+        (2.0, 72, sliding, ("C", None)),
+    ]:
+        player, listener = hands()
+        player.note_on(key(71))  # from here the F string would be nearer for 74
+        player.write("/playing/string", wish)
+        player.write("/playing/articulation", float(NUMBER[articulation]))
         player.note_on(key(note))
-        assert listener.where() == ("F", note - 65)
-    player.note_on(key(78))  # 2 cm further there, 5 cm back on the C string
-    assert listener.where() == ("C", 6)
+        assert listener.where() == where, (wish, note, articulation)
 
 
-@pytest.mark.parametrize(
-    ("wish", "note", "expected"),
-    [
-        (1.0, 72, ("F", 7)),
-        (1.0, 79, ("F", 14)),
-        (1.0, 65, ("F", None)),
-        (2.0, 74, ("C", 2)),
-        (2.0, 72, ("C", None)),
-        (2.0, 70, ("F", 5)),  # the C string has no such note
-        (0.0, 74, ("F", 9)),
-    ],
-)
-def test_a_string_may_be_wished_for(player, listener, wish, note, expected):
-    player.note_on(key(71))  # from here the F string would be nearer for 74
-    player.write("/playing/string", wish)
-    player.note_on(key(note))
-    assert listener.where() == expected
-
-
-@pytest.mark.parametrize(("wish", "expected"), [(0.0, ("F", 7)), (2.0, ("C", None))])
-def test_a_string_may_be_wished_for_a_note_that_no_string_has_all_of(
-    player, listener, wish, expected
-):
-    player.note_on(key(71))
-    player.write("/playing/string", wish)
-    player.write("/playing/articulation", float(NUMBER["sliding-vibrato"]))
-    player.note_on(key(72))  # its vibrato goes below the open C string
-    assert listener.where() == expected
-
-
-def test_a_bend_stays_on_the_string_that_is_wished_for(player, listener):
-    player.write("/playing/string", 1.0)
-    player.note_on(key(71))
-    player.write("/playing/bend", 7.0)
-    assert listener.where() == ("F", 13)
-
-
-@pytest.mark.parametrize(
-    ("wish", "expected"), [(0.0, [1, -1, 1]), (1.0, [1] * 3), (-1.0, [-1] * 3)]
-)
-def test_strokes_go_in_turn_or_the_way_that_is_wished_for(player, listener, wish, expected):
-    player.write("/playing/direction", wish)
-    signs = []
-    for note in (66, 68, 70):
-        player.note_on(key(note))
-        signs.append(math.copysign(1, listener["/bow/speed"]))
-        player.note_off(key(note))
-    assert signs == expected
+def test_strokes_go_in_turn_or_the_way_that_is_wished_for():
+    for wish, expected in ((0.0, [1, -1, 1, -1]), (1.0, [1] * 4), (-1.0, [-1] * 4)):
+        player, listener = hands()
+        player.write("/playing/direction", wish)
+        signs = []
+        for note in (66, 73, 66, 65):
+            player.note_on(key(note))
+            signs.append(listener["/bow/speed"] / 0.2)
+            player.note_off(key(note))
+        assert signs == expected
 
 
 def test_a_new_seed_begins_another_sequence_and_an_old_one_the_same():
@@ -163,14 +130,6 @@ def test_without_calibration_fingers_go_to_where_an_ideal_string_is_in_tune():
     assert 1e-4 < abs(measured - by_itself) < 0.01
 
 
-def test_a_long_bend_up_the_f_string_goes_on_on_the_c_string(player, listener):
-    player.note_on(key(71))
-    player.write("/playing/bend", 5.0)
-    assert listener.where() == ("F", 11)
-    player.write("/playing/bend", 7.0)
-    assert listener.where() == ("C", 6)
-
-
 def test_a_slurred_note_is_a_step_of_the_next_finger(player, listener):
     for note, finger in zip((66, 68, 70, 67, 66, 68), (1, 2, 3, 4, 1, 2), strict=True):
         player.note_on(key(note))
@@ -198,8 +157,7 @@ def test_a_portamento_begins_where_the_finger_is(player, listener):
 def test_the_same_place_on_the_other_string_takes_the_same_finger(player, listener):
     player.note_on(key(69))
     player.note_on(key(76))
-    assert listener.finger == 1
-    assert listener.where() == ("C", 4)
+    assert (listener.finger, listener.where()) == (1, ("C", 4))
 
 
 # ---------------------------------------------------------------- one note at a time
@@ -248,16 +206,11 @@ def end_all_sound(player: Checked, frame: int | None = None) -> None:
     player.stop_sound(frame=frame)
 
 
-def test_all_sound_off_silences_the_instrument_at_its_frame(player, listener):
-    player.note_on(key(66))
+def test_all_sound_off_silences_the_instrument_at_its_frame_and_lifts_the_hand(player, listener):
+    player.note_on(key(71))
     end_all_sound(player, 4711)
     assert player.sounding is None
     assert listener.silenced == [4711]
-
-
-def test_after_all_sound_off_the_hand_is_off_the_strings(player, listener):
-    player.note_on(key(71))
-    end_all_sound(player)
     assert listener.press == 0.0
     player.note_on(key(74))  # 12 cm up the F string, where the hand no longer is
     assert listener.where() == ("C", 2)
@@ -274,15 +227,6 @@ def test_everything_a_note_moves_happens_at_its_frame(player, listener):
 # ---------------------------------------------------------------- strokes
 
 
-def test_separate_notes_change_the_direction_of_the_bow(player, listener):
-    strokes = []
-    for note in (66, 73, 66, 65):
-        player.note_on(key(note))
-        strokes.append(listener["/bow/speed"])
-        player.note_off(key(note))
-    assert strokes == [0.2, -0.2, 0.2, -0.2]
-
-
 def test_overlapping_notes_share_one_stroke_across_the_strings_too(player, listener):
     held = None
     for note in (66, 73, 70, 72):
@@ -294,18 +238,14 @@ def test_overlapping_notes_share_one_stroke_across_the_strings_too(player, liste
         held = key(note)
 
 
-def test_a_held_note_returns_on_the_same_stroke(player, listener):
+def test_a_held_note_returns_on_the_same_stroke_and_its_key_struck_again_is_a_new_one(
+    player, listener
+):
     player.note_on(key(66))
-    player.note_off(key(66))
     player.note_on(key(66))
+    assert listener["/bow/speed"] == -0.2
     player.note_on(key(70))
     player.note_off(key(70))
-    assert listener["/bow/speed"] == -0.2
-
-
-def test_the_same_key_struck_again_is_a_new_stroke(player, listener):
-    player.note_on(key(66))
-    player.note_on(key(66))
     assert listener["/bow/speed"] == -0.2
 
 
@@ -350,19 +290,21 @@ def test_pressing_harder_does_not_close_an_open_string(player, listener):
 # ---------------------------------------------------------------- bending
 
 
-def test_a_bend_moves_the_finger_along_its_string(player, listener):
-    player.note_on(key(75))
-    for bend in (1.5, -2.0, 0.01, 0.0):
-        player.write("/playing/bend", bend)
-        assert listener.where() == ("C", round(3 + bend, 6))
-
-
-def test_an_open_string_bent_up_is_stopped_and_open_again_when_it_comes_back(player, listener):
-    player.note_on(key(65))
-    player.write("/playing/bend", 1.0)
-    assert listener.where() == ("F", 1)
-    player.write("/playing/bend", 0.0)
-    assert listener.where() == ("F", None)
+def test_a_bend_moves_the_finger_along_its_string_as_far_as_it_goes(subtests):
+    for note, string, bends in [
+        (75, 0.0, {1.5: ("C", 4.5), -2.0: ("C", 1), 0.01: ("C", 3.01), 0.0: ("C", 3)}),
+        (65, 0.0, {1.0: ("F", 1), 0.0: ("F", None)}),  # an open string, stopped and open again
+        (66, 0.0, {-7.0: ("F", None)}),  # nothing is below it
+        (71, 0.0, {5.0: ("F", 11), 7.0: ("C", 6)}),  # on the other where that goes on
+        (71, 1.0, {7.0: ("F", 13)}),  # unless this one is wished for
+    ]:
+        with subtests.test(note=note, string=string):
+            player, listener = hands()
+            player.write("/playing/string", string)
+            player.note_on(key(note))
+            for bend, where in bends.items():
+                player.write("/playing/bend", bend)
+                assert listener.where() == where, bend
 
 
 def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string_as_that_is_bowed():
@@ -375,12 +317,6 @@ def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string_as_that_is_
     player.write("/playing/bend", -2.0)
     assert listener.where() == ("F", 6)
     assert listener["/bow/speed"] == 0.11
-
-
-def test_a_bend_below_the_open_f_string_stops_at_it(player, listener):
-    player.note_on(key(66))
-    player.write("/playing/bend", -7.0)
-    assert listener.where() == ("F", None)
 
 
 def test_a_note_begun_with_the_wheel_moved_starts_bent(player, listener):
@@ -467,18 +403,15 @@ def test_without_variation_every_note_is_the_same_but_for_its_stroke():
     assert position == pytest.approx(place(1, 75.0))
 
 
-def test_one_seed_plays_the_same_and_another_differently():
-    assert phrase(0.5, 1) == phrase(0.5, 1)
-    assert phrase(0.5, 1) != phrase(0.5, 2)
-
-
-@pytest.mark.parametrize("address", ["/bow/speed", "/bow/pressure", "/finger/1/position"])
-def test_with_variation_no_two_notes_are_alike_and_all_are_close(address):
+def test_with_variation_no_two_notes_are_alike_and_all_are_close():
+    """And the same for the same seed."""
     heard = phrase(0.25, 3)
-    values = [abs(move.value) for move in heard if move.address == address and move.value]
+    assert heard == phrase(0.25, 3) != phrase(0.25, 4)
     usual = {"/bow/speed": 0.2, "/bow/pressure": 0.4, "/finger/1/position": place(1, 75.0)}
-    assert len(set(values)) == 4
-    assert all(math.isclose(value, usual[address], rel_tol=0.15) for value in values)
+    for address, value in usual.items():
+        values = [abs(move.value) for move in heard if move.address == address and move.value]
+        assert len(set(values)) == 4
+        assert values == pytest.approx([value] * 4, rel=0.15)
 
 
 def test_a_bend_keeps_the_variation_of_its_note():

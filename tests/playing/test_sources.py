@@ -33,70 +33,26 @@ def playing(make, player):
 # ---------------------------------------------------------------- names
 
 
-def test_each_source_has_one_name(subtests):
-    for text, name in [
-        ("cc 0", "cc 0"),
-        ("cc 119", "cc 119"),
-        ("cc 0/32", "cc 0/32"),
-        ("cc 31/63", "cc 31/63"),
-        ("nrpn 0", "nrpn 0"),
-        ("nrpn 16382", "nrpn 16382"),
-        ("nrpn 0/0", "nrpn 0"),
-        ("nrpn 2/44", "nrpn 300"),
-        ("nrpn 127/126", "nrpn 16382"),
-        ("note", "note"),
-        ("/fader1", "/fader1"),
-        ("/1/xy.2/a-b", "/1/xy.2/a-b"),
-        ("/yehus", "/yehus"),
-    ]:
-        with subtests.test(text=text, name=name):
-            assert canonical(text) == name
-            assert canonical(name) == name
+def test_each_source_has_one_name():
+    same = ("cc 0", "cc 119", "cc 0/32", "cc 31/63", "nrpn 0", "nrpn 16382", "note")
+    same += ("/fader1", "/1/xy.2/a-b", "/yehus")
+    other = {"nrpn 0/0": "nrpn 0", "nrpn 2/44": "nrpn 300", "nrpn 127/126": "nrpn 16382"}
+    names = {text: text for text in same} | other
+    assert {text: canonical(text) for text in names} == names
+
+
+NO_SOURCES = [
+    *("cc", "CC 1", "cc 01", "cc \uff11", "cc 120", "cc 128", "cc 6", "cc 98", "cc  1"),
+    *("cc 1/34", "cc 1/1", "cc 32/64", "cc 33/1", "cc 6/38", "cc 1/", "cc 1/033"),
+    *("nrpn", "nrpn 16383", "nrpn 127/127", "nrpn 128/0", "nrpn 0/128", "nrpn 300/1", "nrpn 99999"),
+    *("rpn 0", "note 3", "breath", ""),
+    *("/", "//a", "/a/", "/a b", "/a*", "/a?", "/{a,b}", "/[a]", "/a#", "/å", "/" + 300 * "a"),
+    *("/yehu", "/yehu/note"),
+]
 
 
 def test_what_is_no_source_is_refused_in_one_line(subtests):
-    for text in [
-        "cc",
-        "CC 1",
-        "cc 01",
-        "cc \uff11",
-        "breath",
-        "cc 120",
-        "cc 128",
-        "cc 1/34",
-        "cc 1/1",
-        "cc 32/64",
-        "cc 33/1",
-        "cc 6/38",
-        "cc 6",
-        "cc 98",
-        "cc 1/",
-        "cc 1/033",
-        "cc  1",
-        "nrpn",
-        "nrpn 16383",
-        "nrpn 127/127",
-        "nrpn 128/0",
-        "nrpn 0/128",
-        "nrpn 300/1",
-        "nrpn 99999",
-        "rpn 0",
-        "note 3",
-        "",
-        "/",
-        "//a",
-        "/a/",
-        "/a b",
-        "/a*",
-        "/a?",
-        "/{a,b}",
-        "/[a]",
-        "/a#",
-        "/å",
-        "/yehu",
-        "/yehu/note",
-        "/" + 300 * "a",
-    ]:
+    for text in NO_SOURCES:
         with subtests.test(text=text):
             with pytest.raises(ParameterError) as caught:
                 canonical(text)
@@ -104,20 +60,6 @@ def test_what_is_no_source_is_refused_in_one_line(subtests):
 
 
 # ---------------------------------------------------------------- 14 bits
-
-
-def test_two_controls_make_fourteen_bits(playing):
-    _, cc = playing(Bind("cc 1/33", VOLUME))
-    assert cc((1, 127), (33, 127)) == 1.0
-    assert cc((1, 0)) == 0.0
-    assert cc((33, 1)) == pytest.approx(1 / 16383)
-    assert cc((1, 64), (33, 3)) == pytest.approx((64 * 128 + 3) / 16383)
-    assert cc((33, 90)) == pytest.approx((64 * 128 + 90) / 16383)
-
-
-def test_the_coarse_half_acts_at_once_and_the_fine_one_then_is_nothing(playing):
-    _, cc = playing(Bind("cc 1/33", VOLUME))
-    assert cc((1, 64), (33, 100), (1, 65)) == pytest.approx(65 * 128 / 16383)
 
 
 def test_a_fine_half_without_a_coarse_one_moves_nothing(playing, player):
@@ -128,11 +70,13 @@ def test_a_fine_half_without_a_coarse_one_moves_nothing(playing, player):
     assert player.value("/playing/expression") == 1.0
 
 
-def test_no_fine_half_changes_the_coarse_one(playing):
+def test_two_controls_make_fourteen_bits(playing):
+    """The coarse half acts at once; the fine one is nothing then, and never changes it."""
     _, cc = playing(Bind("cc 1/33", VOLUME))
-    for value in range(128):
+    for coarse in range(128):
+        assert round(cc((1, coarse)) * 16383) == coarse * 128
         for fine in (0, 1, 126, 127):
-            assert round(cc((1, value), (33, fine)) * 16383) == value * 128 + fine
+            assert round(cc((33, fine)) * 16383) == coarse * 128 + fine
 
 
 def test_each_bind_hears_what_it_names_and_on_one_target_the_finer_counts(playing, player):
@@ -155,9 +99,10 @@ def test_an_nrpn_moves_in_fourteen_bits(playing):
     assert cc((38, 9)) == pytest.approx((64 * 128 + 9) / 16383)
 
 
-@pytest.mark.parametrize(
-    "moves",
-    [
+def test_data_entry_for_anything_else_moves_no_nrpn(playing):
+    _, cc = playing(Bind("nrpn 300", VOLUME))
+    anything = [
+        [(6, 0)],
         [(99, 2), (6, 0)],  # only half of a number
         [(98, 44), (6, 0)],
         [(99, 2), (98, 45), (6, 0)],
@@ -168,12 +113,9 @@ def test_an_nrpn_moves_in_fourteen_bits(playing):
         [(101, 2), (100, 44), (6, 0)],
         [(101, 2), (98, 44), (6, 0)],  # halves of two numbers
         [(99, 2), (100, 44), (98, 44), (6, 0)],
-        [(6, 0)],
-    ],
-)
-def test_data_entry_for_anything_else_moves_no_nrpn(playing, moves):
-    _, cc = playing(Bind("nrpn 300", VOLUME))
-    assert cc(*moves) == 1.0
+    ]
+    for channel, moves in zip((*range(1, 10), 11, 12), anything, strict=True):
+        assert cc(*moves, channel=channel) == 1.0, moves
 
 
 def test_an_nrpn_is_stepped_from_where_it_or_its_target_is(playing):
@@ -195,20 +137,13 @@ def test_each_channel_selects_for_itself(playing):
 # ---------------------------------------------------------------- notes
 
 
-@pytest.mark.parametrize("key", [0, 1, 60, 126, 127])
-def test_a_note_moves_by_its_key(playing, player, key):
+def test_a_note_moves_by_its_key_also_when_it_comes_back(playing, player):
     midi, _ = playing(Bind("note", "/playing/attack", (10.0, 200.0)))
-    midi.on(key)
-    assert player.value("/playing/attack") == pytest.approx(10.0 + 190.0 * key / 127)
-
-
-def test_a_note_that_comes_back_has_its_own_key_again(playing, player):
-    midi, _ = playing(Bind("note", VOLUME))
-    midi.on(70)
-    midi.on(80)
-    assert player.value(VOLUME) == pytest.approx(80 / 127)
-    midi.off(80)
-    assert player.value(VOLUME) == pytest.approx(70 / 127)
+    for key in (0, 1, 60, 126, 127):
+        midi.on(key)
+        assert player.value("/playing/attack") == pytest.approx(10.0 + 190.0 * key / 127)
+    midi.off(127)
+    assert player.value("/playing/attack") == pytest.approx(10.0 + 190.0 * 126 / 127)
 
 
 def test_of_velocity_and_key_of_one_note_the_bind_named_last_counts(playing, player):
@@ -243,19 +178,13 @@ def test_one_source_may_go_to_other_targets_on_other_channels(playing, player):
     assert (player.value(VOLUME), player.value("/playing/expression")) == (1.0, 0.0)
 
 
-def test_an_inverted_wheel_bends_the_other_way(playing, player):
-    midi, _ = playing(Bind("bend", "/playing/bend", invert=True))
-    midi.on(77)
-    midi.bend(8191)
-    assert player.value("/playing/bend") == -2.0
-
-
-def test_a_curved_wheel_still_rests_in_its_middle_and_ends_at_the_range(playing, player):
-    midi, _ = playing(Bind("bend", "/playing/bend", curve=Curve.S))
-    midi.on(77)
-    for pitch, bend in ((8191, 2.0), (0, 0.0), (-8192, -2.0)):
-        midi.bend(pitch)
-        assert player.value("/playing/bend") == bend
+def test_a_wheel_may_be_inverted_or_curved_and_still_ends_at_the_range(make, player):
+    for how, top in (({"invert": True}, -2.0), ({"curve": Curve.S}, 2.0)):
+        midi = make(Bind("bend", "/playing/bend", **how))
+        midi.on(77)
+        for pitch, bend in ((8191, top), (0, 0.0), (-8192, -top)):
+            midi.bend(pitch)
+            assert player.value("/playing/bend") == bend
     midi.bend(4096)
     assert player.value("/playing/bend") > 1.1
 

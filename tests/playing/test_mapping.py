@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import mido
 import pytest
 from curves import from_unit
@@ -11,10 +9,12 @@ from curves import from_unit
 from yehu_server.errors import MappingError
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.spec import Curve
-from yehu_server.playing.mapping import Bind, load, mapping_folder
+from yehu_server.playing.mapping import Bind, load, mapping_folder, shipped_mappings
+from yehu_server.playing.mapping_file import read_mapping_file
+from yehu_server.playing.mapping_writer import as_toml, canonical
 from yehu_server.playing.midi_poster import MidiPoster
 
-ROOT = Path(__file__).resolve().parents[2]
+SHIPPED = shipped_mappings()
 BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'
 
 
@@ -31,75 +31,72 @@ def read(tmp_path):
 # ---------------------------------------------------------------- what ships
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "mappings").glob("*.toml")), ids=lambda p: p.stem)
-def test_every_shipped_mapping_loads_by_its_name(path):
-    mapping = load(path.stem)
-    assert mapping.name == path.stem
-    assert mapping.binds
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_shipped_mapping_is_explained_and_audible_before_any_controller_moves(
+    name, player, listener
+):
+    """Its file is in canonical form, and the middle of its pan is the middle of the stage."""
+    path = mapping_folder() / f"{name}.toml"
+    mapping, text, contents = load(name), path.read_text("utf-8"), read_mapping_file(path)
     assert mapping == load(str(path))
-
-
-def test_the_keyboard_mapping_gives_each_controller_its_role(subtests):
-    for source, targets in [
-        ("bend", ["/playing/bend"]),
-        ("pressure", ["/playing/press"]),
-        ("poly-pressure", ["/playing/press"]),
-        ("cc 1", ["/playing/vibrato", "/playing/vibrato_press"]),
-        ("velocity", ["/playing/velocity", "/playing/pressure"]),
-        ("cc 7", ["/playing/volume"]),
-        ("cc 10", ["/room/pan"]),
-        ("cc 11", ["/playing/dynamics"]),
-        ("cc 16", ["/playing/speed"]),
-    ]:
-        with subtests.test(source=source, targets=targets):
-            binds = load("keyboard").of(source)
-            assert [bind.target for bind in binds] == targets
-            for bind in binds:
-                if source != "bend":
-                    assert from_unit(bind, 0.0) < from_unit(bind, 0.5) < from_unit(bind, 1.0)
-
-
-@pytest.mark.parametrize("path", sorted((ROOT / "mappings").glob("*.toml")), ids=lambda p: p.stem)
-def test_the_middle_of_the_pan_is_the_middle_of_the_stage_with_each_mapping(path):
-    (bind,) = load(path.stem).of("cc 10")
-    pans = [from_unit(bind, value / 127.0) for value in (0, 1, 64, 127)]
+    assert mapping.name == name
+    assert canonical(contents, text) == text
+    assert read_mapping_file(path, as_toml(contents)) == contents
+    assert f"`{name}`" in (mapping_folder() / "README.md").read_text("utf-8")
+    (pan,) = mapping.of("cc 10")
+    pans = [from_unit(pan, value / 127.0) for value in (0, 1, 64, 127)]
     assert pans == pytest.approx([-1.0, -1.0, 0.0, 1.0], abs=1e-12)
+    midi = MidiPoster(player, mapping)
+    midi.receive(mido.Message("note_on", note=74, velocity=80, channel=1))
+    assert abs(listener["/bow/speed"]) > 0.1
+    assert listener["/output/level"] > 0.3
+
+
+def test_the_mappings_for_players_are_there():
+    names = {"keyboard", "keyboard-expressive", "wind", "mpe", "sustain-pedal-tremolo"}
+    assert names <= {*SHIPPED}
+
+
+def test_the_keyboard_mapping_gives_each_controller_its_role():
+    roles = {
+        "bend": ["/playing/bend"],
+        "pressure": ["/playing/press"],
+        "poly-pressure": ["/playing/press"],
+        "cc 1": ["/playing/vibrato", "/playing/vibrato_press"],
+        "velocity": ["/playing/velocity", "/playing/pressure"],
+        "cc 7": ["/playing/volume"],
+        "cc 10": ["/room/pan"],
+        "cc 11": ["/playing/dynamics"],
+        "cc 16": ["/playing/speed"],
+    }
+    binds = {source: load("keyboard").of(source) for source in roles}
+    assert {source: [bind.target for bind in of] for source, of in binds.items()} == roles
+    for bind in (bind for source, of in binds.items() if source != "bend" for bind in of):
+        assert from_unit(bind, 0.0) < from_unit(bind, 0.5) < from_unit(bind, 1.0)
 
 
 # ---------------------------------------------------------------- how far and along which curve
 
 
-def test_a_span_is_spread_over_the_whole_way_of_the_controller():
-    bind = Bind("cc 4", "/playing/pressure", (0.3, 0.7))
-    assert [from_unit(bind, unit) for unit in (0.0, 0.25, 1.0)] == pytest.approx([0.3, 0.4, 0.7])
-
-
-def test_a_span_from_high_to_low_inverts():
-    bind = Bind("cc 4", "/playing/pressure", (0.7, 0.3))
-    assert [from_unit(bind, unit) for unit in (0.0, 0.25, 1.0)] == pytest.approx([0.7, 0.6, 0.3])
-
-
-def test_an_exp_curve_goes_by_equal_ratios_either_way():
-    up = Bind("cc 4", "/playing/pressure", (0.1, 0.9), Curve.EXP)
-    assert [from_unit(up, unit) for unit in (0.0, 0.5, 1.0)] == pytest.approx([0.1, 0.3, 0.9])
-    down = Bind("cc 4", "/playing/pressure", (0.9, 0.1), Curve.EXP)
-    assert [from_unit(down, unit) for unit in (0.0, 0.5, 1.0)] == pytest.approx([0.9, 0.3, 0.1])
-
-
-def test_an_s_curve_is_gentle_at_both_ends_and_even_about_the_middle():
-    bind = Bind("cc 4", "/playing/volume", None, Curve.S)
-    assert [from_unit(bind, unit) for unit in (0.0, 0.5, 1.0)] == pytest.approx([0.0, 0.5, 1.0])
+def test_a_span_is_spread_along_its_curve_over_the_way_of_the_controller():
+    for span, curve, values in [
+        ((0.3, 0.7), None, [0.3, 0.5, 0.7]),
+        ((0.7, 0.3), None, [0.7, 0.5, 0.3]),
+        ((0.1, 0.9), Curve.EXP, [0.1, 0.3, 0.9]),  # by equal ratios
+        ((0.9, 0.1), Curve.EXP, [0.9, 0.3, 0.1]),
+        ((0.1, 0.9), Curve.S, [0.1, 0.5, 0.9]),
+    ]:
+        bind = Bind("cc 4", "/playing/pressure", span, *([curve] if curve else []))
+        assert [from_unit(bind, unit) for unit in (0.0, 0.5, 1.0)] == pytest.approx(values)
+    bind = Bind("cc 4", "/playing/volume", None, Curve.S)  # gentle at both ends
     assert 0.0 < from_unit(bind, 0.01) < 0.001
     assert from_unit(bind, 0.3) + from_unit(bind, 0.7) == pytest.approx(1.0)
 
 
-def test_without_a_span_the_way_is_the_targets_whole_range(read):
+def test_without_a_span_and_a_curve_those_of_the_target_are_taken(read):
     (bind,) = read(BIND).binds
     assert (from_unit(bind, 0.0), from_unit(bind, 1.0)) == pytest.approx((0.05, 2.0))
-
-
-def test_without_a_curve_the_targets_own_is_taken(read):
-    (bind,) = read('[[bind]]\nsource = "cc 4"\ntarget = "/playing/speed"\n').binds
+    (bind,) = read(BIND.replace("pressure", "speed")).binds
     assert from_unit(bind, 0.5) == pytest.approx((0.03 * 0.6) ** 0.5)
 
 
@@ -109,86 +106,46 @@ def test_one_source_may_move_several_targets(read):
     assert mapping.of("cc 5") == ()
 
 
-def test_a_mapping_without_a_name_has_its_files(read):
+def test_a_mapping_without_a_name_has_its_files_which_needs_no_toml_ending(read, tmp_path):
     assert read(BIND).name == "mine"
     assert read('name = "yours"\n').name == "yours"
-
-
-def test_a_file_needs_no_toml_ending(tmp_path):
     path = tmp_path / "pedal"
     path.write_text(BIND)
-    assert len(load(str(path)).binds) == 1
+    assert (len(load(str(path)).binds), load(str(path)).name) == (1, "pedal")
 
 
 # ---------------------------------------------------------------- what is wrong
 
 
-@pytest.mark.parametrize(
-    ("text", "wrong"),
-    [
+def test_what_is_no_mapping_says_so(read, tmp_path):
+    for text, wrong in [
         (BIND + BIND.replace("[[bind]]", "[bind]"), "not a mapping file"),
         ("names = 1", "names"),
-        ("[bind]\nsource = 1", "[[bind]]"),
-    ],
-)
-def test_a_file_that_is_no_mapping_says_so(read, text, wrong):
-    with pytest.raises(MappingError, match=r"mine\.toml") as caught:
-        read(text)
-    assert wrong in str(caught.value)
-    assert str(caught.value).isprintable()
-
-
-def test_an_unknown_name_lists_what_ships():
+        ("[bind]\nsource = 1", r"\[\[bind\]\]"),
+        ("key_switches = 60\n", "whole number from 0 to"),  # they lie below the notes
+        ('[start]\n"/playing/dynamic" = 0.1\n', "/playing/dynamic.*unknown parameter"),
+        ('[start]\n"/bow/speed" = 0.1\n', "/bow/speed.*moved by"),
+    ]:
+        with pytest.raises(MappingError, match=rf"mine\.toml.*{wrong}") as caught:
+            read(text)
+        assert str(caught.value).isprintable()
+    for path in (tmp_path / "none.toml", tmp_path):
+        with pytest.raises(MappingError, match=path.name):
+            load(str(path))
     with pytest.raises(MappingError, match=r"'keybord'.*keyboard"):
         load("keybord")
 
 
-def test_a_missing_file_and_a_folder_are_named(tmp_path):
-    for path in (tmp_path / "none.toml", tmp_path):
-        with pytest.raises(MappingError, match=path.name):
-            load(str(path))
+# ---------------------------------------------------------------- what else a file says
 
 
-# ---------------------------------------------------------------- presets
-
-SHIPPED = sorted(file.stem for file in mapping_folder().glob("*.toml"))
-
-
-def test_the_presets_for_players_are_there():
-    assert {"keyboard", "keyboard-expressive", "wind", "mpe", "sustain-pedal-tremolo"} <= set(
-        SHIPPED
-    )
-
-
-@pytest.mark.parametrize("name", SHIPPED)
-def test_a_preset_bears_its_own_name_and_is_explained(name):
-    assert load(name).name == name
-    assert f"`{name}`" in (mapping_folder() / "README.md").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize("name", SHIPPED)
-def test_a_preset_is_audible_before_any_controller_moves(name, player, listener):
-    midi = MidiPoster(player, load(name))
-    midi.receive(mido.Message("note_on", note=74, velocity=80, channel=1))
-    assert abs(listener["/bow/speed"]) > 0.1
-    assert listener["/output/level"] > 0.3
-
-
-def test_a_mapping_says_where_parameters_begin(read, player):
-    MidiPoster(player, read('[start]\n"/playing/dynamics" = 0.4\n'))
+def test_a_mapping_says_where_parameters_begin_that_are_not_held(read, player):
+    text = '[start]\n"/playing/dynamics" = 0.4\n'
+    MidiPoster(player, read(text))
     assert player.value("/playing/dynamics") == 0.4
-
-
-def test_what_is_held_begins_elsewhere(read, player):
     player.write("/playing/dynamics", 0.9, hold=True)
-    MidiPoster(player, read('[start]\n"/playing/dynamics" = 0.4\n'))
+    MidiPoster(player, read(text))
     assert player.value("/playing/dynamics") == 0.9
-
-
-def test_a_wrong_start_is_refused_with_a_reason(read):
-    for address, reason in (("/playing/dynamic", "unknown parameter"), ("/bow/speed", "moved by")):
-        with pytest.raises(MappingError, match=f"{address}.*{reason}"):
-            read(f'[start]\n"{address}" = 0.1\n')
 
 
 def test_a_mapping_may_give_the_sustain_pedal_another_meaning(read, player, listener):
@@ -222,8 +179,3 @@ def test_without_key_switches_low_keys_play_and_a_bank_number_changes_nothing(pl
     midi.receive(mido.Message("note_on", note=39, velocity=80))
     assert player.value("/playing/articulation") == 0.0
     assert listener["/bow/side"] != 0.0
-
-
-def test_key_switches_lie_below_the_notes(read):
-    with pytest.raises(MappingError, match="whole number from 0 to"):
-        read("key_switches = 60\n")

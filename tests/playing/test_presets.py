@@ -41,7 +41,6 @@ NAMES = [
     "", ".", "..", "../x", "..\\x", "a/b", "a\\b", "C:\\x", "/etc/passwd", "a\0b", ".hidden",
     "-x", " x", "x" * 101, "x\n", "a\tb", "ä", "a:b", "*", "~/x", "$(x)",
 ]  # fmt: skip
-bad_names = pytest.mark.parametrize("name", NAMES)
 
 
 @pytest.fixture
@@ -83,19 +82,16 @@ def test_the_ordinary_preset_is_where_every_parameter_is_by_itself(presets):
     assert values == {address: DEFAULTS[address] for address in values}
 
 
-@pytest.mark.parametrize("end", ["lo", "hi", "default"])
-def test_every_value_saved_is_loaded_again(presets, end):
-    values = {param.address: getattr(param, end) for param in TABLE}
-    presets.save("mine", values)
-    loaded = presets.load("mine")
-    assert loaded.values == {address: values[address] for address in SAVED}
-    assert loaded.unknown == ()
+def test_every_value_saved_is_loaded_again(presets):
+    for end in ("lo", "hi", "default"):
+        values = {param.address: getattr(param, end) for param in TABLE}
+        presets.save("mine", values)
+        loaded = presets.load("mine")
+        assert loaded.values == {address: values[address] for address in SAVED}
+        assert loaded.unknown == ()
     assert presets.names() == sorted([*SHIPPED, "mine"])
-
-
-def test_a_value_is_saved_as_it_was_meant(presets):
     presets.save("mine", DEFAULTS | {"/playing/speed": float(np.float32(0.1))})
-    assert presets.load("mine").values["/playing/speed"] == 0.1
+    assert presets.load("mine").values["/playing/speed"] == 0.1  # as it was meant
 
 
 def test_saving_over_a_file_keeps_what_else_it_says(presets, put):
@@ -119,40 +115,35 @@ def test_saving_over_a_file_keeps_what_else_it_says(presets, put):
     assert preset.values["/playing/bend"] == 1.0
 
 
-@pytest.mark.parametrize(
-    "text", ["version = 2\n", "version = 1\n[values\n", "version = 1\nx = 1\n"]
-)
-def test_a_file_that_cannot_be_read_is_not_written_over(presets, put, text):
-    path = put("mine", text)
-    with pytest.raises(PresetError, match="mine:"):
-        presets.save("mine", DEFAULTS)
-    assert path.read_text(encoding="utf-8") == text
+def test_a_file_that_cannot_be_read_is_not_written_over(presets, put):
+    for text in ("version = 2\n", "version = 1\n[values\n", "version = 1\nx = 1\n"):
+        path = put("mine", text)
+        with pytest.raises(PresetError, match="mine:"):
+            presets.save("mine", DEFAULTS)
+        assert path.read_text(encoding="utf-8") == text
 
 
-@pytest.mark.parametrize("failing", ["fsync", "replace"])
-def test_a_file_is_whole_when_writing_fails(presets, monkeypatch, failing):
+@pytest.mark.parametrize(("of", "failing"), [(os, "fsync"), (Path, "replace")])
+def test_a_file_is_whole_when_writing_fails(presets, monkeypatch, of, failing):
     presets.save("mine", DEFAULTS)
     before = (presets.own / "mine.toml").read_bytes()
 
     def fail(*_):
         raise OSError(28, "No space left on device")
 
-    if failing == "fsync":
-        monkeypatch.setattr(os, "fsync", fail)
-    else:
-        monkeypatch.setattr(Path, "replace", fail)
+    monkeypatch.setattr(of, failing, fail)
     with pytest.raises(OutputError, match="No space left"):
         presets.save("mine", DEFAULTS | {"/playing/vibrato": 20.0})
     assert [file.name for file in presets.own.iterdir()] == ["mine.toml"]
     assert (presets.own / "mine.toml").read_bytes() == before
 
 
-@bad_names
-def test_no_name_leads_out_of_the_folder(presets, tmp_path, name):
+def test_no_name_leads_out_of_the_folder(subtests, presets, tmp_path):
     before = sorted(tmp_path.rglob("*"))
-    for call in (presets.load, presets.delete, lambda name: presets.save(name, DEFAULTS)):
-        with pytest.raises(PresetError, match="is not a plain name"):
-            call(name)
+    for name in NAMES:
+        for call in (presets.load, presets.delete, lambda name: presets.save(name, DEFAULTS)):
+            with subtests.test(name), pytest.raises(PresetError, match="is not a plain name"):
+                call(name)
     assert sorted(tmp_path.rglob("*")) == before
 
 
@@ -216,16 +207,6 @@ def test_of_more_presets_than_there_may_be_the_first_are_listed_and_the_rest_tol
     assert str(refused.value).endswith(f" and {MOST_OWN + len(SHIPPED) - MOST_NAMED} more)")
 
 
-def test_a_file_is_read_once_whether_it_is_right_or_not(presets, put, monkeypatch):
-    put("good", HEAD)
-    put("bad", "version = 3\n")
-    before = presets.all()
-    monkeypatch.setattr(folders, "read_text", None)
-    again = presets.all()
-    assert again[0] == before[0]
-    assert [str(error) for error in again[1]] == [str(error) for error in before[1]]
-
-
 def test_a_preset_of_ones_own_hides_a_shipped_one_until_it_is_deleted(presets, put):
     with pytest.raises(PresetError, match="save under another name"):
         presets.save("tremolo", DEFAULTS)
@@ -251,12 +232,18 @@ def test_a_name_that_there_is_not_lists_those_there_are(presets):
         presets.delete("x")
 
 
-def test_a_changed_file_is_read_again_and_an_unchanged_one_is_not(presets, put, monkeypatch):
+def test_a_file_is_read_once_whether_it_is_right_or_not_and_again_when_it_has_changed(
+    presets, put, monkeypatch
+):
     path = put("mine", HEAD + '[values]\n"/playing/vibrato" = 10\n')
-    first = presets.load("mine")
+    put("bad", "version = 3\n")
+    before, first = presets.all(), presets.load("mine")
     with monkeypatch.context() as patch:
-        patch.setattr("yehu_server.playing.preset_folders.read_text", None)
+        patch.setattr(folders, "read_text", None)
+        again = presets.all()
         assert presets.load("mine") is first
+    assert again[0] == before[0]
+    assert [str(error) for error in again[1]] == [str(error) for error in before[1]]
     path.write_text(HEAD + '[values]\n"/playing/vibrato" = 20\n', encoding="utf-8")
     os.utime(path, ns=(1, 1))  # the clock of a file system may be coarse
     assert presets.load("mine").values == {"/playing/vibrato": 20.0}
@@ -271,13 +258,10 @@ def test_a_broken_file_does_not_hide_the_others(presets, put):
     assert [str(error)[:5] for error in errors] == ["bad:1"]
 
 
-def test_a_file_that_would_take_long_to_read_is_refused(presets, put):
+def test_a_file_of_any_place_is_named_in_its_error(presets, put, tmp_path):
     put("long", "version = 1\n" + "#" * MOST_BYTES)
     with pytest.raises(PresetError, match="long: File too large, above 16 KiB"):
         presets.load("long")
-
-
-def test_a_file_of_any_place_is_named_in_its_error(presets, tmp_path):
     path = tmp_path / "mine.toml"
     path.write_bytes(b"\xff")
     for wrong in (path, tmp_path, tmp_path / "none.toml", Path("a\0b.toml")):
@@ -309,14 +293,17 @@ def live_player(instrument: Instrument, **playing) -> LivePlayer:
     return LivePlayer(instrument, PlayingOptions(**playing), delay_ms=3.0)
 
 
-def test_a_load_sets_what_it_names_and_leaves_the_rest(instrument):
+def test_a_load_sets_what_it_names_and_leaves_the_rest_and_what_is_held(instrument):
     live = live_player(instrument)
     live.write("/playing/variation", 0.7, frame=0)
-    live.load({"/playing/vibrato": 20.0, "/output/gain": -6.0}, frame=0)
-    changed = {"/playing/variation": 0.7, "/playing/vibrato": 20.0, "/output/gain": -6.0}
+    live.hold("/body/gain", 3.0)
+    live.hold("/playing/tremolo", 20.0)
+    loaded = {"/playing/vibrato": 20.0, "/output/gain": -6.0}
+    live.load({**loaded, "/body/gain": -3.0, "/playing/tremolo": 5.0}, frame=0)
+    kept = {"/playing/variation": 0.7, "/body/gain": 3.0, "/playing/tremolo": 20.0}
     assert {address: live.value(address) for address in POSSIBLE} == {
         address: param.default for address, param in POSSIBLE.items()
-    } | changed
+    } | kept | loaded
 
 
 def test_all_of_a_load_is_heard_at_one_frame(instrument):
@@ -334,16 +321,6 @@ def test_all_of_a_load_is_heard_at_one_frame(instrument):
     assert len(wishes) == len(far)
     after = [instrument.target(address) for address in moved]
     assert all(now != then for now, then in zip(after, before, strict=True))
-
-
-@pytest.mark.parametrize("kept", ["/playing/vibrato", "/output/gain"])
-def test_a_held_parameter_is_not_moved(instrument, kept):
-    live = live_player(instrument)
-    param = POSSIBLE[kept]
-    live.hold(kept, param.hi)
-    live.load({kept: param.lo, "/playing/attack": 99.0}, frame=0)
-    assert live.value(kept) == param.hi
-    assert live.value("/playing/attack") == 99.0
 
 
 def test_loading_while_a_note_sounds_makes_no_click(instrument):
@@ -413,6 +390,10 @@ def test_a_program_that_is_written_while_it_plays_is_known_soon(instrument, pres
 
 
 def test_a_program_change_selects_a_preset_where_it_may(instrument, presets):
+    live = live_player(instrument, presets=presets)
+    for program in range(1, 129):
+        change(live, program)
+    assert live.values() == DEFAULTS
     live = live_player(instrument, presets=presets, programs=True)
     change(live, 6)
     assert live.value("/playing/tremolo") > 0.0
@@ -420,13 +401,6 @@ def test_a_program_change_selects_a_preset_where_it_may(instrument, presets):
     assert live.value("/playing/tremolo") == 0.0
     change(live, 6, channel=10)  # percussion
     assert live.value("/playing/tremolo") == 0.0
-
-
-def test_program_changes_do_nothing_by_themselves(instrument, presets):
-    live = live_player(instrument, presets=presets)
-    for program in range(1, 129):
-        change(live, program)
-    assert live.values() == DEFAULTS
 
 
 @pytest.mark.parametrize("control", [0, 32])

@@ -154,10 +154,6 @@ BAD = [
 ]
 
 
-def test_the_file_that_is_spoiled_below_is_one(file):
-    assert list(read_practice(file(with_row(GOOD)))[0, PLACE, 70 - FIRST]) == GOOD
-
-
 def test_a_bad_practice_is_refused_in_one_line(file, refused, tune, tmp_path):
     for content in BAD:
         path = file(content)
@@ -170,15 +166,14 @@ def test_a_bad_practice_is_refused_in_one_line(file, refused, tune, tmp_path):
     assert not (tmp_path / "out.wav").exists()
 
 
-def test_a_practice_that_is_missing_or_a_folder_is_refused_in_one_line(refused, tune, tmp_path):
+def test_a_practice_that_is_missing_or_a_folder_or_the_target_is_refused_in_one_line(
+    file, refused, tune, tmp_path
+):
     for path in (tmp_path / "none.json", tmp_path):
         with pytest.raises(ScoreError):
             read_practice(path)
         line = refused("render", tune, "-o", tmp_path / "out.wav", "--practice", path)
         assert str(path) in line
-
-
-def test_a_practice_is_not_overwritten_by_the_sound(file, refused, tune):
     path = file(with_row(GOOD))
     assert "practice" in refused("render", tune, "-o", path, "--format", "wav", "--practice", path)
     assert list(read_practice(path)[0, PLACE, 70 - FIRST]) == GOOD
@@ -211,14 +206,13 @@ def test_the_practice_beside_an_instrument_is_found_where_it_is_a_file(tmp_path)
 # ---------------------------------------------------------------- what is shipped
 
 
-@pytest.mark.parametrize("rate", [44100.0, 48000.0, 96000.0])
-def test_what_is_shipped_is_within_bounds(rate):
-    table = shipped_practice(rate)
-    assert table.shape == default_recipes().shape
-    assert np.all((table >= LOWEST) & (table <= HIGHEST))
-    positions = table[..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
-    assert positions.min() > 0.05
-    assert positions.max() < 0.5
+def test_what_is_shipped_is_within_bounds():
+    for rate in (44100.0, 48000.0, 96000.0):
+        table = shipped_practice(rate)
+        assert table.shape == default_recipes().shape
+        assert np.all((table >= LOWEST) & (table <= HIGHEST))
+        positions = table[..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
+        assert 0.05 < positions.min() < positions.max() < 0.5
 
 
 def test_what_is_shipped_belongs_to_the_nearest_rate_and_cannot_be_spoiled():
@@ -329,9 +323,18 @@ def test_practising_goes_on_from_what_lies_beside_the_instrument(command, tmp_pa
     assert same.all()
 
 
-def test_practising_takes_no_map_without_a_scale(refused, tmp_path):
-    line = refused("practise", "-o", tmp_path / "tuned.json", "--keyboard-map", "chaozhou")
-    assert "--keyboard-map needs a scale" in line
+def test_practising_what_is_not_there_is_refused_in_one_line(refused, tmp_path):
+    for words in [
+        ("--rate", "100"),
+        ("--rate", "nan"),
+        ("--preset", "no-such"),
+        ("--instrument", "no.toml"),
+    ]:
+        refused("practise", "-o", tmp_path / "mine.json", *words)
+    a_map = ("--keyboard-map", "chaozhou")
+    assert "needs a scale" in refused("practise", "-o", tmp_path / "mine.json", *a_map)
+    assert "does not exist" in refused("practise", "-o", tmp_path / "none" / "mine.json")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.usefixtures("one_note")
@@ -342,17 +345,3 @@ def test_practising_for_a_preset_and_a_tuning_leaves_other_places_alone(command,
     assert code == 0, error
     same = np.isclose(read_practice(path), shipped_practice(RATE), atol=1e-4).all(axis=-1)
     assert same[:, np.array(PLACES) > 0.1].all()
-
-
-@pytest.mark.parametrize(
-    "words",
-    [("--rate", "100"), ("--rate", "nan"), ("--preset", "no-such"), ("--instrument", "no.toml")],
-    ids=str,
-)
-def test_practising_what_is_not_there_is_refused_in_one_line(refused, tmp_path, words):
-    refused("practise", "-o", tmp_path / "mine.json", *words)
-    assert not (tmp_path / "mine.json").exists()
-
-
-def test_practise_needs_a_place_to_write(refused, tmp_path):
-    assert "does not exist" in refused("practise", "-o", tmp_path / "none" / "mine.json")

@@ -20,7 +20,7 @@ PACKAGE = "yehu_server"
 # What other files reach. A change of anything else reaches the files of tests that name it.
 FOLDERS = {
     "web": ("tests/live/page", "tests/ahead"),
-    "mappings": ("tests/surfaces", "tests/test_mappings_files.py"),
+    "mappings": ("tests/surfaces", "tests/test_mappings_command.py"),
     "docs": ("tests/test_docs.py", "tests/documentation"),
 }
 _RUN = re.compile(rf"\"({PACKAGE}(?:\.\w+)+)\"")  # a module that a process of its own runs

@@ -48,25 +48,15 @@ def test_what_was_compiled_once_is_there_at_the_next_start(kept):
     assert kept.start() == (4, True)
 
 
-def damage_by_truncating(data):
-    return data[: len(data) // 2]
+DAMAGE = {
+    "cut short": lambda data: data[: len(data) // 2],
+    "emptied": lambda _data: b"",
+    "zeros": lambda data: bytes(len(data)),
+    "more": lambda data: data + b"\0",
+}
 
 
-def damage_by_emptying(_data):
-    return b""
-
-
-def damage_by_zeros(data):
-    return bytes(len(data))
-
-
-def damage_by_more(data):
-    return data + b"\0"
-
-
-@pytest.mark.parametrize(
-    "damage", [damage_by_truncating, damage_by_emptying, damage_by_zeros, damage_by_more]
-)
+@pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
 def test_damaged_code_is_compiled_anew_and_told_in_one_line(kept, caplog, damage):
     kept.start()
     kept.file.write_bytes(damage(kept.file.read_bytes()))
@@ -137,27 +127,25 @@ def test_functions_of_one_name_have_code_of_their_own(kept):
     assert kept.start(made(2)) == (24, True)
 
 
-class Rising(set):
+def in_order(falling: bool) -> type:
     """Options in an order, as a process happens to have them."""
 
-    def __iter__(self):
-        return iter(sorted(super().__iter__()))
+    class Ordered(set):
+        def __iter__(self):
+            return iter(sorted(super().__iter__(), reverse=falling))
 
-
-class Falling(set):
-    def __iter__(self):
-        return iter(sorted(super().__iter__(), reverse=True))
+    return Ordered
 
 
 @pytest.mark.usefixtures("kept")
 def test_code_is_found_whatever_order_a_process_has_its_options_in():
     """Python orders a set of words anew at each start."""
-    assert [*Rising(jit.FASTMATH)] != [*Falling(jit.FASTMATH)]
+    options = [in_order(falling)(jit.FASTMATH) for falling in (False, True)]
+    assert [*options[0]] != [*options[1]]
+    how = {"no_alias": True, "one_version": False}
     files = {
-        numba_compiler.dispatcher(
-            third_of, no_alias=True, one_version=False, fastmath=order(jit.FASTMATH)
-        )._cache.path(())
-        for order in (Rising, Falling)
+        numba_compiler.dispatcher(third_of, fastmath=each, **how)._cache.path(())
+        for each in options
     }
     assert len(files) == 1
 

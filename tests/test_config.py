@@ -12,7 +12,6 @@ from yehu_server import cli
 from yehu_server.cli.config import MOST_VALUES, parse
 from yehu_server.cli.report import connect_lines, query_line
 from yehu_server.cli.serve_options import options_of
-from yehu_server.errors import ParameterError
 from yehu_server.playing.pitch_and_level import note_name
 
 # MIDI systems of other machines, which RtMidi was not compiled for.
@@ -26,21 +25,6 @@ def options(*words: str):
 @pytest.fixture
 def file(tmp_path) -> Path:
     return tmp_path / "serve.toml"
-
-
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [
-        ("help = true", "cannot ask for help"),
-        (f"midi-in = [{'1,' * 30_000}]", f"midi-in: more than {MOST_VALUES} values"),
-    ],
-    ids=["help", "values"],
-)
-def test_a_file_that_is_odd_gets_one_line(file, text, reason):
-    file.write_text(text)
-    with pytest.raises(ParameterError, match=reason) as caught:
-        options("--config", str(file))
-    assert "\n" not in str(caught.value)
 
 
 def test_without_options_this_machine_alone_is_heard():
@@ -96,9 +80,10 @@ def test_a_file_counts_for_its_own_command_line_only(file):
     assert (plain.rate, plain.midi_in) == (None, [])
 
 
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [
+def test_an_error_in_the_file_names_file_and_line(subtests, file, refused):
+    for text, reason in [
+        ("help = true", "cannot ask for help"),
+        (f"midi-in = [{'1,' * 30_000}]", f"midi-in: more than {MOST_VALUES} values"),
         ("rate = 'fast'", ":2: rate: 'fast' is not a number"),
         ("rat = 48000", ":2: rat: unknown option; did you mean rate?"),
         ("rate = [", "not a TOML file"),
@@ -110,24 +95,16 @@ def test_a_file_counts_for_its_own_command_line_only(file):
         ("watch = 1", ":2: watch: expected true or false, got 1"),
         ("range = 'fold'", ":2: range: 'fold' is not one of transpose, clamp, skip"),
         ("\n[set]\n'/playing/volume' = []", ":3: set: expected text or a number"),
-    ],
-)
-def test_an_error_in_the_file_names_file_and_line(file, text, reason, capsys):
-    file.write_text(f"mpe = true\n{text}")
-    try:
-        code = cli.main(["serve", "--config", str(file)])
-    except SystemExit as leaving:
-        code = leaving.code
-    assert code == 2
-    error = capsys.readouterr().err
-    assert f"{file}{reason}" in error if reason.startswith(":") else reason in error
-    assert str(file) in error
-    assert error.count("\n") == 1
+    ]:
+        with subtests.test(text[:30]):
+            file.write_text(f"mpe = true\n{text}")
+            error = refused("serve", "--config", file)
+            assert f"{file}{reason}" in error if reason.startswith(":") else reason in error
+            assert str(file) in error
 
 
-@pytest.mark.parametrize(
-    ("words", "reason"),
-    [
+def test_a_wrong_option_is_one_clear_line(subtests, refused):
+    for words, reason in [
         (["--osc", "127.0.0.1:port"], "expected HOST:PORT"),
         (["--osc", "127.0.0.1:99999"], "expected HOST:PORT"),
         (["--osc-allow", "everyone"], "is not a network"),
@@ -136,17 +113,9 @@ def test_an_error_in_the_file_names_file_and_line(file, text, reason, capsys):
         (["--mapping", "none"], "no mapping 'none'"),
         (["--config", "/no/such/file.toml"], "No such file"),
         (["--latency", "soon"], "'soon' is not a number"),
-    ],
-)
-def test_a_wrong_option_is_one_clear_line(words, reason, capsys):
-    try:
-        code = cli.main(["serve", *words])
-    except SystemExit as leaving:
-        code = leaving.code
-    assert code == 2
-    error = capsys.readouterr().err
-    assert reason in error
-    assert error.count("\n") == 1
+    ]:
+        with subtests.test(reason):
+            assert reason in refused("serve", *words)
 
 
 def test_a_phone_is_told_the_exact_line():
@@ -175,9 +144,8 @@ def test_oscquery_is_for_this_machine_until_said_otherwise():
 
 
 def test_announcing_may_be_asked_for_or_forbidden():
-    assert options().announce is None
-    assert options("--announce").announce is True
-    assert options("--no-announce").announce is False
+    asked = [options(*words).announce for words in ((), ("--announce",), ("--no-announce",))]
+    assert asked == [None, True, False]
 
 
 def test_a_browser_is_told_the_exact_line():

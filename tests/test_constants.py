@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from as_processor import CANNOT, PROCESSORS
+from as_processor import CANNOT, PROCESSORS, missing
 
 TESTS = Path(__file__).parent
 PRINT = """
@@ -54,3 +54,21 @@ def test_constants_are_the_same_on_every_processor(here, processor):
     other = constants(sys.executable, str(TESTS / "as_processor.py"), processor)
     assert [line for line in other if line not in here] == []
     assert len(other) == len(here)
+
+
+@pytest.mark.skipif("x86-64" in missing("generic"), reason="this is no x86-64 processor")
+def test_another_processor_is_another_for_each_library():
+    show = (
+        "from numba.core.registry import cpu_target; import numpy as np;"
+        "print(*cpu_target.target_context.codegen().magic_tuple()[1:], sep='|');"
+        "print(np.show_config(mode='dicts')['SIMD Extensions'].get('found') or [])"
+    )
+    command = [sys.executable, TESTS / "as_processor.py", "generic", sys.executable, "-c", show]
+    child = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert (child.stdout.splitlines(), child.stderr) == (["generic|", "[]"], "")
+
+
+def test_a_processor_that_cannot_be_had_is_told(monkeypatch):
+    monkeypatch.setattr("llvmlite.binding.get_host_cpu_features", lambda: {"avx2": True})
+    assert {"avx512f", "fma"} <= set(missing("skylake-avx512"))
+    assert "avx2" not in missing("haswell")

@@ -6,6 +6,7 @@ import pytest
 
 from yehu_server.errors import MappingError, ParameterError
 from yehu_server.util.documents import Document, Fields
+from yehu_server.util.parsing import MOST_KEY_PARTS, parse_toml
 from yehu_server.util.values import choice, flag, number, whole
 
 TEXT = """
@@ -90,12 +91,41 @@ def test_an_error_keeps_the_place_that_it_has_and_gets_one_where_it_has_none():
         raise ParameterError("too heavy")
 
 
-@pytest.mark.parametrize("text", ["a = 1\na = 2\n", "\nb = ]", "\nb\n"])
-def test_what_is_no_toml_has_its_line(text):
-    with pytest.raises(MappingError, match=r"^mine\.toml:2: not a file \("):
-        document(text).toml()
+def test_what_is_no_toml_or_json_has_its_line():
+    for text, read_as in (
+        *((text, Document.toml) for text in ("a = 1\na = 2\n", "\nb = ]", "\nb\n")),
+        ('{"a":\n3', Document.json),
+    ):
+        with pytest.raises(MappingError, match=r"^mine\.toml:2: not a file \("):
+            read_as(document(text))
 
 
-def test_what_is_no_json_has_its_line():
-    with pytest.raises(MappingError, match=r"^mine\.toml:2: not a file \("):
-        document('{"a":\n3').json()
+# ---------------------------------------------------------------- time that TOML takes
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("a.b.c = 1", {"a": {"b": {"c": 1}}}),
+        ("\"/a.b\".'c.d' = 1", {"/a.b": {"c.d": 1}}),
+        (f'a = "{". " * 100}" # {"." * 100}', {"a": ". " * 100}),
+        ("a = 1.5\nb = 1979-05-27T07:32:00.5", None),
+    ],
+)
+def test_what_is_as_usual_is_read(text, value):
+    found = parse_toml(text)
+    assert value is None or found == value
+
+
+@pytest.mark.parametrize("part", [".a", ' . "a b"', ".'a'", "\t.\ta-1"])
+@pytest.mark.parametrize("around", ["{} = 1", "[{}]", "[[{}]]", "x = {{ {} = 1 }}"])
+def test_a_key_of_very_many_parts_is_refused_before_it_takes_time(part, around):
+    parse_toml(around.format("a" + part * (MOST_KEY_PARTS - 1)))
+    with pytest.raises(ValueError, match="parts"):
+        parse_toml(around.format("a" + part * 20_000))
+
+
+@pytest.mark.parametrize("text", ["a" * 60_000, '"' * 60_000, "'a" * 30_000, "a.b " * 15_000])
+def test_looking_for_such_keys_takes_no_time_itself(text):
+    with pytest.raises(ValueError, match=r"at (line|end)"):
+        parse_toml(text)

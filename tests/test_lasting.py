@@ -69,17 +69,11 @@ class Work:
 @pytest.mark.parametrize(
     "error", [TOO_MANY, MemoryError(), RuntimeError("can't start new thread"), KeyError("defect")]
 )
-def test_work_outlasts_errors_and_says_so_once(monkeypatch, error):
-    work = Work(monkeypatch, None, error, error, error)
+def test_work_outlasts_errors_and_says_so_once_until_all_was_well(monkeypatch, error):
+    work = Work(monkeypatch, None, error, error, error, None, error)
     run_forever(work.turn, work.ending, 0.0, "work", work.tell)
-    assert work.turns == 5
-    assert work.said == [f"work: {why(error)}; trying again"]
-
-
-def test_work_says_so_again_when_all_was_well_in_between(monkeypatch):
-    work = Work(monkeypatch, TOO_MANY, None, TOO_MANY)
-    run_forever(work.turn, work.ending, 0.0, "work", work.tell)
-    assert len(work.said) == 2
+    assert work.turns == 7
+    assert work.said == [f"work: {why(error)}; trying again"] * 2
 
 
 def test_work_outlasts_that_nobody_can_be_told(monkeypatch):

@@ -105,33 +105,19 @@ def test_what_a_part_moves_is_learned_by_its_mapping_alone(duo, capsys):
     assert "/playing/vibrato: 1 forgotten" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
-    ("words", "reason"),
-    [
-        (["--part", "3", "/playing/vibrato"], "no part 3: there are parts 1 to 2"),
-        (["--part", "2", "/room/size"], "/room/size is one for all parts"),
-        (["--part", "0", "/playing/vibrato"], "0 is not 1 or more"),
-    ],
-)
-def test_a_part_that_is_not_there_or_a_parameter_of_all_is_told(duo, refused, words, reason):
-    assert reason in refused("learn", *words, "--server", f"127.0.0.1:{duo.osc.port}")
-
-
-@pytest.mark.parametrize(
-    ("words", "reason"),
-    [
-        (["learn", "/playing/vibrat"], "did you mean /playing/vibrato?"),
-        (["learn", "/bow/speed"], "/bow/speed is moved by the player"),
-        (["learn"], "name the parameters to learn"),
-        (["mappings", "show", "--live", "wind"], "name none"),
-    ],
-)
-def test_what_cannot_be_learned_or_shown_is_told(server, at, capsys, words, reason):
-    assert main([*words, *at]) == 2
-    err = capsys.readouterr().err
-    assert reason in err
-    assert err.count("\n") == 1
-    assert not server.player.listens
+def test_what_cannot_be_learned_or_shown_is_told(duo, refused):
+    for words, reason in (
+        ("learn --part 3 /playing/vibrato", "no part 3: there are parts 1 to 2"),
+        ("learn --part 2 /room/size", "/room/size is one for all parts"),
+        ("learn --part 0 /playing/vibrato", "0 is not 1 or more"),
+        ("learn /playing/vibrat", "did you mean /playing/vibrato?"),
+        ("learn /bow/speed", "/bow/speed is moved by the player"),
+        ("learn", "name the parameters to learn"),
+        ("mappings show --live wind", "name none"),
+    ):
+        at = ("--server", f"127.0.0.1:{duo.osc.port}")
+        assert reason in refused(*words.split(), *at)
+    assert not any(player.listens for player in duo.players)
 
 
 def test_the_end_of_input_ends_the_questions(monkeypatch, capsys):
@@ -160,20 +146,15 @@ def test_the_bindings_of_a_server_are_shown_with_where_they_are(server, at, caps
     assert "/playing/portamento_time" in out
 
 
-@pytest.mark.parametrize("words", [["learn", "/playing/vibrato"], ["mappings", "show", "--live"]])
-def test_a_server_that_does_not_answer_is_told_of(capsys, words):
+def test_a_server_that_does_not_answer_or_has_no_name_is_told_of(refused):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
         free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    began = time.monotonic()
-    assert main([*words, "--server", f"127.0.0.1:{port}"]) == 2
-    assert time.monotonic() - began < 5.0
-    assert "no server answers" in capsys.readouterr().err
-
-
-def test_a_server_of_no_name_is_told_of(capsys):
-    assert main(["learn", "/playing/vibrato", "--server", "127.0.0.1:x"]) == 2
-    assert "expected HOST:PORT" in capsys.readouterr().err
+        at = f"127.0.0.1:{free.getsockname()[1]}"
+    for words in (("learn", "/playing/vibrato"), ("mappings", "show", "--live")):
+        began = time.monotonic()
+        assert "no server answers" in refused(*words, "--server", at)
+        assert time.monotonic() - began < 5.0
+    assert "expected HOST:PORT" in refused("learn", "/playing/vibrato", "--server", "127.0.0.1:x")
 
 
 def test_what_learning_takes_away_is_told_and_given_back(server, at, capsys):

@@ -1,8 +1,9 @@
-"""``yehu-server mappings``: list, show, check."""
+"""``yehu-server mappings``: list, show, check, convert."""
 
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -18,19 +19,19 @@ def test_the_presets_are_listed_with_what_each_is_for(mappings):
     assert json.loads(mappings("list", "--json")[1]) == lines
 
 
-@pytest.mark.parametrize("name", shipped_mappings())
-def test_a_preset_is_shown_with_all_that_it_moves(mappings, name):
-    code, out, _ = mappings("show", name, "--json")
-    assert code == 0
-    shown, mapping = json.loads(out), load(name)
-    assert (shown["name"], shown["mpe"]) == (name, mapping.mpe)
-    assert shown["start"] == dict(mapping.start)
-    assert [(bind["source"], bind["target"]) for bind in shown["bind"]] == [
-        (bind.source, bind.target) for bind in mapping.binds
-    ]
-    table = mappings("show", name)[1]
-    for bind in mapping.binds:
-        assert bind.source in table
+def test_a_preset_is_shown_with_all_that_it_moves(subtests, mappings):
+    for name in shipped_mappings():
+        with subtests.test(name):
+            code, out, _ = mappings("show", name, "--json")
+            assert code == 0
+            shown, mapping = json.loads(out), load(name)
+            assert (shown["name"], shown["mpe"]) == (name, mapping.mpe)
+            assert shown["start"] == dict(mapping.start)
+            assert [(bind["source"], bind["target"]) for bind in shown["bind"]] == [
+                (bind.source, bind.target) for bind in mapping.binds
+            ]
+            table = mappings("show", name)[1]
+            assert all(bind.source in table for bind in mapping.binds)
 
 
 def test_a_file_of_ones_own_is_shown_and_checked(mappings, tmp_path):
@@ -54,9 +55,138 @@ def test_the_bend_is_shown_as_its_range_says(mappings):
     assert "bend range" in mappings("show", "keyboard")[1]
 
 
-def test_a_name_that_is_no_preset_lists_them(mappings):
-    code, _, err = mappings("show", "winds")
+# ---------------------------------------------------------------- files of ones own
+
+WRONG = """\
+name = 3
+[[bind]]
+source = "cc 1/34"
+target = "/playing/volume"
+smoothing = -1
+"""
+
+
+@pytest.fixture
+def own(config_home):
+    folder = config_home / "yehu-server" / "mappings"
+    folder.mkdir(parents=True)
+    return folder
+
+
+def test_ones_own_mappings_are_listed_as_such(mappings, own):
+    (own / "pedals.toml").write_text('about = "three pedals"\n')
+    (own / "wind.toml").write_text('base = "wind"\nabout = "a gentler one"\n')
+    (own / "wrong.toml").write_text("mpe = 3\n")
+    code, out, _ = mappings("list")
+    lines = dict(line.split(maxsplit=1) for line in out.splitlines())
+    assert code == 0
+    assert sorted(lines) == sorted({*shipped_mappings(), "pedals", "wrong"})
+    assert lines["pedals"] == "yours: three pedals"
+    assert lines["wind"] == "yours: a gentler one"
+    assert "wrong.toml:1: mpe: expected" in lines["wrong"]
+    assert json.loads(mappings("list", "--json")[1]) == lines
+    assert "yours" not in lines["keyboard"]
+
+
+def test_a_name_is_looked_for_among_ones_own_first(mappings, refused, own):
+    (own / "wind.toml").write_text('base = "wind"\nabout = "a gentler one"\n')
+    assert mappings("show", "wind")[1].startswith("wind: a gentler one\n")
+    assert "yours: mine/wind" in refused("mappings", "show", "winds")
+    assert "wind" in refused("mappings", "check", "wind")  # a file, which there is not
+
+
+def test_all_that_is_wrong_with_files_is_told_line_by_line(mappings, tmp_path):
+    wrong, right = tmp_path / "wrong.toml", tmp_path / "right.toml"
+    wrong.write_text(WRONG)
+    right.write_text('base = "keyboard"\n')
+    code, out, err = mappings("check", wrong, right, tmp_path / "none.toml")
     assert code == 2
-    assert "wind" in err
-    code, _, err = mappings("check", "wind")  # a file of that name, which there is not
+    assert out == f"{right}: right, {len(load('keyboard').binds)} binds\n"
+    lines = err.splitlines()
+    for line, place in zip(lines, (":1: name", ":3: bind 1", ":5: bind 1", ""), strict=True):
+        assert line.startswith("yehu-server: ")
+        assert place in line
+    assert "none.toml" in lines[-1]
+
+
+def test_all_terms_of_a_bind_are_shown(mappings, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(
+        '[[bind]]\nsource = "nrpn 2/44"\ntarget = "/playing/attack"\nspan = [200, 10]\n'
+        "curve = [[0, 0], [1, 0.5]]\ninvert = true\nsmoothing = 50\nchannel = [3, 2]\nsoft = true\n"
+        "global = true\n"
+        '[[bind]]\nsource = "/f"\ntarget = "/playing/volume"\ninput = [0, 127]\n'
+    )
+    table = mappings("show", path)[1]
+    for part in ("nrpn 300", "10 ms", "table", "channel 2", "50 ms", "soft", "global", "/f"):
+        assert part in table.replace("\n", " ")
+    first, second = json.loads(mappings("show", path, "--json")[1])["bind"]
+    assert first == {
+        "source": "nrpn 300",
+        "target": "/playing/attack",
+        "from": 200.0,
+        "to": 10.0,
+        "span": [200.0, 10.0],
+        "curve": [[0.0, 0.0], [1.0, 0.5]],
+        "invert": True,
+        "smoothing": 50.0,
+        "channel": [2, 3],
+        "soft": True,
+        "alone": False,
+        "global": True,
+        "input": None,
+        "replaces": None,
+    }
+    assert second["input"] == [0.0, 127.0]
+
+
+def test_a_preset_converted_or_shown_as_json_is_the_same_again(subtests, mappings, tmp_path):
+    target, shown = tmp_path / "mine.toml", tmp_path / "shown"
+    for name in shipped_mappings():
+        with subtests.test(name):
+            assert mappings("convert", name, "-o", target, "--overwrite")[0] == 0
+            assert load(str(target)) == replace(load(name), name="mine")
+            printed = tmp_path / f"{name}.toml"
+            printed.write_text(mappings("convert", name)[1], encoding="utf-8")
+            assert load(str(printed)) == load(name)
+            shown.write_text(mappings("show", name, "--json")[1])
+            assert mappings("convert", shown, "-o", target, "--overwrite")[0] == 0
+            assert load(str(target)) == load(name)
+
+
+def test_json_of_an_older_form_is_taken_too(mappings, tmp_path):
+    path = tmp_path / "shown.json"
+    bend = {"source": "bend", "target": "/playing/bend", "from": None, "to": None}
+    wheel = {"source": "cc 1", "target": "/playing/vibrato", "from": 40.0, "to": 0.0}
+    binds = [bend | {"curve": "linear"}, wheel | {"curve": "s"}]
+    data = {"name": "old", "about": "", "mpe": True, "start": {}, "bind": binds}
+    path.write_text(json.dumps(data))
+    target = tmp_path / "mine.toml"
+    mappings("convert", path, "-o", target)
+    mapping = load(str(target))
+    assert (mapping.name, mapping.mpe) == ("old", True)
+    assert mapping.binds[0].is_by_range
+    assert mapping.binds[1].ends == (40.0, 0.0)
+
+
+def test_what_cannot_be_converted_writes_nothing(refused, tmp_path):
+    path, target = tmp_path / "shown", tmp_path / "out.toml"
+    for text in ("{", '{"bind": 3}', '{"bind": [3]}', '{"bind": [{}]}', '{"mpe": 1}', "[", "x"):
+        path.write_text(text)
+        assert str(path) in refused("mappings", "convert", path, "-o", target)
+        assert not target.exists()
+
+
+def test_a_file_may_be_converted_in_its_place(mappings, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(
+        '# mine\nbase = "wind"\n[[bind]]\nsource = "nrpn 2/44"\ntarget = "/playing/volume"\n'
+    )
+    before = path.read_text()
+    code, _, err = mappings("convert", path, "-o", path)
     assert code == 2
+    assert "mine.toml: exists; --overwrite replaces it" in err
+    assert path.read_text() == before
+    assert mappings("convert", path, "-o", path, "--overwrite")[0] == 0
+    assert path.read_text().startswith('# mine\nname = "mine"\nbase = "wind"\n')
+    assert load(str(path)).of("nrpn 300")

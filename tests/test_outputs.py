@@ -72,18 +72,16 @@ def test_two_things_do_not_go_to_one_file(refused, tmp_path):
     assert (tmp_path / "x.wav").read_text() == "older"
 
 
-@pytest.mark.parametrize("option", ["--mapping", "--preset", "--instrument"])
-def test_a_rendering_does_not_go_over_what_is_read(refused, files, tmp_path, option):
+def test_a_rendering_or_a_replay_does_not_go_over_what_is_read(refused, files, tmp_path):
     (tmp_path / "tune.mid").write_bytes(b"")
-    texts = {"--mapping": MAPPING, "--preset": files["p.toml"].read_text(), "--instrument": ""}
-    (tmp_path / "read").write_text(texts[option])
-    named = ["render", "tune.mid", option, "./read", "-o", "read", "--overwrite"]
-    assert "-o would overwrite an input" in refused(*named)
-    over = ["render", "tune.mid", "-o", tmp_path / "tune.mid", "--overwrite"]
-    assert "-o would overwrite an input" in refused(*over)
-
-
-def test_a_replay_does_not_go_over_its_capture(refused, tmp_path):
+    (tmp_path / "i.toml").write_text("")
     (tmp_path / "c").write_text("{}")
-    err = refused("replay", "c", "-o", "c", "--overwrite")
-    assert "-o would overwrite an input" in err
+    for words in (
+        ("render", "tune.mid", "--mapping", "./w.toml", "-o", "w.toml"),
+        ("render", "tune.mid", "--preset", "./p.toml", "-o", "p.toml"),
+        ("render", "tune.mid", "--instrument", "./i.toml", "-o", "i.toml"),
+        ("render", "tune.mid", "-o", tmp_path / "tune.mid"),
+        ("replay", "c", "-o", "c"),
+    ):
+        assert "-o would overwrite an input" in refused(*words, "--overwrite")
+    assert files["w.toml"].read_text() == MAPPING

@@ -7,10 +7,12 @@ import shutil
 
 import numpy as np
 import pytest
+from clusters import cluster_in, needs_distributed
 
 from yehu_server.cli import main
 from yehu_server.lab.simulation import simulate
 from yehu_server.lab.sweeps.result import Result
+from yehu_server.rendering import cluster_worker
 
 GESTURE = {
     "duration": 0.1,
@@ -112,34 +114,33 @@ def test_an_earlier_result_is_replaced_only_when_asked(study, tmp_path, capsys):
     assert len(Result.load(target)) == 6
 
 
-@pytest.mark.parametrize(
-    ("words", "wrong"),
-    [
-        (["--vary", "bow_force=99"], "bow_force: 99.0 is not within"),
-        (["--vary", "bow_farce=1"], "bow_farce: unknown entry"),
-        (["--vary", "bow_force=1:2"], "expected numbers"),
-        ([], "nothing is varied"),
-    ],
-)
-def test_a_wrong_call_is_told_in_a_line_before_anything_runs(
-    gesture, tmp_path, capsys, words, wrong
-):
-    target = tmp_path / "found.npz"
-    assert main(["sweep", gesture, "-o", str(target), *words]) == 2
-    error = capsys.readouterr().err
-    assert wrong in error
-    assert error.count("\n") == 1
-    assert not target.exists()
-
-
-def test_what_is_wrong_of_signals_is_told_before_anything_runs(study, tmp_path, capsys):
+def test_a_wrong_call_is_told_in_a_line_before_anything_runs(gesture, study, tmp_path, refused):
     refined = tmp_path / "refined.toml"
     refined.write_text(STUDY + '[refine]\naxes = ["force"]\nlevels = 1\n')
-    words = ["-o", str(tmp_path / "found.npz"), "--signals"]
-    assert main(["sweep", str(refined), *words, str(tmp_path / "runs")]) == 2
-    assert "a study that is refined keeps none" in capsys.readouterr().err
-    assert main(["sweep", study, *words, study]) == 2
-    assert "File exists" in capsys.readouterr().err
+    for words, wrong in (
+        ((gesture, "--vary", "bow_force=99"), "bow_force: 99.0 is not within"),
+        ((gesture, "--vary", "bow_farce=1"), "bow_farce: unknown entry"),
+        ((gesture, "--vary", "bow_force=1:2"), "expected numbers"),
+        ((gesture,), "nothing is varied"),
+        ((refined, "--signals", tmp_path / "runs"), "a study that is refined keeps none"),
+        ((study, "--signals", study), "File exists"),
+    ):
+        assert wrong in refused("sweep", "-o", tmp_path / "found.npz", *words)
+        assert not (tmp_path / "found.npz").exists()
+
+
+@pytest.mark.slow
+@needs_distributed
+def test_a_cluster_finds_to_the_byte_what_one_machine_does(command, gesture, tmp_path):
+    cluster_worker.identity.cache_clear()  # code may be edited while tests run
+    # Not in the order of the alphabet.
+    varied = ("--vary", "bow_velocity=0.1,0.2", "--vary", "bow_force=0.2:2:4")
+    with cluster_in(tmp_path) as cluster:
+        for name, words in (("here", ()), ("there", ("--dask", cluster.file))):
+            target = tmp_path / f"{name}.npz"
+            code, _, err = command("sweep", gesture, "-o", target, *varied, *words)
+            assert code == 0, err
+    assert (tmp_path / "there.npz").read_bytes() == (tmp_path / "here.npz").read_bytes()
 
 
 @pytest.fixture(scope="module")
@@ -177,29 +178,17 @@ def test_a_page_is_one_file_that_asks_for_no_other(found, tmp_path, capsys):
     assert "__" not in text
 
 
-@pytest.mark.parametrize(
-    ("words", "wrong"),
-    [
-        (["show", "none.npz"], "none.npz: No such file"),
-        (["show", "FOUND", "-o", "out.gif"], "name a picture .png, or a page .html"),
-        (["show", "FOUND", "--column", "pitch"], "unknown column 'pitch'"),
-        (["show", "FOUND", "-o", "FOUND"], "name a picture"),
-    ],
-)
-def test_what_cannot_be_drawn_is_told(found, tmp_path, monkeypatch, capsys, words, wrong):
+def test_what_cannot_be_drawn_is_told(found, tmp_path, monkeypatch, refused):
     pytest.importorskip("matplotlib")
     monkeypatch.chdir(tmp_path)
-    words = [str(found) if word == "FOUND" else word for word in words]
-    assert main(["sweep", *words]) == 2
-    error = capsys.readouterr().err
-    assert wrong in error
-    assert error.count("\n") == 1
+    (tmp_path / "mine.png").write_text("mine")
+    for words, wrong in (
+        (("none.npz",), "none.npz: No such file"),
+        ((found, "-o", "out.gif"), "name a picture .png, or a page .html"),
+        ((found, "--column", "pitch"), "unknown column 'pitch'"),
+        ((found, "-o", found), "name a picture"),
+        ((found, "-o", "mine.png"), "exists"),
+    ):
+        assert wrong in refused("sweep", "show", *words)
     assert found.exists()
-
-
-def test_a_picture_is_not_replaced_unasked(found, tmp_path, capsys):
-    pytest.importorskip("matplotlib")
-    (tmp_path / "found.png").write_text("mine")
-    assert main(["sweep", "show", str(found)]) == 2
-    assert "exists" in capsys.readouterr().err
-    assert (tmp_path / "found.png").read_text() == "mine"
+    assert (tmp_path / "mine.png").read_text() == "mine"

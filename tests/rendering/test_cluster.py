@@ -232,23 +232,17 @@ def test_without_dask_the_extra_is_named(monkeypatch):
         Cluster("127.0.0.1")
 
 
-@pytest.mark.parametrize(
-    ("text", "address"),
-    [
+def test_an_address_is_completed_or_refused():
+    for text, address in (
         ("host", "tcp://host:8786"),
         ("10.0.0.1:99", "tcp://10.0.0.1:99"),
         ("tls://a.b.c:8786", "tls://a.b.c:8786"),
         ("tcp://[::1]:5", "tcp://[::1]:5"),
-    ],
-)
-def test_an_address_is_completed(text, address):
-    assert scheduler_address(text) == address
-
-
-@pytest.mark.parametrize("text", ["", "a b", "http://x", "host:0", "host:70000", "a:b:c", "tcp://"])
-def test_what_is_no_address_is_refused(text):
-    with pytest.raises(YehuError, match="is not the address of a scheduler"):
-        scheduler_address(text)
+    ):
+        assert scheduler_address(text) == address
+    for text in ("", "a b", "http://x", "host:0", "host:70000", "a:b:c", "tcp://"):
+        with pytest.raises(YehuError, match="is not the address of a scheduler"):
+            scheduler_address(text)
 
 
 def test_a_file_that_is_no_schedulers_is_refused(tmp_path):

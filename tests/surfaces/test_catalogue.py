@@ -31,21 +31,16 @@ def test_all_are_written_and_fresh_over_older_ones(tmp_path, capsys):
     assert sorted(path.name for path in folder.iterdir()) == sorted(NAMES)
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("harm", ["gone", "changed", "cut"])
-def test_a_stale_file_is_named_and_the_code_is_1(tmp_path, capsys, name, harm):
-    path = tmp_path / name
-    data = (shipped_folder("mappings") / name).read_bytes()  # which is fresh
-    if harm != "gone":
-        path.write_bytes(data + b" " if harm == "changed" else data[:-9])
-    assert main(["surfaces", "-o", str(tmp_path), "--only", name, "--check"]) == 1
-    assert str(path) in capsys.readouterr().out
-    assert path.exists() == (harm != "gone")
-
-
-def test_only_what_is_named_is_written(tmp_path):
-    assert main(["surfaces", "-o", str(tmp_path), "--only", "yehu.pd"]) == 0
-    assert [path.name for path in tmp_path.iterdir()] == ["yehu.pd"]
+def test_a_stale_file_is_named_and_the_code_is_1(tmp_path, command):
+    for name in NAMES:
+        path = tmp_path / name
+        data = (shipped_folder("mappings") / name).read_bytes()  # which is fresh
+        for harmed in (None, data + b" ", data[:-9]):
+            if harmed is not None:
+                path.write_bytes(harmed)
+            code, out, _ = command("surfaces", "-o", tmp_path, "--only", name, "--check")
+            assert (code, str(path) in out) == (1, True)
+            assert path.exists() == (harmed is not None)
 
 
 def test_the_server_is_in_what_speaks_to_it(tmp_path):
@@ -56,34 +51,29 @@ def test_the_server_is_in_what_speaks_to_it(tmp_path):
     assert main(["surfaces", "-o", str(tmp_path), "--only", "yehu.pd", "--check"]) == 1
 
 
-@pytest.mark.parametrize("server", ["10.0.0.7", "localhost", "studio.local", "studio:9000", "::1"])
-def test_a_host_may_be_a_name_or_a_number(tmp_path, server):
-    words = ["surfaces", "-o", str(tmp_path), "--only", "yehu.pd", "--server", server]
-    assert main(words) == 0
+def test_a_host_may_be_a_name_or_a_number(command, tmp_path):
+    for server in ("10.0.0.7", "localhost", "studio.local", "studio:9000", "::1"):
+        words = ("-o", tmp_path, "--only", "yehu.pd", "--server", server)
+        assert command("surfaces", *words)[0] == 0
 
 
-@pytest.mark.parametrize(
-    ("words", "reason"),
-    [
-        (["--only", "yehu.amxd"], "no surface 'yehu.amxd'; there are yehu.tosc"),
-        (["--server", "here:there"], "expected HOST:PORT"),
-        (["--server", "foo"], "expected HOST:PORT"),
-        (["--server", "http://10.0.0.7:9000"], "expected HOST:PORT"),
-        (["--server", "a b:9000"], "expected HOST:PORT"),
-    ],
-)
-def test_a_wrong_word_is_refused_and_nothing_written(tmp_path, capsys, words, reason):
-    assert main(["surfaces", "-o", str(tmp_path), *words]) == 2
-    assert reason in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_file_in_the_folders_place_is_refused(tmp_path, capsys):
-    path = tmp_path / "panels"
-    path.write_text("mine")
-    assert main(["surfaces", "-o", str(path)]) == 2
-    assert str(path) in capsys.readouterr().err
-    assert path.read_text() == "mine"
+def test_a_wrong_word_is_refused_and_nothing_written(refused, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    for words, reason in (
+        (("--only", "yehu.amxd"), "no surface 'yehu.amxd'; there are yehu.tosc"),
+        (("--server", "here:there"), "expected HOST:PORT"),
+        (("--server", "foo"), "expected HOST:PORT"),
+        (("--server", "http://10.0.0.7:9000"), "expected HOST:PORT"),
+        (("--server", "a b:9000"), "expected HOST:PORT"),
+        *(
+            (("--part", part), f"--part {part}: a stage has parts 1 to 16")
+            for part in ("0", "17", "-1")
+        ),
+    ):
+        assert reason in refused("surfaces", "-o", tmp_path / "panels", *words)
+        assert not (tmp_path / "panels").exists()
+    assert str(tmp_path / "file") in refused("surfaces", "-o", tmp_path / "file")
+    assert (tmp_path / "file").read_text() == "mine"
 
 
 def test_the_libraries_load_only_for_this_command():

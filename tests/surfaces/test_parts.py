@@ -94,13 +94,6 @@ def test_files_of_parts_lie_beside_each_other_and_are_checked(tmp_path, capsys):
     assert "yehu-part-2.pd" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("part", ["0", "17", "-1"])
-def test_a_part_that_no_stage_has_is_refused_and_nothing_written(tmp_path, capsys, part):
-    assert main(["surfaces", "-o", str(tmp_path), "--part", part]) == 2
-    assert f"--part {part}: a stage has parts 1 to 16" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
 def test_after_a_part_surfaces_are_again_for_all():
     with common_layout.for_part(2):
         assert common_layout.full("/note") == "/yehu/part/2/note"

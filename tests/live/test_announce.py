@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import socket
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import pytest
 from zeroconf import NonUniqueNameException, ServiceBrowser, Zeroconf
@@ -19,56 +20,39 @@ def port(host: str, number: int) -> SimpleNamespace:
     return SimpleNamespace(host=host, port=number)
 
 
-def test_what_this_machine_only_can_reach_is_not_announced():
-    assert announced(port(HOST, 9000), port("::1", 9001), None) == []
-    assert announced(port(HOST, 9000), None, None) == []
-
-
-def test_what_others_can_reach_is(monkeypatch):
+def test_what_others_can_reach_is_announced_or_what_one_wishes(monkeypatch):
     monkeypatch.setattr(announce, "lan_address", lambda: "192.0.2.5")
     osc, query = Service(OSC, "192.0.2.7", 9000), Service(OSCQUERY, "192.0.2.5", 9001)
-    assert announced(port("192.0.2.7", 9000), port("0.0.0.0", 9001), None) == [osc, query]  # noqa: S104
-    assert announced(port("192.0.2.7", 9000), port(HOST, 9001), None) == [osc]
-    assert announced(port(HOST, 9000), port("::", 9001), None) == [query]
+    here, far = port(HOST, 9000), port("192.0.2.7", 9000)
+    for osc_port, query_port, wish, expected in [
+        (here, port("::1", 9001), None, []),
+        (here, None, None, []),
+        (far, port("0.0.0.0", 9001), None, [osc, query]),  # noqa: S104
+        (far, port(HOST, 9001), None, [osc]),
+        (here, port("::", 9001), None, [query]),
+        (here, port(HOST, 9001), True, [Service(OSC, HOST, 9000), Service(OSCQUERY, HOST, 9001)]),
+        (far, far, False, []),
+    ]:
+        assert announced(osc_port, query_port, wish) == expected
 
 
-def test_who_says_so_is_announced_or_not():
-    here = (port(HOST, 9000), port(HOST, 9001))
-    assert announced(*here, True) == [Service(OSC, HOST, 9000), Service(OSCQUERY, HOST, 9001)]
-    far = (port("192.0.2.7", 9000), port("192.0.2.7", 9001))
-    assert announced(*far, False) == []
-
-
-def test_without_a_network_it_is_said_in_a_line(until):
-    said = []
-    announcer = Announcer([Service(OSC, "0.0.0.0", 9000)], said.append)  # noqa: S104
-    announcer.start()
-    until(lambda: said, "a line")
-    announcer.stop()
-    assert said == ["not announced: this machine has no network"]
-
-
-@pytest.mark.parametrize(
-    ("error", "said_of_it"),
-    [
-        (OSError(19, "No such device"), "No such device"),
-        (RuntimeError("no adapters"), "no adapters"),
-        (NonUniqueNameException(), "NonUniqueNameException"),
-    ],
-)
-def test_what_goes_wrong_is_said_in_a_line(until, monkeypatch, error, said_of_it):
-    def fail(**_):
-        raise error
-
-    monkeypatch.setattr("zeroconf.asyncio.AsyncZeroconf", fail)
-    said = []
-    announcer = Announcer([Service(OSC, HOST, 9000)], said.append)
-    announcer.start()
-    until(lambda: said, "a line")
-    announcer.stop()
-    (line,) = said
-    assert line.startswith("not announced: ")
-    assert said_of_it in line
+def test_what_goes_wrong_is_said_in_a_line(until, monkeypatch):
+    for host, error, line in [
+        ("0.0.0.0", None, "this machine has no network"),  # noqa: S104
+        (HOST, OSError(19, "No such device"), "No such device"),
+        (HOST, RuntimeError("no adapters"), "no adapters"),
+        (HOST, NonUniqueNameException(), "NonUniqueNameException"),
+    ]:
+        failing = Mock(side_effect=error)
+        monkeypatch.setattr("zeroconf.asyncio.AsyncZeroconf", failing)
+        said = []
+        announcer = Announcer([Service(OSC, host, 9000)], said.append)
+        announcer.start()
+        until(lambda said=said: said, "a line")
+        announcer.stop()
+        assert len(said) == 1
+        assert said[0].startswith("not announced: ")
+        assert line in said[0]
 
 
 def test_one_that_ends_before_it_began_leaves_nothing():

@@ -7,35 +7,19 @@ import socket
 import pytest
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.audio.output import OutputOptions
-from yehu_server.live.options import ServeOptions
 from yehu_server.live.osc.open_sockets import open_both
-from yehu_server.live.server import Server
-from yehu_server.live.web.server import WebOptions, listen
+from yehu_server.live.web.server import listen
 
 HOST = "127.0.0.1"
+NAMED = "in use by a running yehu-server; end it there, or"
 
 
-@pytest.fixture(scope="module")
-def server():
-    output = OutputOptions(device="null")
-    server = Server(
-        ServeOptions(output=output, midi=None, osc=(HOST, 0), http=WebOptions((HOST, 0)))
-    )
-    server.start()
-    yield server
-    server.skip_fade_out()
-    server.stop()
-
-
-@pytest.mark.parametrize("host", [HOST, "0.0.0.0"])  # noqa: S104
-def test_osc_names_it(server, host) -> None:
-    with pytest.raises(DeviceError, match="in use by a running yehu-server; end it there, or"):
-        open_both(host, server.osc.port)
-
-
-def test_oscquery_names_it(server) -> None:
-    with pytest.raises(DeviceError, match="in use by a running yehu-server; end it there, or"):
+def test_a_running_server_is_named(shared_web) -> None:
+    server = shared_web.server
+    for host in (HOST, "0.0.0.0"):  # noqa: S104
+        with pytest.raises(DeviceError, match=NAMED):
+            open_both(host, server.osc.port)
+    with pytest.raises(DeviceError, match=NAMED):
         listen("OSCQuery", HOST, server.web.port)
 
 

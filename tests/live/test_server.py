@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
 import time
 
@@ -30,35 +31,24 @@ def test_a_message_is_heard_a_constant_time_after_it_came(live, busy):
     assert len(early) < 3 < len(on_time), delays
 
 
-def test_a_burst_of_messages_all_reach_the_instrument(live, wire):
-    client = live.client()
+@pytest.mark.parametrize("kind", ["udp", "prefixed", "slip"])
+def test_a_burst_of_messages_all_reach_the_instrument(live, busy, kind, wire):
+    client = live.client() if kind == "udp" else live.stream(slip=kind == "slip")
     count = 3_000  # with more waiting a sender is muted
     if live.ports.traffic.buffer_bytes < count * 768:
         pytest.skip(f"the system grants {live.ports.traffic.buffer_bytes} bytes only")
+    packets = [wire.message("/yehu/bow/position", 0.04 + 5e-5 * n) for n in range(count)]
     applied = int(live.instrument.meters()["applied"])
-    for number in range(count):
-        client.take(wire.message("/yehu/bow/position", 0.04 + 5e-5 * number))
-    client.sync()
+    with contextlib.nullcontext() if kind == "udp" else busy():
+        for packet in packets:
+            client.take(packet)
+        client.sync()
     live.settle()
     assert live.handler.counts.messages == count + 1
     assert live.ports.traffic.kernel_drops == 0
     assert int(live.instrument.meters()["applied"]) - applied == count
     assert live.instrument.dropped_events == 0
     assert live.target("/bow/position") == f32(0.04 + 5e-5 * (count - 1))
-
-
-@pytest.mark.parametrize("slip", [False, True], ids=["prefixed", "slip"])
-def test_a_stream_of_messages_all_reach_the_instrument(live, busy, slip, wire):
-    stream = live.stream(slip=slip)
-    count = 3_000
-    packets = [wire.message("/yehu/bow/position", 0.04 + 5e-5 * n) for n in range(count)]
-    with busy():
-        stream.socket.sendall(b"".join(map(stream.wrap, packets)))
-        stream.sync()
-    live.settle()
-    assert live.handler.counts.messages == count + 1
-    assert live.target("/bow/position") == f32(0.04 + 5e-5 * (count - 1))
-    assert live.instrument.dropped_events == 0
     assert live.is_well()
 
 
@@ -81,22 +71,10 @@ def test_who_is_not_allowed_hears_nothing_and_does_nothing(make_live, until):
     live = make_live(allowed=Allowed(["192.0.2.0/24"]))
     client = live.client()
     client.tell("/note", 67, 90)
-    client.tell("/nothing")
     client.take(b"garbage")
-    client.tell("/subscribe", 10)
-    until(lambda: live.ports.traffic.refused == 4, "refusals to be counted")
+    until(lambda: live.server.status()["osc_refused"] == 2, "refusals to be counted")
     assert client.all() == []
-    assert live.server.status()["osc_refused"] == 4
     assert live.handler.counts.messages == 0
-    live.settle()
-    assert live.player.pitch is None
-
-
-def test_two_servers_do_not_share_a_port(live, make_live):
-    from yehu_server.errors import DeviceError
-
-    with pytest.raises(DeviceError, match="cannot listen"):
-        make_live(osc=("127.0.0.1", live.ports.port))
 
 
 def test_stopping_while_notes_and_clients_are_there_ends_all(make_live):

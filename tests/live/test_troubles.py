@@ -1,24 +1,37 @@
-"""What is done beside playing: the delay is kept, what goes wrong is told in few lines."""
+"""Beside playing the delay is kept, and what goes wrong is told in few lines."""
 
 from __future__ import annotations
 
 from types import SimpleNamespace
 
 import pytest
+from wire import StillTime
 
+from yehu_server.cli.report import status_line
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.live import housekeeper
-from yehu_server.live.housekeeper import CounterReport, Housekeeper
+from yehu_server.live.housekeeper import (
+    UNDER_RUNS_EVERY_S,
+    CounterReport,
+    Housekeeper,
+    UnderRunReport,
+)
 from yehu_server.playing.delay import Delay
 
 DROPS, LOSSES = "packets were dropped", "the state was lost"
 
 
+STATUS = {
+    "note": -1.0, "bow_speed": 0.0, "device": "a device with a long name", "peak_db": -160.0,
+    "load": 0.1, "missed_deadlines": 0, "underruns": 0, "midi_ports": "", "recording": "",
+}  # fmt: skip
+
+
 @pytest.fixture
-def clock(monkeypatch):
-    clock = SimpleNamespace(now=1000.0)
-    monkeypatch.setattr(housekeeper, "time", SimpleNamespace(monotonic=lambda: clock.now))
+def clock(monkeypatch) -> StillTime:
+    clock = StillTime(1000.0)
+    monkeypatch.setattr(housekeeper, "time", clock)
     return clock
 
 
@@ -26,10 +39,10 @@ def test_a_flood_of_one_trouble_is_a_line_at_once_and_one_every_ten_seconds(cloc
     said = []
     seen = CounterReport(said.append)
     for count in range(1, 501):  # 25 seconds
-        seen.look({DROPS: count, LOSSES: 0})
+        seen.look({DROPS: count, LOSSES: count // 10 if count < 15 else 1})
         clock.now += 0.05
-    assert said[0] == f"{DROPS} (1 so far)"
-    assert len(said) == 3
+    assert said[:2] == [f"{DROPS} (1 so far)", f"{LOSSES} (1 so far)"]  # the flood hides no other
+    assert len(said) == 4
 
 
 def test_what_came_in_between_is_told_when_the_flood_is_over(clock):
@@ -39,15 +52,6 @@ def test_what_came_in_between_is_told_when_the_flood_is_over(clock):
         seen.look({DROPS: count})
         clock.now += 6.0
     assert said == [f"{DROPS} (1 so far)", f"{DROPS} (7 so far)"]
-
-
-def test_a_flood_of_one_trouble_hides_no_other(clock):
-    said = []
-    seen = CounterReport(said.append)
-    for count in range(1, 11):
-        seen.look({DROPS: count, LOSSES: count // 10})
-        clock.now += 0.05
-    assert said == [f"{DROPS} (1 so far)", f"{LOSSES} (1 so far)"]
 
 
 def test_the_players_delay_follows_the_devices_period(until):
@@ -67,3 +71,41 @@ def test_the_players_delay_follows_the_devices_period(until):
         until(is_followed, "a delay of more than a period")
     finally:
         keeper.stop()
+
+
+# ---------------------------------------------------------------- gaps in the sound
+
+
+def test_there_is_a_line_at_once_and_then_one_a_minute(clock) -> None:
+    said: list[str] = []
+    report = UnderRunReport(said.append)
+    for second in range(150):
+        clock.now = 1000.0 + second
+        report.look(2 * second)
+    assert [line.partition(":")[0] for line in said] == [
+        "2 under-runs", f"120 under-runs in the last {UNDER_RUNS_EVERY_S:.0f} s",
+        "120 under-runs in the last 60 s"
+    ]  # fmt: skip
+    assert "(242 so far)" in said[-1]
+    assert "--blocksize" in said[0]
+
+
+def test_the_end_has_the_sum_if_there_were_any(clock) -> None:
+    said: list[str] = []
+    report = UnderRunReport(said.append)
+    report.look(0)
+    report.sum_up(0, 0)
+    assert said == []
+    report.look(1)
+    clock.now += 30.0
+    report.look(5)
+    report.sum_up(5, 1)
+    assert said[1:] == ["5 under-runs and 1 missed deadline in 30 s"]
+
+
+def test_the_status_line_begins_with_them_where_there_are_any() -> None:
+    assert status_line(STATUS).startswith("a device")
+    assert "under-runs 0" in status_line(STATUS)
+    line = status_line(STATUS | {"underruns": 16_600})
+    assert line.startswith("under-runs 16600 | missed 0 | a device")
+    assert line.count("under-runs") == 1

@@ -13,17 +13,12 @@ from web_client import walk
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.call import Argument, Call
 from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
-from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, UNIT_NAMES, Snapshot, find, node_at
+from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, Snapshot, find, node_at
 from yehu_server.params.table import TABLE
 
 NOTHING = {Kind.TEXT: "", Kind.GAUGE: 0.0, Kind.COUNTER: 0}
 VALUES = {param.address: param.default for param in TABLE}
 STANDING = {row.name: NOTHING[row.kind] for row in STATUS}
-# The names of the proposal's units.md that we use.
-PROPOSED = {
-    "distance.m", "speed.m/s", "time.second", "time.ms", "time.hz", "time.cents",
-    "time.midinote", "gain.db",
-}  # fmt: skip
 
 
 def tree(snapshot, more_calls=()):
@@ -35,15 +30,19 @@ def root():
     return tree(Snapshot(VALUES, STANDING))
 
 
-def test_each_node_is_where_it_says_it_is(root):
+def test_each_node_is_where_it_says_and_has_what_belongs_to_its_arguments(root):
+    assert find(root, "/") is root
     for path, node in walk(root):
         assert find(root, path) is node
-    assert find(root, "/") is root
-
-
-def test_no_node_has_an_attribute_we_do_not_tell_of(root):
-    for _, node in walk(root):
         assert set(node) <= set(ATTRIBUTES)
+        assert ("VALUE" in node) == bool(node["ACCESS"] & 1), path
+        assert ("TYPE" in node) == bool(node["ACCESS"]), path
+        for name in ("VALUE", "RANGE", "UNIT", "CLIPMODE"):
+            assert name not in node or len(node[name]) == len(node["TYPE"]), path
+    with_value = {path for path, node in walk(root) if "VALUE" in node}
+    assert with_value == {"/yehu" + address for address in LISTENABLE}
+    assert find(root, "/yehu/bow/") is find(root, "/yehu/bow")
+    assert find(root, "/yehu//bow") is find(root, "/yehu/bow/speed/none") is None
 
 
 def test_every_parameter_is_described_as_the_table_has_it(subtests, root):
@@ -85,47 +84,13 @@ def test_every_value_can_be_listened_to(still):
     assert {heard.address for heard in still.peer.received()} == {"/yehu" + at for at in LISTENABLE}
 
 
-def test_what_has_a_value_can_be_listened_to_and_nothing_else(root):
-    with_value = {path for path, node in walk(root) if "VALUE" in node}
-    assert with_value == {"/yehu" + address for address in LISTENABLE}
-
-
-def test_what_belongs_to_the_arguments_is_as_many_as_they_are(root):
-    for path, node in walk(root):
-        for name in ("VALUE", "RANGE", "UNIT", "CLIPMODE"):
-            if name in node:
-                assert len(node[name]) == len(node["TYPE"]), path
-
-
-def test_a_value_shows_only_where_it_may_be_read(root):
-    for path, node in walk(root):
-        assert ("VALUE" in node) == bool(node["ACCESS"] & 1), path
-        assert ("TYPE" in node) == bool(node["ACCESS"]), path
-
-
-def test_a_path_may_end_in_a_slash_but_not_have_holes(root):
-    assert find(root, "/yehu/bow/") is find(root, "/yehu/bow")
-    assert find(root, "/yehu//bow") is None
-    assert find(root, "/yehu/bow/speed/none") is None
-
-
-def test_units_have_the_proposals_names():
-    assert set(UNIT_NAMES.values()) == PROPOSED
-    known = {param.unit for param in TABLE} | {row.unit for row in STATUS}
-    assert set(UNIT_NAMES) - known <= {"s"}  # of an argument
-
-
-def test_every_call_can_be_called(root):
+def test_every_call_can_be_called_with_arguments_of_their_own_ranges(root):
     for call in CALLS:
         node = find(root, "/yehu" + call.address)
         assert node["ACCESS"] == 2
         assert node["TYPE"] == "".join(one.kind for one in call.arguments) or node["TYPE"] == "N"
         assert node["DESCRIPTION"] == call.doc
-
-
-def test_an_argument_has_its_own_range(root):
-    lowest, highest = find(root, "/yehu/note")["RANGE"]
-    assert lowest == highest == {"MIN": 0.0, "MAX": 127.0}
+    assert find(root, "/yehu/note")["RANGE"] == [{"MIN": 0.0, "MAX": 127.0}] * 2
     assert find(root, "/yehu/note")["UNIT"] == ["time.midinote", "1"]
     assert "RANGE" not in find(root, "/yehu/record/start")
 
@@ -145,19 +110,15 @@ def test_calls_may_come_from_elsewhere():
     assert find(tree(Snapshot(VALUES, STANDING)), "/yehu/elsewhere") is None
 
 
-def test_a_number_that_json_cannot_say_is_null():
-    root = tree(Snapshot(VALUES, STANDING | {"load": math.nan}))
+def test_a_number_that_json_cannot_say_is_null_and_long_counts_are_floats():
+    states = {"load": math.nan, "frame": INT_MAX + 1, "underruns": 3}
+    root = tree(Snapshot(VALUES, STANDING | states))
     assert find(root, "/yehu/status/load")["VALUE"] == [None]
-    json.dumps(root, allow_nan=False)
-
-
-def test_long_counts_go_as_floats():
-    assert as_argument(INT_MAX) == INT_MAX
-    long = as_argument(INT_MAX + 1)
-    assert isinstance(long, float)
-    root = tree(Snapshot(VALUES, STANDING | {"frame": INT_MAX + 1, "underruns": 3}))
     assert find(root, "/yehu/status/frame")["TYPE"] == "f"
     assert find(root, "/yehu/status/underruns")["TYPE"] == "i"
+    json.dumps(root, allow_nan=False)
+    assert as_argument(INT_MAX) == INT_MAX
+    assert isinstance(as_argument(INT_MAX + 1), float)
 
 
 @pytest.mark.parametrize("module", ["yehu_server.cli", "yehu_server.rendering.to_files"])

@@ -24,12 +24,6 @@ def wasm() -> Path:
     return page_module()
 
 
-@pytest.fixture(scope="session")
-def any_processor(once) -> Path:
-    """A folder with the library, its header, and the phrases by code for any processor."""
-    return once("any_processor", _any_processor)
-
-
 def _any_processor(folder: Path) -> Path:
     environment = {
         **os.environ,
@@ -43,9 +37,9 @@ def _any_processor(folder: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def library(any_processor) -> Path:
-    """A folder with the library and its header."""
-    return any_processor
+def library(once) -> Path:
+    """A folder with the library, its header, and the phrases by code for any processor."""
+    return once("any_processor", _any_processor)
 
 
 @pytest.fixture(scope="session")
@@ -55,9 +49,9 @@ def here() -> dict[str, np.ndarray]:
 
 
 @pytest.fixture(scope="session")
-def by_any_processor(any_processor) -> dict[str, np.ndarray]:
+def by_any_processor(library) -> dict[str, np.ndarray]:
     """The samples of each phrase, with instructions that any processor has."""
-    read = {name: np.fromfile(any_processor / f"{name}.f32", np.float32) for name in PHRASES}
+    read = {name: np.fromfile(library / f"{name}.f32", np.float32) for name in PHRASES}
     return {name: samples.reshape(-1, 2) for name, samples in read.items()}
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
+import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -17,3 +19,12 @@ def compiled(library: Path, into: Path, *sources: str) -> Path:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return into
+
+
+def run_in_plain_python(script: str, *words: object) -> None:
+    """Run one of this folder's scripts without the JIT."""
+    paths = os.pathsep.join(map(str, (HERE.parent, HERE.parents[1])))
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": paths}
+    command = [sys.executable, str(HERE / script), *map(str, words)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -13,7 +13,6 @@ from yehu_server.ahead import build_hash as hashing
 from yehu_server.ahead.build import build, page_linker
 from yehu_server.ahead.build_hash import build_hash, section_of, with_section
 from yehu_server.ahead.memory_images import image
-from yehu_server.cli import main
 from yehu_server.core.engine.mailbox import SERVER
 from yehu_server.core.engine.rig import RIG, memory_bytes
 from yehu_server.core.midi.events import START
@@ -44,43 +43,27 @@ def test_what_memory_begins_with_counts_in_the_hash(tmp_path, monkeypatch):
     assert len(hashes) == 1 + len(BEGUN_BY)
 
 
-@pytest.mark.parametrize("text", ["", "0.1.0 0123456789abcdef", "x" * 300])
-def test_a_section_is_read_as_it_was_written(text):
+def test_a_section_is_read_as_it_was_written_and_what_has_none_tells_nothing():
     other = bytes((1, 3, 0, 0, 0))  # a section of another kind before it
-    assert section_of(with_section(EMPTY + other, text)) == text
+    for text in ("", "0.1.0 0123456789abcdef", "x" * 300):
+        assert section_of(with_section(EMPTY + other, text)) == text
+    no_module = b"RIFF" + with_section(EMPTY, "0.1.0 0123456789abcdef")[4:]
+    for module in (b"", b"RIFF", no_module, EMPTY, EMPTY + b"\0\xff", EMPTY + b"\0\x05\x04yeh"):
+        assert section_of(module) == ""
 
 
-@pytest.mark.parametrize(
-    "module",
-    [
-        b"",
-        b"RIFF",
-        b"RIFF" + with_section(EMPTY, "0.1.0 0123456789abcdef")[4:],
-        EMPTY,
-        EMPTY + b"\0\xff",
-        EMPTY + b"\0\x05\x04yeh",
-    ],
-)
-def test_what_is_no_module_or_has_no_section_tells_nothing(module):
-    assert section_of(module) == ""
-
-
-def test_a_processor_that_llvm_does_not_know_is_refused(tmp_path):
+def test_what_cannot_be_built_is_refused(tmp_path, monkeypatch, refused):
     with pytest.raises(ParameterError, match="'pdp11' is no processor"):
         build("library", tmp_path, cpu="pdp11")
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_rate_that_makes_no_model_is_refused_in_its_own_words(tmp_path):
     with pytest.raises(YehuError, match=r"^sample rate: 5.0 Hz is not within"):
         build("library", tmp_path, rates=[5.0])
-
-
-@pytest.mark.parametrize("what", ["wasm", "library"])
-def test_without_a_linker_the_error_names_what_is_missing(tmp_path, monkeypatch, what):
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(YehuError, match=r"there is no (wasm-ld|C compiler) here"):
-        build(what, tmp_path)
+    for what in ("wasm", "library"):
+        with pytest.raises(YehuError, match=r"there is no (wasm-ld|C compiler) here"):
+            build(what, tmp_path)
+    words = ("build", "tables", "--mapping", "nothing", "-o", tmp_path / "out")
+    assert "no mapping 'nothing'" in refused(*words)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.slow
@@ -99,26 +82,12 @@ def test_a_build_is_the_same_to_the_byte_also_from_an_empty_cache(tmp_path, monk
 
 # -- tables ---------------------------------------------------------------------------------------
 
-FADERS = """
-[[bind]]
-source = "/tilt"
-target = "/playing/volume"
 
-[[bind]]
-source = "cc 1"
-target = "/playing/speed"
-
-[[bind]]
-source = "/touch/1"
-target = "/playing/speed"
-"""
-
-
-def test_build_tables_writes_what_a_style_has(tmp_path, capsys):
+def test_build_tables_writes_what_a_style_has(tmp_path, command):
     output = tmp_path / "wind.tables"
     options = ["--mapping", "wind", "--tuning", "chaozhou-seven-equal", "--a4", "430"]
     options += ["--range", "skip", "--preset", "sul-tasto", "--programs"]
-    assert main(["build", "tables", *options, "-o", str(output)]) == 0
+    assert command("build", "tables", *options, "-o", output) == (0, f"{output}\n", "")
     playing = PlayingOptions(
         mapping=load("wind"),
         tuning=read_tuning(Path("chaozhou-seven-equal")),
@@ -129,30 +98,25 @@ def test_build_tables_writes_what_a_style_has(tmp_path, capsys):
     )
     assert output.read_bytes() == playing.tables(Controls()).tobytes()
     assert len(output.read_bytes()) == TABLES.itemsize
-    assert capsys.readouterr().out.split() == [str(output)]
 
 
-def test_build_tables_tells_the_numbers_of_named_controls(tmp_path, capsys):
-    (tmp_path / "faders.toml").write_text(FADERS)
-    command = ["build", "tables", "--mapping", str(tmp_path / "faders.toml")]
-    assert main([*command, "-o", str(tmp_path / "out")]) == 0
-    assert capsys.readouterr().out.splitlines()[1:] == ["control 0: /tilt", "control 1: /touch/1"]
+def test_build_tables_tells_the_numbers_of_named_controls(tmp_path, command):
+    faders = tmp_path / "faders.toml"
+    binds = {"/tilt": "volume", "cc 1": "speed", "/touch/1": "speed"}.items()
+    text = '[[bind]]\nsource = "{}"\ntarget = "/playing/{}"\n'
+    faders.write_text("".join(text.format(*bind) for bind in binds))
+    code, out, _ = command("build", "tables", "--mapping", faders, "-o", tmp_path / "out")
+    assert code == 0
+    assert out.splitlines()[1:] == ["control 0: /tilt", "control 1: /touch/1"]
 
 
-def test_build_tables_replaces_nothing_unasked(tmp_path, capsys):
+def test_build_tables_replaces_nothing_unasked(tmp_path, command, refused):
     output = tmp_path / "out"
     output.write_text("mine")
-    assert main(["build", "tables", "-o", str(output)]) == 2
+    assert "--overwrite" in refused("build", "tables", "-o", output)
     assert output.read_text() == "mine"
-    assert "--overwrite" in capsys.readouterr().err
-    assert main(["build", "tables", "-o", str(output), "--overwrite"]) == 0
+    assert command("build", "tables", "-o", output, "--overwrite")[0] == 0
     assert output.read_bytes() == PlayingOptions().tables(Controls()).tobytes()
-
-
-def test_build_tables_names_what_is_wrong(tmp_path, capsys):
-    assert main(["build", "tables", "--mapping", "nothing", "-o", str(tmp_path / "out")]) == 2
-    assert "no mapping 'nothing'" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
 
 
 # -- images ---------------------------------------------------------------------------------------

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import subprocess
-import sys
-from pathlib import Path
 
 import pytest
-from ahead.programs import compiled
+from ahead.programs import compiled, run_in_plain_python
 from ahead.tables import some_tables
 
 from yehu_server.core.engine.rig import MIDI_AT
 from yehu_server.core.midi.record import MIDI
 
-HERE = Path(__file__).parent
 midi_fields = MIDI.fields or {}
 HELD, SOUNDING = ((MIDI_AT + midi_fields[name][1]) // 8 for name in ("held", "sounding"))
 SOME, MANY = 50_000, 1_000_000
@@ -39,11 +35,7 @@ def test_no_random_bytes_through_random_mappings_leave_a_note(library, tmp_path,
 
 def test_no_tables_that_are_taken_lead_outside_an_array_or_to_a_number_that_is_not_finite(tmp_path):
     # Plain Python checks each index, and tells of a division by zero.
-    command = [sys.executable, str(HERE / "tables.py"), str(TABLES), tmp_path / "told"]
-    paths = os.pathsep.join(map(str, (HERE.parent, HERE.parents[1])))
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": paths}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    run_in_plain_python("tables.py", TABLES, tmp_path / "told")
     told = json.loads((tmp_path / "told").read_text())
     assert min(told["taken"], told["refused"]) > TABLES // 5
     assert told["wishes"] > 10 * TABLES

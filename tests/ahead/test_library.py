@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
+from ahead.likeness import begins_alike
 from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED
 from ahead.programs import compiled
 
@@ -43,21 +43,12 @@ def by_c(program, tmp_path):
     return play
 
 
-@pytest.mark.parametrize("name", PHRASES)
-def test_a_phrase_begins_as_here_and_stays_as_near_as_processors_are(
-    by_c, here, by_any_processor, name
-):
-    sound, done = by_c(PHRASES[name])
-    assert done.returncode == 0
-    assert begins_alike(sound, here[name])
-    cents, decibels = apart(sound, here[name])
-    usual_cents, usual_decibels = apart(by_any_processor[name], here[name])
-    assert cents <= max(2.0 * usual_cents, NEAR_CENTS)
-    assert decibels <= max(2.0 * usual_decibels, NEAR_DB)
-
-
-def test_it_plays_the_very_samples_of_numbas_code_for_any_processor(by_c, by_any_processor):
-    assert np.array_equal(by_c(STOPPED)[0], by_any_processor["stopped"])
+def test_it_plays_the_very_samples_of_numbas_code_for_any_processor(by_c, here, by_any_processor):
+    for name, wishes in PHRASES.items():
+        sound, done = by_c(wishes)
+        assert done.returncode == 0
+        assert np.array_equal(sound, by_any_processor[name]), name
+        assert begins_alike(sound, here[name]), name
 
 
 def test_one_channel_has_the_mean_of_left_and_right(by_c):

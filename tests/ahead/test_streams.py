@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 import random
 import shutil
 import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-from ahead.programs import compiled
+from ahead.programs import compiled, run_in_plain_python
 from ahead.streams import (
     BLOCK,
     RATE,
@@ -37,7 +34,6 @@ from yehu_server.core.player.wishes import KINDS, RAMP
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
-HERE = Path(__file__).parent
 SEEDS, PARTS = range(2), 12
 SHORT = 2  # parts of a stream in plain Python
 
@@ -107,10 +103,7 @@ def assert_near(found, wanted):
 
 
 def test_plain_python_gives_the_same(tmp_path):
-    command = [sys.executable, str(HERE / "streams.py"), tmp_path / "told", str(SHORT)]
-    paths = os.pathsep.join(map(str, (HERE.parent, HERE.parents[1])))
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": paths}
-    subprocess.run([*command, *map(str, SEEDS)], env=environment, check=True)
+    run_in_plain_python("streams.py", tmp_path / "told", SHORT, *SEEDS)
     told = json.loads((tmp_path / "told").read_text())
     for seed in SEEDS:
         wanted = interpreted(stream_of(seed, SHORT))
@@ -136,9 +129,8 @@ def given(instrument: Instrument, data: bytes, frame: int = 7) -> int:
     )
 
 
-@pytest.mark.parametrize(
-    ("data", "messages"),
-    [
+def test_bytes_are_posted_as_whole_messages(instrument):
+    for data, messages in (
         ([0x90, 69, 100], [[0x90, 69, 100]]),
         ([0x90, 69, 100, 0xC1, 5, 0xE2, 0, 64], [[0x90, 69, 100], [0xC1, 5], [0xE2, 0, 64]]),
         ([0xC0, 5, 0], [[0xC0, 5]]),  # as hosts fill messages up
@@ -150,12 +142,11 @@ def given(instrument: Instrument, data: bytes, frame: int = 7) -> int:
         ([0xF2, 1, 2, 0xF3, 1, 0xF6, 0xF1, 9], []),
         ([60, 0x90, 0xB0, 1], []),
         ([], []),
-    ],
-)
-def test_bytes_are_posted_as_whole_messages(instrument, data, messages):
-    assert given(instrument, bytes(data)) == len(messages)
-    wanted = [(7, events.MESSAGE, packed(each), 0.0, 0.0) for each in messages]
-    assert posted(instrument) == wanted
+    ):
+        before = instrument.posted
+        assert given(instrument, bytes(data)) == len(messages), data
+        wanted = [(7, events.MESSAGE, packed(each), 0.0, 0.0) for each in messages]
+        assert posted(instrument, before) == wanted, data
 
 
 def test_all_whole_messages_among_any_bytes_are_posted(instrument):
@@ -174,17 +165,18 @@ def test_all_whole_messages_among_any_bytes_are_posted(instrument):
             instrument.reset()
 
 
-def test_a_full_ring_takes_no_more(instrument):
-    some = bytes([0xD0, 1] * RING)
-    assert given(instrument, some) == RING
-    assert given(instrument, bytes([0xD0, 1])) == 0
-    assert control.call(instrument.address, 0, 0, 0.5) == 0
-
-
-def test_no_control_has_a_number_below_0(instrument):
+def test_a_full_ring_takes_no_more_and_no_control_has_a_number_below_0(instrument):
     assert control.call(instrument.address, 0, -1, 0.5) == 0
     assert control.call(instrument.address, 3, 2, 0.5) == 1
     assert posted(instrument) == [(3, events.CONTROL, 2, 0.5, 0.0)]
+    assert given(instrument, bytes([0xD0, 1] * RING)) == RING - 1
+    assert given(instrument, bytes([0xD0, 1])) == 0
+    assert control.call(instrument.address, 0, 0, 0.5) == 0
+    tables = PlayingOptions().tables(Controls())
+    assert mapped(instrument, tables) == 0  # until there is room
+    for _ in range(RING // 1024):
+        instrument.process(np.zeros(BLOCK, np.float32))
+    assert mapped(instrument, tables) == 1
 
 
 # -- tables ---------------------------------------------------------------------------------------
@@ -208,15 +200,6 @@ def test_tables_are_taken_one_after_another_and_those_in_use_are_not_touched(ins
         instrument.process(out)
         assert instrument.midi["tables"] == number % SLOTS
         assert instrument.tables[number % SLOTS].tobytes() == tables.tobytes()
-
-
-def test_tables_wait_where_the_ring_is_full(instrument):
-    given(instrument, bytes([0xD0, 1] * RING))
-    tables = PlayingOptions().tables(Controls())
-    assert mapped(instrument, tables) == 0
-    for _ in range(RING // 1024):
-        instrument.process(np.zeros(BLOCK, np.float32))
-    assert mapped(instrument, tables) == 1
 
 
 def test_tables_of_another_size_are_refused(instrument):

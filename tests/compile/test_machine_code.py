@@ -90,30 +90,24 @@ def _nothing_is_shipped(tmp_path, monkeypatch):
 
 
 @pytest.mark.usefixtures("kept")
-def test_a_note_from_what_is_kept_needs_no_numba_and_reads_no_code():
-    played = subprocess.run(
-        [sys.executable, "-c", PLAY], check=True, capture_output=True, text=True
-    )
-    assert played.stdout.split()[0] == "False"
-
-
-def test_simulations_and_sweeps_from_what_is_kept_need_no_numba():
+def test_notes_simulations_and_sweeps_from_what_is_kept_need_no_numba_and_read_no_code():
     lab.warm_up()
-    ran = subprocess.run([sys.executable, "-c", STUDY], check=True, capture_output=True, text=True)
-    assert ran.stdout.split() == ["False"]
+    for code in (PLAY, STUDY):
+        ran = subprocess.run(
+            [sys.executable, "-c", code], check=True, capture_output=True, text=True
+        )
+        assert ran.stdout.split()[0] == "False"
 
 
-def test_what_playing_needs_is_kept_apart_from_what_studies_need_besides(kept, tmp_path):
+def test_what_playing_needs_is_in_one_file_apart_from_what_studies_need_besides(kept, tmp_path):
     lab.warm_up()
-    assert not {function.name for function in lab.all_functions()} & set(written(tmp_path, kept))
+    found = set(written(tmp_path, kept))
+    assert {function.name for function in all_functions()} <= found
+    assert not {function.name for function in lab.all_functions()} & found
     assert all(function.is_kept for function in lab.all_functions())
     machine_code.file_in(tmp_path).unlink()
     machine_code.loaded.cache_clear()  # without the first file the second one is not loaded
     assert machine_code.address_of(lab.CALLED[0].name, tmp_path, source_hash()) is None
-
-
-def test_all_that_playing_needs_is_in_one_file(kept, tmp_path):
-    assert {function.name for function in all_functions()} <= set(written(tmp_path, kept))
 
 
 def test_what_was_made_for_something_else_is_left_alone(kept, tmp_path, caplog):
@@ -144,48 +138,39 @@ def test_a_damaged_file_is_told_and_left_alone(kept, tmp_path, caplog):
     assert "damaged" in caplog.messages[0]
 
 
-def shipped(folder: Path, payload: bytes, level: str) -> None:
-    system = machine_code.processor()[0]
-    made_for = [system, level, "", source_hash()]
-    folder.mkdir(exist_ok=True)
-    write_sealed(folder / f"{system}-{level}.code", changed(payload, **{"made for": made_for}))
-
-
 def test_of_what_is_shipped_the_highest_level_is_taken_that_the_processor_has(
     kept, tmp_path, monkeypatch
 ):
     system = machine_code.processor()[0]
     levels = {"high": {"a feature of the future"}, "middle": set(), "low": set()}
     monkeypatch.setitem(machine_code.LEVELS, system.partition("-")[0], levels)
+    (tmp_path / "shipped").mkdir()
     for level in levels:
-        shipped(tmp_path / "shipped", kept, level)
-    assert [path.name for path, _ in machine_code.shipped_files()] == [
-        f"{system}-middle.code", f"{system}-low.code",
-    ]  # fmt: skip
+        payload = changed(kept, **{"made for": [system, level, "", source_hash()]})
+        write_sealed(tmp_path / "shipped" / f"{system}-{level}.code", payload)
+    found = [path.name for path, _ in machine_code.shipped_files()]
+    assert found == [f"{system}-middle.code", f"{system}-low.code"]
     machine_code.loaded.cache_clear()
     assert machine_code.loaded(tmp_path / "empty", source_hash())
-
-
-def test_code_of_a_level_is_not_taken_for_that_of_a_processor_asked_for(monkeypatch):
-    monkeypatch.setenv("NUMBA_CPU_NAME", "generic")
+    monkeypatch.setenv("NUMBA_CPU_NAME", "generic")  # a level is not taken for one asked for
     assert list(machine_code.shipped_files()) == []
-
-
-def told(capsys, *functions) -> str:
-    warn_of_compiling(argparse.Namespace(quiet=False), functions)
-    return capsys.readouterr().err
 
 
 def test_commands_tell_that_something_is_compiled(monkeypatch, capsys):
     """Whether it is for playing, or for what else a command calls."""
+
+    def told(functions) -> str:
+        warn_of_compiling(argparse.Namespace(quiet=False), functions)
+        return capsys.readouterr().err
+
     warm_up()
     for functions in ((), (advance,)):
-        assert told(capsys, *functions) == ""
+        assert told(functions) == ""
         with monkeypatch.context() as patched:
             patched.setattr(machine_code, "loaded", cache(lambda *_: {}))
-            assert told(capsys, *functions) == ""  # it is in the cache, function by function
+            assert told(functions) == ""  # it is in the cache, function by function
             patched.setattr(Native, "is_cached", property(lambda self: self is not advance))
-            assert "compiling for this machine, once" in told(capsys, *functions)
+            assert "compiling for this machine, once" in told(functions)
 
 
 def test_a_release_takes_the_files_along():

@@ -33,6 +33,12 @@ def played(pitches, **wanted):
     return performed(found, strokes_of(found), Wanted(**wanted))
 
 
+def settings(found, address):
+    """The values that a parameter is set to, in order."""
+    messages = (event.message for event in found.score.events)
+    return [each.value for each in messages if getattr(each, "address", None) == address]
+
+
 def asked(found, frame):
     """The pitch that is asked for at a frame."""
     key = bend = np.nan
@@ -60,14 +66,11 @@ def test_a_note_beyond_the_range_is_moved_alone_and_told():
 
 
 def test_a_correction_moves_notes_to_the_tuning():
-    swing = 70.3 + 0.4 * np.sin(np.arange(200) * 0.2)
-    plain, moved, flat = (
-        played(np.concatenate((held((np.nan, 9)), swing, held((np.nan, 9)))), **wanted)
-        for wanted in ({}, {"correct": 1.0, "keeps_vibrato": True}, {"correct": 1.0})
-    )
-    middle = slice(60, 180)
-    curves = [np.array([asked(each, frame) for frame in range(200)])[middle]
-              for each in (plain, moved, flat)]  # fmt: skip
+    swing, rest = 70.3 + 0.4 * np.sin(np.arange(200) * 0.2), held((np.nan, 9))
+    curves = []
+    for wanted in ({}, {"correct": 1.0, "keeps_vibrato": True}, {"correct": 1.0}):
+        found = played(np.concatenate((rest, swing, rest)), **wanted)
+        curves.append(np.array([asked(found, frame) for frame in range(60, 180)]))
     assert np.median(curves[0]) == pytest.approx(70.3, abs=0.05)
     assert np.median(curves[1]) == pytest.approx(70.0, abs=0.05)
     assert np.ptp(curves[1]) == pytest.approx(np.ptp(curves[0]), abs=0.05)
@@ -91,17 +94,12 @@ def test_dynamics_are_as_loud_as_their_source_says():
 
 def test_a_style_plays_less_of_the_loudness():
     level = np.concatenate((np.full(109, -40.0), np.full(100, -20.0)))
-    found = {
-        name: [
-            event.message.value
-            for event in played(
-                held((np.nan, 9), (70.0, 200)), level=level, style=style
-            ).score.events
-            if isinstance(event.message, Setting) and event.message.address == "/playing/dynamics"
-        ]
-        for name, style in STYLES.items()
-    }
-    assert min(found["exact"]) < min(found["gentle"]) < min(found["even"]) == 1.0
+    pitches = held((np.nan, 9), (70.0, 200))
+    least = [
+        min(settings(played(pitches, level=level, style=STYLES[name]), "/playing/dynamics"))
+        for name in ("exact", "gentle", "even")
+    ]
+    assert least[0] < least[1] < least[2] == 1.0
 
 
 def test_its_midi_file_has_the_same_notes_and_bends(tmp_path):
@@ -121,12 +119,7 @@ def test_a_voice_without_notes_is_refused():
 
 
 def test_a_c5_that_moves_is_not_played_on_the_open_string():
-    swing = 72.0 + 0.3 * np.sin(np.arange(120) * 0.2)
-    found = played(np.concatenate((held((np.nan, 9), (72.0, 80), (np.nan, 20)), swing,
-                                   held((np.nan, 20), (79.0, 80), (np.nan, 9)))))  # fmt: skip
-    strings = [
-        event.message.value
-        for event in found.score.events
-        if isinstance(event.message, Setting) and event.message.address == "/playing/string"
-    ]
-    assert strings == [1.0, None]
+    swing, rest = 72.0 + 0.3 * np.sin(np.arange(120) * 0.2), (np.nan, 20)
+    begins, ends = held((np.nan, 9), (72.0, 80), rest), held(rest, (79.0, 80), (np.nan, 9))
+    found = played(np.concatenate((begins, swing, ends)))
+    assert settings(found, "/playing/string") == [1.0, None]

@@ -131,10 +131,8 @@ def test_no_finger_goes_where_none_fits_by_the_loop():
 def test_a_slide_or_a_trill_in_a_note_stays_on_one_string():
     """Also on the open C5, which is stopped on the F string, or where its finger would not fit."""
     wrong = []
-    slides, trills = (
-        ("passed-slide", "fall", "turning-slide", "sliding-vibrato"),
-        (*("trill", "wide-trill", "mordent"),),
-    )
+    slides = ("passed-slide", "fall", "turning-slide", "sliding-vibrato")
+    trills = ("trill", "wide-trill", "mordent")
     for names, first, notes in ((slides, 76, (71, 72, 79)), (trills, 70, (71, 72, 73, 76))):
         for name, note in product(names, notes):
             playing = held(name, first)

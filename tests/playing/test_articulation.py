@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import pytest
 from hands import Checked
 
@@ -63,38 +61,30 @@ def test_dynamics_after_the_note_move_no_bow(player, listener):
 # ---------------------------------------------------------------- vibrato and tremolo
 
 
-def test_vibrato_is_as_wished(player, listener):
+def test_vibrato_and_tremolo_are_as_wished(player, listener):
     player.note_on(key(75))
     assert listener["/vibrato/depth"] == 0.0
-    player.write("/playing/vibrato", 25.0)
-    player.write("/playing/vibrato_rate", 6.5)
-    player.write("/playing/vibrato_press", 0.2)
-    assert listener["/vibrato/depth"] == 25.0
-    assert listener["/vibrato/rate"] == 6.5
-    assert listener["/vibrato/press"] == 0.2
+    for wish, moved, value in [
+        ("vibrato", "/vibrato/depth", 25.0),
+        ("vibrato_rate", "/vibrato/rate", 6.5),
+        ("vibrato_press", "/vibrato/press", 0.2),
+        ("tremolo", "/bow/tremolo", 9.0),
+        ("tremolo", "/bow/tremolo", 0.0),
+    ]:
+        player.write(f"/playing/{wish}", value)
+        assert listener[moved] == value
 
 
-def test_the_vibrato_of_each_note_comes_in_anew(player, listener):
+def test_the_vibrato_of_each_note_comes_in_anew_without_delay_at_once(player, listener):
+    player.write("/playing/vibrato_delay", 0.0)
+    player.note_on(key(75))
+    assert [move.value for move in listener.of("/vibrato/onset")] == [1.0]
     player.write("/playing/vibrato_delay", 600.0)
-    for note in (75, 77):
+    for note in (77, 79):
         player.note_on(key(note))
         begins, comes = listener.of("/vibrato/onset")[-2:]
         assert (begins.value, begins.ramp_ms) == (0.0, 0.0)
         assert (comes.value, comes.ramp_ms) == (1.0, 600.0)
-
-
-def test_without_delay_the_vibrato_is_there_at_once(player, listener):
-    player.write("/playing/vibrato_delay", 0.0)
-    player.note_on(key(75))
-    assert [move.value for move in listener.of("/vibrato/onset")] == [1.0]
-
-
-def test_tremolo_is_the_bows(player, listener):
-    player.note_on(key(75))
-    player.write("/playing/tremolo", 9.0)
-    assert listener["/bow/tremolo"] == 9.0
-    player.write("/playing/tremolo", 0.0)
-    assert listener["/bow/tremolo"] == 0.0
 
 
 # ---------------------------------------------------------------- pizzicato
@@ -159,15 +149,15 @@ def test_a_bowed_note_becomes_a_plucked_one(player, listener):
 # ---------------------------------------------------------------- tunings
 
 
-def tuning(pitches: Iterable[float | None]) -> Tuning:
-    """A tuning with the pitches of all keys."""
-    return Tuning("test", tuple(pitches))
+def hands(listener, tune) -> Checked:
+    """A player whose keys have other pitches."""
+    player = Checked(listener, tuning=Tuning("test", tuple(map(tune, KEYS))))
+    player.write("/playing/variation", 0.0)
+    return player
 
 
 def test_a_tuning_says_where_keys_are(listener):
-    quarter_flat = {75: 74.5, 76: None}
-    player = Checked(listener, tuning=tuning(quarter_flat.get(note, note) for note in KEYS))
-    player.write("/playing/variation", 0.0)
+    player = hands(listener, lambda note: {75: 74.5, 76: None}.get(note, note))
     player.note_on(key(75.0))
     assert listener.where() == ("C", 2.5)
     assert player.notes_out_of_range == 0
@@ -176,17 +166,17 @@ def test_a_tuning_says_where_keys_are(listener):
     assert listener.where() == ("C", 2.5)
 
 
-@pytest.mark.parametrize(("tuned", "played"), [(64.9999, ("F", None)), (64.6, ("F", None))])
-def test_a_tuning_a_little_below_the_open_string_is_the_open_string(listener, tuned, played):
-    player = Checked(listener, tuning=tuning(tuned for _ in KEYS))
-    player.note_on(key(65))
-    assert listener.where() == played
-    assert player.notes_out_of_range == 0
-
-
-def test_a_tuning_far_below_is_moved_by_octaves(listener):
-    player = Checked(listener, tuning=tuning(note - 0.5 for note in KEYS))
-    player.write("/playing/variation", 0.0)
-    player.note_on(key(65))
-    assert listener.where() == ("C", 4.5)
-    assert player.notes_out_of_range == 1
+def test_a_tuning_a_little_below_the_open_string_is_that_and_one_far_below_moved_by_octaves(
+    listener,
+):
+    for below, where, outside in (
+        (1e-4, ("F", None), 0),
+        (0.4, ("F", None), 0),
+        (0.5, ("C", 4.5), 1),
+    ):
+        player = hands(listener, lambda note, by=below: note - by)
+        before = player.notes_out_of_range
+        player.note_on(key(65))
+        assert listener.where() == where
+        assert player.notes_out_of_range - before == outside
+        player.note_off(key(65))

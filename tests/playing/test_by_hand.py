@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import mido
 import numpy as np
 import pytest
 from hands import HIGH_DB, LOW_DB, Checked, Watched, ideal
@@ -12,7 +11,6 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.pitch_and_level import a_weighted_db
 from yehu_server.playing.wishes import Key, WishPoster
 
@@ -28,23 +26,14 @@ def test_the_finger_waits_at_a_pitch_for_the_bow(player, listener):
     assert listener["/bow/side"] == 1.0
 
 
-def test_the_bow_follows_the_finger_to_the_other_string(player, listener):
+def test_the_bow_follows_the_finger_to_the_other_string_until_it_is_lifted(player, listener):
     player.draw(0.2, 0.7)
-    player.slide(76.0)
-    assert listener["/bow/side"] == -1.0
-    player.slide(67.0)
-    assert listener["/bow/side"] == 1.0
-
-
-def test_a_bow_drawn_by_hand_without_a_finger_plays_the_open_inner_string(player, listener):
-    player.draw(0.2, 0.7)
-    assert listener["/bow/side"] == 1.0
-
-
-def test_no_speed_and_no_force_lift_the_bow(player, listener):
-    player.draw(0.2, 0.7)
+    sides = [listener["/bow/side"]]  # the open inner string: nobody stops one
+    for pitch in (76.0, 67.0):
+        player.slide(pitch)
+        sides.append(listener["/bow/side"])
     player.draw(0.0, 0.0)
-    assert listener["/bow/side"] == 0.0
+    assert [*sides, listener["/bow/side"]] == [1.0, -1.0, 1.0, 0.0]
 
 
 def test_lifting_touches_only_a_bow_drawn_by_hand(player, listener):
@@ -65,24 +54,14 @@ def test_a_note_takes_the_bow_back(player, listener):
     assert listener.where() == ("C", 2.0)
 
 
-def test_a_sounding_note_slides_to_a_pitch(player, listener):
-    player.note_on(Key(0, 67))
-    player.slide(68.25)
-    assert listener.where() == ("F", 3.25)
-    player.note_off(Key(0, 67))
-    assert listener["/bow/speed"] == 0.0
-
-
-def test_a_pitch_beyond_the_instrument_is_played_as_the_nearest(player):
-    assert player.slide(20.0) == 65.0
-    assert player.slide(120.0) == 89.0
-
-
-def test_notes_may_lie_between_the_keys(player, listener):
+def test_a_sounding_note_may_lie_between_the_keys_and_slides_to_a_pitch(player, listener):
     player.note_on(Key(0, 67.5))
     assert listener.where() == ("F", 2.5)
+    player.slide(68.25)
+    assert listener.where() == ("F", 3.25)
     player.note_off(Key(0, 67.5))
     assert listener["/bow/speed"] == 0.0
+    assert (player.slide(20.0), player.slide(120.0)) == (65.0, 89.0)  # the nearest there is
 
 
 # ---------------------------------------------------------------- what is told, and how loud it is
@@ -168,43 +147,25 @@ def test_a_slide_by_hand_is_evened_out_without_a_click():
     assert np.abs(rate_db_per_ms).max() < 2.0
 
 
-# ---------------------------------------------------------------- several ports
-
-
-def on(player: MidiPoster, note: int, port: int) -> None:
-    player.receive(mido.Message("note_on", note=note, velocity=80), port=port)
-
-
-@pytest.fixture
-def ports(player, mapping) -> MidiPoster:
-    return MidiPoster(player, mapping)
-
-
 # ---------------------------------------------------------------- direct writes among controllers
 
 
-def test_a_direct_write_counts_until_the_controller_moves_again(ports, player):
-    ports.receive(mido.Message("control_change", control=1, value=127))
-    ports.write("/playing/speed", 0.1)
-    on(ports, 67, port=0)
+@pytest.mark.parametrize("port", [0, 1])
+def test_a_direct_write_counts_until_the_controller_moves_again(midi, player, port):
+    midi.cc(1, 127)
+    midi.player.write("/playing/speed", 0.1)
+    midi.on(67, port=port)
     assert player.value("/playing/speed") == 0.1
-    ports.receive(mido.Message("control_change", control=1, value=127))
-    assert player.value("/playing/speed") == pytest.approx(0.35)
-
-
-def test_a_direct_write_reaches_notes_of_other_ports(ports, player):
-    ports.receive(mido.Message("control_change", control=1, value=127), port=0)
-    ports.write("/playing/speed", 0.1)
-    on(ports, 67, port=1)
-    assert player.value("/playing/speed") == 0.1
+    if port == 0:
+        midi.cc(1, 127)
+        assert player.value("/playing/speed") == pytest.approx(0.35)
 
 
 # ---------------------------------------------------------------- the open C string
 
 
-@pytest.mark.parametrize(
-    ("when", "pitch", "where"),
-    [
+def test_the_open_string_sounds_when_it_is_wanted():
+    for when, pitch, where in [
         ("always", 72.0, ("C", None)),
         ("always", 72.3, ("C", None)),
         ("on-pitch", 72.0, ("C", None)),
@@ -212,11 +173,9 @@ def test_a_direct_write_reaches_notes_of_other_ports(ports, player):
         ("never", 72.0, ("F", 7.0)),
         ("never", 73.0, ("C", 1.0)),
         ("never", 65.0, ("F", None)),  # there is no other way
-    ],
-)
-def test_the_open_string_sounds_when_it_is_wanted(when, pitch, where):
-    listener = Watched(calibration=ideal(), open_strings=OpenStrings(when))
-    player = Checked(listener)
-    player.write("/playing/variation", 0.0)
-    player.note_on(Key(0, pitch))
-    assert listener.where() == where
+    ]:
+        listener = Watched(calibration=ideal(), open_strings=OpenStrings(when))
+        player = Checked(listener)
+        player.write("/playing/variation", 0.0)
+        player.note_on(Key(0, pitch))
+        assert listener.where() == where, (when, pitch)

@@ -1,7 +1,8 @@
-"""Learned binds are kept in a file of the user, whole or not at all."""
+"""Learned binds are kept in a file of the user, whole or not at all, with what they replace."""
 
 from __future__ import annotations
 
+import json
 import os
 import tomllib
 from dataclasses import replace
@@ -10,10 +11,12 @@ from pathlib import Path
 import pytest
 from curves import from_unit
 
+from yehu_server.cli import main
 from yehu_server.errors import MappingError, OutputError, ParameterError
 from yehu_server.params.table import TABLE
-from yehu_server.playing.learn import LearnedSource, learn, unlearn
+from yehu_server.playing.learn import LearnedSource, changes, learn, unlearn
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
+from yehu_server.playing.mapping_file import read_mapping_file
 
 KNOB = LearnedSource("cc 20")
 
@@ -32,16 +35,15 @@ def movers(mapping: Mapping, target: str) -> list[str]:
     return [bind.source for bind in mapping.binds if bind.target == target]
 
 
-@pytest.mark.parametrize("name", shipped_mappings())
-def test_what_is_learned_for_a_shipped_mapping_is_there_at_the_next_start(settings, name):
-    mapping, path = learn(load(name), "/playing/vibrato_press", KNOB, soft=False)
-    assert path == settings / "mappings" / f"{name}.toml"
-    again = load(name, user_first=True)
-    assert again == mapping
-    assert moved_by(again, "cc 20") == ["/playing/vibrato_press"]
-    assert set(again.binds) - {again.of("cc 20")[0]} <= set(load(name).binds)
-    assert moved_by(load(name), "cc 20") == []  # rendering does not use it
-    assert load(f"mine/{name}") == mapping
+def test_what_is_learned_for_a_shipped_mapping_is_there_at_the_next_start(settings):
+    for name in shipped_mappings():
+        mapping, path = learn(load(name), "/playing/vibrato_press", KNOB, soft=False)
+        assert path == settings / "mappings" / f"{name}.toml"
+        again = load(name, user_first=True)
+        assert again == mapping == load(f"mine/{name}")
+        assert moved_by(again, "cc 20") == ["/playing/vibrato_press"]
+        assert {*again.binds} - {again.of("cc 20")[0]} <= {*load(name).binds}
+        assert moved_by(load(name), "cc 20") == []  # rendering does not use it
 
 
 def test_every_parameter_that_the_player_does_not_move_can_be_learned(everything):
@@ -54,40 +56,36 @@ def test_every_parameter_that_the_player_does_not_move_can_be_learned(everything
         assert load("mine/keyboard") == mapping, param.address
 
 
-@pytest.mark.parametrize(
-    ("source", "is_global"),
-    [("cc 20", True), ("bend", True), ("pressure", True), ("poly-pressure", False), ("/x", False)],
-)
-def test_what_is_learned_moves_the_notes_of_every_box(source, is_global):
-    mapping, _ = learn(load("keyboard"), "/playing/vibrato", LearnedSource(source), soft=False)
-    (bind,) = mapping.of(source)
-    assert bind.is_global is is_global
-    assert load("mine/keyboard") == mapping
+def test_what_is_learned_moves_the_notes_of_every_box():
+    of_all = {"cc 20": True, "bend": True, "pressure": True, "poly-pressure": False, "/x": False}
+    for source, is_global in of_all.items():
+        mapping, _ = learn(load("keyboard"), "/playing/vibrato", LearnedSource(source), soft=False)
+        (bind,) = mapping.of(source)
+        assert bind.is_global is is_global, source
 
 
-def test_what_the_player_moves_cannot_be_learned(settings):
+def test_what_the_player_moves_and_what_comes_from_no_file_cannot_be_learned(settings):
     with pytest.raises(ParameterError, match="/bow/speed is moved by the player"):
         learn(load("keyboard"), "/bow/speed", KNOB, soft=False)
+    with pytest.raises(MappingError, match="comes from no file"):
+        learn(Mapping("bare", ()), "/playing/vibrato", KNOB, soft=False)
     assert not settings.exists()
 
 
-def test_nothing_else_moves_what_was_learned():
+def test_nothing_else_moves_what_was_learned_and_a_knob_moves_what_it_learned_last():
     assert movers(load("keyboard"), "/playing/pressure") == ["velocity"]
     mapping, _ = learn(load("keyboard"), "/playing/pressure", KNOB, soft=False)
     assert movers(mapping, "/playing/pressure") == ["cc 20"]
-    mapping, _ = learn(mapping, "/playing/pressure", LearnedSource("cc 21"), soft=False)
-    assert movers(mapping, "/playing/pressure") == ["cc 21"]
+    mapping, _ = learn(mapping, "/playing/pressure", LearnedSource("cc 1/33"), soft=False)
+    assert movers(mapping, "/playing/pressure") == ["cc 1/33"]
+    mapping, _ = learn(mapping, "/output/gain", LearnedSource("cc 1"), soft=False)
+    assert moved_by(mapping, "cc 1") == ["/output/gain"]
+    assert moved_by(mapping, "cc 1/33") == []
+    mapping, count = unlearn(mapping, "/output/gain")
     mapping, count = unlearn(mapping, "/playing/pressure")
     assert count == 1
     assert movers(mapping, "/playing/pressure") == ["velocity"]
     assert unlearn(mapping, "/playing/pressure") == (mapping, 0)
-
-
-def test_a_knob_moves_what_it_learned_last():
-    mapping, _ = learn(load("keyboard"), "/playing/vibrato", LearnedSource("cc 1/33"), soft=False)
-    mapping, _ = learn(mapping, "/output/gain", LearnedSource("cc 1"), soft=False)
-    assert moved_by(mapping, "cc 1") == ["/output/gain"]
-    assert moved_by(mapping, "cc 1/33") == []
 
 
 def test_zones_that_the_command_line_asked_for_stay():
@@ -147,6 +145,102 @@ def test_a_crash_while_it_is_written_leaves_the_file_as_it_was(tmp_path, monkeyp
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_a_mapping_that_comes_from_no_file_cannot_learn():
-    with pytest.raises(MappingError, match="comes from no file"):
-        learn(Mapping("bare", ()), "/playing/vibrato", KNOB, soft=False)
+# ---------------------------------------------------------------- what is given back
+
+TEXT = """name = "mine"
+
+[[bind]]
+source = "cc 5"           # the left pedal
+target = "/playing/vibrato"
+span = [0, 30]
+
+[[bind]]
+source = "cc 5"
+target = "/playing/vibrato_press"
+
+[[bind]]
+source = "cc 12/44"
+target = "/playing/pressure"
+"""
+
+
+@pytest.fixture
+def file(tmp_path) -> Path:
+    path = tmp_path / "mine.toml"
+    path.write_text(TEXT)
+    return path
+
+
+def taught(mapping: Mapping, target: str, source: str) -> Mapping:
+    return learn(mapping, target, LearnedSource(source), soft=False)[0]
+
+
+def binds(mapping: Mapping) -> set[tuple]:
+    return {(bind.source, bind.target, bind.span) for bind in mapping.binds}
+
+
+def test_what_learning_takes_is_told_and_comes_back_also_after_a_new_start(file):
+    before = load(str(file))
+    mapping = taught(before, "/playing/vibrato", "cc 20")
+    assert changes(before, mapping) == [("cc 5", "/playing/vibrato")]
+    assert movers(mapping, "/playing/vibrato") == ["cc 20"]
+    mapping, count = unlearn(load(str(file)), "/playing/vibrato")
+    assert count == 1
+    assert binds(mapping) == binds(before) == binds(load(str(file)))
+    assert "replaces" not in file.read_text()
+    mapping = taught(before, "/output/gain", "cc 5")
+    both = [("cc 5", "/playing/vibrato"), ("cc 5", "/playing/vibrato_press")]
+    assert changes(before, mapping) == both
+
+
+VIBRATO, GAIN = "/playing/vibrato", "/output/gain"
+
+
+@pytest.mark.parametrize("alone", ["", "\nalone = true"])
+def test_after_all_is_forgotten_all_is_as_it_was(subtests, file, alone):
+    for name, lessons, forgotten in [
+        ("all that the control did", [(GAIN, "cc 5")], [GAIN]),
+        ("another control for the target", [(VIBRATO, "cc 20"), (VIBRATO, "cc 21")], [VIBRATO]),
+        ("a control twice", [(VIBRATO, "cc 20"), (GAIN, "cc 20")], [GAIN, VIBRATO]),
+        ("two", [(VIBRATO, "cc 12"), (GAIN, "cc 5")], [VIBRATO, GAIN]),
+        ("in any order", [(VIBRATO, "cc 12"), (GAIN, "cc 5")], [GAIN, VIBRATO]),
+        ("what was taken already", [(GAIN, "cc 5"), (VIBRATO, "cc 21")], [GAIN, VIBRATO]),
+    ]:
+        with subtests.test(name):
+            file.write_text(TEXT.replace("span = [0, 30]", f"span = [0, 30]{alone}"))
+            before = mapping = load(str(file))
+            for target, source in lessons:
+                mapping = taught(mapping, target, source)
+            for target in forgotten:
+                mapping, count = unlearn(mapping, target)
+                assert count == 1
+            assert binds(mapping) == binds(before)
+
+
+def test_what_was_learned_otherwise_stays_as_something_is_forgotten(file):
+    mapping = taught(load(str(file)), GAIN, "cc 5")
+    mapping = unlearn(taught(mapping, VIBRATO, "cc 21"), GAIN)[0]
+    assert movers(mapping, VIBRATO) == ["cc 21"]
+    assert moved_by(mapping, "cc 5") == ["/playing/vibrato_press"]
+    again = unlearn(taught(mapping, GAIN, "cc 21"), GAIN)[0]
+    assert binds(again) == binds(mapping)
+
+
+def test_what_is_kept_survives_conversion_by_way_of_json(file, tmp_path, capsys):
+    taught(load(str(file)), "/output/gain", "cc 5")
+    assert main(["mappings", "show", str(file), "--json"]) == 0
+    shown = capsys.readouterr().out
+    assert len(json.loads(shown)["bind"][-1]["replaces"]) == 2
+    (tmp_path / "shown.json").write_text(shown)
+    assert main(["mappings", "convert", str(tmp_path / "shown.json")]) == 0
+    (tmp_path / "again.toml").write_text(capsys.readouterr().out)
+    assert read_mapping_file(tmp_path / "again.toml").binds == read_mapping_file(file).binds
+
+
+def test_what_is_wrong_in_what_is_kept_is_told_with_its_place(file, capsys):
+    kept = '[[bind]]\nsource = "cc 20"\ntarget = "/playing/vibrato"\n[[bind.replaces]]\n'
+    file.write_text(f'name = "mine"\n{kept}source = "cc 500"\ntarget = "/output/gain"\n')
+    assert main(["mappings", "check", str(file)]) == 2
+    err = capsys.readouterr().err
+    assert "mine.toml:6: bind 1: replaces 1: source" in err
+    assert err.count("\n") == 1

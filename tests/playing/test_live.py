@@ -160,7 +160,9 @@ def test_notes_out_of_midis_range_are_refused_and_change_nothing(live, instrumen
 
 
 @pytest.mark.parametrize("ending", ["panic", "reset", "end_notes"])
-def test_nothing_sounds_on_after_the_end(live, instrument, ending):
+def test_nothing_sounds_on_after_the_end_and_a_panic_is_silent_within_ten_milliseconds(
+    live, instrument, ending
+):
     receive(live, mido.Message("control_change", control=64, value=127), frame=0, port=0)
     receive(live, mido.Message("note_on", note=72, velocity=90), frame=0, port=0)
     receive(live, mido.Message("note_off", note=72), frame=100, port=0)
@@ -172,14 +174,8 @@ def test_nothing_sounds_on_after_the_end(live, instrument, ending):
     tail = run(instrument, 2 * 48000)
     assert live.pitch is None
     assert np.abs(tail[-4800:]).max() < 1e-3
+    assert not (ending == "panic" and tail[480:].any())
     assert instrument.target("/bow/speed") == 0.0
-
-
-def test_panic_is_silent_within_ten_milliseconds(live, instrument):
-    live.note_on(67.0, 90.0, frame=0)
-    run(instrument, 9600)
-    live.panic(frame=9600)
-    assert not run(instrument, 4800)[480:].any()
 
 
 def test_a_held_setting_stays_through_notes_and_controllers(live):

@@ -165,12 +165,22 @@ def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
     if not dropped:
         return mapping, 0
     remaining = [own for own in contents.binds if own not in dropped]
-    binds = list(remaining)
+    binds, back = list(remaining), []
     for returned in [each for own in dropped for each in own.replaces]:
-        # What was learned since then goes first.
-        newer = next((own for own in binds if own.is_exclusive and _excludes(own, returned)), None)
+        # What was learned since then goes first; what the user wrote beside it comes back, too.
+        newer = next(
+            (
+                own
+                for own in binds
+                if own.is_exclusive
+                and _excludes(own, returned)
+                and (own not in back or _is_learned(own))
+            ),
+            None,
+        )
         if newer is None:
             binds.append(returned)
+            back.append(returned)
         else:
             binds[binds.index(newer)] = _replacing(newer, [returned])
     removed = [own for own in contents.binds if own not in binds]

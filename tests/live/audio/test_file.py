@@ -22,36 +22,22 @@ def write(target, samples, kind="wav", subtype="24", rate=44100):
 
 @few_and_many
 @matrix
-def test_a_file_holds_what_was_written(tmp_path, kind, subtype, channels):
+def test_a_file_holds_what_was_written_and_tells_its_peak_and_rms(
+    tmp_path, kind, subtype, channels
+):
     target = tmp_path / "sound"
-    samples = noise(10_000, channels)
-    write(target, samples, kind, subtype, rate=48000)
+    loud_at_the_end = np.linspace(0.1, 0.5, channels, dtype=np.float32)
+    samples = loud_at_the_end * noise(10_000, channels)
+    file = write(target, samples, kind, subtype, rate=48000)
     info = soundfile.info(target)
     assert info.format == ("WAVEX" if (kind, channels) == ("wav", 6) else kind.upper())
     assert info.subtype == {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}[subtype]
     assert (info.channels, info.samplerate, info.frames) == (channels, 48000, 10_000)
     read, _ = soundfile.read(target)
     np.testing.assert_allclose(read, samples, rtol=0, atol=STEP[subtype])
-    assert list(tmp_path.iterdir()) == [target]
-
-
-@few_and_many
-@matrix
-def test_peak_and_rms_are_those_of_the_file(tmp_path, kind, subtype, channels):
-    target = tmp_path / "sound"
-    loud_at_the_end = np.linspace(0.1, 0.5, channels, dtype=np.float32)
-    file = write(target, loud_at_the_end * noise(10_000, channels), kind, subtype)
-    read, _ = soundfile.read(target)
     assert file.peak == pytest.approx(np.abs(read).max(), abs=STEP[subtype])
     assert file.rms == pytest.approx(np.sqrt(np.mean(read**2)), abs=STEP[subtype])
-
-
-@matrix
-def test_full_scale_does_not_wrap_around(tmp_path, kind, subtype):
-    target = tmp_path / "sound"
-    write(target, np.array([1.0, -1.0, 1.0, 0.0], np.float32), kind, subtype)
-    read, _ = soundfile.read(target)
-    np.testing.assert_allclose(read, [1.0, -1.0, 1.0, 0.0], atol=STEP[subtype])
+    assert list(tmp_path.iterdir()) == [target]
 
 
 def test_a_file_of_no_samples_is_not_made(tmp_path):
@@ -71,30 +57,22 @@ def test_a_format_that_cannot_hold_a_subtype_says_so(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError, OSError, SystemExit])
-def test_whatever_ends_the_writing_early_leaves_an_older_file_and_nothing_else(tmp_path, error):
+def test_the_target_appears_only_when_it_is_whole_and_is_as_before_if_it_never_is(tmp_path):
     target = tmp_path / "sound.wav"
     target.write_bytes(b"older")
 
-    def interrupted():
+    def interrupted(error: type[BaseException]) -> None:
         with sound_file(target, 44100, "wav", "24") as file:
             file.write(noise(10_000))
+            (partial,) = (path for path in tmp_path.iterdir() if path != target)
+            assert partial.name.startswith(".")
             raise error
 
-    with pytest.raises((error, OutputError)):
-        interrupted()
-    assert target.read_bytes() == b"older"
-    assert list(tmp_path.iterdir()) == [target]
-
-
-def test_the_target_appears_only_when_it_is_whole(tmp_path):
-    target = tmp_path / "sound.wav"
-    with sound_file(target, 44100, "wav", "24") as file:
-        file.write(noise(100_000))
-        assert not target.exists()
-        (partial,) = tmp_path.iterdir()
-        assert partial.name.startswith(".")
-    assert list(tmp_path.iterdir()) == [target]
+    for error in (KeyboardInterrupt, ValueError, OSError, SystemExit):
+        with pytest.raises((error, OutputError)):
+            interrupted(error)
+        assert target.read_bytes() == b"older"
+        assert list(tmp_path.iterdir()) == [target]
 
 
 @few_and_many
@@ -109,12 +87,6 @@ def test_a_wav_file_longer_than_its_sizes_can_say_is_refused(
         write(tmp_path / "long.wav", noise(1001, channels), subtype=subtype)
     write(tmp_path / "long.flac", noise(1001, channels), "flac")
     assert {path.name for path in tmp_path.iterdir()} == {"just.wav", "long.flac"}
-
-
-def test_flac_is_not_advised_for_more_channels_than_it_holds(tmp_path, monkeypatch):
-    monkeypatch.setattr(wav_stream, "WAV_LIMIT", 1000)
-    with pytest.raises(OutputError, match=r"too long for a WAV file \(4 GiB\)$"):
-        write(tmp_path / "long.wav", noise(1001, 9))
 
 
 @pytest.mark.parametrize(("kind", "most"), [("wav", 64), ("flac", 8)])
@@ -142,9 +114,10 @@ def test_one_channel_may_be_a_column_and_channels_may_lie_one_after_another(
     tmp_path, kind, subtype
 ):
     target = tmp_path / "sound"
+    full_scale = np.array([1.0, -1.0, 1.0, 0.0], np.float32)[:, None]  # does not wrap around
     column = noise(10_000)[:, None]
     planes = np.asfortranarray(noise(10_000, 2))
-    for samples in (column, planes, noise(20_000, 4)[::2, 1:3]):
+    for samples in (full_scale, column, planes, noise(20_000, 4)[::2, 1:3]):
         write(target, samples, kind, subtype)
         read, _ = soundfile.read(target, always_2d=True)
         np.testing.assert_allclose(read, samples, rtol=0, atol=STEP[subtype])
@@ -169,20 +142,16 @@ def test_a_disk_that_is_full_only_for_the_last_samples_is_told(
 
 def test_where_a_file_cannot_go_is_said(tmp_path):
     (tmp_path / "file").write_text("")
+    link = tmp_path / "null.wav"
+    link.symlink_to("/dev/null")
     for target, wrong in (
         (tmp_path / "none" / "x.wav", "does not exist"),
         (tmp_path / "file" / "x.wav", "not a folder"),
         (tmp_path, "is a folder"),
+        (link, "regular"),
     ):
         with pytest.raises(OutputError, match=wrong), sound_file(target, 44100, "wav", "24"):
             pass
-
-
-def test_a_device_is_not_replaced_by_a_file(tmp_path):
-    link = tmp_path / "null.wav"
-    link.symlink_to("/dev/null")
-    with pytest.raises(OutputError, match="regular"), sound_file(link, 44100, "wav", "24"):
-        pass
     assert link.is_symlink()
 
 

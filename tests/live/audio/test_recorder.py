@@ -22,9 +22,10 @@ def tape() -> NoiseTape:
     return NoiseTape(float(RATE))
 
 
-def test_a_recording_is_every_sample_from_its_beginning(tape, tmp_path):
-    before = tape.play(1000)
-    recording = Recorder(tape, tmp_path / "r.wav", 0, pytest.fail)
+@pytest.mark.parametrize("begins", [0, 1000])
+def test_a_recording_is_every_sample_from_its_beginning(tape, tmp_path, begins):
+    before = tape.play(2000)[begins:]
+    recording = Recorder(tape, tmp_path / "r.wav", begins, pytest.fail)
     played = np.concatenate([before, *(tape.play(777) for _ in range(20))])
     assert recording.is_running
     recording.stop()
@@ -33,15 +34,6 @@ def test_a_recording_is_every_sample_from_its_beginning(tape, tmp_path):
     assert rate == RATE
     np.testing.assert_array_equal(samples, played)
     assert recording.seconds == pytest.approx(len(played) / RATE)
-
-
-def test_a_recording_may_begin_later(tape, tmp_path):
-    tape.play(1000)
-    recording = Recorder(tape, tmp_path / "r.flac", 1000, pytest.fail)
-    played = tape.play(4800)
-    recording.stop()
-    samples, _ = soundfile.read(tmp_path / "r.flac")
-    np.testing.assert_allclose(samples, played, rtol=0, atol=2.0**-22)
 
 
 def test_what_was_missed_is_said_and_is_silence_so_that_the_rest_keeps_its_place(
@@ -151,22 +143,14 @@ def test_an_older_file_is_replaced_only_where_that_is_asked_for(tape, tmp_path):
     assert sorted(tmp_path.iterdir()) == [link, target]
 
 
-def test_a_link_into_nowhere_is_not_followed(tape, tmp_path):
-    (tmp_path / "r.wav").symlink_to(tmp_path / "elsewhere.wav")
-    with pytest.raises(OutputError, match="exists"):
-        Recorder(tape, tmp_path / "r.wav", 0, pytest.fail)
-    assert not (tmp_path / "elsewhere.wav").exists()
-
-
-def test_a_recording_of_nothing_leaves_no_file(tape, tmp_path):
-    said: list[str] = []
-    recording = Recorder(tape, tmp_path / "r.wav", 0, said.append)
+def test_a_recording_of_nothing_or_where_it_cannot_be_written_leaves_no_file(tape, tmp_path):
+    recording = Recorder(tape, tmp_path / "r.wav", 0, str)
     recording.stop()
     assert "nothing to write" in recording.failure
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_place_that_cannot_be_written_is_refused_at_once(tape, tmp_path):
-    for target in (tmp_path / "none" / "r.wav", tmp_path, tmp_path / "r.mp3"):
+    link = tmp_path / "link.wav"
+    link.symlink_to(tmp_path / "elsewhere.wav")
+    for target in (tmp_path / "none" / "r.wav", tmp_path, tmp_path / "r.mp3", link):
         with pytest.raises(OutputError):
             Recorder(tape, target, 0, pytest.fail)
+    assert list(tmp_path.iterdir()) == [link]

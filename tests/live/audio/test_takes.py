@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import resource
-from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,14 +12,6 @@ import soundfile
 from yehu_server.errors import OutputError
 from yehu_server.live.audio import recordings
 from yehu_server.scores.capture import read_capture
-
-
-@pytest.fixture
-def disk() -> Iterator[Callable[[int], None]]:
-    """A disk that becomes full: no file may grow beyond so many bytes."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    yield lambda most_bytes: resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, hard))
-    resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 def test_no_client_ends_what_the_command_records(make_live, tmp_path):
@@ -76,9 +67,9 @@ def test_recordings_are_bounded_in_rate_and_number_and_empty_ones_leave_no_file(
         takes.start("one too many")
 
 
-def test_a_recording_is_not_begun_on_a_full_disk(live, disk):
+def test_a_recording_is_not_begun_on_a_full_disk(live, limited):
     client = live.client()
-    disk(1000)
+    limited(1000)
     client.tell("/record/start", "take")
     address, reason = client.wait_for("/error")[:2]
     assert address == "/yehu/record/start"
@@ -88,11 +79,11 @@ def test_a_recording_is_not_begun_on_a_full_disk(live, disk):
 
 
 def test_a_recording_that_filled_the_disk_is_not_answered_as_if_all_were_well(
-    live, disk, monkeypatch, until
+    live, limited, monkeypatch, until
 ):
     monkeypatch.setattr(recordings, "ROOM_S", 0.01)
     client = live.client()
-    disk(20_000)
+    limited(20_000)
     client.tell("/record/start", "take")
     client.wait_for("/record/started")
     until(lambda: live.server.takes.names == "", "the disk to be full")
@@ -106,19 +97,19 @@ def test_a_recording_that_filled_the_disk_is_not_answered_as_if_all_were_well(
 
 
 def test_a_full_disk_keeps_take_and_capture_as_far_as_they_got(
-    make_live, disk, tmp_path, monkeypatch, until
+    make_live, limited, tmp_path, monkeypatch, until
 ):
     monkeypatch.setattr(recordings, "ROOM_S", 0.01)
     take, capture = tmp_path / "take.wav", tmp_path / "take.jsonl"
     live = make_live(record=take, capture=capture)
-    disk(100_000)
+    limited(100_000)
     client = live.client()
     client.tell("/note", 67, 90)
     until(lambda: live.server.takes.names == "", "the disk to be full")
-    disk(capture.stat().st_size + 10)
+    limited(capture.stat().st_size + 10)
     client.tell("/note", 69, 90)
     until(lambda: any("capture ended" in line for line in live.said), "no room for wishes")
-    disk(resource.RLIM_INFINITY)
+    limited(resource.RLIM_INFINITY)
     live.end()
     assert not live.server.is_whole
     assert soundfile.info(take).frames == (100_000 - 58) // 8

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import struct
-import uuid
 
 import numpy as np
 import pytest
@@ -64,26 +63,6 @@ def test_samples_are_the_bytes_that_libsndfile_makes_of_them(tmp_path, subtype, 
     expected = theirs[b"fmt "]
     assert fmt[: speakers.start][: len(expected)] == expected[: speakers.start]
     assert fmt[speakers.stop :] == expected[speakers.stop :]
-
-
-@pytest.mark.parametrize(("subtype", "form", "each"), [("16", 1, 2), ("24", 1, 3), ("float", 3, 4)])
-def test_the_header_has_the_bytes_of_a_frame_and_of_a_second(tmp_path, subtype, form, each):
-    for channels, tag in ((1, form), (2, form), (3, 0xFFFE), (64, 0xFFFE)):
-        fmt = chunks(written(tmp_path / "x.wav", subtype, channels=channels))[b"fmt "]
-        frame = channels * each
-        assert struct.unpack("<HHIIHH", fmt[:16]) == (
-            tag,
-            channels,
-            48000,
-            48000 * frame,
-            frame,
-            8 * each,
-        )
-        if tag == 0xFFFE:
-            assert struct.unpack("<HHIH", fmt[16:26]) == (22, 8 * each, 0, form)
-            assert uuid.UUID(bytes_le=fmt[24:40]) == uuid.UUID(
-                f"{form:08x}-0000-0010-8000-00aa00389b71"
-            )
 
 
 @pytest.mark.parametrize("channels", [1, 2])

@@ -11,9 +11,8 @@ from yehu_server.live.midi.routes import Route, Router, check_routes, route_of
 NOTE = [0x90, 67, 90]
 
 
-@pytest.mark.parametrize(
-    ("text", "route"),
-    [
+def test_an_input_is_words_of_its_name_and_a_channel():
+    for text, route in [
         ("keystep", Route(0, "keystep")),
         ("Key  Step", Route(0, "Key Step")),
         ("keystep:1", Route(0, "keystep", 0)),
@@ -21,26 +20,20 @@ NOTE = [0x90, 67, 90]
         (":3", Route(0, "", 2)),
         ("a2j:keys", Route(0, "a2j:keys")),
         ("a2j:keys:4", Route(0, "a2j:keys", 3)),
-    ],
-)
-def test_an_input_is_words_of_its_name_and_a_channel(text, route):
-    assert route_of(0, text) == route
-
-
-@pytest.mark.parametrize("text", ["", " ", "keys:0", "keys:17", ":0", "keys:99999999999999"])
-def test_what_is_no_input_is_refused_in_a_line(text):
-    with pytest.raises(ParameterError) as error:
-        route_of(0, text)
-    assert len(str(error.value)) < 120
+    ]:
+        assert route_of(0, text) == route
+    for text in ("", " ", "keys:0", "keys:17", ":0", "keys:99999999999999"):
+        with pytest.raises(ParameterError) as error:
+            route_of(0, text)
+        assert len(str(error.value)) < 120
 
 
 def routes(*texts: str) -> list[Route]:
     return [route_of(int(text[0]) - 1, text[2:]) for text in texts]
 
 
-@pytest.mark.parametrize(
-    "twice",
-    [
+def test_an_input_that_is_named_twice_is_refused_but_shared_by_its_channels():
+    for twice in [
         ("1=keys", "1=keys"),
         ("1=keys", "2=KEYS"),
         ("1=keys:2", "2=keys"),
@@ -48,21 +41,13 @@ def routes(*texts: str) -> list[Route]:
         ("1=keys:2", "2=keys:2"),
         ("1=:2", "2=:2"),
         ("1=key step", "2=step  key"),
-    ],
-)
-def test_an_input_that_is_named_twice_is_refused(twice):
-    with pytest.raises(ParameterError, match="named twice"):
-        check_routes(routes(*twice), 2)
-
-
-def test_parts_share_an_input_by_its_channels_and_a_part_has_several():
+    ]:
+        with pytest.raises(ParameterError, match="named twice"):
+            check_routes(routes(*twice), 2)
     check_routes(routes("1=keys:1", "2=keys:2", "1=breath", "3=:3"), 3)
-
-
-@pytest.mark.parametrize(("part", "parts"), [("4=keys", 3), ("2=keys", 1), ("0=keys", 3)])
-def test_a_part_that_is_not_there_has_no_input(part, parts):
-    with pytest.raises(ParameterError, match=f"no part {part[0]}: there"):
-        check_routes(routes(part), parts)
+    for part, parts in ("4=keys", 3), ("2=keys", 1), ("0=keys", 3):
+        with pytest.raises(ParameterError, match=f"no part {part[0]}: there"):
+            check_routes(routes(part), parts)
 
 
 def test_by_default_each_input_plays_a_part_and_further_ones_the_last():
@@ -72,11 +57,7 @@ def test_by_default_each_input_plays_a_part_and_further_ones_the_last():
     assert [router.parts_of(name) for name in reversed(names)] == [[2], [2], [2], [1], [0]]
     assert router.wants_others
     assert router.patterns == []
-
-
-def test_with_one_part_all_inputs_play_it():
-    router = Router([], 1)
-    assert [router.parts_of(name, 3) for name in "abc"] == [[0], [0], [0]]
+    assert [Router([], 1).parts_of(name, 3) for name in "abc"] == [[0], [0], [0]]
 
 
 def test_inputs_that_are_not_named_play_the_parts_that_are_not():

@@ -1,13 +1,10 @@
-"""The sound goes on while Python stands still."""
+"""The sound goes on while Python stands still: ``test_native.py`` reads why in the machine code."""
 
 from __future__ import annotations
 
 import ctypes
-import json
-import threading
 import time
 
-import forks
 import numpy as np
 import pytest
 from sound import alone
@@ -91,79 +88,3 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
     undisturbed, held = breaks(found[:half]), breaks(found[half:])
     assert held <= undisturbed + recording.xruns + 2
     assert (found[half:] >= 0).mean() > 0.95  # nothing but what was played
-
-
-SECONDS = 4
-
-# The stream and the GIL in one process. While the GIL is held for a second, several times, prints
-# what the callback counted in each.
-SAME_PROCESS = f"""
-import ctypes, json, mmap, os
-from yehu_server.live.audio.devices import choose, devices, load_portaudio
-from yehu_server.live.audio.output import SharedMemory
-from yehu_server.live.audio.stream import Stream
-from yehu_server.core.engine.ensemble import Ensemble
-from yehu_server.core.engine.spec import InstrumentSpec
-
-
-memory = SharedMemory()
-stage = Ensemble(
-    [InstrumentSpec({RATE:.1f})], channels=1, memory=memory.buffer
-)
-instrument = stage.first
-sounddevice = load_portaudio()
-device = choose(devices(sounddevice), "system, JACK")
-order = {{"memory": memory.descriptor, "size": memory.size, "rate": {RATE:.1f},
-         "blocksize": {BLOCK}, "channels": 1, "latency": "low"}}
-stream = Stream(sounddevice, device, order)
-stream.start()
-hold_the_gil = ctypes.PyDLL(None).usleep
-ctypes.CDLL(None).usleep(500_000)
-counts = []
-for _ in range({SECONDS}):
-    before = instrument.meters().copy()
-    hold_the_gil({A_SECOND_US})
-    after = instrument.meters().copy()
-    counts.append({{what: int(after[what] - before[what])
-                   for what in ("frame", "callbacks", "late_callbacks", "underruns", "missed")}})
-print(json.dumps(counts), flush=True)
-stream.close()
-os._exit(0)
-"""
-
-
-def test_the_gil_of_the_process_that_holds_the_stream_stops_nothing(jackd):
-    jackd.start(BLOCK)
-    run = forks.run(code=SAME_PROCESS, env=jackd.environment)
-    assert run.returncode == 0, run.stderr
-    # A callback that needs the GIL loses nearly all of each second's 375 blocks. Other
-    # processes cost some of any second's, so the quietest second counts.
-    held = min(json.loads(run.stdout), key=lambda second: second["underruns"])
-    blocks_a_second = RATE / BLOCK
-    assert held["frame"] > 0.7 * RATE
-    assert held["callbacks"] > 0.7 * blocks_a_second
-    assert held["missed"] < 0.1 * blocks_a_second
-    assert held["late_callbacks"] < 0.1 * blocks_a_second
-    assert held["underruns"] < 0.1 * blocks_a_second
-
-
-def test_holding_the_gil_holds_python():
-    # The tests above rely on this.
-    counts = 0
-    ending = threading.Event()
-
-    def count() -> None:
-        nonlocal counts
-        while not ending.wait(0.001):
-            counts += 1
-
-    thread = threading.Thread(target=count)
-    thread.start()
-    time.sleep(0.2)
-    before = counts
-    hold_the_gil()
-    during = counts - before
-    ending.set()
-    thread.join()
-    assert before > 20
-    assert during < before / 3

@@ -28,6 +28,7 @@ from yehu_server.cli import main
 from yehu_server.cli.serve import _Ending
 from yehu_server.errors import DeviceError
 from yehu_server.live.audio.output import SharedMemory
+from yehu_server.scores.score import LONGEST_DURATION_H
 from yehu_server.util.sound_file import sound_file
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -202,8 +203,10 @@ def test_what_is_no_midi_file_among_good_ones_is_refused_in_one_line(refused, tu
         (".", str(tmp_path)),
         ("text.mid", "not a MIDI file"),
     ):
-        assert wrong in refused("render", tune, tmp_path / name, tune, "-o", out / "x.wav")
-        assert not list(out.iterdir())
+        for more in ((), ("--strict",)):
+            words = (tune, tmp_path / name, tune, "-o", out / "x.wav", *more)
+            assert wrong in refused("render", *words)
+            assert not list(out.iterdir())
 
 
 def test_a_wrong_option_gets_one_line_and_no_file(subtests, refused, tune, gesture, out):
@@ -216,6 +219,7 @@ def test_a_wrong_option_gets_one_line_and_no_file(subtests, refused, tune, gestu
         (render, ("--tail", "-1"), "--tail"),
         (render, ("--tail", "nan"), "--tail"),
         (render, ("--gain-db", "25"), "--gain-db"),
+        (render, ("--max-duration", LONGEST_DURATION_H + 1), "--max-duration"),
         (render, ("--channel", "0"), "--channel"),
         (render, ("--channel", "17"), "--channel"),
         (render, ("--format", "mp3"), "--format"),

@@ -144,13 +144,17 @@ def test_a_larger_data_set_begins_alike_and_only_the_rest_is_made(made, command,
     assert lines(tmp_path / "some")[:16] == few
 
 
-def test_another_entry_changes_no_other_draw(made):
+def test_another_seed_changes_all_draws_and_another_entry_no_other(made):
     description = read_description(made / "d.toml")
     (made / "more.toml").write_text(TEXT.replace("[keep]", "stop = { from = 0, to = 5 }\n[keep]"))
-    other = read_description(made / "more.toml")
-    assert [description.draw(n, "bow_force") for n in range(9)] == [
-        other.draw(n, "bow_force") for n in range(9)
-    ]
+    more = read_description(made / "more.toml")
+    (made / "seed.toml").write_text(TEXT.replace("seed = 5", "seed = 6"))
+    usual, same, other = (
+        [each.draw(number, "bow_force") for number in range(9)]
+        for each in (description, more, read_description(made / "seed.toml"))
+    )
+    assert same == usual
+    assert set(other).isdisjoint(usual)
 
 
 def test_a_sound_that_is_gone_or_changed_is_made_again(made, command, tmp_path):

@@ -26,7 +26,6 @@ SHOWN = {
     "3_schelleng_diagram.ipynb": (3, 0),
     "4_your_own_body.ipynb": (3, 2),
 }
-each_notebook = pytest.mark.parametrize("name", SHOWN)
 
 
 def cells_of(path: Path) -> list[dict]:
@@ -62,26 +61,19 @@ def pictures(outputs: list[dict]) -> list[np.ndarray]:
     return [matplotlib.image.imread(io.BytesIO(base64.b64decode(data))) for data in found if data]
 
 
-def test_every_notebook_is_tested():
+def test_a_notebook_says_first_what_it_is_for_and_is_kept_without_outputs():
     assert {path.name for path in FOLDER.iterdir()} == set(SHOWN)
-
-
-@each_notebook
-def test_a_notebook_is_kept_without_outputs(name):
-    for cell in code_of(FOLDER / name):
-        assert (cell["outputs"], cell["execution_count"]) == ([], None)
-
-
-@each_notebook
-def test_a_notebook_says_first_what_it_is_for(name):
-    first = cells_of(FOLDER / name)[0]
-    assert first["cell_type"] == "markdown"
-    assert first["source"][0].startswith("# ")
-    assert "pip install" in "".join(first["source"]) or name.startswith("2")
+    for name in SHOWN:
+        first = cells_of(FOLDER / name)[0]
+        assert first["cell_type"] == "markdown"
+        assert first["source"][0].startswith("# ")
+        assert "pip install" in "".join(first["source"]) or name.startswith("2")
+        for cell in code_of(FOLDER / name):
+            assert (cell["outputs"], cell["execution_count"]) == ([], None), name
 
 
 @pytest.mark.slow
-@each_notebook
+@pytest.mark.parametrize("name", SHOWN)
 def test_a_notebook_runs_and_shows_pictures_and_sounds(name, tmp_path, environment):
     outputs = run(name, tmp_path, environment)
     printed = [output.get("name") for output in outputs]

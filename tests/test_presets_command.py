@@ -49,31 +49,20 @@ def test_a_preset_is_shown_with_all_its_values(subtests, command):
                 assert address in out
 
 
-def test_files_are_checked(command, tmp_path):
-    path = tmp_path / "mine.toml"
-    path.write_text(HEAD + '[values]\n"/playing/vibrato" = 5\n"/a/b" = 3\n')
-    code, out, err = command("presets", "check", path)
-    assert (code, out) == (0, f"{path}: right, 1 values\n")
-    assert "unknown parameter '/a/b'" in err
-    path.write_text(HEAD + '[values]\n"/playing/vibrato" = 500\n')
-    code, out, err = command("presets", "check", path)
-    assert (code, out) == (2, "")
-    assert f"{path}:3: values: /playing/vibrato: 500 is not within 0 to 100 cents" in err
-    right = tmp_path / "right.toml"
-    right.write_text(HEAD)
-    code, out, err = command("presets", "check", path, right, tmp_path / "missing.toml")
-    assert (code, out) == (2, f"{right}: right, 0 values\n")
-    assert [str(path) in err, "missing.toml: No such file" in err] == [True, True]
-
-
 def test_all_that_is_wrong_with_each_file_is_told(command, tmp_path):
-    first, second = tmp_path / "first.toml", tmp_path / "second.toml"
+    right, first, second = (tmp_path / f"{name}.toml" for name in ("right", "first", "second"))
+    right.write_text(HEAD + '[values]\n"/playing/vibrato" = 5\n"/a/b" = 3\n')
+    code, out, err = command("presets", "check", right)
+    assert (code, out) == (0, f"{right}: right, 1 values\n")
+    assert "unknown parameter '/a/b'" in err
     values = '"/playing/vibrato" = 500\n"/bow/speed" = 1\n"/playing/volume" = "loud"\n'
     first.write_text(f"{HEAD}program = 0\nabout = 3\nwho = 1\n[values]\n{values}")
     second.write_text(HEAD + "values = 3\nprogram = 129\n")
-    code, out, err = command("presets", "check", first, second)
-    assert (code, out) == (2, "")
-    lines = err.splitlines()
+    right.write_text(HEAD)
+    code, out, err = command("presets", "check", first, second, right, tmp_path / "missing.toml")
+    assert (code, out) == (2, f"{right}: right, 0 values\n")
+    *lines, missing = err.splitlines()
+    assert "missing.toml: No such file" in missing
     assert [line.split(": ")[1] for line in lines] == [
         *(f"{first}:{number}" for number in (2, 3, 4, 6, 7, 8)),
         *(f"{second}:{number}" for number in (2, 3)),

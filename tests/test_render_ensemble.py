@@ -92,9 +92,7 @@ def test_the_report_has_a_line_for_each_part(command, trio, tmp_path):
     assert lines[4] == "channel 10 is percussion: 4 notes not played; --channel 10 plays them"
 
 
-@pytest.mark.parametrize(
-    "words", [("--gain-db", 24), ("--normalize",), ("--mono", "--tail", 0), ("--dry", "--tail", 0)]
-)
+@pytest.mark.parametrize("words", [("--normalize",), ("--dry", "--tail", 0)])
 def test_the_mix_is_the_sum_of_its_stems(play, trio, tmp_path, words):
     summary, mix, stems = play(trio, "--ensemble", "--stems", tmp_path / "stems", *words)
     assert len(stems) == 3 + ("--dry" not in words)
@@ -158,17 +156,6 @@ def test_a_block_whose_events_are_taken_in_piece_by_piece_gives_the_same_samples
     monkeypatch.setattr(cores, "interpret_events", SimpleNamespace(call=some))
     for one, other in zip(whole, sound(), strict=True):
         np.testing.assert_array_equal(one, other)
-
-
-def test_the_order_of_the_other_parts_changes_a_part_by_nothing(parts):
-    def stem(order: list[Part], of: int) -> np.ndarray:
-        options = Options(tail_s=0.1, is_dry=True)
-        performance = Performance(order, options, has_stems=True)
-        return np.concatenate([performance.stems[of].copy() for _ in performance.blocks()])
-
-    # Its level on the way to the limiter, which is that of the first part, is not reached.
-    quiet = [Part(each.score, playing=each.playing, gain_db=-20.0) for each in parts]
-    np.testing.assert_array_equal(stem(quiet, 0), stem(quiet[::-1], 2))
 
 
 def test_a_section_is_one_part_with_one_stem(play, trio, tmp_path):

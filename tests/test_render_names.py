@@ -41,30 +41,26 @@ def rendered(command, tune, tmp_path):
     return run
 
 
-@pytest.mark.parametrize("words", [(), ("--mapping", "keyboard")])
-def test_what_was_learned_live_changes_no_rendering(rendered, words):
-    before, told, err = rendered(*words)
+def test_what_was_learned_live_changes_no_rendering_but_where_it_is_named(rendered, tmp_path):
+    based = tmp_path / "pedals.toml"
+    based.write_text('base = "keyboard"\n')
+    before, told, err = rendered()
     shipped = mapping_folder() / "keyboard.toml"
     assert told["mapping"] == {"name": "keyboard", "files": [str(shipped)]}
     assert err == ""
+    of_base = rendered("--mapping", based)[0]
     _, own = learn(load("keyboard"), "/playing/pressure", LearnedSource("cc 20"), soft=False)
-    after, told, err = rendered(*words)
-    assert after == before
-    assert told["mapping"]["files"] == [str(shipped)]
-    assert "--mapping mine/keyboard is your own" in err
+    for words in ((), ("--mapping", "keyboard")):
+        after, told, err = rendered(*words)
+        assert after == before
+        assert told["mapping"]["files"] == [str(shipped)]
+        assert "--mapping mine/keyboard is your own" in err
+    assert rendered("--mapping", based)[0] == of_base
     for name in ("mine/keyboard", own):
         sound, told, err = rendered("--mapping", name)
         assert sound != before
         assert told["mapping"]["files"] == [str(own), str(shipped)]
         assert err == ""
-
-
-def test_what_was_learned_live_changes_no_file_that_has_a_shipped_base(rendered, tmp_path):
-    mine = tmp_path / "pedals.toml"
-    mine.write_text('base = "keyboard"\n')
-    before, _, _ = rendered("--mapping", mine)
-    learn(load("keyboard"), "/playing/pressure", LearnedSource("cc 20"), soft=False)
-    assert rendered("--mapping", mine)[0] == before
 
 
 def test_a_preset_of_ones_own_counts_where_it_is_named(rendered, config_home):

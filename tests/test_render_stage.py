@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import mido
 import numpy as np
 import pytest
 import soundfile
@@ -53,25 +52,12 @@ def test_dry_has_the_same_on_both_sides_which_is_the_sound_of_one_channel(play, 
     np.testing.assert_array_equal(left, play(tune, "--dry", "--mono"))
 
 
-def test_mono_is_the_mean_of_both_sides(play, tune):
-    mono, both = play(tune, "--mono", "--tail", 1), play(tune, "--tail", 1)
-    assert mono.ndim == 1
-    np.testing.assert_allclose(mono, both.mean(axis=1), atol=1e-7)
-
-
 def test_the_usual_room_leaves_the_loudness_as_it_is(play, tune):
     loudness = [
         np.mean([a_weighted_db(side[: int(1.4 * RATE)], RATE) for side in sound.T])
         for sound in (play(tune), play(tune, "--dry"))
     ]
     assert abs(loudness[0] - loudness[1]) < MOST_CHANGE_DB
-
-
-def test_pan_of_midi_is_the_place_of_the_player(play, tmp_path):
-    to_left = (0.0, mido.Message("control_change", control=10, value=20))
-    score = midi_file(tmp_path / "left.mid", [to_left, *notes((0.1, 0.8, 70, 80))])
-    left, right = play(score, "--dry").T
-    assert rms(left) > 1.5 * rms(right)
 
 
 def test_a_room_is_a_preset_that_may_be_joined_with_a_sound(play, tune, tmp_path):

@@ -1,38 +1,14 @@
 """The page about the parameters."""
 
+import html
 import re
-from html.parser import HTMLParser
+from collections import Counter
 
 import pytest
 
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.params.table import TABLE
 from yehu_server.surfaces import parameter_reference
-
-VOID = ("meta", "input", "br")
-
-
-class Reader(HTMLParser):
-    """Collects rows of cells; checks that every element is closed."""
-
-    def __init__(self):
-        super().__init__()
-        self.open, self.rows = [], []
-
-    def handle_starttag(self, tag, _attributes):
-        if tag not in VOID:
-            self.open.append(tag)
-        if tag == "tr":
-            self.rows.append([])
-        elif tag == "td":
-            self.rows[-1].append("")
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        if "td" in self.open:
-            self.rows[-1][-1] += data
 
 
 @pytest.fixture(scope="module")
@@ -42,12 +18,18 @@ def text():
 
 @pytest.fixture(scope="module")
 def rows(text):
-    reader = Reader()
-    reader.feed(text)
-    assert reader.open == []
-    rows = [row for row in reader.rows if row]
+    """The cells of each row, by the first of them."""
+    found = [re.findall("<td[^>]*>(.*?)</td>", row, re.DOTALL) for row in text.split("<tr")[1:]]
+    rows = [[html.unescape(re.sub("<[^>]*>", "", cell)) for cell in row] for row in found if row]
     assert len({row[0] for row in rows}) == len(rows)
     return {row[0]: row for row in rows}
+
+
+def test_every_element_is_closed(text):
+    begun = Counter(re.findall(r"<([a-z]\w*)", text))
+    ended = Counter(re.findall(r"</(\w+)", text))
+    assert begun.keys() - ended.keys() <= {"meta", "input", "br"}
+    assert {name: begun[name] for name in ended} == ended
 
 
 def test_every_parameter_has_a_row_with_all_that_the_table_says(rows):

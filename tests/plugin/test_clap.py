@@ -89,32 +89,20 @@ def test_text_leads_back_to_the_value(play, shown):
 def test_state_opens_in_a_new_instance(play, shown, tmp_path):
     state = tmp_path / "state"
     wind = shown["/mapping"].choices.index("wind")
-    changed = [
-        f"0 set {shown['/mapping'].number} {wind}",
-        f"0 set {shown['/tuning'].number} 1",
-        f"0 set {shown['/playing/bow_position'].number} 0.2",
-        f"0 set {shown['/room/level'].number} 0",
-    ]
-    first, told = play([*changed, f"2000 save {state}", "2000 reset", *later()], FRAMES)
+    wanted = {"/mapping": wind, "/tuning": 1, "/playing/bow_position": 0.2, "/room/level": 0}
+    changed = [f"0 set {shown[address].number} {value}" for address, value in wanted.items()]
+    # The phrase, with breath, after a reset.
+    later = script([(frame + 2000, *rest) for frame, *rest in [(0, 0xB0, 2, 90), *PHRASE]])
+    first, told = play([*changed, f"2000 save {state}", "2000 reset", *later], FRAMES)
     assert told["saved"] == [[1.0]]
-    second, again = play([f"0 load {state}", "2000 reset", *later()], FRAMES)
+    second, again = play([f"0 load {state}", "2000 reset", *later], FRAMES)
     assert again["loaded"] == [[1.0]]
     assert again["value"] == told["value"]
     assert np.array_equal(first[2000:], second[2000:])
     assert np.abs(first).max() > 0.01
-
-
-def later():
-    """The phrase, with breath, from frame 2000 on."""
-    breath = [(0, 0xB0, 2, 90)]
-    return script([(frame + 2000, *message) for frame, *message in [*breath, *PHRASE]])
-
-
-def test_a_state_of_another_version_opens_as_far_as_it_is_known(play, shown, tmp_path):
-    state = tmp_path / "state"
+    # One of another version opens as far as it is known.
     state.write_text("yehu 9\n/playing/nothing=3\n/mapping=theremin\n/playing/press=2.5\nand more")
-    _, told = play([f"0 load {state}"], 64)
-    values = {int(number): value for number, value, _ in told["value"]}
+    values = {int(number): value for number, value, _ in play([f"0 load {state}"], 64)[1]["value"]}
     assert values[shown["/playing/press"].number] == 2.5
     assert values[shown["/mapping"].number] == 0.0
     state.write_text("RIFF")

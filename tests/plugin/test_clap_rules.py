@@ -36,19 +36,15 @@ def some_events(chance, frames, count):
     lines = []
     for frame in sorted(chance.randrange(frames) for _ in range(count)):
         note = f"{chance.choice(IDS)} {chance.choice(CHANNELS)} {chance.choice(KEYS)}"
-        status, one, two = (
-            chance.randrange(0x80, 0xF0),
-            chance.randrange(128),
-            chance.randrange(128),
-        )
-        begins = f"on {chance.choice(IDS)} {chance.randrange(16)} {chance.randrange(128)}"
+        begun = f"{chance.choice(IDS)} {chance.randrange(16)} {chance.randrange(128)}"
+        message = chance.randrange(0x80, 0xF0), chance.randrange(128), chance.randrange(128)
         what = chance.choice(
             (
-                f"{begins} {chance.random()}",
+                f"on {begun} {chance.random()}",
                 f"off {note}",
                 f"choke {note}",
                 f"express {chance.randrange(7)} {chance.choice(IDS)} {chance.uniform(-4.0, 4.0)}",
-                f"midi {status} {one} {two}",
+                "midi {} {} {}".format(*message),
                 f"time {chance.randrange(2)}",
             )
         )

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from yehu_server.ahead import interface
+from yehu_server.ahead.header import header as header_of_functions
 from yehu_server.errors import YehuError
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import TABLE
@@ -33,37 +35,27 @@ def test_numbers_and_order_of_choices_are_for_ever(shown):
     kept = ("keyboard", "keyboard-expressive", "mpe", "sustain-pedal-tremolo", "wind")
     assert shown["/mapping"].choices[:5] == kept
     assert shown["/tuning"].choices[:2] == ("equal", "chaozhou-seven-equal")
-
-
-def test_every_shipped_mapping_has_a_place():
     assert {path.stem for path in shipped_folder("mappings").glob("*.toml")} == set(MAPPINGS)
 
 
 def test_every_parameter_of_the_table_is_there_as_it_is(shown):
     assert set(shown) - set(CHOICES) == {param.address for param in TABLE} - LEFT_OUT
     for row, param in enumerate(TABLE):
+        assert param.curve in (Curve.LIN, Curve.EXP)
         if param.address in LEFT_OUT:
             continue
         each = shown[param.address]
-        assert (each.row, each.lo, each.hi, each.default) == (
-            row,
-            param.lo,
-            param.hi,
-            param.default,
-        )
+        found = each.row, each.lo, each.hi, each.default
+        assert found == (row, param.lo, param.hi, param.default)
         assert each.is_exponential == (param.curve is Curve.EXP)
         assert (each.steps > 0) == param.is_choice
         assert each.unit == ("" if param.unit == "1" else param.unit)
-    assert all(param.curve in (Curve.LIN, Curve.EXP) for param in TABLE)
 
 
 def test_names_numbers_and_symbols_are_of_one_parameter_each(shown):
     for what in ("name", "number", "symbol"):
         assert len({getattr(each, what) for each in shown.values()}) == len(shown)
     assert all(LEAST_NUMBER <= each.number < 2 * LEAST_NUMBER for each in shown.values())
-
-
-def test_names_say_which_one_the_player_moves(shown):
     assert shown["/playing/bow_position"].name == "Bow position"
     assert shown["/bow/position"].name == "Bow position by hand"
     assert shown["/finger/2/press"].name == "Finger 2 press by hand"
@@ -84,18 +76,11 @@ def test_the_sources_compile_without_a_word(tmp_path, monkeypatch, name):
     strict = ("-Wall", "-Wextra", "-Werror")
     monkeypatch.setattr(building, "FLAGS", (*building.FLAGS, *strict))
     building.write_header(tmp_path)
-    (tmp_path / "yehu.h").write_text(engine_header())
+    functions = interface.functions([48000.0], [[0, 0]], "0" * 16)  # without an instrument
+    text = header_of_functions(functions, version="0", sources="0" * 16, rates=[48000.0])
+    (tmp_path / "yehu.h").write_text(text)
     building.compile_file(building.SOURCE / name, tmp_path / "made.o", SYSTEMS[0], tmp_path)
     assert (tmp_path / "made.o").stat().st_size > 0
-
-
-def engine_header() -> str:
-    """The header of the instrument, without making one."""
-    from yehu_server.ahead import interface
-    from yehu_server.ahead.header import header as of_functions
-
-    functions = interface.functions([48000.0], [[0, 0]], "0" * 16)
-    return of_functions(functions, version="0", sources="0" * 16, rates=[48000.0])
 
 
 def test_what_is_missing_is_named_with_its_package(tmp_path, monkeypatch):

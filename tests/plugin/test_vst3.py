@@ -35,12 +35,6 @@ def test_it_plays_the_samples_of_the_library(plugin, library):
     assert np.array_equal(played(plugin), by_library(library, ALIGNED, FRAMES))
 
 
-def test_notes_are_the_same_in_blocks_of_any_size(plugin):
-    notes = [message for message in ALIGNED if message[1] in (0x80, 0x90)]
-    first = played(plugin, notes)
-    assert all(np.array_equal(played(plugin, notes, block=n), first) for n in (32, 441, 4096))
-
-
 @pytest.mark.parametrize("rate", RATES)
 def test_pitch_and_level_are_the_same_at_any_rate(plugin, rate):
     usual, other = (played(plugin, rate=r)[int(0.25 * r) : int(0.54 * r)] for r in (48000, rate))

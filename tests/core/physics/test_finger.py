@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from core.physics.runs import bump, play, rows, shaped
+from core.physics.runs import play, rows
 from pitch import cents, pitch_of
 
 from yehu_server.core.physics import kernel, layout, time_loop
@@ -44,17 +44,6 @@ def penetration(run):
 
 
 # --- pressing -----------------------------------------------------------------------------
-
-
-def test_a_press_drives_the_finger_down_like_a_thrown_stone():
-    """Before it touches: U = U_rest - (F/M) t^2/2, summed up as delta_tt sums it."""
-    press = 0.5
-    frames = 250
-    U = play({"press": [press]}, frames * K).finger(0)[:, 0]
-    n = np.arange(frames)
-    expected = FINGER.rest_height - press / FINGER.M_f * K**2 * n * (n + 1) / 2.0
-    assert expected[-1] > 0.0  # still in the air
-    assert np.abs(U - expected).max() < 1e-15
 
 
 def test_two_strings_at_rest_carry_the_whole_press():
@@ -103,7 +92,7 @@ def test_a_lifted_finger_in_the_air_returns_as_a_critically_damped_spring():
     assert np.abs(U[round(0.02 * RATE) :]).max() < 0.02 * 3e-3
 
 
-def released(press, rate=RATE):
+def released(press, rate):
     """Height above rest (m) after a press of 0.2 s, and the contact forces."""
     run = play(lambda t: {"press": [np.where(t < 0.2, press, 0.0)]}, 0.4, rate, ledger=False)
     after = run.finger(0)[round(0.2 * rate) :]
@@ -111,22 +100,15 @@ def released(press, rate=RATE):
 
 
 @pytest.mark.parametrize("rate", [22050.0, 44100.0, 96000.0])
-@pytest.mark.parametrize("press", [0.3, 0.5, 1.0])
-def test_a_lifted_finger_is_back_at_rest_within_40_ms_and_stays(press, rate):
-    height, _ = released(press, rate)
-    later = round(0.04 * rate)
-    assert np.abs(height[later:]).max() < 0.02 * FINGER.rest_height
-    assert np.diff(height[:later]).min() > 0.0
-    assert height.max() < 1e-9
-
-
-def test_after_a_hard_press_the_string_holds_the_finger_a_little_longer():
-    """5 N, ten times what is played: the contact pulls it for 30 ms; 60 ms in all."""
-    height, forces = released(5.0)
-    later = round(0.06 * RATE)
-    assert np.abs(height[later:]).max() < 0.02 * FINGER.rest_height
-    assert not forces[later:].any()
-    assert height.max() < 1e-9
+def test_a_lifted_finger_is_back_at_rest_within_40_ms_and_stays(rate):
+    for press, within_s in ((0.3, 0.04), (0.5, 0.04), (1.0, 0.04), (5.0, 0.06)):
+        # After ten times what is played the contact pulls it for 30 ms.
+        height, forces = released(press, rate)
+        later = round(within_s * rate)
+        assert np.abs(height[later:]).max() < 0.02 * FINGER.rest_height
+        assert not forces[later:].any()
+        assert np.diff(height[:later]).min() > 0.0 or press == 5.0
+        assert height.max() < 1e-9
 
 
 def test_a_finger_at_rest_never_moves_and_touches_nothing():
@@ -197,13 +179,3 @@ def test_of_two_fingers_the_one_nearer_to_the_bridge_decides_the_pitch():
     )
     assert abs(cents(both, new)) < 25.0  # it stretches the strings a little more
     assert cents(both, old) > 300.0
-
-
-def test_a_plucked_string_bounces_off_a_finger_at_rest():
-    """Without a press the finger still has its mass: the string meets it and is pushed."""
-    model = kernel.prepare(YEHU, RATE)
-    run = play({}, 0.05, state=shaped(model, 0, bump(0.02, 0.26, 2e-3)))
-    forces = run.finger(0)[:, 1]
-    assert forces.max() > 0.01
-    assert run.finger(0)[:, 0].max() > FINGER.rest_height
-    assert run["constraint_residual"].max() <= 1e-15

@@ -12,8 +12,6 @@ from core.physics.runs import play
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics.friction import (
     MAX_ITERATIONS,
-    bound_third_derivative,
-    bristle_residual,
     solve_friction,
 )
 from yehu_server.core.physics.quantities import Quantities
@@ -171,81 +169,6 @@ def test_below_breakaway_the_bristles_are_a_spring():
         travelled += v_r * k
     assert 0.7 * breakaway < travelled < breakaway
     assert f_b == pytest.approx(BOW.epsilon_0 * travelled, rel=1e-4)
-
-
-def test_the_derivatives_of_the_law_are_its_slopes():
-    """First and half the second, as v_r changes and z_bar with it."""
-    model = kernel.prepare(YEHU, RATE)[0]
-    rng = np.random.default_rng(15)
-    compared = 0
-    for _ in range(600):
-        F_N, string = 10.0 ** rng.uniform(-2.0, 0.7), int(rng.integers(2))
-        reach = F_N / BOW.epsilon_0
-        z_ba = BOW.xi[string] * BOW.mu_C * reach
-        v_r, z_bar = rng.uniform(-1.0, 1.0), rng.uniform(-1.5, 1.5) * BOW.mu_S * reach
-        turn = rng.uniform(-1.0, 1.0) * reach / BOW.v_s
-
-        def off(v, z_bar=z_bar, turn=turn, v_r=v_r, z_ba=z_ba, reach=reach):
-            path = z_bar + turn * (v - v_r), turn
-            return bristle_residual(v, path, (0.3 + 2.0 * v, 2.0), z_ba, reach, BOW.mu_S, model)
-
-        residual, slope, curve, by_z, room, room_slope = off(v_r)
-        law = elastoplastic_law(v_r, z_bar, F_N, string, BOW)
-        assert residual == pytest.approx(law - 0.3 - 2.0 * v_r, abs=1e-14)
-        dv, dz = 1e-6 * BOW.v_s, 1e-6 * reach
-        corners = [v_r, z_bar, abs(z_bar) - z_ba, abs(z_bar) - z_static(v_r, reach)]
-        if min(abs(c) / s for c, s in zip(corners, [dv, dz, dz, dz], strict=True)) < 10.0:
-            continue  # the law has a corner within the difference
-        more, less = off(v_r + dv), off(v_r - dv)
-        assert slope == pytest.approx((more[0] - less[0]) / (2.0 * dv), rel=1e-5, abs=1e-6)
-        scale = 1.0 / BOW.v_s
-        half_bend = 0.5 * (more[1] - less[1]) / (2.0 * dv)
-        assert curve == pytest.approx(half_bend, rel=1e-5, abs=1e-5 * scale)
-        higher = elastoplastic_law(v_r, z_bar + dz, F_N, string, BOW)
-        lower = elastoplastic_law(v_r, z_bar - dz, F_N, string, BOW)
-        slope_z = (higher - lower) / (2.0 * dz)
-        assert by_z * reach == pytest.approx(slope_z * reach, rel=1e-5, abs=1e-6)
-        if by_z != 0.0:
-            assert room == pytest.approx(z_static(v_r, reach) - abs(z_bar), abs=1e-12 * reach)
-            assert room_slope == pytest.approx(
-                (more[4] - less[4]) / (2.0 * dv), rel=1e-5, abs=1e-10
-            )
-            compared += 1
-    assert compared > 100
-
-
-def test_nothing_in_the_law_is_more_sudden_than_the_solver_takes_it_to_be():
-    """The third derivative on the way of a solve, that what a last step leaves is told by."""
-    model = kernel.prepare(YEHU, RATE)[0]
-    rng = np.random.default_rng(18)
-    compared = 0
-    for _, mobility, z, F_N, _, string in problems(700, seed=19):
-        reach = F_N / BOW.epsilon_0
-        z_ba = BOW.xi[string] * BOW.mu_C * reach
-        limit = max(1.2 * BOW.mu_S * reach, abs(z))
-        v_r = rng.uniform(-1.0, 1.0) * 10.0 ** rng.uniform(-2.0, 0.5)
-        z_bar = math.copysign(z_ba + rng.uniform(0.0, 1.0) * (limit - z_ba), v_r)
-        turn = -1.0 / (mobility * model["bristle_stiffness"])
-
-        def off(v, z_bar=z_bar, turn=turn, v_r=v_r, z_ba=z_ba, reach=reach):
-            return bristle_residual(
-                v, (z_bar + turn * (v - v_r), turn), (0.0, 0.0), z_ba, reach, BOW.mu_S, model
-            )
-
-        dv = 1e-4 / model["chi_slope"][string] * mobility * F_N
-        less, here, more = off(v_r - dv), off(v_r), off(v_r + dv)
-        kinds = {(at[3] == 0.0, at[4] > 0.0) for at in (less, here, more)}
-        if len(kinds) == 1 and here[3] != 0.0:
-            per_v, jerk = bound_third_derivative(model, string, mobility, F_N, limit)
-            third = 2.0 * (more[2] - less[2]) / (2.0 * dv)
-            assert abs(third) <= 6.0 * jerk * (1.0 + abs(v_r) * per_v)
-            compared += 1
-    assert compared > 200
-
-
-def z_static(v_r, reach):
-    """|z_ss|."""
-    return reach * (BOW.mu_C + (BOW.mu_S - BOW.mu_C) * math.exp(-((v_r / BOW.v_s) ** 2)))
 
 
 @pytest.mark.parametrize(

@@ -84,23 +84,6 @@ def bending_stiffness(string):
     return string.E * math.pi * string.r**4 / 4.0
 
 
-def scheme_dispersion(string: StringQuantities, rate: float):
-    """The same from the scheme on paper: z^n sin(p pi l/N) put into [Yehu] eq. (31)."""
-    k = 1.0 / rate
-    N = grid_bound(string, k, headroom=YEHU.tension_headroom)
-    rho_A, EI = line_density(string), bending_stiffness(string)
-    poles = []
-    for p in range(1, PARTIALS + 1):
-        d2 = -4.0 * (N / string.L) ** 2 * math.sin(p * math.pi / (2.0 * N)) ** 2
-        loss_0, loss_1 = rho_A * string.sigma_0 / k, -2.0 * rho_A * string.sigma_1 * d2 / k
-        after = rho_A / k**2 + loss_0
-        now = -2.0 * rho_A / k**2 - string.T * d2 + EI * d2**2 + loss_1
-        before = rho_A / k**2 - loss_0 - loss_1
-        poles.append(np.roots([after, now, before])[0])
-    poles = np.array(poles)
-    return np.abs(np.angle(poles)) * rate / (2.0 * np.pi), -np.log(np.abs(poles)) * rate
-
-
 def grid_bound(string: StringQuantities, k: float, headroom: float = 1.0) -> int:
     """N of [Yehu] eq. (57), corrected, written as the root of its own quadratic.
 
@@ -130,15 +113,6 @@ def continuous(string: StringQuantities, rate: float, highest: int):
     bent += (omega * k) ** 2 / 24.0 + k * string.sigma_1 * beta**2 / 2.0
     frequency = omega / (2.0 * math.pi) * (1.0 + bent)
     return frequency, sigma - string.sigma_1 * beta**4 * h**2 / 12.0
-
-
-@both_strings
-@three_rates
-def test_ten_partials_ring_and_decay_as_the_scheme_says(i, rate):
-    frequency, decay = measured(YEHU.strings[i], rate)
-    expected, expected_decay = scheme_dispersion(YEHU.strings[i], rate)
-    assert np.abs(cents(frequency, expected)).max() < 1e-3
-    assert decay == pytest.approx(expected_decay, rel=1e-8)
 
 
 @both_strings

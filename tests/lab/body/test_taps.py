@@ -237,3 +237,20 @@ def test_coherence_tells_of_noise():
 def test_taps_of_different_rates_are_refused(taps):
     with pytest.raises(MeasurementError, match="another sample rate"):
         average([taps[0], replace(taps[1], rate=48000.0)])
+
+
+# ---------------------------------------------------------------- taps that are made
+
+
+def test_noise_is_as_far_below_as_asked():
+    (clean,) = made_taps(count=1, noise_db=300.0)
+    for noise_db in (20.0, 60.0):
+        (noisy,) = made_taps(count=1, noise_db=noise_db)
+        noise = noisy.velocity - clean.velocity
+        assert 20.0 * np.log10(rms(clean.velocity) / rms(noise)) == pytest.approx(noise_db, abs=0.2)
+
+
+def test_the_same_seed_gives_the_same_taps():
+    one, other, another = (made_taps(count=2, seed=seed)[1] for seed in (4, 4, 5))
+    assert np.array_equal(one.velocity, other.velocity)
+    assert not np.array_equal(one.velocity, another.velocity)

@@ -12,19 +12,25 @@ from wire import errors
 from yehu_server.live.osc.fair_queue import OVERHEAD_BYTES, MemoryQuota
 
 
-def test_bundles_keep_their_distances_to_the_sample_and_their_time(still, wire):
-    still.pass_time(0.05)
+@pytest.mark.parametrize("block", [128, 2048])
+def test_bundles_keep_their_distances_to_the_sample_and_their_time(make_still, wire, block):
+    still = make_still(block)
+    still.tell("/note", 72.0, 90.0)
+    still.pass_time(0.2)
+    still.events.clear()
     first = still.clock.time() + 0.1
     places = [0, 1, 2, 480, 483, 1000, 4801, 9600, 24000]
     for place in reversed(places):
-        packet = wire.message("/yehu/bow/position", 0.1 + place * 1e-6)
-        still.take(wire.bundle(first + place / still.RATE, packet))
-    assert still.handler.waiting == len(places)
+        for call, value in ("/yehu/bow/position", 0.1), ("/yehu/bend", 0.5):
+            packet = wire.message(call, value + place * 1e-5)
+            still.take(wire.bundle(first + place / still.RATE, packet))
+    assert still.handler.waiting == 2 * len(places)
     expected = still.instrument.frame_at(round(1e9 * (first - still.clock.since_1970)))
     still.pass_time(0.7)
-    frames = still.frames("/bow/position")
-    assert [frame - frames[0] for frame in frames] == places
-    assert abs(frames[0] - expected) <= still.RATE / 1000
+    for address in ("/bow/position", "/finger/1/position"):
+        frames = still.frames(address)
+        assert [frame - frames[0] for frame in frames] == places
+        assert abs(frames[0] - expected) <= still.RATE / 1000
     assert still.late() == 0
     assert still.handler.waiting == still.handler.counts.late_bundles == 0
 
@@ -41,24 +47,6 @@ def test_notes_of_bundles_keep_their_distances_beside_notes_of_now(still, wire):
     frames = sorted(set(still.frames("/vibrato/onset")))  # begins anew with each note
     assert len(frames) == 40
     assert {after - before for before, after in itertools.pairwise(frames)} == {480}
-    assert still.late() == 0
-
-
-@pytest.mark.parametrize("block", [512, 1024, 2048])
-@pytest.mark.parametrize("address", ["/bow/position", "/bend"])
-def test_bundles_keep_their_distances_whatever_the_block(make_still, wire, block, address):
-    still = make_still(block)
-    still.tell("/note", 72.0, 90.0)
-    still.pass_time(0.2)
-    still.events.clear()
-    first = still.clock.time() + 0.1
-    places = [331 * number for number in range(60)]
-    for place in places:
-        packet = wire.message("/yehu" + address, 0.5 + place * 1e-5)
-        still.take(wire.bundle(first + place / still.RATE, packet))
-    still.pass_time(0.7)
-    frames = still.frames({"/bend": "/finger/1/position"}.get(address, address))
-    assert [frame - frames[0] for frame in frames] == places
     assert still.late() == 0
 
 

@@ -13,27 +13,22 @@ HEARD_S = 0.01  # within which what arrives is played: the player's delay and a 
 def test_every_call_is_heard(live):
     client = live.client()
     assert live.level() < 1e-6
-    client.tell("/note", 67.0, 90.0)
-    live.wait_frames(9600)
-    assert live.level() > 1e-3
-    client.tell("/note", 67.0, 0.0)
-    client.sync()
-    live.settle()
-    assert live.is_at_rest()
-    client.tell("/panic")
-    client.sync()
-    live.settle()
-    assert live.level() < 1e-9
-    client.tell("/pitch", 70.0)
-    client.tell("/bow", 0.25, 0.6)
-    client.sync()
-    live.wait_frames(9600)
-    assert live.level() > 1e-3
-    client.tell("/reset")
-    client.sync()
-    live.settle()
-    assert live.is_at_rest()
-    assert live.level() < 1e-9
+    for calls, is_heard in [
+        ([("/note", 67.0, 90.0)], True),
+        ([("/note", 67.0, 0.0), ("/panic",)], False),
+        ([("/pitch", 70.0), ("/bow", 0.25, 0.6)], True),
+        ([("/reset",)], False),
+    ]:
+        for call in calls:
+            client.tell(*call)
+        client.sync()
+        live.settle()
+        if is_heard:
+            live.wait_frames(9600)
+            assert live.level() > 1e-3
+        else:
+            assert live.is_at_rest()
+            assert live.level() < 1e-9
     assert live.is_well()
 
 

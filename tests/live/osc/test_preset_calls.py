@@ -89,7 +89,7 @@ def test_a_fader_may_morph_sixty_times_a_second_without_reading_files(still, mon
     assert depths == sorted(depths)
 
 
-def test_the_sound_is_saved_and_comes_back(still, own):
+def test_the_sound_is_saved_comes_back_and_is_deleted(still, own):
     still.tell("/playing/vibrato", 33.0)
     still.tell("/body/blend", 0.25)
     still.tell("/playing/bend", 1.0)
@@ -103,15 +103,12 @@ def test_the_sound_is_saved_and_comes_back(still, own):
     assert still.player.value("/playing/vibrato") == 33.0
     assert still.player.value("/body/blend") == 0.25
     assert still.player.value("/playing/bend") == 2.0  # of the moment
-
-
-def test_one_of_ones_own_may_be_saved_over_and_deleted(still, own):
-    for vibrato in (10.0, 20.0):
-        still.tell("/playing/vibrato", vibrato)
-        still.ask("/preset/save", "mine")
-    assert SHIPPED.find(str(own / "mine.toml")).values["/playing/vibrato"] == 20.0
-    assert by_address(still.ask("/preset/delete", "mine")) == {"/preset/deleted": ["mine"]}
-    assert list(own.iterdir()) == []
+    still.tell("/playing/vibrato", 20.0)
+    still.ask("/preset/save", "my sound")  # once more
+    file = own / "my sound.toml"
+    assert SHIPPED.find(str(file)).values["/playing/vibrato"] == 20.0
+    assert by_address(still.ask("/preset/delete", "my sound")) == {"/preset/deleted": ["my sound"]}
+    assert not file.exists()
 
 
 def test_presets_are_saved_so_many_at_once_and_one_more_each_second(still, own, monkeypatch):

@@ -355,16 +355,6 @@ def test_who_never_reads_misses_answers_and_others_play_on(listen, client, keepe
     assert other.next() == ("/yehu/pong", [])
 
 
-def test_who_reads_slowly_gets_every_answer(listen, client, keeper):
-    ports = listen()
-    keeper.answer = pack("/yehu/pong", "x" * 1000)
-    slow = client(ports, "prefixed")
-    for _ in range(500):
-        slow.take(b"/ping\0\0\0")
-    time.sleep(0.1)
-    assert [slow.next() for _ in range(500)] == [("/yehu/pong", ["x" * 1000])] * 500
-
-
 def test_connections_that_come_and_go_leave_nothing(listen, client, until):
     ports = listen()
     kept = len(ports._selector.get_map())

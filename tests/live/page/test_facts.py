@@ -70,12 +70,9 @@ def test_each_parameter_is_there_with_its_numbers(known):
         assert (row["smoothMs"], row["isChoice"]) == (param.smooth_ms, param.is_choice)
 
 
-def test_each_kind_of_wish_has_its_number(known):
+def test_each_kind_of_wish_and_of_other_events_has_its_number(known):
     assert [KINDS[number].upper() for number in known["kinds"].values()] == list(known["kinds"])
     assert sorted(known["kinds"].values()) == list(range(len(KINDS)))
-
-
-def test_each_other_kind_of_event_has_its_number(known):
     assert {name: getattr(events, name) for name in known["events"]} == known["events"]
     assert len(known["events"]) == len(events.EVENTS)
 
@@ -113,16 +110,12 @@ def test_each_preset_is_there(known, tmp_path):
         assert (settings["about"], settings["program"]) == (preset.about, preset.program)
 
 
-def test_each_tuning_is_there(known):
+def test_each_tuning_is_there_on_every_shipped_map_of_keys(known):
     assert known["tunings"]["equal"]["keys"] is None
     for name, settings in known["tunings"].items():
-        if name == "equal":
-            continue
-        tuning = read_tuning(*map(Path, name.split(", ")))
-        assert settings["keys"] == [tuning.pitch(key, 440.0) for key in range(128)]
-
-
-def test_every_shipped_map_of_keys_is_offered(known):
+        if name != "equal":
+            tuning = read_tuning(*map(Path, name.split(", ")))
+            assert settings["keys"] == [tuning.pitch(key, 440.0) for key in range(128)]
     maps = {file.stem for file in (ROOT / "tunings").glob("*.kbm")}
     assert {name.partition(", ")[2] for name in known["tunings"]} == maps | {""}
 
@@ -155,14 +148,9 @@ def test_each_example_has_its_events():
             assert mido.Message.from_bytes(data) == event.message
 
 
-def test_of_a_score_for_several_the_page_plays_the_first_player():
+def test_of_a_score_for_several_the_page_plays_the_first_and_mpe_keeps_the_channels_of_its_zone():
     score = examples.example(ROOT / "examples" / "mo_li_hua.mid")
-    channels = {data[0] & 15 for _, data in score["events"] if data[0] < 0xF0}
-    assert channels == {0}
-    notes = [data for _, data in score["events"] if data[0] >> 4 == 9 and data[2]]
-    assert len(notes) > 20
-
-
-def test_an_mpe_score_keeps_the_channels_of_its_zone():
+    assert {data[0] & 15 for _, data in score["events"] if data[0] < 0xF0} == {0}
+    assert len([data for _, data in score["events"] if data[0] >> 4 == 9 and data[2]]) > 20
     score = examples.example(ROOT / "examples" / "mpe_phrase.mid")
     assert len({data[0] & 15 for _, data in score["events"] if data[0] < 0xF0}) > 1

@@ -73,26 +73,25 @@ def wish(pages: PagePlayers, page: int, *wish: float, at: float = -1.0) -> None:
     pages.post(page, 0, np.array([[at, kind, index, value, other]]), 0)
 
 
-def test_equal_keys_of_two_pages_are_two(player, pages) -> None:
+def test_equal_keys_of_two_pages_are_two_and_one_holds_so_many_at_most(player, pages) -> None:
     for number in (0, 1):
         wish(pages, number, BEGIN, -1, 69.0, 69.0)
     assert len(player._wishes.held()) == 2
     pages.leave(0, 0)
     assert len(player._wishes.held()) == 1
+    for number in range(MOST_HELD + 50):
+        wish(pages, 1, BEGIN, number, 69.0, 69.0)
+    assert len(player._wishes.held()) == MOST_HELD
 
 
-def test_a_pitch_is_as_the_page_tuned_it(player, pages) -> None:
-    wished(player)
-    wish(pages, 0, BEGIN, 0, 69.0, 69.3)
-    begun = [wish for wish in wished(player) if wish[0] == BEGIN]
-    assert [(value, other) for _, _, value, other in begun] == [(69.0, 69.3)]
-
-
-def test_values_for_a_note_come_before_it_and_are_known(player, pages) -> None:
+def test_values_for_a_note_come_before_it_are_known_and_its_pitch_is_as_the_page_tuned_it(
+    player, pages
+) -> None:
     wished(player)
     wish(pages, 0, EXPRESS, ROW[VELOCITY], 0.25)
-    wish(pages, 0, BEGIN, 0, 69.0, 69.0)
-    assert [kind for kind, *_ in wished(player)] == [EXPRESS, BEGIN]
+    wish(pages, 0, BEGIN, 0, 69.0, 69.3)
+    (before, *_), (kind, _, *pitches) = wished(player)
+    assert (before, kind, pitches) == (EXPRESS, BEGIN, [69.0, 69.3])
     assert player.value(VELOCITY) == 0.25
 
 
@@ -151,12 +150,6 @@ def test_a_panic_ends_what_others_hold(player, pages) -> None:
     assert player._wishes.held()
     wish(pages, 0, STOP, 0, 1.0)
     assert not player._wishes.held()
-
-
-def test_a_page_holds_so_many_keys_at_most(player, pages) -> None:
-    for number in range(MOST_HELD + 50):
-        wish(pages, 0, BEGIN, number, 69.0, 69.0)
-    assert len(player._wishes.held()) == MOST_HELD
 
 
 def test_a_note_asked_for_ahead_ends_though_the_page_has_left(player, pages) -> None:

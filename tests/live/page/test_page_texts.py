@@ -25,41 +25,24 @@ def texts() -> dict[str, dict[str, str]]:
     }
 
 
-def test_both_languages_have_the_same_keys(texts) -> None:
+def test_both_languages_have_the_same_keys_and_fill_in_the_same_values(texts) -> None:
     english, chinese = (set(texts[language]) for language in ("en", "zh"))
     assert {key for key in chinese if not TRANSLATED.match(key)} == english
-
-
-def test_no_text_is_empty(texts) -> None:
-    assert [
-        key for text in texts.values() for key, words in text.items() if not words.strip()
-    ] == []
-
-
-def test_both_languages_fill_in_the_same_values(texts) -> None:
-    def places(words: str) -> list[str]:
-        return sorted(re.findall(r"\{\w+\}", words))
-
+    assert all(words.strip() for text in texts.values() for words in text.values())
     for key, words in texts["en"].items():
-        assert places(words) == places(texts["zh"][key]), key
+        one, other = (sorted(re.findall(r"\{\w+\}", each)) for each in (words, texts["zh"][key]))
+        assert one == other, key
 
 
-def test_every_parameter_has_a_name_and_is_translated(texts) -> None:
+def test_every_parameter_preset_and_mapping_has_a_name_and_is_translated(texts) -> None:
     addresses = {param.address for param in TABLE}
-    assert {
-        key.removeprefix("parameter") for key in texts["en"] if key.startswith("parameter/")
-    } == addresses
-    assert {
-        key.removeprefix("about") for key in texts["zh"] if key.startswith("about/")
-    } == addresses
-
-
-def test_every_preset_and_mapping_has_a_name(texts) -> None:
+    for language, kind in ("en", "parameter"), ("zh", "about"):
+        keys = {key for key in texts[language] if key.startswith(kind + "/")}
+        assert keys == {kind + address for address in addresses}
     for preset in Presets().all()[0]:
         assert f"preset.{preset.name}" in texts["en"]
         assert f"preset.{preset.name}.about" in texts["zh"]
-    for mapping in shipped_mappings():
-        assert f"mapping.{mapping}" in texts["en"]
+    assert {f"mapping.{mapping}" for mapping in shipped_mappings()} <= set(texts["en"])
 
 
 def test_every_key_that_the_page_names_is_there(texts) -> None:

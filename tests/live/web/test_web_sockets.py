@@ -66,20 +66,6 @@ def _as_it_was(shared_web, until):
 # ---------------------------------------------------------------- OSC
 
 
-def test_the_many_who_connect_and_say_nothing_shut_nobody_out(connect, port):
-    silent = [socket.create_connection((HOST, port)) for _ in range(MOST_CONNECTIONS)]
-    web = connect()
-    try:
-        web.tell(FORCE, 1.0)
-        assert web.next() == Message(FORCE, [1.0])
-        silent += [socket.create_connection((HOST, port)) for _ in range(50)]
-        web.tell(FORCE, 1.5)
-        assert web.next() == Message(FORCE, [1.5])
-    finally:
-        for connection in silent:
-            connection.close()
-
-
 def test_a_binary_frame_is_osc_and_who_sets_something_is_told(web, port):
     web.tell(FORCE, 1.25)
     assert web.next() == Message(FORCE, [1.25])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import mido
-import pytest
 
 from yehu_server.playing.learn import LearnedSource, Learner
 
@@ -20,32 +19,23 @@ def heard(messages: list[mido.Message]) -> list[str]:
     return [found.source for message in messages if (found := learner.hear(message))]
 
 
-def test_a_knob_is_found_once_it_has_moved_a_sixteenth_of_its_way():
-    assert heard(cc(20, 60, 61, 62, 67)) == []
-    assert heard(cc(20, 60, 61, 62, 68)) == ["cc 20"]
-
-
-def test_a_button_is_found_when_it_is_let_go():
-    assert heard(cc(80, 127)) == []
-    assert heard(cc(80, 127, 0)) == ["cc 80"]
-
-
-def test_a_pedal_that_trembles_is_not_taken_for_the_knob_that_is_moved():
-    messages = [*cc(11, 100), *cc(20, 0), *cc(11, 101, 99), *cc(20, 5), *cc(11, 103), *cc(20, 10)]
-    assert heard(messages) == ["cc 20"]
-
-
-@pytest.mark.parametrize(
-    ("messages", "source"),
-    [
-        ([mido.Message("pitchwheel", pitch=4000)], "bend"),
-        ([mido.Message("aftertouch", value=40)], "pressure"),
-        ([mido.Message("polytouch", note=70, value=40)], "poly-pressure"),
-        (cc(64, 0, 127), "cc 64"),
-    ],
-)
-def test_wheel_touch_and_pedal_are_found(messages, source):
-    assert heard(messages) == [source]
+def test_what_moves_a_sixteenth_of_its_way_is_found():
+    for messages, found in [
+        (cc(20, 60, 61, 62, 67), []),
+        (cc(20, 60, 61, 62, 68), ["cc 20"]),
+        (cc(80, 127), []),
+        (cc(80, 127, 0), ["cc 80"]),  # a button that is let go
+        (cc(64, 0, 127), ["cc 64"]),
+        ([mido.Message("pitchwheel", pitch=4000)], ["bend"]),
+        ([mido.Message("aftertouch", value=40)], ["pressure"]),
+        ([mido.Message("polytouch", note=70, value=40)], ["poly-pressure"]),
+        # A pedal trembles while a knob is moved.
+        (
+            [*cc(11, 100), *cc(20, 0), *cc(11, 101, 99), *cc(20, 5), *cc(11, 103), *cc(20, 10)],
+            ["cc 20"],
+        ),
+    ]:
+        assert heard(messages) == found, messages
 
 
 def test_notes_and_what_has_a_meaning_of_its_own_are_not(subtests):
@@ -58,22 +48,16 @@ def test_notes_and_what_has_a_meaning_of_its_own_are_not(subtests):
         cc(123, 0, 127),
         cc(6, 0, 127),
         [*cc(101, 0), *cc(100, 0), *cc(6, 2, 12)],
+        [*cc(20, 10, channel=0), *cc(20, 100, channel=1)],  # two knobs
     ]:
         with subtests.test(messages=messages):
             assert heard(messages) == []
 
 
-def test_channels_are_apart():
-    assert heard([*cc(20, 10, channel=0), *cc(20, 100, channel=1)]) == []
-
-
-def test_two_halves_are_found_as_one_of_fourteen_bits():
+def test_two_halves_are_found_as_one_of_fourteen_bits_where_there_are_two():
     pairs = [half for coarse in range(40, 60, 3) for half in (*cc(1, coarse), *cc(33, 77))]
     assert heard(pairs)[:1] == ["cc 1/33"]
     assert set(heard(pairs)) == {"cc 1/33"}
-
-
-def test_a_control_that_could_be_a_fine_half_is_found_where_it_is_none():
     assert heard(cc(33, 0, 64)) == ["cc 33"]
 
 
@@ -83,16 +67,13 @@ def test_a_non_registered_parameter_is_found_by_its_number():
     assert heard([*cc(99, 2), *cc(98, 44), *cc(101, 0), *cc(100, 0), *cc(6, 0, 64)]) == []
 
 
-@pytest.mark.parametrize(
-    ("sent", "found"),
-    [
+def test_an_address_of_the_users_own_is_found_with_its_range():
+    for sent, found in [
         ([0.2, 0.22, 0.3], [LearnedSource("/fader1")]),
         ([0.0, 1.0], [LearnedSource("/fader1")]),
         ([10.0, 12.0, 60.0], [LearnedSource("/fader1", (0.0, 127.0))]),
         ([0.5], []),
-    ],
-)
-def test_an_address_of_the_users_own_is_found_with_its_range(sent, found):
-    learner = Learner()
-    answers = [learner.learn_from_address("/fader1", argument) for argument in sent]
-    assert [answer for answer in answers if answer] == found
+    ]:
+        learner = Learner()
+        answers = [learner.learn_from_address("/fader1", argument) for argument in sent]
+        assert [answer for answer in answers if answer] == found

@@ -1,4 +1,4 @@
-"""The sound of phrases: slurs, trills, slides, vibrato, tremolo, plucked notes, no clicks."""
+"""The sound of phrases: slurs, trills, slides, vibrato, tremolo, plucked notes, ends, no clicks."""
 
 from __future__ import annotations
 
@@ -162,9 +162,39 @@ def test_dynamics_are_heard_as_loudness_and_silence():
     for dynamics in (1.0, 0.6, 0.3, 0.0):
         stand = Stand(dynamics=dynamics)
         stand.on(0.0, 76)
-        levels.append(20.0 * math.log10(np.std(stand.play(0.8)[RATE // 2 :]) + 1e-9))
+        levels.append(level_db(stand.play(0.8)[RATE // 2 :]))
     assert np.all(np.diff(levels) < -5.0)
     assert levels[-1] < -100.0
+
+
+def level_db(sound: np.ndarray) -> float:
+    return 20.0 * math.log10(np.std(sound) + 1e-12)
+
+
+def test_a_faster_bow_and_a_higher_level_are_louder():
+    levels = []
+    for speed, volume in ((0.1, 1.0), (0.2, 1.0), (0.2, 0.7)):
+        stand = Stand(speed=speed, volume=volume)
+        stand.on(0.0, 75)
+        levels.append(level_db(stand.play(1.0)[RATE // 2 :]))
+    slow, fast, fast_but_low = levels
+    assert fast > max(slow, fast_but_low) + 2.0
+
+
+@pytest.mark.parametrize("note", [65, 70, 72, 80])
+def test_a_note_ends_or_is_silenced_within_five_milliseconds(note):
+    stand = Stand()
+    stand.on(0.0, note)
+    loud = level_db(stand.play(0.5)[RATE // 4 :])
+    stand.off(0.5, note)
+    assert level_db(stand.play(3.0)[-RATE // 2 :]) < loud - 50.0
+    stand.on(3.5, note)
+    stand.play(0.5)
+    stand.player.notes_off(stand.player.held())
+    stand.player.stop_sound()
+    assert np.abs(stand.play(0.5)[round(0.005 * RATE) + 1 :]).max() < 1e-3  # -60 dBFS
+    stand.on(4.5, note)  # and the next note speaks
+    assert abs(heard(stand.play(1.0), 0.5, 0.4) - note) < 0.35
 
 
 @pytest.mark.parametrize("note", [65, 70, 72, 79])

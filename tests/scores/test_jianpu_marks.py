@@ -82,37 +82,23 @@ def test_a_returning_slide_leaves_its_note_and_comes_back():
     assert (steps[0], min(steps), steps[-1]) == (0.0, -2.0, 0.0)
 
 
-def test_tremolo_is_three_strokes_through_the_stem():
+def test_tremolo_is_three_strokes_or_two_notes_in_turns_under_one_bow():
     assert part("1/// -").notes[0].marks == (Mark("tremolo", 3.0),)
-
-
-def test_a_tremolo_between_two_notes_is_both_in_turns_under_one_bow():
     played = part("1///5 - 2")
     assert [note.pitch for note in played.notes[:4]] == [60.0, 67.0, 60.0, 67.0]
     assert len(played.notes) == 17
     assert played.spans == (Span("slur", 0, played.notes[15].beat),)
 
 
-def test_grace_notes_stand_before_and_after_with_their_lengths():
-    (note,) = part("g[#4d5] 1 ['1s2]g").notes
-    assert [(grace.pitch, float(grace.length)) for grace in note.before] == [
-        (66.0, 0.25),
-        (67.0, 0.125),
-    ]
-    assert [(grace.pitch, float(grace.length)) for grace in note.after] == [
-        (72.0, 0.25),
-        (62.0, 0.25),
-    ]
-
-
-def test_a_length_holds_for_one_grace_note():
-    (note,) = part("g[d45] 1").notes
-    assert [float(grace.length) for grace in note.before] == [0.125, 0.25]
-
-
-def test_of_grace_notes_that_sound_together_the_highest_is_played():
-    (note,) = part("g[1&3&5d2] 1").notes
-    assert [grace.pitch for grace in note.before] == [67.0, 62.0]
+def test_grace_notes_stand_before_and_after_with_lengths_of_their_own():
+    for text, before, after in [
+        ("g[#4d5] 1 ['1s2]g", [(66, 0.25), (67, 0.125)], [(72, 0.25), (62, 0.25)]),
+        ("g[d45] 1", [(65, 0.125), (67, 0.25)], []),
+        ("g[1&3&5d2] 1", [(67, 0.25), (62, 0.125)], []),  # the highest that sound together
+    ]:
+        (note,) = part(text).notes
+        for graces, expected in ((note.before, before), (note.after, after)):
+            assert [(grace.pitch, float(grace.length)) for grace in graces] == expected, text
 
 
 def test_harmonics_hold_between_their_words():
@@ -121,8 +107,14 @@ def test_harmonics_hold_between_their_words():
     ]  # fmt: skip
 
 
-def test_dynamics_hold_from_the_note_before_them():
-    assert signs("1 \\p 2 3 - \\f 4 \\sfz") == [(0, "p"), (3, "f"), (4, "sfz")]
+def test_dynamics_and_texts_hold_from_the_note_before_them():
+    for text, found in [
+        ("1 \\p 2 3 - \\f 4 \\sfz", [(0, "p"), (3, "f"), (4, "sfz")]),
+        ('1 ^"pizz." 2 _"arco" 3', [(0, "pizz"), (1, "arco")]),
+        ('1 ^"拨弦" 2 ^"拉弦" 3 ^"外"', [(0, "pizz"), (1, "arco"), (2, "outer-string")]),
+        ('1 ^"sul pont." 2', [(0, "sul-ponticello")]),
+    ]:
+        assert signs(text) == found
 
 
 def test_a_hairpin_ends_at_its_end_or_at_the_next_dynamic():
@@ -144,12 +136,6 @@ def test_articulations_are_named_in_two_languages():
     assert wrong == []
 
 
-def test_texts_pluck_and_bow():
-    assert signs('1 ^"pizz." 2 _"arco" 3') == [(0, "pizz"), (1, "arco")]
-    assert signs('1 ^"拨弦" 2 ^"拉弦" 3 ^"外"') == [(0, "pizz"), (1, "arco"), (2, "outer-string")]
-    assert signs('1 ^"sul pont." 2') == [(0, "sul-ponticello")]
-
-
 def test_a_ritardando_ends_at_the_next_tempo():
     score = parse_jianpu('4=90 1 1 ^"渐慢" 1 1 4=60 1'.encode())
     assert score.parts[0].spans == (Span("ritardando", 1, 4),)
@@ -160,12 +146,9 @@ def test_a_ritardando_ends_at_the_next_tempo():
     assert span.end - span.begin == 8  # without an end, two bars
 
 
-def test_slurs_may_lie_within_each_other():
+def test_slurs_may_lie_within_each_other_and_those_without_an_end_are_told():
     spans = part("1( 2( 3) 4)").spans
     assert {(span.begin, span.end) for span in spans} == {(0, 3), (1, 2)}
-
-
-def test_slurs_without_an_end_are_told():
     assert parse_jianpu(b"1 ( 2").warnings == ("slurs without an end left out",)
     assert parse_jianpu(b"1 2 )").warnings == ("ends of slurs that did not begin left out",)
 

@@ -1,4 +1,4 @@
-"""Marks as they sound: harmonics at their pitch, slides on their way, and all as before after."""
+"""Marks as they sound: harmonics and gestures at their pitches, and all as before after."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from pitch import cents, pitch_of
+from pitch import cents, frame_pitch, pitch_of
 
 from yehu_server.core.player.note_range import YEHU
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
+from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.written.mark_settings import harmonics_of
 from yehu_server.scores.written.notated import Mark, Note, Part, Sign, Tempo, Written
 from yehu_server.scores.written.performed import performed
@@ -21,15 +22,20 @@ RATE = 44100
 FLAGEOLET = Sign(Fraction(0), "articulation", float(NUMBER["flageolet"]))
 
 
+def played(written: Written, phrasing: float = 0.0) -> tuple[np.ndarray, Performance]:
+    """The samples of a score, and what played it; the player's own vibrato comes with phrasing."""
+    options = Options(tail_s=0.0, is_dry=True, is_mono=True, phrasing=phrasing)
+    performance = Performance(performed(written), options)
+    return np.concatenate(list(performance.blocks())), performance
+
+
 def sound(*notes, signs=()) -> tuple[np.ndarray, Performance]:
-    """The samples of notes (marks, pitch) of a second each, and what played them."""
+    """That of notes (pitch, marks) of a second each."""
     written = tuple(
         Note(Fraction(n), Fraction(1), float(pitch), tuple(map(Mark, marks)))
         for n, (pitch, *marks) in enumerate(notes)
     )
-    score = performed(Written((Part("", written, (), signs),), (Tempo(Fraction(0), 60.0),)))
-    performance = Performance(score, Options(tail_s=0.0, is_dry=True, is_mono=True))
-    return np.concatenate(list(performance.blocks())), performance
+    return played(Written((Part("", written, (), signs),), (Tempo(Fraction(0), 60.0),)))
 
 
 def off_cents(samples, at_s, pitch) -> float:
@@ -90,3 +96,35 @@ def test_settings_of_a_part_that_is_not_played_set_nothing():
     performance = Performance(score, Options(tail_s=0.0, channels=frozenset({0})))
     next(performance.blocks())
     assert performance.wishes.value("/playing/pizzicato") == 0.0
+
+
+# ---------------------------------------------------------------- jianpu
+
+
+def heard(samples: np.ndarray, at_s: float) -> float:
+    """The MIDI note that sounds about a time."""
+    middle, half = round(at_s * RATE), RATE // 50
+    return 69.0 + 12.0 * np.log2(frame_pitch(samples[middle - half : middle + half], RATE) / 440.0)
+
+
+def test_a_living_five_sounds_as_its_gesture_moves():
+    written = parse_jianpu("4=60 四 活五 - - - 六".encode())
+    samples, _ = played(written)
+    note = written.parts[0].notes[1]
+    shares, steps = zip(*note.contour, strict=True)
+    for at_s in np.arange(1.2, 4.9, 0.1):
+        # the finger follows within 25 ms
+        near = [
+            note.pitch + np.interp((at_s - 1.0 + late) / 4.0, shares, steps)
+            for late in (-0.025, 0.0, 0.025)
+        ]
+        assert min(near) - 0.2 < heard(samples, at_s) < max(near) + 0.2, at_s
+    assert heard(samples, 5.5) == pytest.approx(69.0, abs=0.15)
+
+
+def test_a_marked_slide_and_a_sprung_note_are_heard_after_a_leap():
+    slid, _ = played(parse_jianpu(b"1=Bb 4=60 6 slideDown 2' -"), 0.5)
+    assert 73.5 < heard(slid, 1.06) < 74.2
+    assert heard(slid, 1.3) == pytest.approx(72.0, abs=0.15)
+    sprung, _ = played(parse_jianpu('1=G 4=60 2 6 ^"跳弓"'.encode()), 0.5)
+    assert heard(sprung, 1.06) == pytest.approx(76.0, abs=0.15)

@@ -1,7 +1,5 @@
 """How alike two sounds of one phrase are that differ in their last bits."""
 
-from __future__ import annotations
-
 import numpy as np
 from ahead.phrases import RATE
 

@@ -1,7 +1,5 @@
 """Phrases of wishes, and how they sound in this process."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

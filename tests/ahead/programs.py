@@ -1,7 +1,5 @@
 """Compiles this folder's C programs with the library."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -3,8 +3,6 @@
 Run as a program it writes what some come to: without the JIT, in plain Python.
 """
 
-from __future__ import annotations
-
 import json
 import random
 import re

@@ -4,8 +4,6 @@ Run as a program it plays random messages through those that are taken: without 
 Python.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import random

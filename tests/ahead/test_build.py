@@ -1,7 +1,5 @@
 """Building ahead of time: what is written, and what is refused."""
 
-from __future__ import annotations
-
 import hashlib
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Random bytes through random mappings: no trap, no number that is not finite, no note left."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

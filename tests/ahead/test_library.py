@@ -1,7 +1,5 @@
 """The C library plays what the server plays, from a program without Python."""
 
-from __future__ import annotations
-
 import ctypes
 import platform
 import shutil

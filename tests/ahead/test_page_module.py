@@ -1,7 +1,5 @@
 """The WebAssembly module plays what the server plays."""
 
-from __future__ import annotations
-
 import shutil
 
 import numpy as np

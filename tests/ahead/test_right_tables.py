@@ -1,7 +1,5 @@
 """Which tables are taken: all that Python writes, and none that lead astray."""
 
-from __future__ import annotations
-
 import math
 from itertools import product
 

@@ -1,7 +1,5 @@
 """The same bytes give the same wishes: by the server, by C, in WebAssembly and in plain Python."""
 
-from __future__ import annotations
-
 import json
 import random
 import shutil

@@ -1,7 +1,5 @@
 """``yehu.body``: bodies are looked at, fitted, kept and played."""
 
-from __future__ import annotations
-
 import matplotlib as mpl
 import numpy as np
 import pytest

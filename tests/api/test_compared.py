@@ -1,7 +1,5 @@
 """What `yehu.compare` finds between sounds that are made to differ."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

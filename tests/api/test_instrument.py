@@ -1,7 +1,5 @@
 """``yehu.Instrument``: notes, parameters and the bow in; sound and signals out."""
 
-from __future__ import annotations
-
 import math
 import pickle
 

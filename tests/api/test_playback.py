@@ -1,7 +1,5 @@
 """``yehu.play``: a player in a notebook, else the sound device."""
 
-from __future__ import annotations
-
 import base64
 import io
 import re

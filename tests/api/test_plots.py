@@ -1,7 +1,5 @@
 """``yehu.plot``: what its pictures show."""
 
-from __future__ import annotations
-
 import importlib
 import sys
 import types

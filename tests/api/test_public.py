@@ -1,7 +1,5 @@
 """``import yehu_server``: its names, its examples, and what it does not load."""
 
-from __future__ import annotations
-
 import doctest
 import importlib
 import inspect

@@ -1,7 +1,5 @@
 """``yehu.render``: files and lists of notes to sound, as the command renders them."""
 
-from __future__ import annotations
-
 import math
 import shlex
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``yehu.simulate`` and ``yehu.sweep``: gestures to arrays."""
 
-from __future__ import annotations
-
 import json
 import math
 import sys

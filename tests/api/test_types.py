@@ -1,7 +1,5 @@
 """Examples of the interface have the types that it declares: those of pages and of docstrings."""
 
-from __future__ import annotations
-
 import doctest
 import importlib
 import pkgutil

@@ -1,7 +1,5 @@
 """Machine code that is kept, or that a release brings, plays without numba."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -1,7 +1,5 @@
 """What is heard of sounds whose pitch is known."""
 
-from __future__ import annotations
-
 import tracemalloc
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The performance that a recording becomes; no tracker is needed for it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

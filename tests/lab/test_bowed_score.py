@@ -1,7 +1,5 @@
 """The picture of a score as it will be bowed: strokes and strings as the player has them."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

@@ -1,7 +1,5 @@
 """An LV2 host in Python: plays messages by a plug-in whose ports it knows."""
 
-from __future__ import annotations
-
 import ctypes
 import struct
 

@@ -1,7 +1,5 @@
 """Scripts for hosts, what the library makes of them, and what can be measured in a sound."""
 
-from __future__ import annotations
-
 import ctypes
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """LV2 and VST3 in Ardour without its window: what it exports of a track with a MIDI region."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

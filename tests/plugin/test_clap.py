@@ -1,7 +1,5 @@
 """The CLAP plug-in in a small host."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from plugin.sounds import FRAMES, PHRASE, by_library, frequency, level_db, script

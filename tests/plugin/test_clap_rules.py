@@ -3,8 +3,6 @@
 The host itself looks at factory, features and texts, and at every sample that is written.
 """
 
-from __future__ import annotations
-
 import random
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The same MIDI file by `render`, the library for C programs, the page's module and the plug-in."""
 
-from __future__ import annotations
-
 import shutil
 
 import mido

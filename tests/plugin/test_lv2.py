@@ -1,7 +1,5 @@
 """The LV2 bundle: what it tells, and what it plays."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Parameters as hosts see them, and their numbers, which are for ever."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The plug-in for other systems than this one: what can be known of it without them."""
 
-from __future__ import annotations
-
 import plistlib
 import shutil
 import struct

@@ -1,7 +1,5 @@
 """The VST3 plug-in in hosts that others wrote: pedalboard and dawdreamer, both of JUCE."""
 
-from __future__ import annotations
-
 import mido
 import numpy as np
 import pytest

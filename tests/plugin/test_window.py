@@ -1,7 +1,5 @@
 """The plug-in's window, in a small CLAP host under Xvfb."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

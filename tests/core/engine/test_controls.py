@@ -1,7 +1,5 @@
 """From player-level targets to physical controls: ramps, bow force, bow and hand positions."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Instruments on one stage: each as if alone, all by one callback."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

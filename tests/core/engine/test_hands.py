@@ -1,7 +1,5 @@
 """Four fingers, vibrato, tremolo and plucking, as the engine turns them into controls."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

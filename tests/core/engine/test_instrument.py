@@ -1,7 +1,5 @@
 """The running instrument: blocks, silence, lost states, parameters."""
 
-from __future__ import annotations
-
 import math
 import random
 

@@ -1,7 +1,5 @@
 """What pictures are drawn from is what the instrument does."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Wishes to the instrument: rings between threads and processes, the heap in sample time."""
 
-from __future__ import annotations
-
 import mmap
 import os
 import random

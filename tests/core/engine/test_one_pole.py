@@ -1,7 +1,5 @@
 """The one-pole low-pass filter."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

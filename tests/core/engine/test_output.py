@@ -1,7 +1,5 @@
 """The output stage: gain, level, limiter."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

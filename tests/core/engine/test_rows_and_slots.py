@@ -4,8 +4,6 @@ Both are plain whole numbers to compiled code, and many have one name in ``playe
 meaning in ``controls.slots``; so what the sources say is checked here.
 """
 
-from __future__ import annotations
-
 import ast
 from functools import cache
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Strings tuned and damped while they sound, and uneven bow hair."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Telemetry of the audio side: levels, string shapes, load, the time of a frame."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import threading

@@ -1,7 +1,5 @@
 """What playing needs is compiled in two processes, and kept."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

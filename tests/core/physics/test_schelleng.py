@@ -1,7 +1,5 @@
 """Schelleng's limits of the bow force."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

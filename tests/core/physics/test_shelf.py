@@ -1,7 +1,5 @@
 """The shelf that makes notes brighter."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A harder bow, or one nearer to the bridge, makes a note's centroid rise by a law."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """What the default mapping's wheel and pedal do to the sound, measured."""
 
-from __future__ import annotations
-
 import mido
 import numpy as np
 import pytest

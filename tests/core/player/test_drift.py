@@ -1,7 +1,5 @@
 """The hands drift and tremble, as far as the variation says."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing

@@ -1,7 +1,5 @@
 """The ear hears period, certainty and slips of pulse trains, which are known in closed form."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

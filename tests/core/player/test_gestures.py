@@ -1,7 +1,5 @@
 """Articulations: what the hands do at which time of a note."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import pairwise, product
 from typing import Any

@@ -1,7 +1,5 @@
 """The player listens: on strings that nobody calibrated for, notes come to their pitch."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the player does to plain notes by itself."""
 
-from __future__ import annotations
-
 import numpy as np
 from held_notes import Playing
 

@@ -1,7 +1,5 @@
 """Strokes are planned for the length of the bow, and turn at its ends."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing

@@ -1,7 +1,5 @@
 """A harder note is louder, and begins sooner."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import mido

@@ -1,7 +1,5 @@
 """How wide a vibrato is, and where its middle is, where the body is steep and where it is not."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Wishes are kept within range by the player itself: programs without Python can post anything."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

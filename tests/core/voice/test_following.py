@@ -1,7 +1,5 @@
 """What a voice comes to as it is sung: pitches, notes, strokes; how soon, and with which errors."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

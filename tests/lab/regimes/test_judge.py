@@ -1,7 +1,5 @@
 """The rule that names the regime of a bowed string, on motions that are known."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The rule at its borders, and the parts it is made of."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whole strokes in one compiled call."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

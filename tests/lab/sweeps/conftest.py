@@ -1,7 +1,5 @@
 """A short study, and what it found."""
 
-from __future__ import annotations
-
 import pytest
 
 from yehu_server.lab.sweeps.running import sweep

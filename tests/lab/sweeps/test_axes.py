@@ -1,7 +1,5 @@
 """What a study varies."""
 
-from __future__ import annotations
-
 import pytest
 
 from yehu_server.errors import ParameterError

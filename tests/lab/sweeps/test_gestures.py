@@ -1,7 +1,5 @@
 """Gestures that are varied."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The page of a result, and what it is made of."""
 
-from __future__ import annotations
-
 import base64
 import shutil
 import subprocess

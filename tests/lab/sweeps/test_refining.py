@@ -1,7 +1,5 @@
 """Which points are computed, on regions that are known."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from yehu_server.lab.sweeps.axes import coarse_points, fill, finer_points

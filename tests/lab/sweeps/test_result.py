@@ -1,7 +1,5 @@
 """The file of a sweep."""
 
-from __future__ import annotations
-
 import tracemalloc
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Studies that are run: the same bits in any way, and again after an interruption."""
 
-from __future__ import annotations
-
 import json
 from types import SimpleNamespace
 

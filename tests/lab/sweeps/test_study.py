@@ -1,7 +1,5 @@
 """Files of studies."""
 
-from __future__ import annotations
-
 import pytest
 
 from yehu_server.errors import ParameterError, ScoreError

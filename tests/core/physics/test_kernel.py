@@ -10,8 +10,6 @@ from pitch import cents, pitch_of
 from yehu_server.core.physics import kernel, layout, time_loop
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError
-from yehu_server.lab.simulation import simulate
-from yehu_server.scores.gesture import Gesture
 
 YEHU = Quantities()
 RATE = 44100.0
@@ -89,32 +87,6 @@ def test_the_size_of_a_block_changes_nothing(fingers):
     assert results[0].any()
     for other in results[1:]:
         assert np.array_equal(results[0], other)
-
-
-def test_simulate_and_the_kernel_are_the_same_machine():
-    gesture = Gesture(
-        RATE,
-        0.2,
-        controls={
-            "bow_force": ((0.0, 0.7),),
-            "bow_velocity": ((0.0, 0.3),),
-            "finger_position": ((0.0, 0.05), (0.2, 0.1)),
-            "press_force": ((0.0, 1.0),),
-        },
-    )
-    arrays = simulate(gesture).arrays
-    run = play(
-        lambda t: {
-            "F_N": 0.7,
-            "v_b": 0.3,
-            "x_f": [np.interp(t, [0.0, 0.2], [0.05, 0.1])],
-            "press": [1.0],
-        },
-        0.2,
-        ledger=False,
-    )
-    assert np.array_equal(arrays["bridge_force"], run["bridge_force"])
-    assert np.array_equal(arrays["pressure"], run["pressure"])
 
 
 def test_what_the_kernel_has_no_room_for_is_refused():

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 import reference as ref
 from core.physics.adapter import kernel_state, reference_params, step_kernel, step_reference
-from core.physics.runs import play, rows
 
 from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics.bow import friction_bound
@@ -220,49 +219,29 @@ def test_the_mean_potential_of_a_contact_is_never_negative(compared):
 @pytest.mark.parametrize(("F_N", "fingers"), [(0.7, 2), (-0.7, 1)], ids=["F4", "C5"])
 def test_the_first_50_samples_of_a_start_are_the_references(F_N, fingers):
     """Bowed and pressed, the fingers already on the strings, gliding."""
-    rate, frames = 44100.0, 50
-    params, prepared = models(rate)
-    model = prepared[fingers]
-    state = ref.rest_state(params, fingers)
+    params, prepared = models(44100.0)
     height = np.full(fingers, -1e-5)  # in touch from the first sample
-    state = ref.RefState(**{**state.__dict__, "U": height, "U_prev": height})
-    record = kernel_state(model, state)
-    n = np.arange(frames)
-    x_f = [0.1 + 1e-5 * n + 0.05 * j for j in range(fingers)]
-    curves = {"F_N": F_N, "v_b": 0.3, "x_f": x_f, "press": [3.0] * fingers}
-    run = play(curves, frames / rate, rate, fingers=fingers, state=record, ledger=False)
-    table = rows(frames, fingers, curves)
-
-    forces = np.zeros((frames, 4 + 2 * fingers))
-    for m, row in enumerate(table):
-        pairs = row[layout.FINGER_CONTROLS :].reshape(fingers, 2)
+    state = replace(ref.rest_state(params, fingers), U=height, U_prev=height)
+    model, record = prepared[fingers], kernel_state(prepared[fingers], state)
+    steps = []
+    for n in range(50):
         controls = ref.RefControls(
-            v_b=row[layout.V_B],
-            F_N=row[layout.F_N],
-            x_b=row[layout.X_B],
-            f_hammer=row[layout.F_HAMMER],
-            x_f=pairs[:, 0],
-            press=pairs[:, 1],
+            v_b=0.3,
+            F_N=F_N,
+            x_b=0.255,
+            f_hammer=0.0,
+            x_f=np.array([0.1 + 1e-5 * n + 0.05 * j for j in range(fingers)]),
+            press=np.full(fingers, 3.0),
         )
-        state, _, outputs = step_reference(params, state, controls)
-        forces[m] = [*outputs.f_c, outputs.f_b, outputs.v_r, *outputs.f_f.ravel()]
-    found = np.concatenate(
-        [
-            run.probes[:, [layout.BRIDGE_FORCE_1, layout.BRIDGE_FORCE_2]],
-            run.probes[:, [layout.FRICTION_FORCE, layout.RELATIVE_VELOCITY]],
-            *[run.finger(j)[:, 1:] for j in range(fingers)],
-        ],
-        axis=1,
-    )
-    size = np.abs(forces).max(axis=0)
-    assert np.all(size > 0.0)
-    assert np.all(np.abs(found - forces).max(axis=0) <= 1e-8 * size)
-    now = int(record["motion"]["level"][0])
-    for i in range(layout.STRINGS):
-        end = record["motion"]["u"][
-            0, now, i, layout.GHOST : layout.GHOST + params.strings[i].N + 1
-        ]
-        assert np.abs(end - state.u[i]).max() <= 1e-8 * np.abs(state.u[i]).max()
+        state, expected, _ = step_reference(params, state, controls)
+        found = step_kernel(model, record, controls, np.zeros((1, len(layout.LEDGER))))
+        steps.append((expected, found))
+    for name in steps[0][0]:
+        wanted, got = (
+            np.array([np.ravel(step[name]) for step in each]) for each in zip(*steps, strict=True)
+        )
+        assert np.abs(wanted).max() > 0.0, name
+        assert np.abs(got - wanted).max() <= 1e-8 * np.abs(wanted).max(), name
 
 
 @pytest.mark.parametrize("rate", RATES)

@@ -7,33 +7,20 @@ from yehu_server.core.controls.slots import DEPTH, FINGER_POSITION, ONSET
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
 
-def vibrato(playing: Playing, seconds: float) -> tuple[np.ndarray, np.ndarray]:
-    """Depth (cents) and onset of the vibrato, every 5 ms."""
-    (values,) = playing.play(seconds, "value")
-    return values[:, DEPTH], values[:, ONSET]
+def test_a_long_note_gets_a_vibrato_that_comes_late_if_phrased_and_none_was_wished_for():
+    def vibrato(note: float, seconds: float, **values: float) -> np.ndarray:
+        """Depth (cents) and onset of the vibrato, every 5 ms."""
+        playing = Playing(**values)
+        playing.on(note)
+        return playing.play(seconds, "value")[0][:, [DEPTH, ONSET]].T
 
-
-def test_a_long_note_gets_a_vibrato_that_comes_late():
-    playing = Playing(phrasing=0.5)
-    playing.on(79)
-    depth, onset = vibrato(playing, 2.0)
+    depth, onset = vibrato(79, 2.0, phrasing=0.5)
     assert depth[-1] == 30.0
     assert onset[40] < 0.4 < onset[80]  # none after 0.2 s, some after 0.4 s
     assert onset[-1] == 1.0
-
-
-def test_without_phrasing_there_is_none():
-    playing = Playing()
-    playing.on(74)
-    assert (vibrato(playing, 1.0)[0] == 0.0).all()
-
-
-def test_a_vibrato_that_is_wished_for_stays_as_it_is():
-    playing = Playing(phrasing=1.0, vibrato=10.0, vibrato_delay=0.0)
-    playing.on(74)
-    depth, onset = vibrato(playing, 0.5)
-    assert depth[-1] == 10.0
-    assert onset[-1] == 1.0
+    assert (vibrato(74, 1.0)[0] == 0.0).all()
+    wished = vibrato(74, 0.5, phrasing=1.0, vibrato=10.0, vibrato_delay=0.0)
+    assert wished[:, -1].tolist() == [10.0, 1.0]
 
 
 def slide_s(phrasing: float, first: int, second: int, held_s: float = 0.5) -> float:

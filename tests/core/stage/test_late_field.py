@@ -12,8 +12,6 @@ from acoustics import (
 )
 from rooms import Asked, Room
 
-from yehu_server.core.stage.late_field import LINES, mix
-
 STUDY, COURTYARD, HALL = Asked(5.0, 0.4, 0.4), Asked(14.0, 0.8, 0.6), Asked(25.0, 1.6, 0.35)
 PRESETS = {"study": STUDY, "courtyard": COURTYARD, "hall": HALL}
 SOUND = 343.0
@@ -63,13 +61,6 @@ def test_a_room_that_was_changed_decays_as_is_asked_of_it_now(before):
     for centre in OCTAVES:
         measured = decay_time(octave(heard, rate, centre), rate)
         assert measured == pytest.approx(decay_at(centre, 0.4, 0.4), rel=0.05), centre
-
-
-def test_the_mix_of_the_lines_is_orthogonal_and_feeds_all_alike():
-    matrix = np.eye(LINES)
-    mix(matrix, LINES)
-    assert np.allclose(matrix @ matrix.T, np.eye(LINES), atol=1e-15)
-    assert np.allclose(np.abs(matrix), 0.25, atol=1e-15)
 
 
 def stored(room: Room) -> float:

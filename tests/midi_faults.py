@@ -23,6 +23,8 @@ Notes = tuple[tuple[float, int], ...]  # beginnings (s) and keys
 
 FIRST, SECOND = on(0, 67) + off(96, 67), on(0, 69) + off(96, 69)
 TUNE = FIRST + SECOND + END
+LATE = on(96, 69) + off(96, 69) + END
+SLOW = on(0, 67) + off(500, 67) + on(0, 69) + off(500, 69) + END
 BOTH: Notes = ((0.0, 67), (0.5, 69))
 REST = b"\xff\xff\xff\x7f"  # the longest
 
@@ -108,11 +110,7 @@ WRAPPED = (
 )
 
 HEADERS = (
-    Case(
-        "smpte",
-        song(on(0, 67) + off(500, 67) + on(0, 69) + off(500, 69) + END, division=0xE728),
-        mido=DIFFERS,
-    ),
+    Case("smpte", song(SLOW, division=0xE728), mido=DIFFERS),
     Case(
         "division-0",
         song(on(0, 67) + off(480, 67) + on(0, 69) + off(480, 69) + END, division=0),
@@ -121,24 +119,20 @@ HEADERS = (
     ),
     Case(
         "smpte-division-0",
-        song(on(0, 67) + off(500, 67) + on(0, 69) + off(500, 69) + END, division=0xE700),
+        song(SLOW, division=0xE700),
         "a division of 0: 40 ticks a frame assumed, at byte 12",
         mido=DIFFERS,
     ),
     Case(
         "smpte-frames-of-no-film",
-        song(on(0, 67) + off(500, 67) + on(0, 69) + off(500, 69) + END, division=0xCE14),
+        song(SLOW, division=0xCE14),
         "50 frames a second, as no film has, believed, at byte 12",
         mido=DIFFERS,
     ),
-    Case(
-        "format-above-2",
-        song(TUNE, kind=9),
-        "unknown format 9, read as format 1, at byte 8",
-    ),
+    Case("format-above-2", song(TUNE, kind=9), "unknown format 9, read as format 1, at byte 8"),
     Case(
         "format-0-of-two-tracks",
-        song(FIRST + END, on(96, 69) + off(96, 69) + END),
+        song(FIRST + END, LATE),
         "format 0 with 2 tracks, read as format 1, at byte 8",
     ),
     Case(
@@ -149,7 +143,7 @@ HEADERS = (
     ),
     Case(
         "more-tracks-than-announced",
-        song(FIRST + END, on(96, 69) + off(96, 69) + END, kind=1, count=1),
+        song(FIRST + END, LATE, kind=1, count=1),
         "1 track announced, 2 found, at byte 10",
         mido=DIFFERS,
     ),
@@ -196,33 +190,29 @@ TRACKS = (
     ),
     Case(
         "length-too-short",
-        head(1, 2, 96) + track(FIRST + END, 9) + track(on(96, 69) + off(96, 69) + END),
+        head(1, 2, 96) + track(FIRST + END, 9) + track(LATE),
         "a track of a wrong length read up to its end, at byte 18",
         mido=REFUSES,
     ),
     Case(
         "length-too-long",
-        head(1, 2, 96) + track(FIRST + END, 20) + track(on(96, 69) + off(96, 69) + END),
+        head(1, 2, 96) + track(FIRST + END, 20) + track(LATE),
         "a track of a wrong length read up to its end, at byte 18",
         mido=REFUSES,
     ),
     Case(
         "length-over-two-tracks",
-        head(1, 2, 96) + track(FIRST + END, 32) + track(on(96, 69) + off(96, 69) + END),
+        head(1, 2, 96) + track(FIRST + END, 32) + track(LATE),
         "a track of a wrong length read up to its end, at byte 18",
         mido=REFUSES,
     ),
     Case(
         "bytes-between-tracks",
-        head(1, 2, 96) + track(FIRST + END) + b"\0\0\0" + track(on(96, 69) + off(96, 69) + END),
+        head(1, 2, 96) + track(FIRST + END) + b"\0\0\0" + track(LATE),
         "bytes outside any chunk skipped, at byte 34",
         mido=REFUSES,
     ),
-    Case(
-        "bytes-at-the-end",
-        WHOLE + b"\x1a" * 86,
-        "bytes outside any chunk skipped, at byte 42",
-    ),
+    Case("bytes-at-the-end", WHOLE + b"\x1a" * 86, "bytes outside any chunk skipped, at byte 42"),
     Case(
         "events-after-the-end",
         song(TUNE + on(0, 71) + off(96, 71)),
@@ -278,7 +268,7 @@ EVENTS = (
     ),
     Case(
         "note-without-an-end",
-        song(on(0, 67) + on(96, 69) + off(96, 69) + END),
+        song(on(0, 67) + LATE),
         "a note without an end stopped at the next one, at byte 22",
         mido=DIFFERS,
     ),

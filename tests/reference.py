@@ -665,11 +665,7 @@ def energy(params: RefParams, state: RefState) -> dict[str, float]:
 
 
 def power(
-    params: RefParams,
-    before: RefState,
-    after: RefState,
-    outputs: RefOutputs,
-    controls: RefControls,
+    params: RefParams, before: RefState, after: RefState, outputs: RefOutputs, controls: RefControls
 ) -> dict[str, float]:
     """p^n by source, in watts, (56a) corrected: the bow does the work - f_b v_b."""
     two_k = 2.0 * params.k
@@ -690,11 +686,7 @@ def power(
 
 
 def losses(
-    params: RefParams,
-    before: RefState,
-    after: RefState,
-    outputs: RefOutputs,
-    controls: RefControls,
+    params: RefParams, before: RefState, after: RefState, outputs: RefOutputs, controls: RefControls
 ) -> dict[str, float]:
     """q^n by name, in watts: (56b)-(56e), and what the resets throw away."""
     k = params.k
@@ -726,11 +718,7 @@ def losses(
 
 
 def ledger(
-    params: RefParams,
-    before: RefState,
-    after: RefState,
-    outputs: RefOutputs,
-    controls: RefControls,
+    params: RefParams, before: RefState, after: RefState, outputs: RefOutputs, controls: RefControls
 ) -> dict[str, float]:
     """h_before, h_after (J), p, every q_<name> and error = (h_after - h_before)/k - p + sum q (W).
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.cli import _parser, main
+from yehu_server.cli import _parser
 from yehu_server.cli.config import read_config
 from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import FIRST, LAST, YehuError
@@ -89,14 +89,11 @@ def test_what_never_ends_or_never_begins_is_refused_at_once(tmp_path, name):
         assert len(str(error.value)) < 200 + len(str(path))
 
 
-def test_a_line_of_error_is_never_long(tmp_path, capsys):
+def test_a_line_of_error_is_never_long(tmp_path, refused):
     path = tmp_path / "c.toml"
     for text in ("rate = '{}'", "{} = 1", "midi-in = ['{}', {{}}]"):
         path.write_text(text.format("a" * 100_000))
-        assert main(["serve", "--config", str(path)]) == 2
-        err = capsys.readouterr().err
-        assert err.count("\n") == 1
-        assert len(err) < (FIRST + LAST) + 200
+        assert len(refused("serve", "--config", path)) < (FIRST + LAST) + 200
 
 
 def nested(depth: int) -> str:
@@ -113,17 +110,16 @@ def test_as_deep_as_anybody_nests_is_read():
             parse_toml(f"a = {deep}")
 
 
-def test_what_is_refused_by_the_reader_is_one_line_of_the_command(tmp_path, capsys):
-    for name, words in {
-        "c.jsonl": ["replay", "FILE", "-o", str(tmp_path / "x.wav")],
-        "g.json": ["simulate", "FILE", "-o", str(tmp_path / "x.npz")],
-        "s.mid": ["render", "FILE", "-o", str(tmp_path / "x.wav")],
-        "s.musicxml": ["score", "show", "FILE"],
-    }.items():
+def test_what_is_refused_by_the_reader_is_one_line_of_the_command(tmp_path, refused):
+    for name, command, *words in (
+        ("c.jsonl", "replay", "-o", tmp_path / "x.wav"),
+        ("g.json", "simulate", "-o", tmp_path / "x.npz"),
+        ("s.mid", "render", "-o", tmp_path / "x.wav"),
+        ("s.musicxml", "score show"),
+    ):
+        (tmp_path / name).write_bytes(b"[" * 100_000)
         for path in (tmp_path / name, Path("/dev/zero"), tmp_path):
-            (tmp_path / name).write_bytes(b"[" * 100_000)
-            assert main([str(path) if word == "FILE" else word for word in words]) == 2
-            assert capsys.readouterr().err.count("\n") == 1
+            refused(*command.split(), path, *words)
 
 
 def test_a_mapping_of_far_too_many_binds_is_refused_before_it_is_parsed(tmp_path, monkeypatch):

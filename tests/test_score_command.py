@@ -81,23 +81,18 @@ def test_what_is_played_is_written_as_midi(command, refused, tune, tmp_path):
     assert command(*words, "--overwrite")[0] == 0
     same = ("score", "show", target, "--export-midi", target)
     assert "is no written score" in refused(*same)
+    over = ("score", "show", tune, "--export-midi", tune, "--overwrite")
+    assert "would overwrite an input" in refused(*over)
 
 
-def test_a_score_is_not_overwritten_by_its_export(refused, tune):
-    before = tune.read_bytes()
-    line = refused("score", "show", tune, "--export-midi", tune, "--overwrite")
-    assert "would overwrite an input" in line
-    assert tune.read_bytes() == before
-
-
-@pytest.mark.parametrize("text", ["", "<html/>", "<score-partwise/>"])
-def test_a_score_that_cannot_be_read_is_refused_in_one_line(refused, tmp_path, text):
+def test_a_score_that_cannot_be_read_is_refused_in_one_line(refused, tmp_path):
     path = tmp_path / "bad.musicxml"
-    path.write_text(text, encoding="utf-8")
-    if text != "<score-partwise/>":
-        assert "bad.musicxml" in refused("score", "show", path)
-    assert "bad.musicxml" in refused("render", path, "-o", tmp_path / "out.wav")
-    assert not (tmp_path / "out.wav").exists()
+    for text in ("", "<html/>", "<score-partwise/>"):
+        path.write_text(text, encoding="utf-8")
+        if text != "<score-partwise/>":
+            assert "bad.musicxml" in refused("score", "show", path)
+        assert "bad.musicxml" in refused("render", path, "-o", tmp_path / "out.wav")
+        assert not (tmp_path / "out.wav").exists()
 
 
 def test_a_score_is_rendered_and_its_unknown_marks_are_told(command, tune, tmp_path):

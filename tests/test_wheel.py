@@ -114,13 +114,11 @@ def test_all_public_names_work_from_a_wheel_with_extras(python, tmp_path):
 
 
 @pytest.mark.slow
-def test_the_command_starts_from_a_wheel(python, tmp_path):
+def test_a_wheel_has_a_command_types_notebooks_and_pages(wheel, python, tmp_path):
     code = "import sys; from yehu_server.cli import main; sys.exit(main(['--version']))"
     assert tried(python, code, tmp_path)
-
-
-@pytest.mark.slow
-def test_a_wheel_has_types_notebooks_and_pages(wheel):
-    names = set(zipfile.ZipFile(wheel).namelist())
-    assert {"yehu_server/py.typed", "yehu_server/docs/python.md"} <= names
-    assert "yehu_server/examples/notebooks/1_first_sound.ipynb" in names
+    assert set(zipfile.ZipFile(wheel).namelist()) >= {
+        "yehu_server/py.typed",
+        "yehu_server/docs/python.md",
+        "yehu_server/examples/notebooks/1_first_sound.ipynb",
+    }

@@ -11,25 +11,14 @@ from interpreted import ALL_KINDS, Leader, Wished
 from yehu_server.core.controls.record import prepare_controls
 from yehu_server.core.controls.slots import HIGHEST, LOWEST
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import GAINS, PITCHES, SPEEDS, Calibration
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import prepare_player
 from yehu_server.core.player.wishes import KINDS, fulfil
 from yehu_server.params.table import SLOT, TABLE
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.live_player import LivePlayer
 
-# Near a measured calibration, which takes seconds to make.
-CALIBRATION = Calibration(
-    440.0,
-    (51.0, 64.0),
-    tuple(tuple((20.0,) * len(SPEEDS) for _ in pitches) for pitches in PITCHES),
-    tuple(tuple((-30.0,) * len(SPEEDS) for _ in (None, *pitches)) for pitches in PITCHES),
-    centroids=tuple(
-        tuple(tuple(900.0 + gain for gain in GAINS) for _ in (None, *pitches))
-        for pitches in PITCHES
-    ),
-    louder=tuple(tuple((1.0,) * len(GAINS) for _ in (None, *pitches)) for pitches in PITCHES),
-)
+CALIBRATION = calibration_for(Leader.rate)  # a shipped one
 QUANTITIES = CALIBRATION.tuned(Quantities())
 DEFAULTS = {param.address: param.default for param in TABLE}
 RATE = Leader.rate

@@ -71,10 +71,7 @@ TARGETS: dict[str, Target] = {}
 
 
 def target(
-    name: str,
-    *refusals: type[Exception],
-    words: tuple[bytes, ...] = (),
-    also: tuple[str, ...] = (),
+    name: str, *refusals: type[Exception], words: tuple[bytes, ...] = (), also: tuple[str, ...] = ()
 ) -> Callable[[Read], Read]:
     """Make a target of a function; its docstring states the contract."""
 

@@ -5,7 +5,6 @@ import sys
 
 import pytest
 
-from yehu_server.cli import main
 from yehu_server.surfaces.catalogue import SURFACES, is_fresh
 from yehu_server.util.files import shipped_folder
 
@@ -19,16 +18,15 @@ def test_the_shipped_file_is_as_the_table_has_it(surface):
     )
 
 
-def test_all_are_written_and_fresh_over_older_ones(tmp_path, capsys):
+def test_all_are_written_and_fresh_over_older_ones(tmp_path, command):
     folder = tmp_path / "new" / "panels"
-    assert main(["surfaces", "-o", str(folder)]) == 0
-    out = capsys.readouterr().out
+    code, out, _ = command("surfaces", "-o", folder)
+    assert code == 0
     assert sorted(path.name for path in folder.iterdir()) == sorted(NAMES)
     assert all(str(folder / name) in out for name in NAMES)
     (folder / NAMES[0]).write_bytes(b"old")
-    assert main(["surfaces", "-o", str(folder), "--only", NAMES[0]]) == 0
-    assert main(["surfaces", "-o", str(folder), "--check"]) == 0
-    assert sorted(path.name for path in folder.iterdir()) == sorted(NAMES)
+    assert command("surfaces", "-o", folder, "--only", NAMES[0])[0] == 0
+    assert command("surfaces", "-o", folder, "--check")[0] == 0
 
 
 def test_a_stale_file_is_named_and_the_code_is_1(tmp_path, command):
@@ -43,18 +41,19 @@ def test_a_stale_file_is_named_and_the_code_is_1(tmp_path, command):
             assert path.exists() == (harmed is not None)
 
 
-def test_the_server_is_in_what_speaks_to_it(tmp_path):
-    assert main(["surfaces", "-o", str(tmp_path), "--server", "10.0.0.7:9123"]) == 0
+def test_the_server_is_in_what_speaks_to_it(tmp_path, command):
+    assert command("surfaces", "-o", tmp_path, "--server", "10.0.0.7:9123")[0] == 0
     assert "connect 10.0.0.7 9123" in (tmp_path / "yehu.pd").read_text()
     assert "udpsend 10.0.0.7 9123" in (tmp_path / "yehu.maxpat").read_text()
     assert "10.0.0.7:9123" in (tmp_path / "open-stage-control.json").read_text()
-    assert main(["surfaces", "-o", str(tmp_path), "--only", "yehu.pd", "--check"]) == 1
+    assert command("surfaces", "-o", tmp_path, "--only", "yehu.pd", "--check")[0] == 1
 
 
 def test_a_host_may_be_a_name_or_a_number(command, tmp_path):
     for server in ("10.0.0.7", "localhost", "studio.local", "studio:9000", "::1"):
         words = ("-o", tmp_path, "--only", "yehu.pd", "--server", server)
         assert command("surfaces", *words)[0] == 0
+        assert [path.name for path in tmp_path.iterdir()] == ["yehu.pd"]  # which alone is named
 
 
 def test_a_wrong_word_is_refused_and_nothing_written(refused, tmp_path):

@@ -5,7 +5,6 @@ from functools import cache
 
 import pytest
 
-from yehu_server.cli import main
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.params.table import TABLE
 from yehu_server.surfaces import common_layout
@@ -80,18 +79,16 @@ def test_max_listens_at_another_port_for_each_part():
         assert f"/yehu/subscribe 60 {7400 + part}" in text
 
 
-def test_files_of_parts_lie_beside_each_other_and_are_checked(tmp_path, capsys):
-    words = ["surfaces", "-o", str(tmp_path), "--only", "yehu.pd"]
-    for part in ("1", "2"):
-        assert main([*words, "--part", part]) == 0
-    assert main(words) == 0
+def test_files_of_parts_lie_beside_each_other_and_are_checked(tmp_path, command):
+    words = ("surfaces", "-o", tmp_path, "--only", "yehu.pd")
+    for part in (("--part", 1), ("--part", 2), ()):
+        assert command(*words, *part)[0] == 0
     names = ["yehu-part-1.pd", "yehu-part-2.pd", "yehu.pd"]
     assert sorted(path.name for path in tmp_path.iterdir()) == names
-    assert main([*words, "--part", "2", "--check"]) == 0
+    assert command(*words, "--part", 2, "--check")[0] == 0
     (tmp_path / "yehu-part-2.pd").write_text("old")
-    capsys.readouterr()
-    assert main([*words, "--part", "2", "--check"]) == 1
-    assert "yehu-part-2.pd" in capsys.readouterr().out
+    code, out, _ = command(*words, "--part", 2, "--check")
+    assert (code, "yehu-part-2.pd" in out) == (1, True)
 
 
 def test_after_a_part_surfaces_are_again_for_all():

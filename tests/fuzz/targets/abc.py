@@ -18,9 +18,7 @@ C3/2 D// E/4 !trill! !segno! !D.S.! !coda! !fine! !<(! !<)! !p! !fermata! !1! ~ 
 
 
 @target(
-    "abc",
-    ScoreError,
-    words=(*(f"{word} ".encode() for word in WORDS.split()), b"\n", b"\n\nX:2\n"),
+    "abc", ScoreError, words=(*(f"{word} ".encode() for word in WORDS.split()), b"\n", b"\n\nX:2\n")
 )
 def abc(data: bytes) -> None:
     """A file is a tune of notes in order, within bounds, that can be played, or a ScoreError."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
@@ -30,17 +29,14 @@ class Device:
         return self.delay.frames
 
 
-def test_what_arrives_waits_for_a_block_and_a_millisecond_at_first():
-    assert Device().delay.frames == BLOCK + HANDLING
-    assert Device().delay.period == BLOCK
-
-
-@pytest.mark.parametrize("period", [256, 1024, 8192])
-def test_what_two_windows_in_a_row_tell_is_waited_for(period):
-    device = Device()
-    assert device.window(period) == BLOCK + HANDLING
-    assert device.window(period) == period + HANDLING
-    assert device.delay.period == period
+def test_what_two_windows_in_a_row_tell_is_waited_for():
+    """At first a block and a millisecond."""
+    for period in (256, 1024, 8192):
+        device = Device()
+        assert (device.delay.period, device.delay.frames) == (BLOCK, BLOCK + HANDLING)
+        assert device.window(period) == BLOCK + HANDLING
+        assert device.window(period) == period + HANDLING
+        assert device.delay.period == period
 
 
 def test_what_happens_once_is_an_accident():
@@ -71,9 +67,9 @@ def test_a_device_that_asks_for_less_is_believed_after_a_while():
     assert waits[-1] == 256 + HANDLING
 
 
-@pytest.mark.parametrize("fixed_ms", [0.0, 5.0, 100.0])
-def test_what_a_player_asked_for_stays_whatever_the_device_does(fixed_ms):
-    device = Device(fixed_ms)
-    for ahead in (128, 1024, 1024, 1024):
-        assert device.window(ahead) == round(48 * fixed_ms)
-    assert device.delay.period == 1024  # is told all the same
+def test_what_a_player_asked_for_stays_whatever_the_device_does():
+    for fixed_ms in (0.0, 5.0, 100.0):
+        device = Device(fixed_ms)
+        for ahead in (128, 1024, 1024, 1024):
+            assert device.window(ahead) == round(48 * fixed_ms)
+        assert device.delay.period == 1024  # is told all the same

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import mido
 import numpy as np
 import pytest
@@ -55,22 +57,18 @@ def slid(score: Score, amount: float = 0.5) -> Score:
     return phrased(score, amount, PlayingOptions(), YEHU)
 
 
-@pytest.mark.parametrize(("keys", "leap"), [((74, 79), 5.0), ((79, 74), -5.0), ((67, 76), 9.0)])
-def test_a_slide_is_a_bend_of_the_note_before_that_ends_on_the_beat(keys, leap):
-    score = score_of(*keys)
-    played = slid(score)
-    assert [(n.start_s, n.key) for n in notes_of(played)] == [(0.0, keys[0]), (HALVES, keys[1])]
-    slide = settings(played, BEND)
-    times, bends = np.array(slide).T
-    assert bends[-1] == pytest.approx(leap)
-    assert times[-1] + 0.008 == pytest.approx(HALVES)  # a bend takes 8 ms
-    assert 0.06 < times[-1] - times[0] < 0.12
-    assert (np.diff(bends) * leap > 0.0).all()
-    half = np.interp(0.5 * leap, np.sort(bends), times if leap > 0.0 else times[::-1])
-    assert half == pytest.approx(np.mean([times[0], times[-1]]), abs=0.006)
-
-
-def test_a_slide_is_slow_at_its_ends_and_quick_in_its_middle():
+def test_a_slide_is_a_bend_of_the_note_before_that_ends_on_the_beat():
+    """Slow at its ends, and quick in its middle."""
+    for keys, leap in (((74, 79), 5.0), ((79, 74), -5.0), ((67, 76), 9.0)):
+        played = slid(score_of(*keys))
+        assert [(n.start_s, n.key) for n in notes_of(played)] == [(0.0, keys[0]), (HALVES, keys[1])]
+        times, bends = np.array(settings(played, BEND)).T
+        assert bends[-1] == pytest.approx(leap)
+        assert times[-1] + 0.008 == pytest.approx(HALVES)  # a bend takes 8 ms
+        assert 0.06 < times[-1] - times[0] < 0.12
+        assert (np.diff(bends) * leap > 0.0).all()
+        half = np.interp(0.5 * leap, np.sort(bends), times if leap > 0.0 else times[::-1])
+        assert half == pytest.approx(np.mean([times[0], times[-1]]), abs=0.006)
     steps = np.diff([logistic(n / 20) for n in range(21)])
     assert steps.sum() == pytest.approx(1.0)
     assert steps == pytest.approx(steps[::-1])
@@ -118,32 +116,33 @@ def test_the_finger_is_heard_to_leave_before_the_beat_and_to_be_there_on_it(keys
         assert (min(keys) + 1.0 < before < max(keys) - 1.0) == is_on_the_way, (phrasing, before)
 
 
+def watched(seconds: tuple[float, float], playing: PlayingOptions) -> Iterator[Performance]:
+    """A slide from G5 to D5, each 10 ms; how long both last."""
+    score = score_of_notes([(79, 0.0, seconds[0]), (74, 0.5, seconds[1])])
+    options = Options(phrasing=0.5, playing=playing, block=441, is_dry=True, is_mono=True)
+    performance = Performance(phrased(score, 0.5, playing), options)
+    for _ in performance.blocks():
+        yield performance
+
+
 @pytest.mark.parametrize("overlap_s", [0.0, 0.012])
 def test_the_second_note_takes_the_finger_where_it_is(overlap_s):
     """On its string, without a step, whether slurred or not."""
     still = {"/playing/variation": 0.0, "/playing/listening": 0.0}
-    playing = PlayingOptions(settings=tuple(still.items()))
-    score = phrased(score_of_notes([(79, 0.0, 0.5 + overlap_s), (74, 0.5, 0.5)]), 0.5, playing)
-    options = Options(phrasing=0.5, playing=playing, block=441, is_dry=True, is_mono=True)
-    performance = Performance(score, options)
     places = []
-    for _ in performance.blocks():
+    for performance in watched((0.5 + overlap_s, 0.5), PlayingOptions(settings=(*still.items(),))):
         player = performance.instrument._rig["player"][0]
         places.append((int(player["string"]), int(player["finger"]), float(player["position"])))
-    before, after = places[48], places[60]  # each 10 ms
+    before, after = places[48], places[60]
     assert after[:2] == before[:2]
     assert after[2] == pytest.approx(before[2], abs=2e-3)
     assert abs(places[30][2] - after[2]) > 0.02
 
 
 def test_everybody_of_a_section_slides_and_is_on_the_note():
-    playing = PlayingOptions(start=(("/playing/section", 3.0),))
-    score = phrased(score_of_notes([(79, 0.0, 0.5), (74, 0.5, 0.5)]), 0.5, playing)
-    options = Options(phrasing=0.5, playing=playing, block=441, is_dry=True, is_mono=True)
-    performance = Performance(score, options)
     bends = np.array([
         [each._rig["player"][0]["value"][ROW[BEND]] for each in performance.ensemble.instruments]
-        for _ in performance.blocks()
+        for performance in watched((0.5, 0.5), PlayingOptions(start=(("/playing/section", 3.0),)))
     ])  # fmt: skip
     assert bends.shape[1] == 3
     assert (bends.min(axis=0) < -4.5).all()

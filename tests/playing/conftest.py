@@ -23,21 +23,23 @@ class Midi:
     def on(self, note: int, velocity: int = 64, channel: int = 1, port: int = 0) -> None:
         self.send("note_on", channel, port, note=note, velocity=velocity)
 
-    def off(self, note: int, channel: int = 1) -> None:
-        self.send("note_off", channel, note=note)
+    def off(self, note: int, channel: int = 1, port: int = 0) -> None:
+        self.send("note_off", channel, port, note=note)
 
-    def cc(self, control: int, value: int, channel: int = 1) -> None:
-        self.send("control_change", channel, control=control, value=value)
+    def cc(self, control: int, value: int, channel: int = 1, port: int = 0) -> None:
+        self.send("control_change", channel, port, control=control, value=value)
 
     def bend(self, pitch: int, channel: int = 1, port: int = 0) -> None:
         self.send("pitchwheel", channel, port, pitch=pitch)
 
-    def touch(self, value: int, channel: int = 1) -> None:
-        self.send("aftertouch", channel, value=value)
+    def touch(self, value: int, channel: int = 1, port: int = 0) -> None:
+        self.send("aftertouch", channel, port, value=value)
 
-    def rpn(self, msb: int, lsb: int, *data: tuple[int, int], channel: int = 1) -> None:
+    def rpn(
+        self, msb: int, lsb: int, *data: tuple[int, int], channel: int = 1, port: int = 0
+    ) -> None:
         for control, value in ((101, msb), (100, lsb), *data):
-            self.cc(control, value, channel)
+            self.cc(control, value, channel, port)
 
 
 @pytest.fixture

@@ -146,16 +146,16 @@ def test_every_parameter_is_where_it_was_put(live, instrument):
     assert live.values() == defaults
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, -1.0, 128.0])
-def test_notes_out_of_midis_range_are_refused_and_change_nothing(live, instrument, value):
+def test_notes_out_of_midis_range_are_refused_and_change_nothing(live, instrument):
     before = instrument.posted
-    for call in (
-        lambda: live.note_on(value, 90.0, frame=0),
-        lambda: live.note_on(67.0, value, frame=0),
-        lambda: live.slide(value, frame=0),
-    ):
-        with pytest.raises(ParameterError):
-            call()
+    for value in (math.nan, math.inf, -1.0, 128.0):
+        for call in (
+            lambda to: live.note_on(to, 90.0, frame=0),
+            lambda to: live.note_on(67.0, to, frame=0),
+            lambda to: live.slide(to, frame=0),
+        ):
+            with pytest.raises(ParameterError):
+                call(value)
     assert instrument.posted == before
 
 

@@ -101,11 +101,7 @@ def test_a_file_says_all_that_a_bind_has(read):
 def test_an_error_names_its_line(subtests, read):
     for old, new, error in [
         ('"mine"', '"a\\nb"', "2: name: expected a line of text"),
-        (
-            'name = "mine"',
-            'nome = "mine"',
-            "2: nome: unknown entry; did you mean name?",
-        ),
+        ('name = "mine"', 'nome = "mine"', "2: nome: unknown entry; did you mean name?"),
         ('name = "mine"', "mpe = 1", "2: mpe: expected true or false, got 1"),
         ('name = "mine"', 'base = "keybord"', "2: base: no mapping 'keybord'"),
         ('name = "mine"', 'base = "../keyboard"', "2: base: no mapping '../keyboard'"),
@@ -135,11 +131,7 @@ def test_an_error_names_its_line(subtests, read):
         ('curve = "s"', "curve = []", "32: bind 3: curve: the points have to begin"),
         ('curve = "s"', "curve = 3", "32: bind 3: curve: 3 is not one of linear, exp, s"),
         ('curve = "s"', 'curve = "exp"', "32: bind 3: curve: an exp curve needs a span above zero"),
-        (
-            "smoothing = 50",
-            "smoothing = -1",
-            "22: bind 2: smoothing: -1 is not within",
-        ),
+        ("smoothing = 50", "smoothing = -1", "22: bind 2: smoothing: -1 is not within"),
         ("[2, 1]", "[2, 0]", "23: bind 2: channel: expected a whole number from 1"),
         ("[2, 1]", "17", "23: bind 2: channel: expected a whole number from 1 to 16"),
         ("[2, 1]", "[]", "23: bind 2: channel: expected a channel or several"),

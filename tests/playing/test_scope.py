@@ -2,59 +2,25 @@
 
 from __future__ import annotations
 
-import mido
 import pytest
 
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.live_player import ELSEWHERE
 from yehu_server.playing.mapping import Mapping, load
-from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.wishes import Key
 
 VOLUME, PRESS, BEND = "/playing/volume", "/playing/press", "/playing/bend"
 KEYS, BREATH = 0, 1  # ports
 
 
-class Studio:
-    """Several controllers at one instrument; channels are counted from 1."""
-
-    def __init__(self, player: MidiPoster) -> None:
-        self.player = player
-
-    def send(self, kind: str, port: int, channel: int = 1, **fields: int) -> None:
-        self.player.receive(mido.Message(kind, channel=channel - 1, **fields), port=port)
-
-    def on(self, note: int, port: int = KEYS, channel: int = 1) -> None:
-        self.send("note_on", port, channel, note=note, velocity=64)
-
-    def off(self, note: int, port: int = KEYS, channel: int = 1) -> None:
-        self.send("note_off", port, channel, note=note)
-
-    def cc(self, control: int, value: int, port: int = BREATH, channel: int = 1) -> None:
-        self.send("control_change", port, channel, control=control, value=value)
-
-    def bend(self, share: float, port: int = BREATH, channel: int = 1) -> None:
-        self.send("pitchwheel", port, channel, pitch=round(8191 * share))
-
-    def zone(self, port: int) -> None:
-        """Let a port be one MPE zone."""
-        for control, value in ((101, 0), (100, 6), (6, 15)):
-            self.cc(control, value, port)
-
-
 @pytest.fixture
-def make(player):
-    return lambda *binds, **options: Studio(MidiPoster(player, Mapping("test", binds, **options)))
-
-
-@pytest.fixture
-def studio(make) -> Studio:
+def studio(make):
     """A volume pedal, aftertouch and a wheel, each bound for the notes of its channel."""
     return make(Bind("cc 7", VOLUME), Bind("pressure", PRESS), Bind("bend", BEND))
 
 
 @pytest.fixture
-def learned(make) -> Studio:
+def learned(make):
     """One knob that moves the volume of all notes."""
     return make(Bind("cc 7", VOLUME, is_global=True))
 
@@ -62,14 +28,15 @@ def learned(make) -> Studio:
 # ---------------------------------------------------------------- a port that plays no notes
 
 
-def test_a_breath_controller_at_a_port_of_its_own_plays_the_keyboards_note(player, listener):
-    studio = Studio(MidiPoster(player, load("wind")))
+def test_a_breath_controller_at_a_port_of_its_own_plays_the_keyboards_note(make, listener):
+    wind = load("wind")
+    studio = make(*wind.binds, start=wind.start)
     studio.on(75)
-    studio.cc(2, 0)
+    studio.cc(2, 0, port=BREATH)
     assert listener["/bow/side"] == 0.0
-    studio.cc(2, 127)
+    studio.cc(2, 127, port=BREATH)
     assert listener["/bow/side"] != 0.0
-    studio.cc(2, 40)
+    studio.cc(2, 40, port=BREATH)
     quiet = listener["/output/level"]
     studio.on(77)  # the next note is as quiet
     assert listener["/output/level"] == quiet
@@ -77,21 +44,21 @@ def test_a_breath_controller_at_a_port_of_its_own_plays_the_keyboards_note(playe
 
 def test_a_box_without_keys_moves_the_notes_of_every_port_and_by_osc(studio, player):
     for port, channel in ((KEYS, 1), (KEYS, 5), (7, 16)):
-        studio.on(75, port, channel)
-        studio.cc(7, 7 * channel)
+        studio.on(75, channel=channel, port=port)
+        studio.cc(7, 7 * channel, port=BREATH)
         assert player.value(VOLUME) == 7 * channel / 127
-        studio.on(76, KEYS)
+        studio.on(76)
         assert player.value(VOLUME) == 7 * channel / 127
     studio.player.note_on(Key(ELSEWHERE, 75.0), 0.5, None)
-    studio.cc(7, 30)
+    studio.cc(7, 30, port=BREATH)
     assert player.value(VOLUME) == 30 / 127
 
 
 def test_of_a_keyboards_own_controller_and_a_box_the_one_moved_last_counts(studio, player):
-    studio.cc(7, 30)
+    studio.cc(7, 30, port=BREATH)
     for note, port, value in ((75, None, 30), (77, KEYS, 90), (75, BREATH, 20)):
         if port is not None:
-            studio.cc(7, value, port)
+            studio.cc(7, value, port=port)
             assert player.value(VOLUME) == value / 127
         studio.on(note)
         assert player.value(VOLUME) == value / 127
@@ -99,31 +66,31 @@ def test_of_a_keyboards_own_controller_and_a_box_the_one_moved_last_counts(studi
 
 def test_from_its_first_note_on_a_port_has_its_controllers_to_itself(studio, player):
     studio.on(75)
-    studio.cc(7, 30)
-    studio.on(80, BREATH)  # it is a keyboard after all
+    studio.cc(7, 30, port=BREATH)
+    studio.on(80, port=BREATH)  # it is a keyboard after all
     assert player.value(VOLUME) == 30 / 127
     studio.on(77)
     assert player.value(VOLUME) == 1.0
-    studio.cc(7, 60)
+    studio.cc(7, 60, port=BREATH)
     assert player.value(VOLUME) == 1.0
 
 
 def test_a_note_that_cannot_be_played_makes_no_keyboard(make, player):
     studio = make(Bind("cc 7", VOLUME))
     studio.on(75)
-    studio.on(36, BREATH, channel=10)  # a drum pad
-    studio.cc(7, 30)
+    studio.on(36, channel=10, port=BREATH)  # a drum pad
+    studio.cc(7, 30, port=BREATH)
     assert player.value(VOLUME) == 30 / 127
 
 
 def test_a_wheel_without_keys_bends_beside_the_keyboards_own_by_its_own_range(studio, player):
     studio.on(75)
-    studio.bend(0.5)
+    studio.bend(4096, port=BREATH)
     assert player.pitch == pytest.approx(76.0, abs=1e-3)
-    studio.bend(-1.0, KEYS)
+    studio.bend(-8191)
     assert player.pitch == pytest.approx(74.0, abs=1e-3)
     for control, value in ((101, 0), (100, 0), (6, 12)):
-        studio.cc(control, value)
+        studio.cc(control, value, port=BREATH)
     assert player.pitch == pytest.approx(79.0, abs=2e-3)
     studio.on(77)
     assert player.pitch == pytest.approx(81.0, abs=2e-3)
@@ -132,11 +99,11 @@ def test_a_wheel_without_keys_bends_beside_the_keyboards_own_by_its_own_range(st
 def test_a_box_that_ends_its_sound_or_is_reset_lets_go_of_the_keyboards_notes(make, player):
     studio = make(Bind("cc 11", "/playing/expression"))
     for control in (120, 121):
-        studio.cc(64, 127)
+        studio.cc(64, 127, port=BREATH)
         studio.on(75)
         studio.off(75)
-        studio.cc(11, 20)
-        studio.cc(control, 0)
+        studio.cc(11, 20, port=BREATH)
+        studio.cc(control, 0, port=BREATH)
         assert player.sounding is None
     studio.on(75)
     assert player.value("/playing/expression") == 1.0
@@ -146,10 +113,10 @@ def test_a_soft_knob_of_a_box_waits_for_where_the_keyboards_note_has_it(make, pl
     studio = make(Bind("cc 7", VOLUME, is_soft=True))
     studio.on(75)
     studio.player.write(VOLUME, 0.5)
-    studio.cc(7, 10)
+    studio.cc(7, 10, port=BREATH)
     assert player.value(VOLUME) == 0.5
-    studio.cc(7, 64)
-    studio.cc(7, 40)
+    studio.cc(7, 64, port=BREATH)
+    studio.cc(7, 40, port=BREATH)
     assert player.value(VOLUME) == 40 / 127
 
 
@@ -158,21 +125,21 @@ def test_a_soft_knob_of_a_box_waits_for_where_the_keyboards_note_has_it(make, pl
 
 def test_a_box_that_is_gone_leaves_its_faders_where_they_were(studio, player):
     studio.on(75)
-    studio.cc(7, 30)
+    studio.cc(7, 30, port=BREATH)
     studio.player.end_port_notes(BREATH)
     assert player.value(VOLUME) == 30 / 127
     studio.on(77)
     assert player.value(VOLUME) == 30 / 127
-    studio.cc(7, 50)  # and is heard when it is back
+    studio.cc(7, 50, port=BREATH)  # and is heard when it is back
     assert player.value(VOLUME) == 50 / 127
 
 
 def test_a_box_that_is_gone_bends_presses_and_holds_no_more(studio, player):
     for is_held in (True, False):
-        studio.cc(64, 127)
+        studio.cc(64, 127, port=BREATH)
         studio.on(75)
-        studio.bend(1.0)
-        studio.send("aftertouch", BREATH, value=127)
+        studio.bend(8191, port=BREATH)
+        studio.touch(127, port=BREATH)
         assert player.value(PRESS) > 2.0
         if not is_held:
             studio.off(75)
@@ -185,9 +152,9 @@ def test_a_box_that_is_gone_bends_presses_and_holds_no_more(studio, player):
 
 
 def test_a_keyboard_that_is_gone_leaves_nothing_to_others_but_what_is_global(learned, player):
-    learned.on(75, BREATH)
+    learned.on(75, port=BREATH)
     learned.on(75)
-    learned.cc(7, 30)
+    learned.cc(7, 30, port=BREATH)
     learned.player.end_port_notes(BREATH)
     learned.on(76)
     assert player.value(VOLUME) == 30 / 127
@@ -198,22 +165,22 @@ def test_a_keyboard_that_is_gone_leaves_nothing_to_others_but_what_is_global(lea
 
 def test_a_global_controller_of_another_keyboard_or_channel_moves_the_note(learned, player):
     """Of two with one number the one moved last counts."""
-    learned.on(80, BREATH)
+    learned.on(80, port=BREATH)
     learned.on(75)
     for value, port, channel in ((30, BREATH, 1), (60, KEYS, 1), (90, BREATH, 1), (40, KEYS, 2)):
-        learned.cc(7, value, port, channel)
+        learned.cc(7, value, channel=channel, port=port)
         assert player.value(VOLUME) == value / 127
         for note, other in ((76, 1), (75, 3)):
-            learned.on(note, KEYS, other)
+            learned.on(note, channel=other)
             assert player.value(VOLUME) == value / 127
 
 
 def test_a_global_knob_on_the_drums_channel_is_heard_and_others_there_are_not(make, player):
     studio = make(Bind("cc 7", VOLUME, is_global=True), Bind("cc 11", "/playing/expression"))
     studio.on(75)
-    studio.cc(7, 30, BREATH, channel=10)
-    studio.cc(11, 30, BREATH, channel=10)
-    studio.cc(64, 127, BREATH, channel=10)
+    studio.cc(7, 30, channel=10, port=BREATH)
+    studio.cc(11, 30, channel=10, port=BREATH)
+    studio.cc(64, 127, channel=10, port=BREATH)
     assert player.value(VOLUME) == 30 / 127
     assert player.value("/playing/expression") == 1.0
     studio.off(75)
@@ -223,16 +190,16 @@ def test_a_global_knob_on_the_drums_channel_is_heard_and_others_there_are_not(ma
 def test_a_global_bind_of_one_channel_hears_no_other(make, player):
     studio = make(Bind("cc 7", VOLUME, is_global=True, channels=(2,)))
     studio.on(75)
-    studio.cc(7, 30, channel=1)
+    studio.cc(7, 30, port=BREATH)
     assert player.value(VOLUME) == 1.0
-    studio.cc(7, 30, channel=2)
+    studio.cc(7, 30, channel=2, port=BREATH)
     assert player.value(VOLUME) == 30 / 127
 
 
 def test_a_mapping_that_becomes_global_is_so_at_once(studio, player):
-    studio.on(80, BREATH)
+    studio.on(80, port=BREATH)
     studio.on(75)
-    studio.cc(7, 30)
+    studio.cc(7, 30, port=BREATH)
     assert player.value(VOLUME) == 1.0
     studio.player.remap(Mapping("other", (Bind("cc 7", VOLUME, is_global=True),)))
     assert player.value(VOLUME) == 30 / 127
@@ -243,49 +210,49 @@ def test_a_mapping_that_becomes_global_is_so_at_once(studio, player):
 
 def test_channels_of_a_port_with_notes_keep_their_own_as_in_files(studio, player):
     for channel in range(1, 5):
-        studio.cc(7, 10 * channel, KEYS, channel)
+        studio.cc(7, 10 * channel, channel=channel)
     for channel in (3, 1, 2, 4):
-        studio.on(75, KEYS, channel)
+        studio.on(75, channel=channel)
         assert player.value(VOLUME) == 10 * channel / 127
-    studio.cc(7, 100, KEYS, channel=5)  # which plays none
+    studio.cc(7, 100, channel=5)  # which plays none
     assert player.value(VOLUME) == 40 / 127
-    studio.on(75, KEYS, channel=6)
+    studio.on(75, channel=6)
     assert player.value(VOLUME) == 1.0
 
 
 @pytest.mark.parametrize("is_global", [False, True])
 def test_what_a_member_of_an_mpe_zone_moves_is_its_notes_alone(make, player, is_global):
     studio = make(Bind("pressure", PRESS, is_global=is_global), Bind("bend", BEND))
-    studio.zone(BREATH)
+    studio.rpn(0, 6, (6, 15), port=BREATH)
     studio.on(75)
-    studio.send("aftertouch", BREATH, 4, value=127)
-    studio.bend(0.5, BREATH, 4)
+    studio.touch(127, channel=4, port=BREATH)
+    studio.bend(4096, channel=4, port=BREATH)
     assert (player.value(PRESS), player.pitch) == (1.5, 75.0)
-    studio.on(70, BREATH, 5)
+    studio.on(70, channel=5, port=BREATH)
     assert (player.value(PRESS), player.pitch) == (1.5, 70.0)
-    studio.on(70, BREATH, 4)
+    studio.on(70, channel=4, port=BREATH)
     assert player.value(PRESS) == 6.0
     assert player.pitch == pytest.approx(94.0, abs=0.01)
 
 
 def test_a_global_knob_moves_mpe_notes_until_they_move_it_themselves(make, player):
     studio = make(Bind("cc 74", VOLUME, is_global=True))
-    studio.zone(KEYS)
-    studio.on(70, KEYS, 4)
-    studio.cc(74, 30)
+    studio.rpn(0, 6, (6, 15), port=KEYS)
+    studio.on(70, channel=4)
+    studio.cc(74, 30, port=BREATH)
     assert player.value(VOLUME) == 30 / 127
-    studio.cc(74, 60, KEYS, 4)
+    studio.cc(74, 60, channel=4)
     assert player.value(VOLUME) == 60 / 127
-    studio.on(72, KEYS, 5)
+    studio.on(72, channel=5)
     assert player.value(VOLUME) == 30 / 127
 
 
 def test_the_master_of_a_zone_speaks_for_its_zone_alone_unless_it_is_global(make, player):
     studio = make(Bind("cc 7", VOLUME), Bind("cc 11", "/playing/expression", is_global=True))
-    studio.zone(BREATH)
-    studio.on(70, BREATH, 2)
+    studio.rpn(0, 6, (6, 15), port=BREATH)
+    studio.on(70, channel=2, port=BREATH)
     studio.on(75)
-    studio.cc(7, 30, BREATH, 1)
-    studio.cc(11, 30, BREATH, 1)
+    studio.cc(7, 30, port=BREATH)
+    studio.cc(11, 30, port=BREATH)
     assert player.value(VOLUME) == 1.0
     assert player.value("/playing/expression") == 30 / 127

@@ -110,8 +110,7 @@ CORPUS: dict[str, str] = {
     ),
     "two parts": score(SCALE, P2=note("C5", 2) + note("A5", 2)),
     "small notes": score(
-        grace("G4") + note("A4", 2) + grace("C5") + grace("D5") + note("C5", 2),
-        note("B4", 4),
+        grace("G4") + note("A4", 2) + grace("C5") + grace("D5") + note("C5", 2), note("B4", 4)
     ),
     "quarter tones": score(note("F4", 1) + note("F+4", 1) + note("G+4", 2), LAST),
     "marks": score(

@@ -56,11 +56,7 @@ def test_a_room_has_values_or_a_name(read):
 
 def test_what_is_wrong_is_told_with_its_line(subtests, read):
     for text, line, error in [
-        (
-            "[[part]]\nchannel = 17\n",
-            2,
-            "part 1: channel: expected a whole number from 1 to",
-        ),
+        ("[[part]]\nchannel = 17\n", 2, "part 1: channel: expected a whole number from 1 to"),
         (f"{PART}track = 1.5\n", 3, "track: expected a whole number from 1 to"),
         (f"{PART}\n[[part]]\nname = 'x'\n", 4, "part 2: needs a channel or a track"),
         (f"[room]\ndecay = 2.0\n{PART}", 1, "room: needs a size in metres"),

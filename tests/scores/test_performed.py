@@ -234,10 +234,7 @@ def test_accents_are_louder_by_their_strength():
 
 def test_a_hairpin_leads_to_the_dynamic_after_it():
     score = play(
-        *FOUR,
-        note(4, 1, 67),
-        signs=[sign(0, "p"), sign(4, "f")],
-        spans=[span("crescendo", 0, 4)],
+        *FOUR, note(4, 1, 67), signs=[sign(0, "p"), sign(4, "f")], spans=[span("crescendo", 0, 4)]
     )
     velocities = [each.velocity for each in notes_of(score)]
     assert velocities == sorted(velocities)

@@ -65,7 +65,7 @@ def test_phrases_begin_on_time_and_are_slower_at_their_ends_than_in_their_middle
     assert np.array([delays[8]]) - delays[7] > 0.0  # the last note is longer
 
 
-def test_rubato_goes_with_phrasing_or_as_far_as_is_asked(tmp_path):
+def test_rubato_goes_with_phrasing_or_as_far_as_is_asked_and_notes_keep_their_order(tmp_path):
     score = read_any(midi(tmp_path, tune()))
     usual = later(score)
     assert later(score, rubato=1.0) == pytest.approx(2.0 * usual)
@@ -73,6 +73,11 @@ def test_rubato_goes_with_phrasing_or_as_far_as_is_asked(tmp_path):
     assert phrased(score, 0.0) is score
     alone = [note.start_s for note in notes_of(phrased(score, 0.0, rubato=0.5))]
     assert alone == pytest.approx([note.start_s for note in notes_of(phrased(score, 0.5))])
+    most = phrased(score, 1.0)
+    times = [event.time_s for event in most.events]
+    assert times == sorted(times)
+    for note, after in pairwise(notes_of(most)):
+        assert note.start_s < note.end_s <= after.start_s + 0.013
 
 
 def test_all_parts_move_together_whichever_is_read(tmp_path):
@@ -118,11 +123,3 @@ def test_the_end_is_slower_unless_its_tempo_is_written():
     assert later(few) == pytest.approx([0.0] * 3)
     slower = written(Span("ritardando", Fraction(4), Fraction(10)))
     assert phrased(slower, 0.5).duration_s == pytest.approx(slower.duration_s)
-
-
-def test_notes_keep_their_order_and_ends_follow(tmp_path):
-    score = phrased(read_any(midi(tmp_path, tune())), 1.0)
-    times = [event.time_s for event in score.events]
-    assert times == sorted(times)
-    for note, after in pairwise(notes_of(score)):
-        assert note.start_s < note.end_s <= after.start_s + 0.013

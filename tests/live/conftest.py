@@ -125,7 +125,6 @@ class StillServer:
         self._moves = Moves(self.instrument)
         self.instrument.frame_at = self._frame_at
         self.others: list[Instrument] = []  # more instruments, played along
-        self.pace = 1.0  # of the device, relative to its nominal rate
         self._began = (clock.now, 0)
         self.player = live_player.LivePlayer(
             self.instrument, playing, delay_ms=1e3 * block / self.RATE + 1.0
@@ -138,7 +137,7 @@ class StillServer:
 
     def _frame_at(self, time_ns: int) -> float:
         moment, frame = self._began
-        return frame + (1e-9 * time_ns - moment) * self.RATE * self.pace
+        return frame + (1e-9 * time_ns - moment) * self.RATE
 
     def take(self, packet: bytes, peer: FakePeer | None = None) -> None:
         """Receive a packet now."""

@@ -67,17 +67,6 @@ def test_recordings_are_bounded_in_rate_and_number_and_empty_ones_leave_no_file(
         takes.start("one too many")
 
 
-def test_a_recording_is_not_begun_on_a_full_disk(live, limited):
-    client = live.client()
-    limited(1000)
-    client.tell("/record/start", "take")
-    address, reason = client.wait_for("/error")[:2]
-    assert address == "/yehu/record/start"
-    assert "take.wav: cannot write: File too large" in reason
-    assert list(live.server.options.recordings.iterdir()) == []
-    assert live.server.takes.names == ""
-
-
 def test_a_recording_that_filled_the_disk_is_not_answered_as_if_all_were_well(
     live, limited, monkeypatch, until
 ):

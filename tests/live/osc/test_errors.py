@@ -6,7 +6,6 @@ import difflib
 import math
 from typing import Any
 
-import pytest
 from wire import errors
 
 from yehu_server.live.osc import clients
@@ -43,6 +42,7 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/unlearn", [NOTHING], "expected one string"),
     ("/bindings", [(1.0,)], "expected 0 arguments"),
     ("/preset/load", [NOTHING, (3.0,)], "expected one string"),
+    *((f"/preset/{call}", [("../x",)], "not a plain name") for call in ("load", "save", "delete")),
     ("/preset/load", [("nothing",)], "no preset 'nothing'"),
     ("/preset/save", [("tremolo",)], "save under another name"),
     ("/preset/delete", [("tremolo",)], "comes with the program"),
@@ -66,7 +66,9 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
 UNKNOWN = ["/bow/force", "/yehubow/force", "/YEHU/bow/force", "/", "//", "/ÿehu/" + "x" * 300]
 
 
-def test_what_cannot_be_done_is_answered_with_the_reason_and_changes_nothing(still, wire, subtests):
+def test_what_cannot_be_done_is_answered_with_the_reason_and_changes_nothing(
+    still, wire, subtests, own_presets
+):
     before, count = still.player.values(), 0
     asked = [("/yehu" + call, words, why) for call, calls, why in REFUSED for words in calls]
     for address, words, why in [*asked, *((address, (0.123,), "") for address in UNKNOWN)]:
@@ -84,6 +86,7 @@ def test_what_cannot_be_done_is_answered_with_the_reason_and_changes_nothing(sti
     assert not still.player.listens
     assert still.frames("/bow/speed") == []
     assert still.handler.clients.subscribers == 0
+    assert not list(own_presets.parent.rglob("*.toml"))
 
 
 def test_a_malformed_packet_is_counted_and_answered(still):
@@ -102,16 +105,16 @@ def test_a_malformed_packet_is_counted_and_answered(still):
     assert still.handler.counts.malformed == len(packets)
 
 
-@pytest.mark.parametrize(
-    "call",
-    ["/get", "/preset/load", "/preset/save", "/preset/delete", "/learn", "/unlearn", "/bow/force"],
-)
-def test_an_error_is_of_bounded_length_and_keeps_its_reason(still, call):
-    (refused,) = still.ask(call, "x" * 60_000)
-    address, reason = refused.arguments
-    assert address == "/yehu" + call
-    assert len(reason) < 1100
-    assert any(word in reason for word in ("unknown", "plain name", "expected a number"))
+def test_an_error_is_of_bounded_length_and_keeps_its_reason(still):
+    for call, reason in [
+        *((call, "unknown") for call in ("/get", "/learn", "/unlearn")),
+        *((f"/preset/{call}", "plain name") for call in ("load", "save", "delete")),
+        ("/bow/force", "expected a number"),
+    ]:
+        (refused,) = still.ask(call, "x" * 60_000)
+        assert refused.arguments[0] == "/yehu" + call
+        assert len(refused.arguments[1]) < 1100
+        assert reason in refused.arguments[1], call
 
 
 def test_near_names_are_looked_for_only_where_they_are_told(still, monkeypatch):

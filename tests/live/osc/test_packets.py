@@ -129,6 +129,7 @@ def test_what_is_no_packet_is_refused_and_of_a_bundle_nothing_counts(wire, subte
         b"#bundle\0",
         b"#bundle\0\0\0\0\0",
         b"#bundlf\0" + b"\0" * 7 + b"\1",
+        wire.message("/a", 0.7, tags="Xf"),  # a type that is not known
         bundle + b"\0\0",
         bundle + struct.pack(">i", -4) + whole,
         bundle + struct.pack(">i", 64) + whole,
@@ -138,19 +139,6 @@ def test_what_is_no_packet_is_refused_and_of_a_bundle_nothing_counts(wire, subte
     ]:
         with subtests.test(packet=packet), pytest.raises(PacketError):
             unpack(packet)
-
-
-@pytest.mark.parametrize(
-    ("tags", "values"),
-    [("cf", [97, 0.7]), ("Sf", ["loud", 0.7]), ("If", [0.7]), ("Xf", [0.7]), ("fX", [0.7])],
-)
-def test_a_type_that_is_not_known_is_refused_or_read(wire, tags, values):
-    try:
-        (got,) = unpack(wire.message("/yehu/bow/force", *values, tags=tags))
-    except PacketError:
-        return
-    assert len(got.arguments) == len(tags)
-    assert got.arguments[tags.index("f")] == pytest.approx(0.7)
 
 
 @given(messages, st.data())

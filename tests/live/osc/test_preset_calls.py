@@ -177,14 +177,6 @@ def test_unknown_addresses_of_a_file_are_told_and_the_rest_is_set_but_for_a_wron
     assert still.player.values() == before  # nothing of it
 
 
-def test_a_name_that_is_a_path_is_refused(still, own):
-    for call in ("/preset/load", "/preset/save", "/preset/delete"):
-        (refused,) = still.ask(call, "../x")
-        assert refused.address == "/yehu/error"
-        assert "is not a plain name" in refused.arguments[1]
-    assert list(own.parent.rglob("*")) == [own]
-
-
 def test_a_list_reads_no_files_while_the_server_plays(make_live, own, monkeypatch):
     (own / "mine.toml").write_text(HEAD)
     (own / "bad.toml").write_text("version = 9\n")

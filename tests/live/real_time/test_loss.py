@@ -296,16 +296,7 @@ while True:
 """
 
 
-def bow(instrument: Instrument, _wishes: WishPoster) -> None:
-    """Move the parameters of the engine."""
-    frame = instrument.frame + 100
-    instrument.write("/finger/1/position", 0.1, frame=frame, ramp_ms=0.0)
-    instrument.write("/finger/1/press", 1.5, frame=frame)
-    instrument.write("/bow/side", 1.0, frame=frame)
-    instrument.write("/bow/speed", 0.2, frame=frame)
-
-
-def finger(instrument: Instrument, wishes: WishPoster) -> None:
+def play(instrument: Instrument, wishes: WishPoster) -> None:
     """Play two notes, each varied in its own way; the second is held until the sound dies."""
     frame = instrument.frame + 100
     wishes.note_on(Key(0, 67), {"/playing/pressure": 0.5}, frame=frame)
@@ -314,8 +305,7 @@ def finger(instrument: Instrument, wishes: WishPoster) -> None:
     wishes.note_off(Key(0, 67), frame=frame + 3000)
 
 
-@pytest.mark.parametrize("play", [bow, pytest.param(finger, marks=pytest.mark.slow)])
-def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_path, play):
+def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_path):
     memory = SharedMemory()
     playing = PlayingOptions(seed=3)
     calibration = calibration_for(48000.0)

@@ -323,23 +323,6 @@ def test_only_the_ports_asked_for_are_opened_and_one_of_our_own_is_there(
     heard.plays(67.0, sender, "send piano 90 43 60")
 
 
-@pytest.mark.slow
-def test_a_keyboard_that_promised_to_speak_and_is_silent_is_let_go(keys):
-    heard, keyboard = keys
-    keyboard.tell("send keyboard fe")
-    heard.plays(69.0, keyboard, "send keyboard 90 45 60")
-    for _ in range(5):
-        time.sleep(0.15)
-        keyboard.tell("send keyboard fe")
-        assert heard.player.pitch == 69.0
-    time.sleep(0.6)
-    assert heard.player.pitch is None
-    # Without active sensing it may be silent for long.
-    heard.plays(67.0, keyboard, "send keyboard 90 43 60")
-    time.sleep(0.6)
-    assert heard.player.pitch == 67.0
-
-
 def test_of_two_ports_with_one_name_the_one_that_stays_is_heard(listening, jackd):
     heard = listening
 

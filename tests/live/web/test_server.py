@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-import json
-import shutil
 import socket
-import subprocess
 
 import pytest
 from web_client import ask, walk
@@ -290,35 +287,3 @@ def test_a_defect_is_counted_and_ends_one_request_only(shared_web, port, monkeyp
         assert ask(port, "/yehu").status == 500
     assert ask(port, "/yehu").status == 200
     shared_web.server.web.traffic.failures = before
-
-
-# ---------------------------------------------------------------- a foreign client
-
-NODE = """
-const { DiscoveredService } = require('oscquery');
-const service = new DiscoveredService('127.0.0.1', Number(process.argv[1]));
-service.update().then(() => {
-  const force = service.resolvePath('/yehu/bow/force');
-  console.log(JSON.stringify({
-    name: service.hostInfo.name,
-    port: service.hostInfo.oscPort,
-    value: force.getValue(0),
-    methods: service.flat().length,
-  }));
-});
-"""
-
-
-def test_the_oscquery_package_for_node_reads_the_tree(shared_web, port, nodes):
-    node = shutil.which("node")
-    found = node and subprocess.run([node, "-e", "require('oscquery')"], capture_output=True)  # noqa: PLW1510
-    if not found or found.returncode:
-        pytest.skip("needs node, and its package oscquery in NODE_PATH")
-    run = subprocess.run(
-        [node, "-e", NODE, str(port)], capture_output=True, text=True, check=True, timeout=60
-    )
-    read = json.loads(run.stdout)
-    assert read["name"] == "yehu-server"
-    assert read["port"] == shared_web.ports.port
-    assert read["value"] == pytest.approx(nodes["/yehu/bow/force"]["VALUE"][0])
-    assert read["methods"] == sum("TYPE" in node for node in nodes.values())

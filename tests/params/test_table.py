@@ -69,11 +69,6 @@ def test_a_curve_is_undone_also_where_it_falls(curve: Curve):
     assert curve.to_unit(2.0, 3.0, 3.0) == 0.0
 
 
-def test_no_address_stands_twice():
-    addresses = [param.address for param in TABLE]
-    assert len(set(addresses)) == len(addresses)
-
-
 def test_the_engine_holds_its_rows_in_the_order_of_the_table():
     assert tuple(param for param in TABLE if param.place is Place.ENGINE) == ENGINE
     assert all(param.place is Place.ENGINE for param in TABLE if param.owned)

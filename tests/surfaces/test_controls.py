@@ -4,11 +4,10 @@ from functools import cache
 
 import pytest
 from boxes import overlapping
-from surface_readers import READERS, SERVER
+from surface_readers import READERS
 
 from yehu_server.params.table import BY_ADDRESS
 from yehu_server.surfaces import common_layout
-from yehu_server.surfaces.catalogue import SURFACES, made
 
 pytestmark = pytest.mark.parametrize("name", READERS)
 
@@ -43,8 +42,3 @@ def test_nothing_overlaps_and_all_lies_within_its_page(name, any_table):
         assert overlapping(rects) == []
         assert all(rect.is_within(width, height) for rect in rects)
         assert all(rect.w > 5 and rect.h > 5 for rect in rects)
-
-
-def test_it_is_the_same_each_time(name):
-    (surface,) = (surface for surface in SURFACES if surface.name == name)
-    assert made(surface, SERVER, 0) == made(surface, SERVER, 0)

@@ -247,13 +247,6 @@ class Client:
         while self.wait_for("/pong") != [token]:
             pass
 
-    def value(self, address: str) -> float:
-        """The value of a parameter."""
-        self.sync()
-        self.tell("/get", address)
-        (value,) = self.wait_for(address)
-        return value
-
     def close(self) -> None:
         self.socket.close()
 
@@ -307,7 +300,6 @@ class Stream:
     all = Client.all
     wait_for = Client.wait_for
     sync = Client.sync
-    value = Client.value
 
     def has_ended(self, within_s: float = PATIENCE_S) -> bool:
         """Whether the server closes the connection within the time."""

@@ -79,12 +79,11 @@ def test_patterns_fit_as_the_specification_says():
         assert matches(pattern, address) is fits, (pattern, address)
 
 
-def test_a_bracket_that_never_closes_is_refused(subtests):
+def test_a_bracket_that_never_closes_is_refused():
     for pattern in ["[", "/a[", "/a[bc", "{", "{a,b", "/{a,b", "[a}", "{a]"]:
-        with subtests.test(pattern=pattern):
-            assert is_pattern(pattern)
-            with pytest.raises(RefusedError):
-                matches(pattern, "/a" + pattern)
+        assert is_pattern(pattern)
+        with pytest.raises(RefusedError):
+            matches(pattern, "/a" + pattern)
 
 
 @given(st.text("/*?[]{}!-,ab", max_size=30), st.text("/ab-", max_size=10))

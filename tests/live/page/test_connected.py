@@ -20,7 +20,7 @@ import pytest
 from live.page.serving import HOST, start, stop
 from midi_input import receive
 from waiting import PATIENCE_S, until
-from web_client import Refused, WebSocket
+from web_client import Refused, WebSocket, ask
 
 from yehu_server.ahead.interpreter import look_layout, look_length
 from yehu_server.core.player.rows import ROW
@@ -223,13 +223,8 @@ def test_foreign_pages_are_refused(server) -> None:
 
 
 def test_oscquery_leads_to_the_page(server) -> None:
-    async def ask() -> str:
-        address = f"http://{HOST}:{server.web.port}/panel/"
-        async with aiohttp.ClientSession() as session, session.get(address) as answer:
-            assert answer.status == 200
-            return str(answer.url)
-
-    assert asyncio.run(ask()) == url(server)
+    answer = ask(server.web.port, "/panel/")
+    assert (answer.status // 100, answer.headers["Location"]) == (3, url(server))
 
 
 # ---------------------------------------------------------------- looks

@@ -280,16 +280,13 @@ class Osc:
             while True:
                 self._socket.recv(65536)
         self.send(address, *arguments)
-        return self.hear(2.0, last)
-
-    def hear(self, within_s: float, last: str = "") -> dict[str, Any]:
         heard = {}
-        self._socket.settimeout(within_s)
+        self._socket.settimeout(2.0)
         with contextlib.suppress(TimeoutError, ConnectionRefusedError):
             while not last or last not in heard:
                 for message in unpack(self._socket.recv(65536)):
                     heard[message.address.removeprefix("/yehu")] = message.arguments
-                self._socket.settimeout(within_s if last else 0.1)
+                self._socket.settimeout(2.0 if last else 0.1)
         return heard
 
     def status(self) -> dict[str, Any]:

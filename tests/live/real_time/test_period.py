@@ -71,19 +71,13 @@ def player(jackd, serve):
     return start
 
 
-def test_rhythm_is_kept_where_the_sound_servers_period_is_longer_than_a_block(player, until):
-    osc = player(1024)
-    covered(osc, until, 1024)
-    # With a delay of one block half came too late. The system itself may sometimes hold us up.
-    assert share_late(osc) < 0.2
-
-
 def test_rhythm_is_kept_where_the_period_changes_while_it_plays(jackd, player, until):
     osc = player(64)
     assert settled(osc, until, BLOCK)["delay_ms"] < 1e3 * 1024 / 48000
     ask_for(jackd, 1024)
     status = covered(osc, until, 1024)
     assert status["device_losses"] == 0
+    # With a delay of one block half came too late. The system itself may sometimes hold us up.
     assert share_late(osc) < 0.2
     ask_for(jackd, 256)
     covered(osc, until, 256)

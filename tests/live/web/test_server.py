@@ -11,7 +11,6 @@ from web_client import ask, walk
 from yehu_server.live.network import Allowed
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.status import STATUS, Kind
-from yehu_server.live.web.access import IDLE_S, MOST_OF_A_HOST
 from yehu_server.live.web.server import PARAMETERS, WebOptions
 from yehu_server.params.table import TABLE
 from yehu_server.util.files import shipped_folder
@@ -243,31 +242,6 @@ def test_nonsense_is_refused_is_no_defect_and_the_server_goes_on(shared_web, por
             assert answer.startswith((b"HTTP/1.1 " + status, b"HTTP/1.0 " + status))
     assert ask(port, "/yehu/bow/force?TYPE").status == 200
     assert shared_web.server.status()["http_failures"] == 0
-
-
-def test_those_who_connect_and_say_nothing_are_bounded(port, until):
-    silent = [socket.create_connection((HOST, port)) for _ in range(MOST_OF_A_HOST + 50)]
-    try:
-        gone = []
-
-        def excess_is_gone() -> bool:
-            for connection in silent:
-                connection.setblocking(False)
-                try:
-                    if connection not in gone and not connection.recv(1):
-                        gone.append(connection)
-                except BlockingIOError:
-                    pass
-                except ConnectionError:
-                    gone.append(connection)
-            return len(gone) >= 50
-
-        until(excess_is_gone, "the excess is closed", IDLE_S / 2)
-        assert len(gone) <= 60
-    finally:
-        for connection in silent:
-            connection.close()
-    until(lambda: ask(port, "/yehu/bow/force?TYPE").status == 200, "there is room again")
 
 
 # ---------------------------------------------------------------- begin and end

@@ -277,29 +277,20 @@ def test_what_one_said_last_is_done_before_it_is_forgotten(shared_web, connect, 
 def test_twenty_who_come_and_go_at_random_leave_nothing_behind(shared_web, port, until):
     chance = random.Random(7)
     ending = time.monotonic() + 2.5
-    bystander, osc = shared_web.client(), (HOST, shared_web.ports.port)
+    bystander = shared_web.client()
     slowest = 0.0
 
     def come_and_go(seed: int) -> None:
         chance = random.Random(seed)
         while time.monotonic() < ending:
+            web = WebSocket(port)
+            for param in chance.sample(TABLE, 5):
+                web.listen("/yehu" + param.address)
             if chance.random() < 0.5:
-                web = WebSocket(port)
-                for param in chance.sample(TABLE, 5):
-                    web.listen("/yehu" + param.address)
-                if chance.random() < 0.5:
-                    web.tell("/yehu/subscribe", 3600.0)
-                web.tell(FORCE, chance.uniform(0.0, 5.0))
-                web.next(0.05)
-                web.close() if chance.random() < 0.5 else web.vanish()
-            else:
-                client = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-                client.sendto(Wire.message("/yehu/subscribe", 1.0), osc)
-                client.sendto(Wire.message(FORCE, chance.uniform(0.0, 5.0)), osc)
-                time.sleep(chance.uniform(0.0, 0.05))
-                if chance.random() < 0.3:
-                    client.sendto(Wire.message("/yehu/unsubscribe"), osc)
-                client.close()
+                web.tell("/yehu/subscribe", 3600.0)
+            web.tell(FORCE, chance.uniform(0.0, 5.0))
+            web.next(0.05)
+            web.close() if chance.random() < 0.5 else web.vanish()
 
     crowd = [threading.Thread(target=come_and_go, args=(seed,)) for seed in range(20)]
     for one in crowd:

@@ -166,7 +166,8 @@ def sources() -> dict[Path, set[str]]:
 @cache
 def words() -> set[str]:
     parameters = {param.address.strip("/").replace("/", "_").upper() for param in TABLE}
-    return {EXAMPLE_NAME, *dir(builtins), *parameters}.union(*sources().values())
+    examples = {path.stem for path in (ROOT / "examples").rglob("*.*")}
+    return {EXAMPLE_NAME, *dir(builtins), *parameters, *examples}.union(*sources().values())
 
 
 def is_option(word: str, command: str) -> bool:

@@ -127,10 +127,10 @@ def everything(request) -> bool:
 
 
 @pytest.fixture(scope="session")
-def once(tmp_path_factory) -> Callable[[str, Callable[[Path], Any]], Any]:
+def once(request, tmp_path_factory) -> Callable[[str, Callable[[Path], Any]], Any]:
     """What takes long to make is made by one worker, in a folder; the others read it."""
     base = tmp_path_factory.getbasetemp()
-    shared = base.parent if os.environ.get("PYTEST_XDIST_WORKER") else base
+    shared = base.parent if request.config.getoption("--workers") else base
 
     def made(name: str, make: Callable[[Path], Any]) -> Any:
         from yehu_server.util.processes import machine_lock

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import signal
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from types import FrameType
 
 try:
     import resource
+except ImportError:  # as on Windows: time alone is bounded
+    resource = None
 
-    STATM = os.open("/proc/self/statm", os.O_RDONLY)
-except (ImportError, OSError):  # no Linux: time alone is bounded
-    STATM = -1
-
+STATM = Path("/proc/self/statm")  # only Linux has it
 MOST_CPU_S = 1.0
 MOST_MEMORY_BYTES = 200 * 10**6
 
@@ -35,8 +34,8 @@ def bounded() -> Iterator[None]:
         yield
         return
     before = signal.signal(signal.SIGPROF, _too_slow)
-    if STATM >= 0:
-        pages = int(os.pread(STATM, 64, 0).split()[0])
+    if bounds_memory := resource is not None and STATM.exists():
+        pages = int(STATM.read_text().split()[0])
         limits = resource.getrlimit(resource.RLIMIT_AS)
         most = pages * resource.getpagesize() + MOST_MEMORY_BYTES
         resource.setrlimit(resource.RLIMIT_AS, (most, limits[1]))
@@ -45,6 +44,6 @@ def bounded() -> Iterator[None]:
         yield
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
-        if STATM >= 0:
+        if bounds_memory:
             resource.setrlimit(resource.RLIMIT_AS, limits)
         signal.signal(signal.SIGPROF, before)

@@ -87,6 +87,8 @@ def test_a_wav_file_longer_than_its_sizes_can_say_is_refused(
         write(tmp_path / "long.wav", noise(1001, channels), subtype=subtype)
     write(tmp_path / "long.flac", noise(1001, channels), "flac")
     assert {path.name for path in tmp_path.iterdir()} == {"just.wav", "long.flac"}
+    with pytest.raises(OutputError, match=r"for a WAV file \(4 GiB\)$"):  # nor would FLAC hold it
+        write(tmp_path / "long.wav", noise(1001 * channels, 9), subtype=subtype)
 
 
 @pytest.mark.parametrize(("kind", "most"), [("wav", 64), ("flac", 8)])

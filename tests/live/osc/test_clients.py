@@ -84,20 +84,6 @@ def test_who_sets_something_is_told_its_value_once(clients, values, play, peer):
     assert clients.wait_s() is None
 
 
-def test_who_sets_something_often_is_told_sixty_times_a_second_and_the_last_value(
-    clients, values, play, peer
-):
-    def turn() -> None:
-        values.now["/a"] += 1.0
-        clients.echo(peer, ["/a"])
-
-    play(1000, turn)
-    play(20)
-    heard = told(peer)
-    assert 50 <= len(heard) <= 61
-    assert heard[-1] == ("/yehu/a", [1000.0])
-
-
 def test_many_who_set_something_at_once_are_all_told(clients, play):
     peers = [FakePeer(port) for port in range(MOST_KNOWN + 100)]
     for peer in peers:
@@ -166,7 +152,8 @@ def test_a_subscriber_is_told_of_a_value_sixty_times_a_second_at_most(clients, v
     play(1000, turn)
     play(20)
     heard = told(peer)
-    assert max(Counter(address for address, _ in heard).values()) <= 61
+    counts = Counter(address for address, _ in heard)
+    assert 50 <= min(counts.values()) <= max(counts.values()) <= 61
     assert heard[-2:] == [("/yehu/a", [1000.0]), ("/yehu/b", [-1000.0])]
 
 

@@ -151,13 +151,3 @@ def test_a_damaged_or_empty_packet_is_told_and_the_next_is_whole():
         stream = slipped([b"/a\0\0"]) + END + damaged + END + slipped([b"/b\0\0"])
         assert read(Framing(), stream) == whole
         assert read(Framing(), *(bytes([byte]) for byte in stream)) == whole
-
-
-@given(st.lists(st.binary(max_size=200), max_size=20))
-def test_any_bytes_are_packets_or_refused(pieces):
-    framing = Framing()
-    try:
-        got = read(framing, *pieces)
-    except FramingError:
-        return
-    assert sum(map(len, got)) <= sum(map(len, pieces))

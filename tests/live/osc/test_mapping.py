@@ -64,14 +64,3 @@ def test_what_ones_own_address_cannot_mean_is_answered(own_still, wire):
     own_still.player.remap(Mapping("other", ()), frame=0)
     (error,) = say(own_still, wire, "/fader1", 1)
     assert "unknown address" in error
-
-
-def test_ones_own_address_is_heard_at_the_time_of_its_tag(own_still, wire):
-    due = own_still.clock.time() + 0.1
-    bundle = wire.bundle(due, wire.message("/fader1", 0.0))
-    own_still.take(bundle)
-    assert own_still.player.value(VOLUME) == 1.0
-    own_still.pass_time(0.15)
-    assert own_still.player.value(VOLUME) == 0.0
-    (frame,) = own_still.frames("/output/level")
-    assert frame == pytest.approx(0.1 * own_still.RATE, abs=own_still.RATE * 0.002)

@@ -8,7 +8,6 @@ import os
 import signal
 import socket
 import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -295,14 +294,10 @@ def test_without_any_device_it_says_so_and_plays_in_silence(jackd, serve, tmp_pa
     assert np.abs(played).max() > 0.02
 
 
-COMPILING = """
-import argparse, logging
-from yehu_server.cli.terminal import set_up_log
-set_up_log(argparse.Namespace(log_level="debug", json_log=False))
-print(logging.getLogger("numba").getEffectiveLevel())
-"""
-
-
 def test_a_log_for_debugging_has_no_word_of_the_compiler():
-    run = subprocess.run([sys.executable, "-c", COMPILING], capture_output=True, check=True)
-    assert int(run.stdout) > logging.DEBUG
+    code = (
+        "import argparse, logging\nfrom yehu_server.cli.terminal import set_up_log\n"
+        "set_up_log(argparse.Namespace(log_level='debug', json_log=False))\n"
+        "print(logging.getLogger('numba').getEffectiveLevel())"
+    )
+    assert int(forks.run(code=code).stdout) > logging.DEBUG

@@ -76,14 +76,6 @@ def test_a_binary_frame_is_osc_and_who_sets_something_is_told(web, port):
     assert web.next().address == "/yehu/error"
 
 
-def test_a_subscription_works_here_too(web, shared_web):
-    web.tell("/yehu/subscribe", 60.0)
-    told = [web.next() for _ in range(len(TABLE) + 1)]
-    assert {one.address for one in told} >= {"/yehu" + param.address for param in TABLE}
-    shared_web.client().tell("/bow/force", 1.5)
-    assert web.wait_for(FORCE) == [1.5]
-
-
 # ---------------------------------------------------------------- LISTEN and IGNORE
 
 

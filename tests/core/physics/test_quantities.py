@@ -17,7 +17,23 @@ YEHU = Quantities()
 BODY = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text())
 
 
-def test_the_strings_impedances_are_the_published_ones():
+# [Yehu] table 1 and the published numbers, typed independently.
+MEASURED = {
+    "string_1": "L 0.38 rho 1250 r 0.55e-3 T 50.61 E 1e10 sigma_0 0.9754 sigma_1 0.0026",
+    "string_2": "L 0.38 rho 1350 r 0.40e-3 T 64.29 E 9.5e9 sigma_0 1.5844 sigma_1 0.0032",
+    "bow": "epsilon_0 3.186e4 epsilon_1 0.0027 v_s 0.228 mu_C 0.5071 mu_S 1.0207"
+    " M_h 4.5e-3 K_h 4.8297e4 R_h 5.7674",
+    "finger": "M_f 0.02 K_f 5e5 alpha 2.3 beta 20 rest_height 0.5e-3",
+}
+
+
+def test_the_default_instrument_is_the_measured_one():
+    for section, values in MEASURED.items():
+        words = values.split()
+        for name, value in zip(words[::2], words[1::2], strict=True):
+            assert getattr(getattr(YEHU, section), name) == float(value), (section, name)
+    assert (YEHU.bridge_x, YEHU.bow.xi) == (0.30, (0.7, 0.4))
+    assert (len(YEHU.body.mass), len(YEHU.body.sections)) == (11, 25)
     for string, impedance in zip(YEHU.strings, (0.245, 0.209), strict=True):
         assert math.sqrt(string.T * string.rho_A) == pytest.approx(impedance, abs=5e-4)
 
@@ -67,7 +83,7 @@ def test_a_mistake_is_refused_by_name(subtests):
 def test_every_quantity_refuses_what_is_beyond_its_bounds(subtests):
     bounded = [
         (section, item)
-        for section in ("string_1", "string_2", "bow", "finger")
+        for section in MEASURED
         for item in fields(getattr(YEHU, section))
         if "unit" in item.metadata
     ]

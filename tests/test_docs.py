@@ -166,7 +166,8 @@ def sources() -> dict[Path, set[str]]:
 @cache
 def words() -> set[str]:
     parameters = {param.address.strip("/").replace("/", "_").upper() for param in TABLE}
-    return {EXAMPLE_NAME, *dir(builtins), *parameters}.union(*sources().values())
+    examples = {path.stem for path in (ROOT / "examples").rglob("*.*")}
+    return {EXAMPLE_NAME, *dir(builtins), *parameters, *examples}.union(*sources().values())
 
 
 def is_option(word: str, command: str) -> bool:
@@ -202,8 +203,7 @@ def is_symbol(name: str) -> bool:
     if modules:
         return any(last in sources()[path] for path in modules)
     made = re.sub("^yehu_|^YEHU_|_total$", "", last)  # a metric, or a name of yehu.h
-    is_example = any((ROOT / "examples").rglob(f"{name}.toml"))
-    return is_example or name in OTHERS or made in words() or {*before, last} <= words()
+    return name in OTHERS or made in words() or {*before, last} <= words()
 
 
 @cache

@@ -17,7 +17,7 @@ def key(note: float) -> Key:
 # ---------------------------------------------------------------- dynamics
 
 
-def test_less_dynamics_is_a_slower_bow_and_a_lower_level(player, listener):
+def test_less_dynamics_is_a_slower_bow_and_a_lower_level_while_a_note_sounds(player, listener):
     player.note_on(key(75))
     loud = listener["/bow/speed"], listener["/output/level"]
     player.write("/playing/dynamics", 0.5)
@@ -25,6 +25,9 @@ def test_less_dynamics_is_a_slower_bow_and_a_lower_level(player, listener):
     assert listener["/output/level"] == pytest.approx(0.5**1.5)
     player.write("/playing/dynamics", 1.0)
     assert (listener["/bow/speed"], listener["/output/level"]) == loud
+    player.note_off(key(75))
+    player.write("/playing/dynamics", 0.3)
+    assert listener["/bow/speed"] == 0.0
 
 
 def test_without_dynamics_the_bow_leaves_the_string_and_comes_back_with_them(player, listener):
@@ -49,13 +52,6 @@ def test_a_note_without_dynamics_is_fingered_and_waits_for_the_breath(player, li
     assert not listener.of("/bow/side")
     player.write("/playing/dynamics", 0.5)
     assert listener.where() == ("F", 5)
-
-
-def test_dynamics_after_the_note_move_no_bow(player, listener):
-    player.note_on(key(75))
-    player.note_off(key(75))
-    player.write("/playing/dynamics", 0.3)
-    assert listener["/bow/speed"] == 0.0
 
 
 # ---------------------------------------------------------------- vibrato and tremolo
@@ -98,9 +94,13 @@ def test_a_plucked_note_is_not_bowed(player, listener):
     assert not any(move.value for move in listener.of("/bow/side"))
     player.note_on(key(68))
     assert listener["/pluck/force"] > 0.0
-    player.note_off(key(75))
-    player.note_off(key(68))
+    for note in (75, 68):
+        player.note_off(key(note))
     assert len(listener.of("/pluck/force")) == 2
+    for pizzicato, side in ((0.0, -1.0), (1.0, 0.0), (0.0, -1.0)):
+        player.write("/playing/pizzicato", pizzicato)
+        player.note_on(key(77))
+        assert listener["/bow/side"] == side
 
 
 def test_a_finger_of_the_left_hand_plucks_farther_from_the_bridge_and_softer(player, listener):
@@ -117,33 +117,16 @@ def test_a_finger_of_the_left_hand_plucks_farther_from_the_bridge_and_softer(pla
     assert 0.5 * abs(right[1]) < abs(left[1]) < abs(right[1])
 
 
-def test_a_place_of_the_pluck_that_is_written_stays(player, listener):
+def test_more_pressure_plucks_harder_and_as_hard_again_where_it_is_told(player, listener):
     player.write("/playing/pizzicato", 1.0)
     player.write("/pluck/position", 0.5)
-    for note in (75, 77):
-        player.note_on(key(note))
-        assert listener.target("/pluck/position") == 0.5
-        player.note_off(key(note))
-
-
-def test_more_pressure_plucks_harder_and_as_hard_again(player, listener):
-    player.write("/playing/pizzicato", 1.0)
     for pressure in (0.3, 0.6, 0.6):
         player.write("/playing/pressure", pressure)
         player.note_on(key(68))
+        assert listener.target("/pluck/position") == 0.5
         player.note_off(key(68))
     soft, hard, again = (move.value for move in listener.of("/pluck/force"))
     assert hard == again == pytest.approx(2.0 * soft)
-
-
-def test_a_bowed_note_becomes_a_plucked_one(player, listener):
-    player.note_on(key(75))
-    player.write("/playing/pizzicato", 1.0)
-    player.note_on(key(77))
-    assert listener["/bow/side"] == 0.0
-    player.write("/playing/pizzicato", 0.0)
-    player.note_on(key(79))
-    assert listener["/bow/side"] == -1.0
 
 
 # ---------------------------------------------------------------- tunings

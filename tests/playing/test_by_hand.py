@@ -36,7 +36,7 @@ def test_the_bow_follows_the_finger_to_the_other_string_until_it_is_lifted(playe
     assert [*sides, listener["/bow/side"]] == [1.0, -1.0, 1.0, 0.0]
 
 
-def test_lifting_touches_only_a_bow_drawn_by_hand(player, listener):
+def test_lifting_touches_only_a_bow_drawn_by_hand_and_a_note_takes_it_back(player, listener):
     player.note_on(Key(0, 67))
     moves = len(listener.moves)
     player.lift()
@@ -45,9 +45,6 @@ def test_lifting_touches_only_a_bow_drawn_by_hand(player, listener):
     player.draw(0.2, 0.7)
     player.lift()
     assert (listener["/bow/speed"], listener["/bow/side"]) == (0.0, 0.0)
-
-
-def test_a_note_takes_the_bow_back(player, listener):
     player.draw(0.2, 0.7)
     player.note_on(Key(0, 74))
     assert listener["/bow/assist"] == 1.0
@@ -68,19 +65,13 @@ def test_a_sounding_note_may_lie_between_the_keys_and_slides_to_a_pitch(player, 
 
 
 def test_the_pitch_drawn_by_hand_is_told_while_the_bow_is_on_the_string(player):
+    """It is where the last note left the finger."""
     player.slide(69.5)
     assert player.pitch is None  # nobody bows yet
     player.draw(0.2, 0.7)
     assert player.pitch == 69.5
     player.slide(76.25)
     assert player.pitch == 76.25
-    player.draw(0.0, 0.0)
-    assert player.pitch is None
-
-
-def test_the_pitch_by_hand_is_where_the_last_note_left_the_finger(player):
-    player.draw(0.2, 0.7)
-    assert player.pitch == 65.0  # nobody stopped the string
     player.note_on(Key(0, 74))
     player.note_off(Key(0, 74))
     assert player.pitch is None
@@ -89,7 +80,9 @@ def test_the_pitch_by_hand_is_where_the_last_note_left_the_finger(player):
     player.stop_sound()
     assert player.pitch is None
     player.draw(0.2, 0.7)
-    assert player.pitch == 65.0
+    assert player.pitch == 65.0  # nobody stops the string
+    player.draw(0.0, 0.0)
+    assert player.pitch is None
 
 
 def test_what_is_drawn_by_hand_is_as_loud_as_the_rest(player, listener):

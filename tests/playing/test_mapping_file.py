@@ -254,8 +254,7 @@ def test_a_bind_replaces_the_same_controller_in_seven_bits_but_not_on_other_chan
 
 def test_what_begins_elsewhere_and_the_zones_go_over_the_base(read):
     mapping = read('base = "mpe"\nmpe = false\n[start]\n"/playing/speed" = 0.1\n')
-    assert not mapping.mpe
-    assert read('base = "mpe"\n').mpe
+    assert (mapping.mpe, read('base = "mpe"\n').mpe) == (False, True)
     assert dict(mapping.start) == dict(load("mpe").start) | {"/playing/speed": 0.1}
 
 
@@ -273,7 +272,7 @@ def test_a_base_may_have_a_base_and_the_shipped_comes_before_the_users(own, read
     assert [file.stem for file in mapping.files] == ["mine", "pedal", "wind", "wind"]
 
 
-def test_bases_that_go_round_are_refused(own):
+def test_bases_that_go_round_or_are_wrong_are_refused_by_their_file(own, read):
     own("one", 'base = "two"\n')
     file = own("two", '\nbase = "three"\n')
     own("three", 'base = "one"\n')
@@ -285,9 +284,6 @@ def test_bases_that_go_round_are_refused(own):
         load("one")
     with pytest.raises(MappingError, match=r"no mapping 'mine/keyboard' .*yours: mine/one"):
         load("mine/keyboard")
-
-
-def test_an_error_in_a_base_names_that_file(own, read):
     own("below", BIND + "span = [0, 9]\n")
     with pytest.raises(MappingError, match=r"below\.toml:4: bind 1: span"):
         read('base = "below"\n')

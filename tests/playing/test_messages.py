@@ -27,19 +27,14 @@ def test_a_note_on_without_velocity_is_a_note_off(midi, player, listener):
     assert player.notes_played == 1
 
 
-def test_velocity_sets_the_bow_force_and_not_its_speed(midi, listener):
+def test_velocity_sets_the_bow_force_and_not_its_speed_also_of_a_note_that_returns(midi, listener):
     midi.on(75, velocity=127)
     assert listener["/bow/pressure"] == pytest.approx(0.55)
     midi.on(76, velocity=1)
     assert listener["/bow/pressure"] == pytest.approx(0.3 + 0.25 / 127)
-    assert {abs(move.value) for move in listener.of("/bow/speed")} == {0.2}
-
-
-def test_a_note_that_returns_has_its_own_velocity_again(midi, listener):
-    midi.on(75, velocity=127)
-    midi.on(76, velocity=1)
     midi.off(76)
     assert listener["/bow/pressure"] == pytest.approx(0.55)
+    assert {abs(move.value) for move in listener.of("/bow/speed")} == {0.2}
 
 
 @pytest.mark.parametrize(("chosen", "playing"), [((), {*range(16)} - {9}), (({2, 9},), {2, 9})])
@@ -126,19 +121,20 @@ def test_a_key_pressed_again_under_the_pedal_is_held_by_the_hand(midi, player, l
 
 
 @pytest.mark.parametrize("control", [120, 123, 124, 125, 126, 127])
-@pytest.mark.parametrize("pedal", [0, 127])
-def test_mode_messages_end_every_note(midi, player, listener, control, pedal):
-    midi.cc(64, pedal)
-    midi.on(75)
-    midi.on(77)
-    midi.off(77)
-    midi.cc(control, 0)
-    midi.cc(64, 0)
-    assert silent(listener, player)
-    assert bool(listener.silenced) == (control == 120)
-    midi.off(75)
-    midi.on(80)
-    assert player.sounding == Key(0, 80)
+def test_mode_messages_end_every_note(midi, player, listener, control):
+    for pedal in (0, 127):
+        midi.cc(64, pedal)
+        midi.on(75)
+        midi.on(77)
+        midi.off(77)
+        midi.cc(control, 0)
+        midi.cc(64, 0)
+        assert silent(listener, player)
+        assert bool(listener.silenced) == (control == 120)
+        midi.off(75)
+        midi.on(80)
+        assert player.sounding == Key(0, 80)
+        midi.off(80)
 
 
 def test_a_mode_message_leaves_the_notes_of_other_channels(midi, player, listener):

@@ -32,11 +32,11 @@ def test_a_note_below_c5_is_stopped_on_the_f_string_and_one_above_on_the_c_strin
         assert (string, round(stop)) == (("F", note - 65) if note < 72 else ("C", note - 72))
 
 
-def hands() -> tuple[Checked, Watched]:
-    """A player without random variation on an ideal instrument."""
-    listener = Watched(calibration=ideal())
+def hands(variation: float = 0.0, **options) -> tuple[Checked, Watched]:
+    """A player on an ideal instrument, without random variation."""
+    listener = Watched(calibration=ideal(), **options)
     player = Checked(listener)
-    player.write("/playing/variation", 0.0)
+    player.write("/playing/variation", variation)
     return player, listener
 
 
@@ -92,22 +92,16 @@ def test_strokes_go_in_turn_or_the_way_that_is_wished_for():
 
 
 def test_a_new_seed_begins_another_sequence_and_an_old_one_the_same():
-    def speeds(seed: float) -> list[float]:
-        listener = Watched()
-        player = Checked(listener)
-        player.write("/playing/variation", 1.0)
-        player.note_on(key(70))
-        player.note_off(key(70))
+    player, listener = hands(1.0)
+    heard = []
+    for seed in (3.0, 4.0, 3.0):
         player.write("/engine/seed", seed)
-        found = []
+        player.write("/playing/direction", 1.0)
         for note in (66, 68, 70):
             player.note_on(key(note))
-            found.append(abs(listener["/bow/speed"]))
+            heard.append(listener["/bow/speed"])
             player.note_off(key(note))
-        return found
-
-    assert speeds(3.0) == speeds(3.0)
-    assert speeds(3.0) != speeds(4.0)
+    assert heard[:3] == heard[6:] != heard[3:6]
 
 
 def test_without_calibration_fingers_go_to_where_an_ideal_string_is_in_tune():
@@ -166,49 +160,37 @@ def test_the_same_place_on_the_other_string_takes_the_same_finger(player, listen
 def test_the_last_note_wins_and_a_held_one_returns_when_it_ends(player, listener):
     for note in (66, 68, 70):
         player.note_on(key(note))
-    assert listener.where() == ("F", 5)
-    player.note_off(key(70))
-    assert listener.where() == ("F", 3)
-    player.note_off(key(68))
-    assert listener.where() == ("F", 1)
-    assert player.sounding == key(66)
-    player.note_off(key(66))
+    for note in (70, 68, 66):
+        assert player.sounding == key(note)
+        assert listener.where() == ("F", note - 65)
+        player.note_off(key(note))
     assert player.sounding is None
-    assert listener["/bow/speed"] == 0.0
-    assert listener["/bow/side"] == 0.0
+    assert (listener["/bow/speed"], listener["/bow/side"]) == (0.0, 0.0)
 
 
-def test_the_end_of_a_note_that_does_not_sound_changes_nothing(player, listener):
+def test_the_end_of_a_note_that_does_not_sound_changes_nothing_and_of_all_ends_every_one(
+    player, listener
+):
     player.note_on(key(66))
+    player.note_on(key(68))
     player.note_on(key(70))
     heard = len(listener.moves)
     player.note_off(key(66))
     player.note_off(key(89))
     assert len(listener.moves) == heard
-    player.note_off(key(70))
-    assert player.sounding is None
-
-
-def test_all_notes_off_ends_every_note(player, listener):
-    player.note_on(key(66))
-    player.note_on(key(70))
     player.notes_off(player.held())
     assert player.sounding is None
     assert (listener["/bow/speed"], listener["/bow/side"]) == (0.0, 0.0)
     assert not listener.silenced
     player.note_on(key(80))
-    player.note_off(key(80))  # brings neither back
+    player.note_off(key(80))  # brings none back
     assert player.sounding is None
-
-
-def end_all_sound(player: Checked, frame: int | None = None) -> None:
-    player.notes_off(player.held(), frame=frame)
-    player.stop_sound(frame=frame)
 
 
 def test_all_sound_off_silences_the_instrument_at_its_frame_and_lifts_the_hand(player, listener):
     player.note_on(key(71))
-    end_all_sound(player, 4711)
+    player.notes_off(player.held(), frame=4711)
+    player.stop_sound(frame=4711)
     assert player.sounding is None
     assert listener.silenced == [4711]
     assert listener.press == 0.0
@@ -261,15 +243,10 @@ def test_a_stroke_begins_and_ends_in_the_times_set_for_it(player, listener):
 
 def test_speed_pressure_and_press_reach_the_sounding_note(player, listener):
     player.note_on(key(74))
-    player.note_off(key(74))
-    listener.wait(0.2)
-    player.note_on(key(74))
     player.write("/playing/speed", 0.3)
     player.write("/playing/pressure", 0.5)
     player.write("/playing/press", 3.0)
-    assert listener["/bow/speed"] == -0.3
-    assert listener["/bow/pressure"] == 0.5
-    assert listener.press == 3.0
+    assert (listener["/bow/speed"], listener["/bow/pressure"], listener.press) == (0.3, 0.5, 3.0)
 
 
 def test_the_bow_stays_still_and_the_finger_up_when_no_note_sounds(player, listener):
@@ -310,13 +287,10 @@ def test_a_bend_moves_the_finger_along_its_string_as_far_as_it_goes(subtests):
 def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string_as_that_is_bowed():
     bowing = default_recipes()
     bowing[0, :, 71 - FIRST, TOP_SPEED] = 0.11
-    listener = Watched(calibration=ideal(), bowing=bowing)
-    player = Checked(listener)
-    player.write("/playing/variation", 0.0)
+    player, listener = hands(bowing=bowing)
     player.note_on(key(73))
     player.write("/playing/bend", -2.0)
-    assert listener.where() == ("F", 6)
-    assert listener["/bow/speed"] == 0.11
+    assert (listener.where(), listener["/bow/speed"]) == (("F", 6), 0.11)
 
 
 def test_a_note_begun_with_the_wheel_moved_starts_bent(player, listener):
@@ -377,9 +351,7 @@ def test_notes_are_counted_once_each(player):
 
 
 def phrase(variation: float, seed: int) -> list[Move]:
-    listener = Watched(calibration=ideal(), seed=seed)
-    player = Checked(listener)
-    player.write("/playing/variation", variation)
+    player, listener = hands(variation, seed=seed)
     for _ in range(4):
         player.note_on(key(75))
         player.note_off(key(75))
@@ -415,13 +387,11 @@ def test_with_variation_no_two_notes_are_alike_and_all_are_close():
 
 
 def test_a_bend_keeps_the_variation_of_its_note():
-    listener = Watched(calibration=ideal(), seed=5)
-    player = Checked(listener)
-    player.write("/playing/variation", 1.0)
+    player, listener = hands(1.0, seed=5)
     player.note_on(key(75))
     before = listener.position
-    player.write("/playing/bend", 1.0)
-    player.write("/playing/bend", 0.0)
+    for bend in (1.0, 0.0):
+        player.write("/playing/bend", bend)
     assert listener.position == before
 
 
@@ -429,9 +399,10 @@ def test_a_bend_keeps_the_variation_of_its_note():
 
 
 def test_volume_and_expression_multiply_and_loudness_is_their_square(player, listener):
-    player.write("/playing/volume", 0.5)
-    assert listener["/output/level"] == pytest.approx(0.25)
-    player.write("/playing/expression", 0.5)
-    assert listener["/output/level"] == pytest.approx(0.0625)
-    player.write("/playing/volume", 1.0)
-    assert listener["/output/level"] == pytest.approx(0.25)
+    for name, value, level in (
+        ("volume", 0.5, 0.25),
+        ("expression", 0.5, 0.0625),
+        ("volume", 1, 0.25),
+    ):
+        player.write(f"/playing/{name}", value)
+        assert listener["/output/level"] == pytest.approx(level)

@@ -64,17 +64,17 @@ def brightest(sound: np.ndarray, start_s: float, seconds: float) -> float:
 # ---------------------------------------------------------------- slurs and trills
 
 
-@pytest.mark.parametrize(
-    ("note", "target"),
-    [(66, 68), (70, 71), (71, 70), (70, 68), (72, 74), (74, 72), (74, 76), (76, 74), (81, 79)],
-)
-def test_a_slurred_note_is_at_its_pitch_within_60_milliseconds(note, target):
-    stand = Stand()
-    stand.on(0.0, note)
-    stand.slur(0.4, note, target)
-    sound = stand.play(0.7)
-    for start_s in (0.46, 0.49, 0.52, 0.6):
-        assert abs(heard(sound, start_s, 0.03) - target) < 0.15
+SLURS = [(66, 68), (70, 71), (71, 70), (70, 68), (72, 74), (74, 72), (74, 76), (76, 74), (81, 79)]
+
+
+def test_a_slurred_note_is_at_its_pitch_within_60_milliseconds():
+    for note, target in SLURS:
+        stand = Stand()
+        stand.on(0.0, note)
+        stand.slur(0.4, note, target)
+        sound = stand.play(0.7)
+        off = [heard(sound, start_s, 0.03) - target for start_s in (0.46, 0.49, 0.52, 0.6)]
+        assert np.abs(off).max() < 0.15, (note, target)
 
 
 def test_a_slur_is_a_step_and_a_slide_only_with_portamento():
@@ -109,17 +109,17 @@ def test_a_trill_alternates_between_two_notes(low):
 # ---------------------------------------------------------------- bends and pressing
 
 
-@pytest.mark.parametrize("note", [73, 75, 77, 84])
-def test_a_slow_bend_is_followed(note):
-    stand = Stand()
-    stand.on(0.0, note)
-    for n in range(101):
-        stand.wish(0.4 + 0.01 * n, bend=0.02 * n)
-    sound = stand.play(1.6)
-    for n in (20, 40, 60, 80, 100):
-        time = 0.4 + 0.01 * n  # 12 ms late, by the smoothing; in the middle of 40 ms
-        off = heard(sound, time - 0.008, 0.04) - (note + min(0.02 * n, 2.0))
-        assert abs(100.0 * off) < 15.0
+def test_a_slow_bend_is_followed():
+    for note in (73, 75, 77, 84):
+        stand = Stand()
+        stand.on(0.0, note)
+        for n in range(101):
+            stand.wish(0.4 + 0.01 * n, bend=0.02 * n)
+        sound = stand.play(1.6)
+        for n in (20, 40, 60, 80, 100):
+            time = 0.4 + 0.01 * n  # 12 ms late, by the smoothing; in the middle of 40 ms
+            off = heard(sound, time - 0.008, 0.04) - (note + min(0.02 * n, 2.0))
+            assert abs(100.0 * off) < 15.0, (note, n)
 
 
 def test_pressing_harder_raises_the_pitch_as_silk_does():

@@ -114,19 +114,11 @@ def test_a_table_that_was_written_is_read_back(tmp_path):
 
 def test_only_notes_that_are_bowed_otherwise_are_written():
     table = default_recipes()
-    assert rows_of(as_data(table, RATE)) == []
+    usual = as_data(table, RATE)["bowing"]
+    assert not any(notes for places in usual.values() for notes in places.values())
     table[0, PLACE, 70 - FIRST, AT_LIGHT] = 0.7
-    assert rows_of(as_data(table, RATE)) == [("inner", "0.1", "70")]
-
-
-def rows_of(data: dict) -> list[tuple[str, str, str]]:
-    """String, place and note of what is in a practice."""
-    return [
-        (string, place, note)
-        for string, places in data["bowing"].items()
-        for place, notes in places.items()
-        for note in notes
-    ]
+    usual["inner"]["0.1"] = {"70": as_data(table, RATE)["bowing"]["inner"]["0.1"]["70"]}
+    assert as_data(table, RATE)["bowing"] == usual
 
 
 def spoiled(**changes: object) -> dict:
@@ -298,15 +290,20 @@ def one_note(monkeypatch) -> None:
 
 @pytest.mark.usefixtures("one_note")
 def test_what_practise_writes_render_takes(command, render, tmp_path):
+    """It is for its preset and tuning, and leaves other places alone."""
     path = tmp_path / "mine.json"
-    code, out, error = command("practise", "-o", path, "--json")
-    assert code == 0, error
-    summary = json.loads(out)
-    assert summary["rate"] == RATE
-    changed = ~np.isclose(read_practice(path), shipped_practice(RATE), atol=1e-4).all(axis=-1)
-    assert changed.sum() == summary["improved"] > 0
-    assert set(zip(*np.nonzero(changed.any(axis=1)), strict=True)) <= {(0, 70 - FIRST)}
-    assert render("--practice", path)[1]["practice"] == str(path)
+    near = ("--preset", "sul-ponticello", "--tuning", "chaozhou-seven-equal")
+    for words in ((), near):
+        code, out, error = command("practise", "-o", path, *words, "--json")
+        assert code == 0, error
+        summary = json.loads(out)
+        assert summary["rate"] == RATE
+        changed = ~np.isclose(read_practice(path), shipped_practice(RATE), atol=1e-4).all(axis=-1)
+        assert changed.sum() == summary["improved"] > 0 or words
+        assert set(zip(*np.nonzero(changed.any(axis=1)), strict=True)) <= {(0, 70 - FIRST)}
+        assert not (words and changed[:, np.array(PLACES) > 0.1].any())
+        assert render("--practice", path)[1]["practice"] == str(path)
+        path.unlink()
 
 
 @pytest.mark.usefixtures("one_note")
@@ -335,13 +332,3 @@ def test_practising_what_is_not_there_is_refused_in_one_line(refused, tmp_path):
     assert "needs a scale" in refused("practise", "-o", tmp_path / "mine.json", *a_map)
     assert "does not exist" in refused("practise", "-o", tmp_path / "none" / "mine.json")
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.usefixtures("one_note")
-def test_practising_for_a_preset_and_a_tuning_leaves_other_places_alone(command, tmp_path):
-    path = tmp_path / "near.json"
-    how = ("--preset", "sul-ponticello", "--tuning", "chaozhou-seven-equal")
-    code, _, error = command("practise", "-o", path, *how, "--quiet")
-    assert code == 0, error
-    same = np.isclose(read_practice(path), shipped_practice(RATE), atol=1e-4).all(axis=-1)
-    assert same[:, np.array(PLACES) > 0.1].all()

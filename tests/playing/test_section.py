@@ -145,10 +145,10 @@ def test_players_of_a_section_lie_one_after_another():
         WishPoster(apart)
 
 
-def test_a_new_stroke_stays_one_in_every_player(four):
-    timing = Together(4, RATE, seed=0)
-    expected = [timing.onset(beat * BEAT) for beat in range(60)]
-    for beat in range(60):
+def test_a_new_stroke_and_a_slur_stay_one_in_every_player(four):
+    timing, beats = Together(4, RATE, seed=0), range(60)
+    expected = [timing.onset(beat * BEAT) for beat in beats]
+    for beat in beats:
         on(four, 67, frame=beat * BEAT)
         off(four, 67, frame=(beat + 1) * BEAT)
     for number, told in enumerate(four.told):
@@ -158,10 +158,8 @@ def test_a_new_stroke_stays_one_in_every_player(four):
         assert late == [each[number] for each in expected]
         gaps = [b.frame - a.frame for a, b in zip(acts[1::2], acts[2::2], strict=False)]
         assert gaps == [0] * 59  # no player stops between the notes
-
-
-def test_a_slur_stays_one_in_every_player(four):
-    for beat in range(60):
+    four = section(4)
+    for beat in beats:
         on(four, 67 + beat % 2, frame=beat * BEAT)
         off(four, 68 - beat % 2, frame=beat * BEAT + 100)
     for told in four.told:
@@ -206,12 +204,17 @@ def test_there_may_be_more_notes_than_players():
     assert not any(told.settled() for told in two.told)
 
 
-def test_keys_that_overlap_are_no_chord_but_a_line(four):
+def test_keys_that_overlap_or_follow_one_that_has_ended_are_no_chord_but_a_line(four):
     on(four, 67, frame=0)
     on(four, 69, frame=BEAT)
     assert all(told.settled() == [67, 69] for told in four.told)
     off(four, 69, frame=2 * BEAT)  # back to the key that is still held
     assert all(told.settled() == [67] for told in four.told)
+    off(four, 67, frame=3 * BEAT)
+    on(four, 67, frame=4 * BEAT)
+    off(four, 67, frame=4 * BEAT + 480)
+    on(four, 72, frame=4 * BEAT + 960)
+    assert all(told.settled() == [72] for told in four.told)
 
 
 def test_players_whose_note_ends_rest_and_the_others_play_on(ten):
@@ -252,13 +255,7 @@ def test_a_key_that_sounds_again_has_its_expression_again(four):
         assert (express.value, end.kind, end.frame) == (0.6, kinds.END, express.frame)
 
 
-def test_without_variation_all_begin_at_once(four):
-    four.wishes.write("/playing/variation", 0.0)
-    on(four, 67, frame=BEAT)
-    assert [told.begun() for told in four.told] == [[(67, BEAT)]] * 4
-
-
-def test_a_seed_begins_the_onsets_anew(four):
+def test_a_seed_begins_the_onsets_anew_and_without_variation_all_begin_at_once(four):
     for begin in (0, 20 * BEAT):
         four.wishes.write("/engine/seed", 5.0, frame=begin)
         for beat in range(10):
@@ -266,6 +263,10 @@ def test_a_seed_begins_the_onsets_anew(four):
             off(four, 67, frame=begin + beat * BEAT + BEAT // 2)
     frames = np.array([[frame for _, frame in told.begun()] for told in four.told])
     assert np.array_equal(frames[:, 10:] - 20 * BEAT, frames[:, :10])
+    four = section(4)
+    four.wishes.write("/playing/variation", 0.0)
+    on(four, 67, frame=BEAT)
+    assert [told.begun() for told in four.told] == [[(67, BEAT)]] * 4
 
 
 MPE = Mapping("mpe", (Bind("bend", "/playing/bend"), Bind("cc 1", "/playing/vibrato")), mpe=True)
@@ -289,13 +290,6 @@ def test_a_chord_is_bent_as_a_whole_and_in_mpe_each_note_by_itself(four):
         midi.receive(mido.Message("note_on", note=note), frame=0)
     midi.receive(mido.Message("pitchwheel", pitch=8191), frame=BEAT)
     assert all(told.value("/playing/bend") == 2.0 for told in four.told)
-
-
-def test_keys_struck_soon_after_one_that_has_ended_are_no_chord(four):
-    on(four, 67, frame=BEAT)
-    off(four, 67, frame=BEAT + 480)
-    on(four, 72, frame=BEAT + 960)
-    assert all(told.settled() == [72] for told in four.told)
 
 
 def test_what_is_set_during_a_note_is_not_undone_as_a_late_player_begins(four):

@@ -45,11 +45,13 @@ def test_whoever_moves_the_target_takes_it_from_the_controller(make, at):
     assert at(midi, 30) == pytest.approx(30 / 127)  # passed, from 20 to 30
 
 
-def test_what_is_put_where_it_was_is_not_taken(make, at):
-    midi = make(SOFT)
-    midi.player.write(VOLUME, 0.0)
-    value = at(midi, 0, 100)
-    midi.player.write(VOLUME, value)
+def test_hard_and_soft_targets_of_one_controller_do_not_disturb_each_other(make, at, player):
+    midi = make(SOFT, Bind("cc 1", "/playing/expression"))
+    midi.player.write(VOLUME, 0.5)
+    assert at(midi, 10) == 0.5
+    assert player.value("/playing/expression") == pytest.approx(10 / 127)
+    value = at(midi, 100)
+    midi.player.write(VOLUME, value)  # where it was: it is not taken
     assert at(midi, 20) == pytest.approx(20 / 127)
 
 
@@ -84,13 +86,6 @@ def test_a_reset_lets_the_controller_wait_again(make, at, player):
     assert player.value(target) == 1.0
     at(midi, 64)
     assert player.value(target) == 1.0
-
-
-def test_hard_and_soft_targets_of_one_controller_do_not_disturb_each_other(make, at, player):
-    midi = make(SOFT, Bind("cc 1", "/playing/expression"))
-    midi.player.write(VOLUME, 0.5)
-    assert at(midi, 10) == 0.5
-    assert player.value("/playing/expression") == pytest.approx(10 / 127)
 
 
 def test_an_osc_fader_waits_too(make, player):

@@ -112,26 +112,25 @@ def test_a_note_is_cents_or_a_ratio_and_what_follows_is_ignored(subtests, read):
 
 def test_a_scale_without_notes_has_its_first_only(read):
     tuning = read("nothing\n0\n")
-    assert tuning.pitch(60, 440.0) == 60.0
-    assert tuning.pitch(61, 440.0) is None
-    assert tuning.pitch(60.5, 440.0) is None
+    assert [tuning.pitch(key, 440.0) for key in (60, 61, 60.5)] == [60.0, None, None]
 
 
 def test_a_scale_is_named_by_its_description(read):
-    assert read(scl("2/1")).name == "A scale"
-    assert read("\n1\n2/1").name == "mine"
-    assert read("Größe\n1\n2/1").name == "Größe"
-    assert read("Größe\n1\n2/1".encode("latin-1")).name == "Größe"
-    assert read(b"\xef\xbb\xbfmarked\n1\n2/1").name == "marked"
+    for text, name in [
+        (scl("2/1"), "A scale"),
+        ("\n1\n2/1", "mine"),
+        ("Größe\n1\n2/1", "Größe"),
+        ("Größe\n1\n2/1".encode("latin-1"), "Größe"),
+        (b"\xef\xbb\xbfmarked\n1\n2/1", "marked"),
+    ]:
+        assert read(text).name == name
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-def test_any_line_ends_and_lines_after_the_last_note(read, end):
+def test_any_line_ends_and_lines_after_the_last_note_or_an_end_mark(read):
     text = scl("3/2", "2/1") + "whatever follows\n"
-    assert cents(read(text.replace("\n", end)), 60, 62) == pytest.approx([0, 701.955, 1200])
-
-
-def test_an_old_text_ends_at_its_end_mark(read):
+    for end in ("\n", "\r\n", "\r"):
+        found = cents(read(text.replace("\n", end)), 60, 62)
+        assert found == pytest.approx([0, 701.955, 1200])
     assert read(scl("2/1") + "\x1a").pitch(61, 440.0) == pytest.approx(72)
     with pytest.raises(ParameterError, match="ends before note 2"):
         read("A scale\n2\n3/2\n\x1a2/1")
@@ -183,16 +182,16 @@ def test_the_reference_may_be_a_key_that_is_not_played(read):
     assert read(scl(*TWELVE), kbm(last=60)).pitch(60, 440.0) == pytest.approx(60)
 
 
+def test_the_map_repeats_at_its_octave_degree_or_at_the_end_of_the_scale(read):
+    for octave, interval in ((0, 24), (1, 12), (3, 36)):
+        tuning = read(scl("2/1", "4/1"), kbm("0", "x", octave=octave, reference=60))
+        assert tuning.pitch(62, 440.0) - tuning.pitch(60, 440.0) == pytest.approx(interval)
+
+
 def test_a_linear_map_starts_the_scale_on_the_middle_key(read):
     tuning = read(scl("3/2", "2/1"), kbm(middle=62, reference=62, hz=440, octave=2))
     assert tuning.pitch(63, 440.0) == pytest.approx(69 + 12 * math.log2(3 / 2))
     assert tuning.pitch(60, 440.0) == pytest.approx(57)
-
-
-@pytest.mark.parametrize(("octave", "interval"), [(0, 24), (1, 12), (3, 36)])
-def test_the_map_repeats_at_its_octave_degree_or_at_the_end_of_the_scale(read, octave, interval):
-    tuning = read(scl("2/1", "4/1"), kbm("0", "x", octave=octave, reference=60))
-    assert tuning.pitch(62, 440.0) - tuning.pitch(60, 440.0) == pytest.approx(interval)
 
 
 def test_keys_left_out_at_the_end_of_a_map_are_unmapped(read):
@@ -291,8 +290,5 @@ def test_the_chaozhou_table_has_seven_equal_steps_from_the_open_f_string():
     assert pitches == pytest.approx([65.0 + 12.0 * step / 7.0 for step in range(8)], abs=1e-4)
     assert tuning.pitch(71, 440.0) == tuning.pitch(70, 440.0)
     assert tuning.pitch(66, 440.0) is None
-
-
-def test_a_name_that_is_no_tuning_lists_those_there_are():
     with pytest.raises(ParameterError, match=r"'chaozou'.*chaozhou-seven-equal"):
         read_tuning(Path("chaozou"))

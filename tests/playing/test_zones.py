@@ -39,8 +39,9 @@ class Zones:
         return bend_range(self._record, channel)
 
 
-def test_without_a_zone_every_channel_is_its_own():
+def test_without_a_zone_every_channel_is_its_own_and_most_configure_none():
     zones = Zones()
+    assert not zones.configure(7, 5)
     assert all(zones.master(channel) is None for channel in range(16))
     assert all(zones.bend_range(channel) == USUAL for channel in range(16))
 
@@ -64,12 +65,6 @@ def test_the_zone_configured_last_takes_the_channels_of_the_other():
     assert (len(zones.members(0)), len(zones.members(15))) == (15, 0)
     zones.configure(0, 0)
     assert not zones.members(0)
-
-
-def test_other_channels_configure_nothing():
-    zones = Zones()
-    assert not zones.configure(7, 5)
-    assert all(zones.master(channel) is None for channel in range(16))
 
 
 # ---------------------------------------------------------------- playing
@@ -112,26 +107,18 @@ def test_pressure_is_each_notes_own_and_the_masters_where_it_has_none(zone, list
     assert listener.press == pytest.approx(1.5)
 
 
-def test_the_tenth_channel_plays_in_a_zone(zone, player):
-    zone.on(70, channel=10)
-    assert player.sounding == Key(9, 70)
-
-
-def test_the_masters_pedal_holds_the_notes_of_its_zone(zone, player):
+def test_the_master_holds_and_ends_the_notes_of_its_zone_also_on_the_tenth_channel(zone, player):
     zone.cc(64, 127)
-    zone.on(70, channel=2)
-    zone.off(70, channel=2)
-    assert player.sounding == Key(1, 70)
+    zone.on(70, channel=10)
+    zone.off(70, channel=10)
+    assert player.sounding == Key(9, 70)
     zone.cc(64, 0)
     assert player.sounding is None
-
-
-@pytest.mark.parametrize("mode", [120, 123])
-def test_the_masters_notes_off_ends_its_zone(zone, player, mode):
-    zone.on(70, channel=2)
-    zone.on(74, channel=10)
-    zone.cc(mode, 0)
-    assert player.sounding is None
+    for mode in (120, 123):
+        zone.on(70, channel=2)
+        zone.on(74, channel=10)
+        zone.cc(mode, 0)
+        assert player.sounding is None
 
 
 def test_a_new_configuration_ends_notes_and_forgets_bends(zone, player):

@@ -29,11 +29,8 @@ def steps(text: str) -> list[float]:
     return [round(note.pitch - DO, 6) for note in notes(text)]
 
 
-def test_the_seven_characters_are_sol_la_do_re_mi_sol_la_in_f():
+def test_the_seven_characters_are_sol_la_do_re_mi_sol_la_in_f_or_a_written_key():
     assert steps("二 三 四 五 六 七 八") == [-5, -3, 0, 2, 4, 7, 9]
-
-
-def test_a_written_key_holds_for_characters_too():
     assert [note.pitch for note in notes("1=D 四 1")] == [62.0, 62.0]
 
 
@@ -42,12 +39,8 @@ def test_lengths_octaves_and_marks_are_those_of_jianpu():
     assert (first.pitch - DO, first.length) == (-10.0, Fraction(3, 4))
     assert (second.pitch - DO, second.length) == (12.0, Fraction(1, 4))
     assert second.marks[0].name == "up-bow"
-
-
-def test_characters_in_one_word_follow_each_other():
-    assert [(note.pitch - DO, float(note.length)) for note in notes("q四五六")] == [
-        (0.0, 0.5), (2.0, 0.5), (4.0, 0.5),
-    ]  # fmt: skip
+    in_one_word = [(note.pitch - DO, float(note.length)) for note in notes("q四五六")]
+    assert in_one_word == [(0.0, 0.5), (2.0, 0.5), (4.0, 0.5)]
 
 
 def test_the_mode_says_which_of_three_and_six_is_heavy():
@@ -67,8 +60,10 @@ def test_a_sign_before_a_character_goes_over_the_mode():
     assert steps("mode=重六\n轻三 三 轻六") == [-3.0, -1.5, 4.0]
 
 
-def test_light_notes_and_all_others_stay_where_they_are():
+def test_only_five_and_the_heavy_three_live_in_their_mode_and_no_other():
     assert not any(note.contour for note in notes("mode=重六\n二 三 四 五 六 七 八"))
+    lives = [bool(note.contour) for note in notes("mode=活五\n二 三 四 五 六 七 八 轻三")]
+    assert lives == [False, True, False, True, False, False, False, False]
 
 
 def test_the_living_five_is_raised_and_slides_up_from_re():
@@ -85,11 +80,6 @@ def test_the_living_five_is_raised_and_slides_up_from_re():
     assert alone == note
 
 
-def test_only_five_and_the_heavy_three_live_in_that_mode():
-    lives = [bool(note.contour) for note in notes("mode=活五\n二 三 四 五 六 七 八 轻三")]
-    assert lives == [False, True, False, True, False, False, False, False]
-
-
 def test_a_living_note_of_any_length_has_few_points_in_order():
     for character, quarters in product("三五", (Fraction(1, 16), Fraction(1, 3), 1, 999)):
         points = living(character, Fraction(quarters))
@@ -99,9 +89,12 @@ def test_a_living_note_of_any_length_has_few_points_in_order():
         assert (times[0], times[-1]) == (0.0, 1.0)
 
 
-def test_a_mode_that_nobody_knows_is_named():
-    score = parse_jianpu("mode=活六\n四".encode())
-    assert dict(score.unknown) == {"mode=活六": 1}
+def test_a_mode_that_nobody_knows_is_named_and_the_example_is_understood_whole():
+    assert dict(parse_jianpu("mode=活六\n四".encode()).unknown) == {"mode=活六": 1}
+    score = read_jianpu(EXAMPLE)
+    assert not score.unknown
+    assert not score.warnings
+    assert sum(bool(note.contour) for note in score.parts[0].notes) >= 6
 
 
 def test_gongche_characters_are_read_where_that_is_said():
@@ -110,10 +103,3 @@ def test_gongche_characters_are_read_where_that_is_said():
     ]  # fmt: skip
     with pytest.raises(ScoreError, match="line 2, column 3: there is no 八 in this notation"):
         parse_jianpu("notation=工尺谱\n上 八".encode())
-
-
-def test_the_example_is_understood_whole():
-    score = read_jianpu(EXAMPLE)
-    assert not score.unknown
-    assert not score.warnings
-    assert sum(bool(note.contour) for note in score.parts[0].notes) >= 6

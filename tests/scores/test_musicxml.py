@@ -114,23 +114,16 @@ def test_a_trill_goes_to_the_next_note_of_the_key_as_written_or_to_its_own_accid
 
 
 def test_what_is_not_understood_is_counted_and_named(read):
+    swoosh = "<articulations><other-articulation>swoosh</other-articulation></articulations>"
     text = score(
         note("G4", 1, ornament("schleifer"))
         + note("A4", 1, ornament("schleifer"))
         + note("B4", 1, technical("bend", "<bend-alter>1</bend-alter>"))
-        + note(
-            "C5",
-            1,
-            "<articulations><other-articulation>swoosh</other-articulation></articulations>",
-        )
+        + note("C5", 1, swoosh)
         + words("with a smile")
     )
-    assert read(text).unknown == {
-        "schleifer": 2,
-        "bend": 1,
-        "other-articulation swoosh": 1,
-        'words "with a smile"': 1,
-    }
+    names = {"schleifer": 2, "bend": 1, "other-articulation swoosh": 1, 'words "with a smile"': 1}
+    assert read(text).unknown == names
 
 
 def test_a_tremolo_over_two_notes_is_a_trill_of_both_on_one_bow(read):
@@ -159,52 +152,28 @@ def test_grace_notes_belong_to_the_note_after_them_or_before_them(read):
 
 def test_slurs_glissandos_hairpins_and_trills_last_from_note_to_note(subtests, read):
     trill = '<ornaments>{}<wavy-line type="{}"/></ornaments>'
-    for name, bars, spans in [
+    first, second = note("G4", 2, slur("start")), note("A4", 2, slur("stop"))
+    glides = [f'<glissando type="{kind}" number="2"/>' for kind in ("start", "stop")]
+    within = wedge("crescendo") + note("G4", 1, slur("start")) + note("A4", 1)
+    begun = note("G4", 1, slur("start")) + note("A4", 1, slur("start"), slur("stop"))
+    wavy = note("G4", 2, trill.format("<trill-mark/>", "start"))
+    for bars, spans in [
         (
-            "each its own",
             [
-                wedge("crescendo")
-                + note("G4", 1, slur("start"))
-                + note("A4", 1)
-                + note("B4", 1, slur("stop"), '<glissando type="start" number="2"/>')
+                within
+                + note("B4", 1, slur("stop"), glides[0])
                 + wedge("stop")
-                + note("E5", 1, '<glissando type="stop" number="2"/>')
+                + note("E5", 1, glides[1])
             ],
             [("slur", 0.0, 2.0), ("crescendo", 0.0, 3.0), ("glissando", 2.0, 3.0)],
         ),
-        (
-            "a slur that begins where another ends",
-            [
-                note("G4", 1, slur("start"))
-                + note("A4", 1, slur("start"), slur("stop"))
-                + note("B4", 1, slur("stop"))
-            ],
-            [("slur", 0.0, 1.0), ("slur", 1.0, 2.0)],
-        ),
-        (
-            "a slur within a repeat",
-            [
-                note("G4", 2, slur("start"))
-                + note("A4", 2, slur("stop"))
-                + barline(repeat="backward")
-            ],
-            [("slur", 0.0, 2.0), ("slur", 4.0, 6.0)],
-        ),
-        (
-            "words up to the next dynamic",
-            [dynamics("p") + words("cresc.") + FOUR, dynamics("f") + FOUR],
-            [("crescendo", 0.0, 4.0)],
-        ),
-        (
-            "a wavy line",
-            [
-                note("G4", 2, trill.format("<trill-mark/>", "start"))
-                + note("A4", 2, trill.format("", "stop"))
-            ],
-            [("trill", 0.0, 2.0)],
-        ),
+        ([begun + note("B4", 1, slur("stop"))], [("slur", 0.0, 1.0), ("slur", 1.0, 2.0)]),
+        ([first + second + barline(repeat="backward")], [("slur", 0.0, 2.0), ("slur", 4.0, 6.0)]),
+        # In words up to the next dynamic.
+        ([dynamics("p") + words("cresc.") + FOUR, dynamics("f") + FOUR], [("crescendo", 0.0, 4.0)]),
+        ([wavy + note("A4", 2, trill.format("", "stop"))], [("trill", 0.0, 2.0)]),
     ]:
-        with subtests.test(name):
+        with subtests.test(spans=spans):
             assert spans_of(read(score(*bars))) == spans
 
 
@@ -239,33 +208,20 @@ def test_a_direction_stands_where_its_offset_says_and_sounds_there_if_told(read)
         assert [float(each.beat) for each in written.tempi] == [beat]
 
 
-def test_words_have_a_meaning(subtests):
-    for text, kind, name in [
-        ("pizz.", "sign", "pizz"),
-        ("Arco", "sign", "arco"),
-        ("sul pont.", "sign", "sul-ponticello"),
-        ("sul tasto", "sign", "sul-tasto"),
-        ("flautando", "sign", "flautando"),
-        ("ord.", "sign", "ordinary"),
-        ("拨弦", "sign", "pizz"),
-        ("外弦", "sign", "outer-string"),
-        ("poco a poco cresc.", "hairpin", "crescendo"),
-        ("dim.", "hairpin", "diminuendo"),
-        ("poco rit.", "change", "ritardando"),
-        ("D.C. al Fine", "jump", "dacapo"),
-        ("D.S. al Coda", "jump", "dalsegno"),
-        ("To Coda", "jump", "tocoda"),
-        ("Fine", "jump", "fine"),
-        ("a tempo", "back", ""),
-        ("Allegro ma non troppo", "tempo", ""),
-        ("sempre pp", "sign", "pp"),
-    ]:
-        with subtests.test(text=text, kind=kind, name=name):
-            meaning = meaning_of(text)
-            assert (meaning.kind, meaning.name) == (kind, name)
-
-
-def test_other_words_have_none():
+def test_words_have_a_meaning():
+    meanings = {
+        "pizz.": ("sign", "pizz"), "Arco": ("sign", "arco"), "拨弦": ("sign", "pizz"),
+        "sul pont.": ("sign", "sul-ponticello"), "sul tasto": ("sign", "sul-tasto"),
+        "flautando": ("sign", "flautando"), "ord.": ("sign", "ordinary"),
+        "外弦": ("sign", "outer-string"), "sempre pp": ("sign", "pp"),
+        "poco a poco cresc.": ("hairpin", "crescendo"), "dim.": ("hairpin", "diminuendo"),
+        "poco rit.": ("change", "ritardando"), "a tempo": ("back", ""),
+        "Allegro ma non troppo": ("tempo", ""), "D.C. al Fine": ("jump", "dacapo"),
+        "D.S. al Coda": ("jump", "dalsegno"), "To Coda": ("jump", "tocoda"),
+        "Fine": ("jump", "fine"),
+    }  # fmt: skip
+    found = {text: meaning_of(text) for text in meanings}
+    assert {text: (each.kind, each.name) for text, each in found.items()} == meanings
     for text in ("dolce", "", "con sord.", "bow to the audience", "primo", "x" * 300):
         assert meaning_of(text) is None
 
@@ -291,16 +247,20 @@ def test_a_rest_that_is_longer_than_its_bar_fills_the_bar(read):
     assert read(score(note("r", 8), FOUR)).parts[0].notes[0].beat == 4
 
 
-def test_lower_notes_of_chords_are_counted(read):
+def test_an_interrupted_ending_does_not_play_for_ever(read):
+    bar = barline(location="left", ending="1 start") + FOUR + barline(repeat="backward")
+    assert len(read(score(bar)).parts[0].notes) == 4
+
+
+def test_lower_notes_of_chords_are_counted_and_voices_are_parts_of_their_own(read):
     written = read(score(note("F4", 4) + note("+C5", 4)))
     assert [each.pitch for each in written.parts[0].notes] == [72.0]
     assert "chords" in written.warnings[0]
-
-
-def test_voices_are_parts_of_their_own(read):
     back = "<backup><duration>48</duration></backup>"
-    written = read(score(note("C5", 4) + back + note("F4", 4, voice=2)))
+    chord = note("+A4", 4).replace("<voice>1</voice>", "")  # without a voice it is its chord's
+    written = read(score(note("C5", 4) + back + note("F4", 4, voice=2) + chord))
     assert [part.name for part in written.parts] == ["P1", "P1, voice 2"]
+    assert [[each.pitch for each in part.notes] for part in written.parts] == [[72.0], [69.0]]
 
 
 def test_bars_in_parts_and_parts_in_bars_are_the_same_score(read):
@@ -320,11 +280,6 @@ def test_any_usual_encoding_is_read_whatever_it_calls_itself(read):
         assert read(data.encode(encoding)).title == "Fauré", told
 
 
-def test_an_interrupted_ending_does_not_play_for_ever(read):
-    bar = barline(location="left", ending="1 start") + FOUR + barline(repeat="backward")
-    assert len(read(score(bar)).parts[0].notes) == 4
-
-
 def test_of_hidden_notes_those_without_a_place_on_the_page_are_silent(read):
     """Programs realize ornaments in such notes, in a voice of their own; MuseScore skips them."""
     hidden = note("D5", 1).replace("<note>", '<note print-object="no">')
@@ -342,13 +297,6 @@ def test_a_cue_note_that_heads_a_chord_shifts_nothing(read):
         score(cue + note("+B4", 1).replace("<chord/>", "<cue/><chord/>") + note("C5", 3))
     )
     assert [(float(each.beat), each.pitch) for each in written.parts[0].notes] == [(1.0, 72.0)]
-
-
-def test_a_chord_note_without_a_voice_belongs_to_its_chord(read):
-    back = "<backup><duration>48</duration></backup>"
-    chord = note("+A4", 4).replace("<voice>1</voice>", "")
-    written = read(score(note("C5", 4) + back + note("F4", 4, voice=2) + chord))
-    assert [[each.pitch for each in part.notes] for part in written.parts] == [[72.0], [69.0]]
 
 
 def test_a_rest_that_one_part_has_too_much_makes_no_bar_longer(read):
@@ -459,7 +407,9 @@ def test_a_file_that_is_no_score_is_refused_in_one_line(subtests, read, monkeypa
             assert str(refusal.value).isprintable()
 
 
-def test_a_document_type_is_not_fetched(read):
+def test_a_missing_file_is_named_and_a_document_type_not_fetched(read, tmp_path):
+    with pytest.raises(ScoreError, match=r"none\.mxl: cannot be read \(no such file"):
+        read_musicxml(tmp_path / "none.mxl")
     text = score(FOUR, before='<!DOCTYPE score-partwise SYSTEM "http://127.0.0.1:1/x.dtd">')
     assert read(text).parts[0].notes
 
@@ -480,11 +430,6 @@ def test_numbers_beyond_reason_are_left_out(read):
         text = score(FOUR).replace("<duration>12</duration>", f"<duration>{value}</duration>", 1)
         text = text.replace("<divisions>12</divisions>", f"<divisions>{value}</divisions>")
         assert all(each.length > 0 for part in read(text).parts for each in part.notes), value
-
-
-def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(ScoreError, match=r"none\.mxl: cannot be read \(no such file"):
-        read_musicxml(tmp_path / "none.mxl")
 
 
 def test_notes_that_overlap_in_a_voice_are_cut(read):

@@ -87,19 +87,16 @@ def test_plain_notes_sound_for_their_full_length_at_the_tempo():
     assert score.duration_s == 4 * QUARTER_S
 
 
-def test_a_tempo_holds_from_its_beat_on():
+def test_a_tempo_holds_from_its_beat_on_and_its_change_is_gradual_and_complete_at_its_end():
     score = play(*FOUR, tempi=(Tempo(Fraction(0), 120.0), Tempo(Fraction(2), 60.0)))
     assert [each.start_s for each in notes_of(score)] == [0.0, 0.5, 1.0, 2.0]
-
-
-@pytest.mark.parametrize(("name", "share"), [("ritardando", 0.7), ("accelerando", 1.25)])
-def test_a_change_of_tempo_is_gradual_and_complete_at_its_end(name, share):
     notes = [note(n, 1, 67) for n in range(12)]
-    starts = [each.start_s for each in notes_of(play(*notes, spans=[span(name, 0, 8)]))]
-    steps = [b - a for a, b in pairwise(starts)]
-    assert steps[:8] == sorted(steps[:8], reverse=share > 1.0)
-    assert len({round(step, 6) for step in steps[:8]}) == 8
-    assert steps[8:] == pytest.approx([QUARTER_S / share] * 3)
+    for name, share in (("ritardando", 0.7), ("accelerando", 1.25)):
+        starts = [each.start_s for each in notes_of(play(*notes, spans=[span(name, 0, 8)]))]
+        steps = [b - a for a, b in pairwise(starts)]
+        assert steps[:8] == sorted(steps[:8], reverse=share > 1.0)
+        assert len({round(step, 6) for step in steps[:8]}) == 8
+        assert steps[8:] == pytest.approx([QUARTER_S / share] * 3)
 
 
 def test_a_fermata_holds_its_note_and_lets_all_parts_wait():
@@ -273,18 +270,16 @@ def levels_db(score) -> list[tuple[float, float]]:
     return found
 
 
-@pytest.mark.parametrize(("before", "after"), [("f", "p"), ("p", "f")])
-def test_a_dynamic_within_a_held_note_is_no_jump(before, after):
+def test_a_dynamic_within_a_held_note_is_no_jump():
     notes = [note(0, 4, 67), note(4, 1, 69)]
-    score = play(*notes, signs=[sign(0, before), sign(2, after)])
-    found = levels_db(score)
-    assert max(abs(one - other) for (_, one), (_, other) in pairwise(found)) < 1.0
-    way = [time for time, level in found if abs(level - found[0][1]) > 0.1 and time < 2.0]
-    assert 1.0 < way[0] < 1.05
-    assert (found[-1][1] - found[0][1]) * 126 / 18 == pytest.approx(
-        DYNAMICS[after] - DYNAMICS[before], abs=1
-    )
-    assert abs(found[-1][1] - max(item for item in found if item[0] < 1.35)[1]) < 0.2
+    for before, after in (("f", "p"), ("p", "f")):
+        found = levels_db(play(*notes, signs=[sign(0, before), sign(2, after)]))
+        assert max(abs(one - other) for (_, one), (_, other) in pairwise(found)) < 1.0
+        way = [time for time, level in found if abs(level - found[0][1]) > 0.1 and time < 2.0]
+        assert 1.0 < way[0] < 1.05
+        steps = (found[-1][1] - found[0][1]) * 126 / 18
+        assert steps == pytest.approx(DYNAMICS[after] - DYNAMICS[before], abs=1)
+        assert abs(found[-1][1] - max(item for item in found if item[0] < 1.35)[1]) < 0.2
 
 
 def test_a_hairpin_within_a_held_note_begins_at_the_dynamic_before_it():
@@ -384,29 +379,25 @@ def test_a_note_between_the_keys_is_bent_there():
     assert settings(score, "/playing/bend") == [(0.0, -0.25), (0.5, None)]
 
 
-def test_a_slide_is_played_once_and_plucked_too():
+def test_a_note_that_slides_does_so_once_plucked_too_and_has_no_other_articulation():
     """Not again where a finger that tapped the string leaves it."""
     address, slide = "/playing/articulation", float(NUMBER["slide-up"])
     tapped = settings(play(*four(1, "slide-in-up", "mordent")), address)
     assert tapped == [(0.5, slide), (0.575, None)]
     assert settings(play(*four(1, "slide-in-up", "pizzicato")), address)[0] == (0.5, slide)
-
-
-def test_a_note_that_slides_has_no_other_articulation_and_that_is_told():
     rolled = play(note(0, 1, 67, "slide-in-up"), signs=[sign(0, "gesture", 11.0)])
-    assert settings(rolled, "/playing/articulation")[0] == (0.0, float(NUMBER["slide-up"]))
+    assert settings(rolled, address)[0] == (0.0, slide)
     assert "slides" in rolled.warnings[0]
 
 
-@pytest.mark.parametrize(("mark", "last"), [("slide-out-up", 2.0), ("slide-out-down", -2.0)])
-def test_slides_bend_out_of_a_note(mark, last):
-    bends = settings(play(*four(1, mark)), "/playing/bend")
-    assert bends[0] == (0.5, 0.0)
-    assert bends[-2][1] == pytest.approx(last)
-    assert bends[-2][0] < 1.0
-    assert bends[-1] == (1.0, None)
-    steps = [abs(after - one) for (_, one), (_, after) in pairwise(bends[:-1])]
-    assert max(steps[0], steps[-1]) < 0.7 * max(steps)  # no straight line
+def test_slides_bend_out_of_a_note():
+    for mark, last in (("slide-out-up", 2.0), ("slide-out-down", -2.0)):
+        bends = settings(play(*four(1, mark)), "/playing/bend")
+        assert (bends[0], bends[-1]) == ((0.5, 0.0), (1.0, None))
+        assert bends[-2][1] == pytest.approx(last)
+        assert bends[-2][0] < 1.0
+        steps = [abs(after - one) for (_, one), (_, after) in pairwise(bends[:-1])]
+        assert max(steps[0], steps[-1]) < 0.7 * max(steps)  # no straight line
 
 
 def test_a_contour_is_followed():
@@ -418,33 +409,26 @@ def test_a_contour_is_followed():
     assert bends[-2][1] == pytest.approx(1.0, abs=0.02)
 
 
-def test_a_portamento_is_there_on_the_beat():
-    score = play(*FOUR, spans=[span("portamento", 1, 2)])
-    begin = notes_of(score)[2].start_s
-    slide_s = settings(score, "/playing/portamento_time")[0][1] / 1e3
-    assert slide_s > 0.1
-    assert begin + slide_s == pytest.approx(1.0)
-    assert settings(score, "/playing/portamento")[0] == (pytest.approx(begin), 1.0)
+def test_a_portamento_is_there_on_the_beat_and_a_glissando_takes_most_of_its_note():
+    for name, length, least, most in (
+        ("portamento", 1, 0.1, 0.5),
+        ("glissando", 4, 0.7 * 4 * QUARTER_S - 1e-6, 0.7 * 4 * QUARTER_S + 1e-6),
+    ):
+        score = play(note(0, length, 67), note(length, 1, 79), spans=[span(name, 0, length)])
+        begin = notes_of(score)[1].start_s
+        slide_s = settings(score, "/playing/portamento_time")[0][1] / 1e3
+        assert least < slide_s < most
+        assert begin + slide_s == pytest.approx(length * QUARTER_S)
+        assert settings(score, "/playing/portamento")[0] == (pytest.approx(begin), 1.0)
 
 
-def test_a_glissando_slides_through_most_of_its_note_and_arrives_on_the_beat():
-    score = play(note(0, 4, 67), note(4, 1, 79), spans=[span("glissando", 0, 4)])
-    begin = notes_of(score)[1].start_s
-    slide_s = settings(score, "/playing/portamento_time")[0][1] / 1e3
-    assert slide_s == pytest.approx(0.7 * 4 * QUARTER_S)
-    assert begin + slide_s == pytest.approx(4 * QUARTER_S)
-
-
-def test_a_harmonic_touches_the_node_of_an_open_string():
+def test_a_harmonic_touches_the_node_of_an_open_string_or_is_told_not_to_speak():
     score = play(note(0, 1, 91, "harmonic"), note(1, 1, 67))
     assert [each.key for each in notes_of(score)] == [79, 67]  # a fifth above the open string
     flageolet = NUMBER["flageolet"]
     for address, value in (("/playing/articulation", flageolet), ("/playing/string", 2)):
         assert settings(score, address) == [(0.0, value), (QUARTER_S, None)]  # for this note alone
     assert not score.warnings
-
-
-def test_a_harmonic_that_does_not_speak_is_told():
     score = play(note(0, 1, 80, "harmonic"))
     assert [each.key for each in notes_of(score)] == [80]
     assert "harmonic" in score.warnings[0]
@@ -479,12 +463,9 @@ def test_each_part_has_a_channel_and_none_is_percussion():
     assert "20 parts" in score.warnings[0]
 
 
-def test_marks_that_were_not_understood_are_told_with_their_count():
+def test_marks_that_were_not_understood_are_told_and_a_score_without_notes_is_refused():
     score = performed(Written((Part("", tuple(FOUR)),), unknown={"squiggle": 2, "blob": 1}))
     assert score.warnings == ("not understood: squiggle (2 times), blob",)
-
-
-def test_a_score_without_notes_is_refused():
     with pytest.raises(ScoreError, match="no note"):
         performed(Written((Part("", ()),)))
 

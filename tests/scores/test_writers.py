@@ -203,12 +203,10 @@ def test_what_a_notation_has_no_sign_for_is_told_and_the_rest_written():
 
 
 def test_words_of_signs_are_read_as_what_they_say():
-    for (name, value), text in WRITTEN_SIGNS.items():
-        assert (meaning_of(text).name, meaning_of(text).value) == (name, value)
-    for number in range(len(ARTICULATIONS)):
-        text = words_of_sign("articulation", float(number))
-        other = words_of_sign("gesture", float(number))
-        for name, written in (("articulation", text), ("gesture", other)):
-            if written is not None:
-                assert (meaning_of(written).name, meaning_of(written).value) == (name, number)
+    said = [*WRITTEN_SIGNS.items()]
+    for kind in ("articulation", "gesture"):
+        signs = [(kind, float(number)) for number in range(len(ARTICULATIONS))]
+        said += [(sign, text) for sign in signs if (text := words_of_sign(*sign)) is not None]
+    for sign, text in said:
+        assert (meaning_of(text).name, meaning_of(text).value) == sign
     assert [meaning_of(text).name for text in WRITTEN_CHANGES.values()] == [*WRITTEN_CHANGES]

@@ -57,10 +57,7 @@ def test_the_pedal_has_the_dynamics() -> None:
     assert sorted(levels) == levels
 
 
-def test_where_neither_moves_it_sounds_as_it_did() -> None:
+def test_where_neither_moves_it_sounds_as_with_the_old_mapping_which_keeps_its_wheel() -> None:
     assert np.array_equal(steady("keyboard"), steady(OLD))
-
-
-def test_the_old_mapping_keeps_its_wheel() -> None:
     soft, loud = (steady(OLD, (1, value)) for value in (0, 127))
     assert 3.0 < level_db(loud) - level_db(soft) < 6.0

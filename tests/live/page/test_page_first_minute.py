@@ -1,4 +1,4 @@
-"""A newcomer is shown three gestures, and can send what was played as a link."""
+"""A newcomer is shown three gestures, can send what was played as a link, and learns a tune."""
 
 from __future__ import annotations
 
@@ -59,3 +59,19 @@ def test_a_link_asks_for_what_was_played_until_one_touches_the_string(found) -> 
     assert len(found["link"]) < 2000
     assert found["taken"]["held"] == 1  # the own finger
     assert found["let"] == 0
+
+
+def test_a_newcomer_plays_an_easy_tune_after_few_actions_and_is_answered(imitated) -> None:
+    found = drive("page_tunes.mjs", imitated)
+    assert found["actions"] <= 12
+    assert not found["covered"]  # the panel gives way to the instrument
+    assert found["overlaps"] == {name: [] for name in found["overlaps"]}
+    assert {
+        name: room for name, room in found["boards"].items() if room < 0.35
+    } == {}  # of the screen
+    assert found["answered"] == "Lower: to 1"
+    assert "41 of 42 notes at the first touch." in found["result"]
+    assert found["again"]
+    assert found["stopped"]
+    assert found["heard"] > 0  # whoever listens sees the notes come
+    assert found["goesOn"]

@@ -9,6 +9,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from aiohttp import web
+from live.page.browser import drive
 
 from yehu_server.ahead import build
 from yehu_server.ahead.build_hash import build_hash, with_section
@@ -91,3 +93,32 @@ def test_a_servers_page_reads_looks_by_the_facts_of_the_server() -> None:
     answer = Site().answer(SimpleNamespace(path="/facts.js", headers={}))
     assert build_hash().encode() in answer.body
     assert b"of then" not in answer.body
+
+
+# ---------------------------------------------------------------- while it is made
+
+
+@pytest.mark.slow
+def test_the_page_says_that_the_instrument_is_prepared_or_why_there_is_none(imitated) -> None:
+    found = drive("page_loading.mjs", imitated)
+    assert "still preparing" in found["preparing"]
+    assert found["answers"] == 3
+    assert found["ready"] == {"notice": None, "plays": True}
+    for said in (found["lacking"], found["lackingInChinese"]):
+        assert "there is no wasm-ld here" in said
+    assert found["lacking"].startswith("The instrument cannot be played")
+    assert found["lackingInChinese"].startswith("本页不能演奏")
+    assert found["without"]["plays"] is False
+    assert found["without"]["drawings"] > 5
+
+
+def test_a_server_says_that_the_module_comes_or_why_it_does_not() -> None:
+    site, request = Site(), SimpleNamespace(path="/yehu.wasm", headers={})
+    with pytest.raises(web.HTTPServiceUnavailable) as waits:
+        site.answer(request)
+    assert int(waits.value.headers["Retry-After"]) > 0
+    site.set_no_module("there is no wasm-ld")
+    with pytest.raises(web.HTTPNotFound) as lacks:
+        site.answer(request)
+    assert lacks.value.text == "there is no wasm-ld\n"
+    assert lacks.value.content_type == "text/plain"

@@ -4,17 +4,11 @@ from __future__ import annotations
 
 from musicxml_text import (
     DIVISIONS,
-    HEAD,
-    articulation,
     attributes,
     barline,
     grace,
     note,
-    ornament,
     score,
-    slur,
-    technical,
-    tempo,
 )
 
 TIE, TIED = '<tie type="start"/>', '<tied type="start"/>'
@@ -46,7 +40,6 @@ def back(quarters: float) -> str:
 
 
 CORPUS: dict[str, str] = {
-    "plain": score(SCALE, DESCENT, HIGH, LAST, title="Plain"),
     "rests and dots": score(
         note("G4", 1.5) + note("r", 0.5) + note("A4", 0.75) + note("B4", 0.25) + note("r", 1),
         note("r", 4),
@@ -108,19 +101,10 @@ CORPUS: dict[str, str] = {
         note("C5", 2) + note("D5", 2) + back(4) + note("F4", 1, voice=2) + note("G4", 3, voice=2),
         note("E5", 4) + back(4) + note("C5", 4, voice=2),
     ),
-    "two parts": score(SCALE, P2=note("C5", 2) + note("A5", 2)),
     "small notes": score(
         grace("G4") + note("A4", 2) + grace("C5") + grace("D5") + note("C5", 2), note("B4", 4)
     ),
     "quarter tones": score(note("F4", 1) + note("F+4", 1) + note("G+4", 2), LAST),
-    "marks": score(
-        tempo(90)
-        + note("G4", 1, slur("start"), technical("down-bow"))
-        + note("A4", 1, articulation("staccato"))
-        + note("B4", 1, slur("stop"))
-        + note("C5", 1, articulation("accent")),
-        note("D5", 2, ornament("trill-mark")) + note("E5", 2, "<fermata/>"),
-    ),
     "other divisions": score(
         SCALE,
         "<attributes><divisions>480</divisions></attributes>"
@@ -128,5 +112,4 @@ CORPUS: dict[str, str] = {
         "<note><pitch><step>D</step><octave>5</octave></pitch><duration>1200</duration></note>",
     ),
     "short bar": score(SCALE, note("C5", 1) + note("D5", 1), LAST),
-    "without doctype": score(SCALE, LAST, before=HEAD),
 }

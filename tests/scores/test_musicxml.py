@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import zipfile
-from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -180,10 +179,8 @@ def test_slurs_glissandos_hairpins_and_trills_last_from_note_to_note(subtests, r
 def test_rit_lasts_to_a_tempo_which_brings_the_tempo_back(read):
     written = read(score(tempo(90) + FOUR, words("rit.") + FOUR, words("a tempo") + FOUR))
     assert spans_of(written) == [("ritardando", 4.0, 8.0)]
-    assert [(float(each.beat), each.quarters_per_minute) for each in written.tempi] == [
-        (0.0, 90.0),
-        (8.0, 90.0),
-    ]
+    tempi = [(each.beat, each.quarters_per_minute) for each in written.tempi]
+    assert tempi == [(0, 90.0), (8, 90.0)]
 
 
 def test_a_metronome_mark_counts_in_its_unit_and_figures_go_over_words(read):
@@ -230,17 +227,12 @@ def test_words_have_a_meaning():
 
 
 def test_title_bars_and_metre_are_those_of_the_score(read):
-    written = read(
-        score(attributes(3, 4) + note("C5", 1), note("D5", 3), note("E5", 3), title="Upbeat")
-    )
+    bars = (attributes(3, 4) + note("C5", 1), note("D5", 3), note("E5", 3))
+    written = read(score(*bars, title="Upbeat"))
     assert written.title == "Upbeat"
-    assert [written.place(each.beat) for each in written.parts[0].notes] == [
-        ("1", 0),
-        ("2", 0),
-        ("3", 0),
-    ]
-    assert written.metres[-1].beat == 1.0
-    assert written.metres[-1].quarters == 3.0
+    places = [written.place(each.beat) for each in written.parts[0].notes]
+    assert places == [("1", 0), ("2", 0), ("3", 0)]
+    assert (written.metres[-1].beat, written.metres[-1].quarters) == (1.0, 3.0)
 
 
 def test_a_rest_that_is_longer_than_its_bar_fills_the_bar(read):
@@ -291,12 +283,15 @@ def test_of_hidden_notes_those_without_a_place_on_the_page_are_silent(read):
     assert written.warnings == ("hidden notes without a place on the page are not played",)
 
 
-def test_a_cue_note_that_heads_a_chord_shifts_nothing(read):
+def test_a_cue_note_that_heads_a_chord_shifts_nothing_and_a_grace_note_may_be_on_another_staff(
+    read,
+):
     cue = note("G4", 1).replace("<note>", "<note><cue/>")
-    written = read(
-        score(cue + note("+B4", 1).replace("<chord/>", "<cue/><chord/>") + note("C5", 3))
-    )
-    assert [(float(each.beat), each.pitch) for each in written.parts[0].notes] == [(1.0, 72.0)]
+    chord = note("+B4", 1).replace("<chord/>", "<cue/><chord/>")
+    small = grace("G4").replace("</note>", "<staff>2</staff></note>")
+    [part] = read(score(cue + chord + small + note("C5", 3))).parts
+    assert [(each.beat, each.pitch) for each in part.notes] == [(1, 72.0)]
+    assert [each.pitch for each in part.notes[0].before] == [67.0]
 
 
 def test_a_rest_that_one_part_has_too_much_makes_no_bar_longer(read):
@@ -318,12 +313,6 @@ def test_divisions_may_be_told_after_the_first_notes(read):
     first = "<attributes><key><fifths>1</fifths></key></attributes>"
     written = read(score(first + note("G4", 1) + note("A4", 1) + late + note("B4", 2)))
     assert [float(each.beat) for each in written.parts[0].notes] == [0.0, 1.0, 2.0]
-
-
-def test_a_grace_note_on_another_staff_belongs_to_its_note(read):
-    small = grace("G4").replace("</note>", "<staff>2</staff></note>")
-    [part] = read(score(small + note("A4", 4))).parts
-    assert [each.pitch for each in part.notes[0].before] == [67.0]
 
 
 def test_endings_without_numbers_and_bars_that_nobody_plays_are_told(read):
@@ -435,10 +424,7 @@ def test_numbers_beyond_reason_are_left_out(read):
 def test_notes_that_overlap_in_a_voice_are_cut(read):
     back = "<backup><duration>24</duration></backup>"
     notes = read(score(note("G4", 4) + back + note("A4", 2))).parts[0].notes
-    assert [(each.beat, each.length, each.pitch) for each in notes] == [
-        (Fraction(0), Fraction(2), 67.0),
-        (Fraction(2), Fraction(2), 69.0),
-    ]
+    assert [(each.beat, each.length, each.pitch) for each in notes] == [(0, 2, 67.0), (2, 2, 69.0)]
 
 
 def test_marks_of_tied_notes_are_those_of_the_whole(read):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import multiprocessing
+import warnings
 from collections import deque
 from multiprocessing.connection import Connection, wait
 from typing import Any
@@ -116,7 +117,9 @@ def work(session: pytest.Session, link: Connection, number: int) -> None:
     folder = config._tmp_path_factory.getbasetemp()
     config.option.basetemp = str(folder / f"worker{number}")
     config.pluginmanager.get_plugin("tmpdir").pytest_configure(config)
-    config.pluginmanager.register(Teller(config, link))
+    teller = Teller(config, link)
+    config.pluginmanager.register(teller)
+    teller.is_new = False
     link.send(("more", None))
     places = deque(link.recv())
     while places:
@@ -136,10 +139,15 @@ class Teller:
     def __init__(self, config: pytest.Config, link: Connection) -> None:
         self.config = config
         self.link = link
+        self.is_new = True  # then it hears again of all warnings before the fork
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         data = self.config.hook.pytest_report_to_serializable(config=self.config, report=report)
         self.link.send(("report", data))
 
-    def pytest_warning_recorded(self, **what: Any) -> None:
-        self.link.send(("warning", what))
+    def pytest_warning_recorded(
+        self, warning_message: warnings.WarningMessage, when: str, nodeid: str, location: Any
+    ) -> None:
+        what = {"warning_message": warning_message, "when": when, "nodeid": nodeid}
+        if not self.is_new:
+            self.link.send(("warning", what | {"location": location}))

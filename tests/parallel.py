@@ -11,6 +11,7 @@ import multiprocessing
 import warnings
 from collections import deque
 from multiprocessing.connection import Connection, wait
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -33,11 +34,12 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
     files = itertools.groupby(range(len(session.items)), lambda place: session.items[place].path)
     waiting = deque([*places] for _, places in files)
     workers: dict[Connection, Worker] = {}
-    numbers = itertools.count()
+    folder = session.config._tmp_path_factory.getbasetemp()
+    folders = (folder / f"worker{number}" for number in itertools.count())
     try:
         while waiting or workers:
             while waiting and len(workers) < options.workers:
-                worker = Worker(session, waiting, next(numbers))
+                worker = Worker(session, waiting, next(folders))
                 workers[worker.link] = worker
             for link in wait(workers):
                 if not workers[link].hear():
@@ -54,13 +56,13 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
 class Worker:
     """A process that runs tests, as the one knows it that tells it which."""
 
-    def __init__(self, session: pytest.Session, waiting: deque[list[int]], number: int) -> None:
+    def __init__(self, session: pytest.Session, waiting: deque[list[int]], folder: Path) -> None:
         self.session = session
         self.waiting = waiting  # files that nobody runs yet, by their tests' places
         self.given: list[int] = []  # tests that it has been told to run, and not yet begun
         self.runs: int | None = None
         self.link, theirs = multiprocessing.Pipe()
-        self.process = FORK.Process(target=work, args=(session, theirs, number))
+        self.process = FORK.Process(target=work, args=(session, theirs, folder))
         self.process.start()
         theirs.close()
 
@@ -107,29 +109,36 @@ class Worker:
             self.session.shouldfail = f"a worker ended with exit code {self.process.exitcode}"
 
 
-def work(session: pytest.Session, link: Connection, number: int) -> None:
-    """Run what the other end of a link tells, to its end; what a worker does."""
+def work(session: pytest.Session, link: Connection, folder: Path) -> None:
+    """Be a worker: run the tests that the other end of a link tells, with a folder for them."""
     config = session.config
     config.pluginmanager.unregister(name="terminalreporter")
     capture = config.pluginmanager.get_plugin("capturemanager")
     capture.stop_global_capturing()  # its files are shared with the other workers
     capture.start_global_capturing()
-    folder = config._tmp_path_factory.getbasetemp()
-    config.option.basetemp = str(folder / f"worker{number}")
+    config.option.basetemp = str(folder)
     config.pluginmanager.get_plugin("tmpdir").pytest_configure(config)
     teller = Teller(config, link)
     config.pluginmanager.register(teller)
     teller.is_new = False
+    try:
+        run_files(session, link)
+    finally:
+        capture.stop_global_capturing()  # or nobody would see what went wrong
+
+
+def run_files(session: pytest.Session, link: Connection) -> None:
+    """Run the tests that the other end of a link tells, by their places."""
     link.send(("more", None))
     places = deque(link.recv())
     while places:
         place = places.popleft()
         link.send(("begins", place))
-        if not places:
+        if not places:  # what comes next decides what is taken down after this one
             link.send(("more", None))
             places.extend(link.recv())
         item, following = session.items[place], session.items[places[0]] if places else None
-        config.hook.pytest_runtest_protocol(item=item, nextitem=following)
+        item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
         link.send(("has run", place))
 
 

@@ -29,8 +29,8 @@ settings.load_profile("yehu")
 COLLECT_AFTER = (50_000, 20, 20)  # objects: Python's own 700 would look through all of them often
 
 CHANGED_S = 60.0  # how long tests of a change begin
-NEED_THE_PAGE = {"ahead", "documentation", "page"}  # folders; it is compiled beside the others
-PAGE_FROM, PAGE_TO = 0.35, 0.92  # of all files: when it is compiled, and before the end
+WAITING = {"ahead", "documentation", "page"}  # folders
+LAST_WAITS = 0.92  # of all files: when the last that waits begins
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -101,11 +101,10 @@ def combinations(items: list[pytest.Item]) -> list[pytest.Item]:
 
 def places(files: list[Path]) -> dict[Path, float]:
     """When each file begins: those that mostly wait for a browser are spread among the others."""
-    waiting = [file for file in files if file.parent.name in NEED_THE_PAGE]
-    others = [file for file in files if file.parent.name not in NEED_THE_PAGE]
-    step = (PAGE_TO - PAGE_FROM) / max(len(waiting), 1)
-    spread = {file: PAGE_FROM + step * number for number, file in enumerate(waiting)}
-    return {file: number / len(others) for number, file in enumerate(others)} | spread
+    waiting = [file for file in files if file.parent.name in WAITING]
+    others = [file for file in files if file.parent.name not in WAITING]
+    spread = {file: LAST_WAITS * n / len(waiting) for n, file in enumerate(waiting)}
+    return {file: n / len(others) for n, file in enumerate(others)} | spread
 
 
 @pytest.fixture(autouse=True, scope="session")

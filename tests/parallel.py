@@ -71,13 +71,14 @@ class Worker:
         hook, config = self.session.config.hook, self.session.config
         try:
             name, what = self.link.recv()
+            if name == "more":
+                more = self.waiting.popleft() if self.waiting else []
+                self.given += more
+                self.link.send(more)
+                return True
         except (EOFError, ConnectionError):
             return False
-        if name == "more":
-            more = self.waiting.popleft() if self.waiting else []
-            self.given += more
-            self.link.send(more)
-        elif name == "begins":
+        if name == "begins":
             self.given.remove(what)
             self.runs = what
         elif name == "has run":
@@ -123,6 +124,8 @@ def work(session: pytest.Session, link: Connection, folder: Path) -> None:
     teller.is_new = False
     try:
         run_files(session, link)
+    except KeyboardInterrupt:  # Ctrl-C, which ends all of them
+        pass
     finally:
         capture.stop_global_capturing()  # or nobody would see what went wrong
 

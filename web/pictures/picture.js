@@ -163,12 +163,18 @@ export class Picture {
     throw new Error("says each picture");
   }
 
+  /** How much larger everything is than on a small canvas. */
+  get zoom() {
+    const { clientWidth, clientHeight } = this.canvas;
+    const room = Math.min(clientWidth / LARGE.width, clientHeight / LARGE.height, LARGE.most);
+    return this.isMagnified && this.canvas.closest(".large") ? Math.max(room, 1) : 1;
+  }
+
   /** As many dots as the screen has. */
   #fit() {
     this.isStale = false;
+    const { zoom } = this;
     const { clientWidth, clientHeight } = this.canvas;
-    const room = Math.min(clientWidth / LARGE.width, clientHeight / LARGE.height, LARGE.most);
-    const zoom = this.isMagnified && this.canvas.closest(".large") ? Math.max(room, 1) : 1;
     const dots = Math.min(devicePixelRatio || 1, MOST_DOTS);
     this.width = clientWidth / zoom;
     this.height = clientHeight / zoom;

@@ -92,14 +92,14 @@ export class Schelleng extends Picture {
   }
 
   /**
-   * The bow position and force that a point of the canvas stands for.
+   * The bow position and force that a point of the canvas stands for, also before it is drawn.
    * @param {number} x px
    * @param {number} y px
    */
   pointAt(x, y) {
-    const zoom = this.width / this.canvas.clientWidth; // it may be large
-    const across = (x * zoom - LEFT) / (this.width - LEFT - RIGHT);
-    const down = (y * zoom) / (this.height - BOTTOM);
+    const { canvas, zoom } = this;
+    const across = (x / zoom - LEFT) / (canvas.clientWidth / zoom - LEFT - RIGHT);
+    const down = y / zoom / (canvas.clientHeight / zoom - BOTTOM);
     return {
       beta: NEAREST * (FARTHEST / NEAREST) ** Math.min(Math.max(across, 0), 1),
       force: FIRMEST * (LIGHTEST / FIRMEST) ** Math.min(Math.max(down, 0), 1),

@@ -19,6 +19,7 @@ from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.core.player.bowing import default_recipes
 from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.midi import input_process
 from yehu_server.live.midi.feed import MidiFeed, SharedRing
 from yehu_server.live.midi.input_process import Inputs
 from yehu_server.live.midi.ports import MidiOptions, MidiPorts
@@ -472,7 +473,9 @@ class Studio:
         self.done.append((event, details))
 
 
-def test_a_port_is_listened_to_before_it_is_open_or_told_of_once_where_it_cannot_be_opened():
+def test_a_port_is_listened_to_before_it_is_open_and_tried_again_where_it_cannot_be_opened(
+    monkeypatch,
+):
     studio = Studio()
     studio.inputs("key").look()
     assert [step for step, *_ in studio.done] == ["listens", "opens", "appeared"]
@@ -480,7 +483,16 @@ def test_a_port_is_listened_to_before_it_is_open_or_told_of_once_where_it_cannot
     inputs = studio.inputs("key")
     for _ in range(5):
         inputs.look()
-    assert [step for step, *_ in studio.told()] == ["refused"]
+    assert [step for step, *_ in studio.done] == ["listens", "refused"]  # once, for some seconds
+    monkeypatch.setattr(input_process, "AGAIN_S", 0.0)
+    inputs.look()
+    assert [step for step, *_ in studio.done] == ["listens", "refused", "listens"]  # untold
+    studio.is_owned = False
+    inputs.look()
+    assert [step for step, *_ in studio.done[3:]] == ["listens", "opens", "appeared"]
+    studio.done, studio.is_owned = [], True
+    inputs.look()
+    assert studio.done == []
 
 
 def test_a_name_that_no_port_has_is_told_once_and_heard_when_it_comes():

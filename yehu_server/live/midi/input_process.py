@@ -23,6 +23,7 @@ from yehu_server.util.processes import Message, Parent
 
 LOOK_EVERY_S = 0.5
 SYSTEM_EVERY_S = 2.0  # between looks for a MIDI system, where there is none
+AGAIN_S = 5.0  # until a port is tried again that could not be opened: another program may have it
 SENSE_EVERY_S = 0.05
 SENSE_WITHIN_S = 0.33  # active sensing promises a message every 300 ms
 SLEPT_S = 0.25  # a longer pause between two checks: this process was stopped
@@ -96,7 +97,7 @@ class Inputs:
         self._names = StableNames()
         self._finder: Any = None  # the client that lists port names
         self._problem = ""
-        self._refused: set[str] = set()
+        self._refused: dict[str, float] = {}  # when ports could not be opened, s
         self._sought: set[str] = set(self._patterns)  # those that no port has matched yet
         self._watch: JackWatch | None = None
         self._sensed = time.monotonic()
@@ -120,9 +121,11 @@ class Inputs:
             self._open.pop(name).close()
             self._feed.end_port_notes(name, time.monotonic_ns(), is_gone=True)
             self._parent.tell("vanished", port=name)
-        self._refused &= set(stable)
+        self._refused = {name: at for name, at in self._refused.items() if name in stable}
+        early = time.monotonic() - AGAIN_S
         for name, full_name in stable.items():
-            if name not in self._open | dict.fromkeys(self._refused) and self._wants(name):
+            is_due = self._refused.get(name, early) <= early
+            if name not in self._open and is_due and self._wants(name):
                 self._add(name, full_name)
         self._seek(stable)
 
@@ -175,8 +178,7 @@ class Inputs:
 
         number = self._feed.open(name)
         if number is None:
-            self._refused.add(name)
-            self._parent.tell("refused", port=name, reason=f"{PORTS} are open, which is the most")
+            self._refuse(name, f"{PORTS} are open, which is the most")
             return
         try:
             port = Input(self._client(), name, full_name, self._feed, self._parent)
@@ -185,13 +187,19 @@ class Inputs:
             else:
                 port.midi.open_port(port.midi.get_ports().index(full_name), name=name[:32])
         except (rtmidi.RtMidiError, SystemError, ValueError, NotImplementedError) as error:
-            self._refused.add(name)
             self._feed.end_port_notes(name, time.monotonic_ns(), is_gone=True)
-            self._parent.tell("refused", port=name, reason=str(error))
+            self._refuse(name, str(error))
             return
+        self._refused.pop(name, None)
         self._open[name] = port
         port.is_forwarded = self._is_heard
         self._parent.tell("appeared", port=name, number=number)
+
+    def _refuse(self, name: str, reason: str) -> None:
+        """Leave a port for now; the parent is told the first time."""
+        if name not in self._refused:
+            self._parent.tell("refused", port=name, reason=reason)
+        self._refused[name] = time.monotonic()
 
     def _client(self) -> Any:
         import rtmidi

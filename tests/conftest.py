@@ -29,7 +29,7 @@ settings.load_profile("yehu")
 COLLECT_AFTER = (50_000, 20, 20)  # objects: Python's own 700 would look through all of them often
 
 CHANGED_S = 60.0  # how long tests of a change begin
-WAITING = {"ahead", "documentation", "page"}  # folders
+WAITING = {"ahead", "documentation", "page"}  # folders of tests that mostly wait for a browser
 LAST_WAITS = 0.92  # of all files: when the last that waits begins
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import multiprocessing
+import os
 import warnings
 from collections import deque
 from multiprocessing.connection import Connection, wait
@@ -16,7 +17,6 @@ from typing import Any
 
 import pytest
 
-FORK = multiprocessing.get_context("fork")
 TO_END_S = 30.0  # for a worker to take down what its tests share
 
 
@@ -29,6 +29,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtestloop(session: pytest.Session) -> bool | None:
     options = session.config.option
+    if options.workers and not hasattr(os, "fork"):
+        raise pytest.UsageError("--workers: this system cannot fork; leave it out")
     if not options.workers or options.collectonly or session.testsfailed:
         return None
     files = itertools.groupby(range(len(session.items)), lambda place: session.items[place].path)
@@ -62,7 +64,8 @@ class Worker:
         self.given: list[int] = []  # tests that it has been told to run, and not yet begun
         self.runs: int | None = None
         self.link, theirs = multiprocessing.Pipe()
-        self.process = FORK.Process(target=work, args=(session, theirs, folder))
+        fork = multiprocessing.get_context("fork")
+        self.process = fork.Process(target=work, args=(session, theirs, folder))
         self.process.start()
         theirs.close()
 

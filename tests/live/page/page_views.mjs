@@ -91,6 +91,16 @@ export default async function (browser, url) {
   await page.mouse.move(diagram.x + diagram.width * 0.8, diagram.y + diagram.height * 0.2);
   await page.mouse.up();
   found.placed = await wishes(page);
+  // Its upper right corner, 6 px from the edge, of one that is not drawn yet.
+  found.corner = await page.evaluate(async () => {
+    const { Schelleng } = await import("/pictures/schelleng.js");
+    const canvas = document.createElement("canvas");
+    canvas.style.cssText = "position: fixed; width: 400px; height: 300px";
+    document.body.append(canvas);
+    const { beta, force } = new Schelleng(canvas).pointAt(394, 0);
+    canvas.remove();
+    return [beta, force];
+  });
 
   await page.click("#tab-sound");
   await wishes(page);

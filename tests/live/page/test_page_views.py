@@ -63,6 +63,7 @@ def test_the_diagram_places_the_bow_until_it_is_let_go(found) -> None:
     assert 0.04 <= near < far <= 0.5
     assert 0.0 < light < firm <= 5.0
     assert end[0] == "RELEASE"
+    assert found["corner"] == pytest.approx([0.5, 10.0])  # the greatest of both
 
 
 def test_the_tuner_measures_from_the_notes_of_the_tuning(found) -> None:

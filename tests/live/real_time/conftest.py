@@ -22,6 +22,7 @@ from typing import Any
 import forks
 import numpy as np
 import pytest
+from waiting import until
 
 from yehu_server.core.engine.warming import warm_up
 from yehu_server.live.osc.packets import pack, unpack
@@ -30,20 +31,6 @@ from yehu_server.live.osc.status import STATUS
 RECORDER = Path(__file__).with_name("recorder.py")
 RATE = 48000
 STARTED_WITHIN_S = 120.0  # where everything has to be compiled first
-
-
-def until(condition: Callable[[], Any], within_s: float, what: str) -> Any:
-    """Wait for something to be true, and return it."""
-    deadline = time.monotonic() + within_s
-    while not (value := condition()):
-        assert time.monotonic() < deadline, f"not within {within_s} s: {what}"
-        time.sleep(0.005)
-    return value
-
-
-@pytest.fixture(scope="session", name="until")
-def until_fixture() -> Callable[..., Any]:
-    return until
 
 
 @functools.cache
@@ -106,7 +93,7 @@ class Jackd:
                 self._process.wait()
                 return False
 
-        until(is_up, 20.0, "a JACK server")
+        until(is_up, "a JACK server", 20.0)
 
     def restart(self) -> None:
         """Start the same again after a kill."""
@@ -298,7 +285,7 @@ class Osc:
             told = {name: heard[at][0] for name in names if (at := f"/status/{name}") in heard}
             return told if len(told) == len(names) else {}
 
-        return until(ask, 20.0, "the whole status")
+        return until(ask, "the whole status", 20.0)
 
     def close(self) -> None:
         self._socket.close()
@@ -362,7 +349,7 @@ class Serve:
     def wait(self, within_s: float = 10.0) -> int:
         code = self.process.wait(within_s)
         self._listener.join()
-        until(lambda: not self.family(), 60.0, "all its processes to be gone")
+        until(lambda: not self.family(), "all its processes to be gone", 60.0)
         return code
 
     def close(self) -> None:

@@ -23,7 +23,7 @@ def test_a_kill_leaves_takes_that_can_be_opened_and_a_capture_that_can_be_read(
     osc = server.osc()
     osc.send("/record/start", "other")
     osc.send("/note", 67, 90)
-    until(lambda: np.any(sound_of(other)) and np.any(sound_of(take)), 10.0, "a sound")
+    until(lambda: np.any(sound_of(other)) and np.any(sound_of(take)), "a sound", 10.0)
     server.process.send_signal(signal.SIGKILL)
     server.process.wait()
     assert {path.name for path in tmp_path.iterdir()} == {name, "other.wav", "take.jsonl"}

@@ -108,7 +108,7 @@ def test_without_its_audio_server_it_says_so_and_plays_on_again_and_again(
         samples = listener.recording().samples[0, -4800:]
         return samples.size > 0 and peak(samples) > SOUNDS
 
-    until(sounds, 15.0, "the instrument to be heard again")
+    until(sounds, "the instrument to be heard again", 15.0)
 
     assert server.end() == 0
     recorded, again = same_again(tmp_path)
@@ -164,9 +164,9 @@ class Stopped:
         self._until = until
         assert server.output.state.device == DEVICE
         self.player.note_on(67.0, 90.0, frame=self.player.frame_of())
-        until(lambda: self.player.pitch == 67.0, 5.0, "the note")
+        until(lambda: self.player.pitch == 67.0, "the note", 5.0)
         self._audio = server.output._child._process.pid
-        until(lambda: self._stop(in_block=in_block), 60.0, "the audio process to be there")
+        until(lambda: self._stop(in_block=in_block), "the audio process to be there", 60.0)
 
     def _stop(self, *, in_block: bool) -> bool:
         """Stop the process; let it go on if it is elsewhere."""
@@ -174,8 +174,8 @@ class Stopped:
         threads = Path(f"/proc/{self._audio}/task")
         self._until(
             lambda: all(") T " in (one / "stat").read_text() for one in threads.iterdir()),
-            2.0,
             "all threads to be stopped",
+            2.0,
         )
         if bool(self.instrument._rig["meters"]["running"][0]) == in_block:
             return True
@@ -187,13 +187,13 @@ class Stopped:
         """Kill the process, and wait until another one plays."""
         os.kill(self._audio, signal.SIGKILL)
         output = self.server.output
-        self._until(lambda: output.state.losses == 1, 5.0, "the loss")
-        self._until(lambda: output.state.device == DEVICE, 15.0, "the device")
+        self._until(lambda: output.state.losses == 1, "the loss", 5.0)
+        self._until(lambda: output.state.device == DEVICE, "the device", 15.0)
         self.wait(2000)
 
     def wait(self, frames: int) -> None:
         end = self.instrument.frame + frames
-        self._until(lambda: self.instrument.frame >= end, 5.0, "frames to be played")
+        self._until(lambda: self.instrument.frame >= end, "frames to be played", 5.0)
 
     @property
     def keys(self) -> tuple[int, int]:
@@ -237,12 +237,12 @@ def test_a_note_in_the_middle_of_which_the_audio_process_dies_does_not_hang(stop
     it.wait(4800)
     assert not it.server.ensemble.taped(gap[0])[1].any()
     it.player.note_on(69.0, 90.0, frame=it.player.frame_of())
-    until(lambda: it.player.pitch == 69.0, 5.0, "a new note")
+    until(lambda: it.player.pitch == 69.0, "a new note", 5.0)
     it.wait(9600)
     assert peak(it.server.ensemble.taped(it.instrument.frame - 4800)[1]) > SOUNDS
     assert it.keys == (1, 1)
     it.player.note_off(69.0, frame=it.player.frame_of())
-    until(lambda: it.player.pitch is None, 5.0, "its end")
+    until(lambda: it.player.pitch is None, "its end", 5.0)
     assert it.keys == (0, 0)
 
 
@@ -254,7 +254,7 @@ def test_a_note_goes_on_where_the_audio_process_dies_between_two_blocks(stopped,
     assert it.keys == (1, 1)
     assert peak(it.server.ensemble.taped(it.instrument.frame - 1000)[1]) > SOUNDS
     it.player.note_off(67.0, frame=it.player.frame_of())
-    until(lambda: it.player.pitch is None, 5.0, "its end")
+    until(lambda: it.player.pitch is None, "its end", 5.0)
     assert it.keys == (0, 0)
 
 
@@ -265,8 +265,8 @@ def test_a_key_that_was_pressed_while_the_audio_process_died_can_be_let_go(stopp
     it.kill()
     words = (72.0,) if end == "note_off" else ()
     getattr(it.player, end)(*words, frame=it.player.frame_of())
-    until(lambda: it.keys == (0, 0), 5.0, "the key to be let go")
-    until(lambda: it.player.pitch is None, 5.0, "its end")
+    until(lambda: it.keys == (0, 0), "the key to be let go", 5.0)
+    until(lambda: it.player.pitch is None, "its end", 5.0)
 
 
 PLAYS_ON = """
@@ -378,12 +378,12 @@ def open_files() -> set[str]:
 def test_a_helper_process_that_is_ended_or_crashes_leaves_no_pipe_open(until):
     before = open_files()
     Child("yehu_server.live.midi.input_process", lambda _event: None).stop()
-    until(lambda: open_files() <= before, 2.0, "its pipes to be closed")
+    until(lambda: open_files() <= before, "its pipes to be closed", 2.0)
     events = []
     helper = Child("yehu_server.live.midi.input_process", events.append)
     helper._process.kill()
-    until(lambda: {"event": "gone"} in events, 2.0, "its end")
-    until(lambda: open_files() <= before, 2.0, "its pipes to be closed")
+    until(lambda: {"event": "gone"} in events, "its end", 2.0)
+    until(lambda: open_files() <= before, "its pipes to be closed", 2.0)
 
 
 @pytest.mark.parametrize("started", [0, 1])
@@ -427,7 +427,7 @@ def test_a_helper_process_need_not_wait_for_a_parent_that_is_stopped(monkeypatch
     )
     helper = Child("talks", hear)
     try:
-        until(lambda: not helper.is_alive, 20.0, "5,000 messages of it to be said")
+        until(lambda: not helper.is_alive, "5,000 messages of it to be said", 20.0)
     finally:
         held.set()
         helper.stop()

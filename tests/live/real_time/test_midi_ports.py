@@ -133,7 +133,7 @@ class Witness:
         def found() -> float | None:
             return next((at for at, line in list(self.said) if words in line), None)
 
-        at = self._until(found, within_s, words)
+        at = self._until(found, words, within_s)
         if words.endswith("is connected"):
             time.sleep(LISTENS_AFTER_S)
         return at
@@ -152,7 +152,7 @@ class Witness:
 
     def comes_to(self, pitch: float | None) -> None:
         """Wait until what is posted is played."""
-        self._until(lambda: self.player.pitch == pitch, 1.0, f"the pitch to be {pitch}")
+        self._until(lambda: self.player.pitch == pitch, f"the pitch to be {pitch}", 1.0)
 
     def plays(self, pitch: float | None, program: Program, order: str) -> None:
         """Send until it plays: on a busy machine JACK loses messages."""
@@ -162,7 +162,7 @@ class Witness:
             time.sleep(0.1)
             return self.player.pitch == pitch
 
-        self._until(played, 5.0, f"{order} to play {pitch}")
+        self._until(played, f"{order} to play {pitch}", 5.0)
 
 
 # JACK without real-time rights is sometimes late and then loses messages: hence periods of 20 ms.
@@ -202,7 +202,7 @@ def shared_witness(witness) -> Witness:
 @pytest.fixture
 def listening(shared_witness, until) -> Witness:
     """A server that hears all ports, once those of earlier tests are gone."""
-    until(lambda: not shared_witness.server.midi.connected, SOON_S, "earlier ports to be gone")
+    until(lambda: not shared_witness.server.midi.connected, "earlier ports to be gone", SOON_S)
     shared_witness.forget()
     return shared_witness
 
@@ -236,7 +236,7 @@ def test_the_default_mapping_reaches_the_instrument(keys, until):
             applied.update(heard.applied())
             return address in applied
 
-        until(moved, 5.0, f"{data} to move {address}")
+        until(moved, f"{data} to move {address}", 5.0)
         return applied[address][1]
 
     assert moves("90 4a 50", "/bow/pressure") == pytest.approx(0.4575, rel=1e-3)  # of velocity 80
@@ -319,7 +319,7 @@ def test_only_the_ports_asked_for_are_opened_and_one_of_our_own_is_there(
     heard.hears("MIDI: piano:out is connected")
     time.sleep(0.6)
     assert sorted(heard.server.midi.connected) == ["piano:out", "yehu in"]
-    until(lambda: any("yehu in" in port for port in jackd.ports()), 2.0, "our own port")
+    until(lambda: any("yehu in" in port for port in jackd.ports()), "our own port", 2.0)
     sender.tell("send drums 90 45 60")
     heard.plays(67.0, sender, "send piano 90 43 60")
 
@@ -367,10 +367,10 @@ def hear_noise(heard: Witness, until: Callable, data: Callable[[], list[int]]) -
             feed.receive(port, sent, time.monotonic_ns())
         if number % 1000 == 999:
             feed.end_port_notes(port, time.monotonic_ns(), is_gone=False)
-            until(all_is_taken, SOON_S, "messages to be taken")  # so many at a time
+            until(all_is_taken, "messages to be taken", SOON_S)  # so many at a time
     for name in names:
         feed.end_port_notes(name, time.monotonic_ns(), is_gone=True)
-    until(all_is_taken, SOON_S, "the end of both ports to be taken")
+    until(all_is_taken, "the end of both ports to be taken", SOON_S)
 
 
 def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listening, until):
@@ -384,7 +384,7 @@ def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listenin
         hear_noise(heard, until, lambda: [0xD0, 0x4A, 0x11])
         return bool(heard.server.status()["midi_malformed_last"].startswith("d0 4a 11"))
 
-    until(is_last, SOON_S, "the last one to be told")
+    until(is_last, "the last one to be told", SOON_S)
     heard.comes_to(None)
     assert heard.malformed() >= before + 5000
 
@@ -535,12 +535,12 @@ def test_without_a_midi_system_it_is_useful_and_one_that_comes_is_found(
     osc = server.osc()
     server.said("MIDI: none")
     osc.send("/note", 67, 90)
-    until(lambda: osc.status()["note"] > 66.0, 2.0, "OSC to play")
+    until(lambda: osc.status()["note"] > 66.0, "OSC to play", 2.0)
     jackd.restart()
     sender.tell("open keyboard out")
     server.said("MIDI: keyboard:out is connected", 10.0)
     time.sleep(LISTENS_AFTER_S)
-    until(lambda: plays_on(osc, sender), 5.0, "MIDI to play")
+    until(lambda: plays_on(osc, sender), "MIDI to play", 5.0)
     assert server.end() == 0
 
 
@@ -555,12 +555,12 @@ def test_when_the_midi_system_dies_osc_plays_on_and_midi_comes_back(jackd, serve
         first.tell("open keyboard out")
         server.said("MIDI: keyboard:out is connected", SOON_S)
         time.sleep(LISTENS_AFTER_S)
-        until(lambda: plays_on(osc, first), 5.0, "MIDI to play")
+        until(lambda: plays_on(osc, first), "MIDI to play", 5.0)
         jackd.kill()
         server.said("MIDI: keyboard:out gone; notes are ended", 5.0)
-        until(lambda: osc.status()["note"] == -1.0, 2.0, "the note's end")
+        until(lambda: osc.status()["note"] == -1.0, "the note's end", 2.0)
         osc.send("/note", 67, 90)
-        until(lambda: osc.status()["note"] > 66.0, 2.0, "OSC to play")
+        until(lambda: osc.status()["note"] > 66.0, "OSC to play", 2.0)
         osc.send("/note", 67, 0)
     finally:
         first.kill()
@@ -571,7 +571,7 @@ def test_when_the_midi_system_dies_osc_plays_on_and_midi_comes_back(jackd, serve
         second.tell("open keyboard out")
         server.said("MIDI: keyboard:out is connected", 10.0, said)
         time.sleep(LISTENS_AFTER_S)
-        until(lambda: plays_on(osc, second), 5.0, "MIDI to play again")
+        until(lambda: plays_on(osc, second), "MIDI to play again", 5.0)
     finally:
         second.kill()
     assert server.end() == 0

@@ -43,7 +43,7 @@ def share_late(osc) -> float:
 
 def settled(osc, until, period: int) -> dict:
     """The status, once it shows the period."""
-    until(lambda: osc.status()["period"] == period, 20.0, f"a period of {period}")
+    until(lambda: osc.status()["period"] == period, f"a period of {period}", 20.0)
     status = osc.status()
     assert status["blocksize"] == BLOCK
     return status
@@ -53,7 +53,7 @@ def covered(osc, until, period: int) -> dict:
     """The status, once the delay exceeds a period; the loop takes a moment to settle."""
     settled(osc, until, period)
     length = 1e3 * period / 48000
-    until(lambda: osc.status()["delay_ms"] > length, 20.0, f"a delay of more than {length} ms")
+    until(lambda: osc.status()["delay_ms"] > length, f"a delay of more than {length} ms", 20.0)
     return osc.status()
 
 

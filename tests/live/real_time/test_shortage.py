@@ -50,7 +50,7 @@ def begun(jackd, serve, until):
     osc = server.osc()
     server.said(f"playing on {DEVICE}")
     until(
-        lambda: {"audio.stream", "midi.input_process"} <= set(helpers(server)), 10.0, "its helpers"
+        lambda: {"audio.stream", "midi.input_process"} <= set(helpers(server)), "its helpers", 10.0
     )
     return server, osc
 
@@ -67,12 +67,12 @@ def test_helpers_that_end_while_there_are_no_files_come_back_when_there_are(jack
     for about in ("audio process", "MIDI inputs"):
         assert len([line for line in server.lines[said:] if about in line]) == 1
     frame = osc.status()["frame"]
-    until(lambda: osc.status()["frame"] > frame + 4800, 5.0, "time to go on")
+    until(lambda: osc.status()["frame"] > frame + 4800, "time to go on", 5.0)
     assert "Too many open files" in osc.status()["problem"]
 
     allow_files(pid, allowed)
     server.said(f"playing on {DEVICE}", 15.0, said)
-    until(lambda: "midi.input_process" in helpers(server), 15.0, "its MIDI process")
+    until(lambda: "midi.input_process" in helpers(server), "its MIDI process", 15.0)
     assert not any("Traceback" in line for line in server.lines)
     assert osc.status()["device_losses"] == 1
     assert server.end() == 0
@@ -115,7 +115,7 @@ def test_a_server_that_is_stopped_for_a_while_loses_no_helper(jackd, serve, unti
         time.sleep(2.5)
         os.kill(server.process.pid, signal.SIGCONT)
         frame = osc.status()["frame"]
-        until(lambda frame=frame: osc.status()["frame"] > frame + 9600, 5.0, "time to go on")
+        until(lambda frame=frame: osc.status()["frame"] > frame + 9600, "time to go on", 5.0)
     assert helpers(server) == before
     status = osc.status()
     assert (status["device"], status["device_losses"]) == (DEVICE, 0)

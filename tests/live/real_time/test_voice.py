@@ -79,14 +79,14 @@ def test_an_input_that_stalls_or_goes_holds_no_note_and_is_followed_again(
     words = [jackd.name, "yehu-server voice:in_0", str(tmp_path / "voice.npy")]
     singer = subprocess.Popen([sys.executable, SINGER, *words], env=jackd.environment)
     try:
-        until(lambda: take.exists() and count("begin") > 0, 60.0, "a note")
+        until(lambda: take.exists() and count("begin") > 0, "a note", 60.0)
         said = len(server.lines)
         os.kill(jackd.pid, number)
         server.said("is gone; it is followed again", 60.0, said)
     finally:
         singer.kill()
         singer.wait()
-    until(lambda: count("end") >= count("begin"), 60.0, "the end of the note")
+    until(lambda: count("end") >= count("begin"), "the end of the note", 60.0)
     if number == signal.SIGSTOP:
         os.kill(jackd.pid, signal.SIGCONT)
     else:

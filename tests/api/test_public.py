@@ -14,7 +14,6 @@ import pytest
 
 import yehu_server as yehu
 from yehu_server import api, plot
-from yehu_server.cli import converters
 from yehu_server.errors import YehuError
 from yehu_server.lab import plot as lab_plot
 
@@ -51,13 +50,6 @@ def test_all_names_are_listed_and_a_wrong_one_is_told_as_python_does():
     assert yehu.YehuError is YehuError
     with pytest.raises(AttributeError, match="no attribute 'rendr'"):
         yehu.rendr  # noqa: B018 - that is the test
-
-
-def test_the_reference_pitch_has_the_range_of_the_command():
-    from yehu_server.api import checks
-
-    of_command = converters.LOWEST_A4, converters.HIGHEST_A4
-    assert of_command == (checks.LOWEST_A4, checks.HIGHEST_A4)
 
 
 # ---------------------------------------------------------------- examples

@@ -17,7 +17,7 @@ from yehu_server.core.physics.grid import HIGHEST_RATE, LOWEST_RATE
 from yehu_server.core.physics.quantities import Quantities, override, read_quantities
 from yehu_server.errors import ParameterError
 from yehu_server.lab.body.body_file import Fit
-from yehu_server.params.table import find
+from yehu_server.params.table import HIGHEST_A4, LOWEST_A4, find
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.practice_files import practice_beside
@@ -116,7 +116,6 @@ def name_of(value: Any, what: str) -> str:
 
 
 OutOfRange = Literal["transpose", "clamp", "skip"]
-LOWEST_A4, HIGHEST_A4 = 390.0, 480.0  # Hz; as of --a4
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from yehu_server.api.checks import HIGHEST_A4, LOWEST_A4, PathLike, number, path_of, whole
+from yehu_server.api.checks import PathLike, number, path_of, whole
 from yehu_server.api.rendered import Rendering, render
 from yehu_server.errors import ParameterError
 from yehu_server.following.frames import HOP_S
@@ -21,6 +21,7 @@ from yehu_server.following.recording import (
     recording_of_file,
     recording_of_samples,
 )
+from yehu_server.params.table import HIGHEST_A4, LOWEST_A4
 from yehu_server.playing.tuning import EQUAL, read_tuning
 from yehu_server.scores.score import Score
 

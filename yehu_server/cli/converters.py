@@ -7,8 +7,6 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-LOWEST_A4, HIGHEST_A4 = 390.0, 480.0  # Hz
-
 
 def target(text: str) -> Path:
     """Convert the path of a file or folder to write."""

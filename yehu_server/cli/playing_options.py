@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_options
-from yehu_server.cli.converters import HIGHEST_A4, LOWEST_A4, number_within, whole_within
+from yehu_server.cli.converters import number_within, whole_within
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError
-from yehu_server.params.table import assignment
+from yehu_server.params.table import HIGHEST_A4, LOWEST_A4, assignment
 
 if TYPE_CHECKING:
     from yehu_server.playing.mapping import Mapping

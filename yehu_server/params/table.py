@@ -12,6 +12,7 @@ from yehu_server.params.spec import Curve, Param, Place
 PREFIX = "/yehu"  # before every address, in OSC and OSCQuery
 FINGERS = (1, 2, 3, 4)
 STRING_NAMES = ("inner", "outer")
+LOWEST_A4, HIGHEST_A4 = 390.0, 480.0  # Hz; of the reference pitch, an option of commands and calls
 
 
 _engine = partial(Param, place=Place.ENGINE)

@@ -16,13 +16,11 @@ import forks
 import numpy as np
 import pytest
 import soundfile
-from sound import alone
 
 from yehu_server.cli import main
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.live.audio import output
-from yehu_server.live.audio.output import Output, OutputOptions, SharedMemory
+from yehu_server.live.audio.output import OutputOptions, SharedMemory
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
 from yehu_server.playing.calibration_store import calibration_for
@@ -329,46 +327,6 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
     captured = read_capture(tmp_path / "take.jsonl")
     again = list(blocks(captured, captured.beginning.ensemble()))
     np.testing.assert_array_equal(np.concatenate(again), recorded)
-
-
-class Refusing:
-    """An audio process whose stream opens but does not start."""
-
-    def __init__(self, _module, heard, share=()) -> None:
-        del share
-        self._heard = heard
-
-    def send(self, order: str, **_details: object) -> None:
-        answers = {
-            "look": {"event": "found", "name": "card", "rate": 48000.0, "channels": 2},
-            "open": {"event": "ready", "latency_ms": 5.0},
-            "start": {"event": "failed", "reason": "it does not start"},
-        }
-        self._heard(answers[order])
-
-    def kill(self) -> None:
-        pass
-
-    stop = kill
-
-
-def test_while_a_device_does_not_start_time_goes_on(monkeypatch):
-    monkeypatch.setattr(output, "Child", Refusing)
-    way_out = Output(OutputOptions(), lambda _line: None)
-    stage = alone(way_out.find(), memory=way_out.memory.buffer, channels=2)
-    instrument = stage.first
-    try:
-        way_out.begin(stage)  # waits once
-        longest, own, last, since = 0.0, 0.0, instrument.frame, time.monotonic()
-        start = looked = since
-        while (now := time.monotonic()) < start + 2.5:
-            if instrument.frame != last:
-                last, since = instrument.frame, now
-            longest, own, looked = max(longest, now - since), max(own, now - looked), now
-            time.sleep(0.005)
-    finally:
-        way_out.end()
-    assert longest < 0.5 + 2.0 * own  # a busy machine holds this thread up, too
 
 
 def open_files() -> set[str]:

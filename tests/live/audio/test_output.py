@@ -1,0 +1,135 @@
+"""The way out: what it does where the device's process fails, dies or does not answer."""
+
+from __future__ import annotations
+
+import queue
+import time
+from collections.abc import Callable
+from functools import partial
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from sound import alone
+
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.errors import DeviceError
+from yehu_server.live.audio import output, stream
+from yehu_server.live.audio.devices import INPUT
+from yehu_server.live.audio.output import Output, OutputOptions
+
+ANSWERS = {
+    "look": {"event": "found", "name": "card", "rate": 48000.0, "channels": 2},
+    "open": {"event": "ready", "latency_ms": 5.0},
+    "start": {"event": "failed", "reason": "it does not start"},
+}
+
+
+class AudioProcess:
+    """An audio process whose stream opens but does not start; or that answers only some orders."""
+
+    def __init__(self, _module, heard, share=(), answers=ANSWERS) -> None:
+        del share
+        self._heard, self._answers = heard, answers
+
+    def send(self, order: str, **_details: object) -> None:
+        if order in self._answers:
+            self._heard(self._answers[order])
+
+    def kill(self) -> None:
+        pass
+
+    stop = kill
+
+
+def ensemble_for(way_out: Output) -> Ensemble:
+    return alone(way_out.find(), memory=way_out.memory.buffer, channels=2)
+
+
+def test_while_a_device_does_not_start_time_goes_on(monkeypatch):
+    monkeypatch.setattr(output, "Child", AudioProcess)
+    way_out = Output(OutputOptions(), lambda _line: None)
+    stage = ensemble_for(way_out)
+    instrument = stage.first
+    try:
+        way_out.begin(stage)  # waits once
+        longest, own, last, since = 0.0, 0.0, instrument.frame, time.monotonic()
+        start = looked = since
+        while (now := time.monotonic()) < start + 2.5:
+            if instrument.frame != last:
+                last, since = instrument.frame, now
+            longest, own, looked = max(longest, now - since), max(own, now - looked), now
+            time.sleep(0.005)
+    finally:
+        way_out.end()
+    assert longest < 0.5 + 2.0 * own  # a busy machine holds this thread up, too
+
+
+def test_a_block_that_a_device_died_in_as_it_started_is_put_in_order(monkeypatch):
+    class Dying(AudioProcess):
+        def send(self, order: str, **details: object) -> None:
+            if order == "start":
+                stage.first._rig["meters"]["running"] = 1  # as in the middle of a block
+            super().send(order, **details)
+
+    monkeypatch.setattr(output, "Child", Dying)
+    way_out = Output(OutputOptions(device="card"), lambda _line: None)
+    stage = ensemble_for(way_out)
+    with pytest.raises(DeviceError, match="it does not start"):
+        way_out.begin(stage)
+    assert len(stage.gaps) == 1
+
+
+@pytest.mark.parametrize(
+    ("unanswered", "whose"),
+    [("look", "the sound system"), ("open", "the audio device"), ("start", "the audio device")],
+)
+def test_a_process_that_does_not_answer_is_waited_for_no_longer(monkeypatch, unanswered, whose):
+    clock = partial(iter, np.arange(0.0, 2.0 * output.FIRST_LOOK_S, 0.25))  # and then it fails
+    monkeypatch.setattr(output, "AwakeTime", lambda: clock().__next__)
+    monkeypatch.setattr(output, "LISTEN_S", 0.0)
+    answers = {order: answer for order, answer in ANSWERS.items() if order != unanswered}
+    monkeypatch.setattr(output, "Child", partial(AudioProcess, answers=answers))
+    way_out = Output(OutputOptions(device="card"), lambda _line: None)
+    with pytest.raises(DeviceError, match=f"^{whose} does not answer$"):
+        way_out.begin(ensemble_for(way_out))
+
+
+@pytest.fixture
+def process(monkeypatch) -> Callable[..., list[str]]:
+    """Give a device's process some orders, and the end; what its stream does and it tells."""
+
+    def run(*orders: str) -> list[str]:
+        done: list[str] = []
+
+        class Stream:
+            latency_ms = 5.0
+
+            def __init__(self, *_what: object) -> None:
+                done.append("opened")
+
+            def start(self) -> None:
+                done.append("plays")
+
+        parent = SimpleNamespace(tell=lambda event, **_details: done.append(event))
+        given: queue.Queue = queue.Queue()
+        for order in orders:
+            given.put({"order": order, "kind": INPUT})
+        given.put(None)
+        sounddevice = SimpleNamespace(PortAudioError=OSError)
+        monkeypatch.setattr(stream, "load_portaudio", lambda _kind: sounddevice)
+        monkeypatch.setattr(stream, "_look", lambda *_: done.append("found") or object())
+        monkeypatch.setattr(stream, "_watch", lambda *_: None)
+        monkeypatch.setattr(stream, "Stream", Stream)
+        stream._serve(parent, given)
+        return done
+
+    return run
+
+
+def test_a_device_plays_only_once_the_clock_has_let_go(process):
+    """They would both compute the same block: the order comes once the clock has stopped."""
+    assert process("look") == ["found"]
+    assert process("look", "open") == ["found", "opened", "ready"]
+    started = ["found", "opened", "ready", "plays", "started"]
+    assert process("look", "open", "start") == started

@@ -423,6 +423,24 @@ def test_a_server_that_is_not_made_yet_ends_at_the_first_signal():
     assert ending.requested.is_set()
 
 
+def test_the_second_ctrl_c_ends_the_fade_out_and_a_third_all_that_may_be_cut_off():
+    for is_interruptible in (True, False):  # not while files are closed
+        done: list[str] = []
+        ending = _Ending()
+        ending.server = SimpleNamespace(
+            skip_fade_out=lambda done=done: done.append("hurries"),
+            is_interruptible=is_interruptible,
+        )
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGINT, signal.SIGINT):
+            try:
+                ending(number, None)
+                done.append("goes on")
+            except KeyboardInterrupt:
+                done.append("is cut off")
+        third = "is cut off" if is_interruptible else "goes on"
+        assert done == ["goes on", "goes on", "hurries", "goes on", "hurries", third]
+
+
 def test_letters_that_a_terminal_has_not_are_no_traceback(tmp_path, monkeypatch):
     (tmp_path / "tune.jianpu").write_text("title=十杯酒\n1=F 2/4 4=120\n\n1 2 |\n", "utf-8")
     terminal = io.TextIOWrapper(io.BytesIO(), "latin-1", write_through=True)

@@ -53,6 +53,7 @@ def test_every_parameter_that_the_player_does_not_move_can_be_learned(everything
         (bind,) = mapping.of("cc 20")
         assert bind.is_soft
         assert [from_unit(bind, 0.0), from_unit(bind, 1.0)] == pytest.approx([param.lo, param.hi])
+        assert from_unit(bind, 0.3) == pytest.approx(param.from_unit(0.3)), param.curve
         assert load("mine/keyboard") == mapping, param.address
 
 
@@ -224,6 +225,18 @@ def test_what_was_learned_otherwise_stays_as_something_is_forgotten(file):
     assert moved_by(mapping, "cc 5") == ["/playing/vibrato_press"]
     again = unlearn(taught(mapping, GAIN, "cc 21"), GAIN)[0]
     assert binds(again) == binds(mapping)
+
+
+def test_a_learned_bind_comes_back_where_it_was_changed_by_hand(file):
+    changed = ['curve = "s"', "span = [0, 30]", "invert = true", "smoothing = 50", "channel = 2"]
+    for change in ["", *changed]:
+        file.write_text(
+            f'name = "mine"\n[[bind]]\nsource = "cc 20"\ntarget = "{VIBRATO}"\n'
+            f"alone = true\n{change}\n"
+        )
+        before = load(str(file))
+        again, _ = unlearn(taught(before, VIBRATO, "cc 21"), VIBRATO)
+        assert again.binds == (before.binds if change else ()), change
 
 
 def test_what_is_kept_survives_conversion_by_way_of_json(file, tmp_path, capsys):

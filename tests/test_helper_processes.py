@@ -1,4 +1,4 @@
-"""Helper processes find the modules of their parent, and none that lie in the current folder."""
+"""Helper processes: the modules that they find, and what is done when one has ended."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from yehu_server.cli import main
-from yehu_server.util.processes import python_command
+from yehu_server.util import processes
+from yehu_server.util.processes import Supervisor, python_command
+from yehu_server.util.retry import Backoff
 
 STRANGE = "open('ran', 'w')\nraise SystemExit('a strange module')\n"
 
@@ -48,3 +50,35 @@ def test_a_helper_finds_what_its_parent_does(tmp_path, monkeypatch):
         python_command("only_here", "a", "b c"), capture_output=True, text=True, check=False
     )
     assert (run.stdout, run.stderr) == ("['a', 'b c'] __main__\n", "")
+
+
+def test_the_end_of_a_helper_is_acted_on_however_it_came(monkeypatch):
+    done: list[str] = []
+
+    class Child:
+        def __init__(self, _module, heard, _share) -> None:
+            self.ends = lambda: heard({"event": "gone"})
+
+        def stop(self) -> None:
+            done.append("stopped")
+
+    class Helped(Supervisor):
+        def attend(self, child, gone) -> None:
+            if way == "it fails":
+                raise RuntimeError(way)
+            self.stop() if way == "it is stopped" else child.ends()
+            assert gone.is_set()
+
+        def on_exit(self, *, by_itself: bool) -> None:
+            done.append("by itself" if by_itself else "as asked")
+
+    monkeypatch.setattr(processes, "Child", Child)
+    monkeypatch.setattr(processes, "Backoff", lambda: Backoff(0.0, 0.0))
+    for way, told in {"it ends": "by itself", "it is stopped": "as asked"}.items():
+        Helped("some.module", "help", print, ())._serve()
+        assert done == ["stopped", told], way
+        done.clear()
+    way = "it fails"
+    with pytest.raises(RuntimeError, match=way):
+        Helped("some.module", "help", print, ())._serve()
+    assert done == ["stopped", "by itself"]

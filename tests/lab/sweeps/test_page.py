@@ -4,13 +4,15 @@ import base64
 import shutil
 import subprocess
 import zlib
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from yehu_server.lab.plot.cells import edges, is_log
-from yehu_server.lab.plot.study import facts_of, write_page
+from yehu_server.lab.plot.study import facts_of, limits_along, write_page
 from yehu_server.lab.plot.sweep_maps import plane_of
+from yehu_server.lab.sweeps.study import study_of
 
 CHROMIUM = shutil.which("chromium")
 
@@ -51,6 +53,18 @@ def test_periods_count_from_the_first_slip(result):
     assert np.isfinite(periods).any()
     assert periods[np.isfinite(periods)].min() >= 0.0
     assert periods[np.isfinite(periods)].max() < 0.1 * 523.25 * 1.1
+
+
+def test_limits_lie_on_the_side_of_the_forces():
+    gesture = {"duration": 0.15, "controls": {"bow_velocity": 0.2}}
+    for sign in (1.0, -1.0):  # below zero they are on the outer string
+        vary = {"bow_position": [0.24, 0.25, 0.27], "bow_force": [-0.1 * sign, 2.0 * sign]}
+        study = study_of({"gesture": gesture, "vary": vary})
+        result = SimpleNamespace(axes={axis.name: axis.as_array() for axis in study.axes})
+        at, lower, upper = limits_along(result, study, "bow_position", "bow_force", {})
+        assert at.tolist() == [0, 1, 2]
+        assert (sign * upper > sign * lower).all()
+        assert (sign * lower > 0.0).all()
 
 
 def test_edges_lie_between_the_values():

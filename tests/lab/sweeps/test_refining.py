@@ -2,7 +2,11 @@
 
 import numpy as np
 
+from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ
+from yehu_server.lab.sweeps import running
 from yehu_server.lab.sweeps.axes import coarse_points, fill, finer_points
+from yehu_server.lab.sweeps.journal import Done
+from yehu_server.lab.sweeps.study import study_of
 
 LEVELS = 3
 
@@ -37,6 +41,23 @@ def test_a_border_is_found_to_the_finest_step():
     found = fill(truth.shape, (0, 1), LEVELS, known, truth.reshape(-1)[known])
     assert (found == truth).all()
     assert len(known) < 0.4 * truth.size
+
+
+def test_a_study_gets_finer_at_the_borders_that_it_asks_for(data, monkeypatch):
+    inside = disc((17, 9)) == 1
+    regimes = np.where(inside, HELMHOLTZ, np.where(np.arange(9) > 3, HELMHOLTZ + 1, 0))
+
+    def find(_study, numbers):
+        found = np.zeros(len(numbers), FINDING)
+        found["regime"] = regimes.flat[numbers]
+        return found
+
+    monkeypatch.setattr(running, "findings_of", find)
+    for border, truth in {"regimes": regimes, "helmholtz": inside}.items():
+        asked = {"axes": ["force", "position"], "levels": 2, "border": border}
+        known = Done()
+        running.run_levels(study_of(data(refine=asked)), known, workers=1)
+        assert known.done()[0].tolist() == refined(truth, levels=2).tolist(), border
 
 
 def test_a_region_of_one_kind_is_not_refined():

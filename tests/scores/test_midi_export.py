@@ -80,7 +80,9 @@ def test_bends_and_slides_are_in_the_file(export):
     wheel = [m.pitch for m in file if m.type == "pitchwheel"]
     assert wheel[0] == round(-2 / BEND_RANGE * 8191)
     assert wheel[-1] == 0
-    assert controls(file, 6) == [BEND_RANGE]
+    moves = [(m.control, m.value) for m in file if m.type == "control_change"]
+    of_range = [move for move in moves if move[0] in (101, 100, 6, 38)]
+    assert of_range == [(101, 0), (100, 0), (6, BEND_RANGE), (38, 0)]  # RPN 0, semitones and cents
     assert controls(file, 65) == [127, 0]
     assert notes_of(again)[1].start_s < 2 * 60 / 90
     assert lost == {}

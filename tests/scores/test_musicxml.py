@@ -97,7 +97,7 @@ def test_marks_are_understood(subtests, read):
 
 def test_a_trill_goes_to_the_next_note_of_the_key_as_written_or_to_its_own_accidental(read):
     trill = ornament("trill-mark")
-    flat = "<ornaments><trill-mark/><accidental-mark>flat</accidental-mark></ornaments>"
+    own = "<ornaments><trill-mark/><accidental-mark>{}</accidental-mark></ornaments>"
     clarinet = "<transpose><chromatic>-2</chromatic></transpose>"
     for text, width in [
         (note("E4", 4, trill), 1.0),
@@ -107,7 +107,11 @@ def test_a_trill_goes_to_the_next_note_of_the_key_as_written_or_to_its_own_accid
         (attributes(fifths=-3) + note("D4", 4, trill), 1.0),
         (attributes(fifths=7) + note("A#4", 4, trill), 2.0),  # B# is a semitone above A##
         (attributes(more=clarinet) + note("E5", 4, trill), 1.0),
-        (note("G4", 4, flat), 1.0),
+        (note("G4", 4, own.format("flat")), 1.0),
+        (note("Ab4", 4, own.format("natural")), 3.0),
+        (note("F4", 4, own.format("double-sharp")), 4.0),  # as far as a finger of a trill goes
+        (note("Fb4", 4, own.format("double-sharp")), 2.0),
+        (note("E#4", 4, trill), 2.0),  # F is the same
     ]:
         assert marks_of(read(score(text))) == [("trill", width)], text
 

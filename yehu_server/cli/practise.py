@@ -18,7 +18,6 @@ practised.
 from __future__ import annotations
 
 import argparse
-import time
 from typing import Any
 
 from yehu_server.cli.arguments import (
@@ -79,7 +78,6 @@ def run(arguments: argparse.Namespace) -> int:
     quantities = instrument_of(arguments)
     beside = practice_beside(arguments.instrument)
     known = shipped_practice(arguments.rate) if beside is None else read_practice(beside)
-    start = time.perf_counter()
     compile_all(arguments)
     table, improved = known, 0
     others = set(range(len(PLACES))) - {DEFAULT}
@@ -96,8 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
             table = practice.learn(progress, table=table, places=places)
         improved += practice.notes_changed
     write_practice(arguments.output, table, arguments.rate)
-    elapsed = time.perf_counter() - start
-    fields = {"rate": arguments.rate, "improved": improved, "elapsed_s": elapsed}
+    fields = {"rate": arguments.rate, "improved": improved}
     text = f"{arguments.output}: {improved} notes at places of the bow are bowed otherwise now"
     print_report(arguments, fields, text)
     return 0

@@ -9,7 +9,6 @@ The gesture file is described in docs/simulate.md.
 from __future__ import annotations
 
 import argparse
-import time
 from pathlib import Path
 from typing import Any
 
@@ -64,7 +63,6 @@ def run(arguments: argparse.Namespace) -> int:
         raise OutputError(
             f"{arguments.output}: simulate writes arrays, not sound; name an .npz file"
         )
-    start = time.perf_counter()
     warn_of_compiling(arguments, [advance_booked if arguments.energy else advance])
     with progress_bar(arguments, "simulating") as progress:
         result = simulate(
@@ -74,7 +72,6 @@ def run(arguments: argparse.Namespace) -> int:
             progress=progress,
         )
     result.save(arguments.output)
-    elapsed = time.perf_counter() - start
     text = simulate_report(arguments.output, result)
-    print_report(arguments, {**result.meta, "elapsed_s": elapsed}, text)
+    print_report(arguments, dict(result.meta), text)
     return 0

@@ -14,6 +14,7 @@ import mido
 import numpy as np
 import pytest
 import soundfile
+from fiddles import SLACK, SLACK_RANGE, SLACK_TOML
 from midi_files import midi_file, notes
 from pitch import cents, hertz, pitch_of
 from sound import rms
@@ -316,12 +317,12 @@ def test_a_mapping_file_says_what_controllers_do(play, midi, tmp_path):
 
 
 def test_an_instrument_file_changes_the_instrument(play, midi, tmp_path):
-    (tmp_path / "slack.toml").write_text("[string_1]\nT = 40.0\n")
-    (tmp_path / "slack.json").write_text('{"string_1": {"T": 40.0}}')
+    (tmp_path / "slack.toml").write_text(SLACK_TOML)
+    (tmp_path / "slack.json").write_text(json.dumps(SLACK))
     tune = midi(*notes((0, 1.0, 65, 64)))
     _, usual = play(tune, "--tail", 0)
     summary, slack = play(tune, "--tail", 0, "--instrument", tmp_path / "slack.toml")
-    assert summary["range"] == "D#4 to F6"  # by its strings: the slack one is stopped for F4 now
+    assert summary["range"] == SLACK_RANGE  # by its strings: the slack one is stopped for F4 now
     off = cents(pitch_of(slack[22050:], 44100), pitch_of(usual[22050:], 44100))
     assert off == pytest.approx(0.0, abs=25.0)
     assert not np.array_equal(slack, usual)

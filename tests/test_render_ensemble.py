@@ -10,6 +10,7 @@ import mido
 import numpy as np
 import pytest
 import soundfile
+from fiddles import SLACK_TOML
 from midi_files import midi_file, notes
 
 from yehu_server.cli import _parser
@@ -228,7 +229,7 @@ channel = 5
 def test_an_ensemble_file_says_who_plays_what_where_and_on_which_instrument(play, trio, tmp_path):
     (tmp_path / "band.toml").write_text(FILE, encoding="utf-8")
     (tmp_path / "wide.toml").write_text('base = "wind"\nname = "wide"\n', encoding="utf-8")
-    (tmp_path / "slack.toml").write_text("[string_1]\nT = 45.0\n", encoding="utf-8")
+    (tmp_path / "slack.toml").write_text(SLACK_TOML, encoding="utf-8")
     words = ("--ensemble", tmp_path / "band.toml", "--stems", tmp_path / "stems")
     summary, _, _ = play(trio, *words, "--gain-db", 0)
     low, other = summary["parts"]

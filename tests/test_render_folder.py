@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 import soundfile
 from commands import COMMAND, is_one_line
+from fiddles import SLACK_TOML
 from forks import in_the_place_of_workers, start
 from midi_files import midi_file, notes
 from waiting import LONG_S, until
@@ -171,7 +172,7 @@ def test_a_changed_mapping_or_a_practice_beside_the_instrument_renders_again(tmp
     tune(tmp_path / "in" / "a.mid")
     mapping, instrument = tmp_path / "m.toml", tmp_path / "mine.toml"
     mapping.write_text('base = "keyboard"\n')
-    instrument.write_text("bridge_x = 0.3\n")
+    instrument.write_text(SLACK_TOML)
     words = ("render", tmp_path / "in", "-o", tmp_path / "out", *DRY)
     words += ("--mapping", mapping, "--instrument", instrument)
     assert "1 rendered, 0 up" in command(*words)[1]

@@ -5,6 +5,7 @@ import pickle
 
 import numpy as np
 import pytest
+from fiddles import SLACK, SLACK_TOML
 from pitch import cents, pitch_of
 
 import yehu_server as yehu
@@ -244,12 +245,10 @@ def test_what_is_wrong_is_told_in_one_line(fiddle, told):
 
 def test_an_instrument_of_other_strings_is_tuned(tmp_path):
     file = tmp_path / "mine.toml"
-    file.write_text("[string_1]\nsigma_0 = 3.0\n")
-    from_file, from_mapping = (
-        yehu.Instrument(instrument=each) for each in (file, {"string_1": {"sigma_0": 3.0}})
-    )
+    file.write_text(SLACK_TOML)
+    from_file, from_mapping = (yehu.Instrument(instrument=each) for each in (file, SLACK))
     assert from_file.quantities == from_mapping.quantities
-    assert from_file.quantities.string_1.sigma_0 == 3.0
+    assert from_file.quantities.string_1.reach == 3.0
     from_file.note_on("G4")
     assert heard(from_file.play(0.6), 67) == pytest.approx(0.0, abs=12.0)
 

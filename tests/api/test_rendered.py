@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import soundfile
+from fiddles import SLACK, SLACK_TOML
 from midi_files import midi_file, notes
 from pitch import cents, pitch_of
 
@@ -45,12 +46,12 @@ SCALE = next((Path(__file__).parents[2] / "tunings").glob("*.scl"))
         ({"settings": {"/playing/vibrato": 20.0}}, "--set /playing/vibrato=20"),
         ({"normalize": True, "phrasing": 0.0}, "--normalize --phrasing 0"),
         ({"gain_db": -6.0, "tuning": SCALE}, f"--gain-db -6 --tuning {shlex.quote(str(SCALE))}"),
-        ({"instrument": {"string_1": {"sigma_0": 2.0}}}, "--instrument mine.toml"),
+        ({"instrument": SLACK}, "--instrument mine.toml"),
     ],
 )
 def test_it_is_the_sound_of_the_command(plain, tmp_path, monkeypatch, command, options, words):
     monkeypatch.chdir(tmp_path)
-    Path("mine.toml").write_text("[string_1]\nsigma_0 = 2.0\n")
+    Path("mine.toml").write_text(SLACK_TOML)
     target = tmp_path / "out.wav"
     form = ("--subtype", "float", "--tail", "0.2")
     assert command("render", plain, "-o", target, *form, *shlex.split(words))[0] == 0

@@ -50,6 +50,12 @@ def test_the_usual_rates_are_shipped_and_fresh():
     assert len(keys) == 12
 
 
+def test_what_is_shipped_is_not_measured_again(monkeypatch):
+    monkeypatch.setattr(calibration_store, "calibrate", None)
+    for rate in RATES:
+        assert calibration_for(int(rate), a4=440) == calibration_for(rate)
+
+
 def test_a_note_that_could_not_be_measured_is_between_its_neighbours_at_each_speed():
     gone = np.nan
     table = np.array([[-20.0, -14.0], [gone, gone], [-26.0, -18.0], [gone, -11.0]])

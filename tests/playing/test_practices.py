@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import soundfile
 from commands import is_one_line
+from fiddles import SLACK_TOML
 from midi_files import midi_file, notes
 
 from yehu_server.core.physics.quantities import Quantities
@@ -83,16 +84,19 @@ def file(tmp_path):
 
 @pytest.fixture
 def tune(tmp_path):
-    return midi_file(tmp_path / "tune.mid", notes((0.0, 0.3, 70, 80), (0.3, 0.3, 76, 80)))
+    return midi_file(tmp_path / "tune.mid", notes((0.0, 0.3, 70, 80), (0.3, 0.3, 74, 80)))
 
 
 @pytest.fixture
 def render(command, tmp_path, tune):
     """Render the tune with options; its sound and the summary."""
+    instrument = tmp_path / "slack.toml"
+    instrument.write_text(SLACK_TOML)
+    form = ("--instrument", instrument, "--tail", 0.1, "--json")
 
     def run(*words: object) -> tuple[np.ndarray, dict]:
         out = tmp_path / "out.wav"
-        code, summary, error = command("render", tune, "-o", out, "--tail", 0.1, "--json", *words)
+        code, summary, error = command("render", tune, "-o", out, *form, *words)
         assert code == 0, error
         return soundfile.read(out)[0], json.loads(summary)
 
@@ -309,7 +313,7 @@ def test_what_practise_writes_render_takes(command, render, tmp_path):
 @pytest.mark.usefixtures("one_note")
 def test_practising_goes_on_from_what_lies_beside_the_instrument(command, tmp_path):
     instrument, beside = tmp_path / "mine.toml", tmp_path / "mine.practice.json"
-    instrument.write_text("")
+    instrument.write_text("[string_1]\nreach = 6.0\n[string_2]\nreach = 3.0\n")  # tuned sooner
     table = practised()
     write_practice(beside, table, RATE)
     code, _, error = command("practise", "--instrument", instrument, "-o", beside, "--quiet")

@@ -73,7 +73,7 @@ def calibration_for(
     `progress`: called with the number of notes done and of all notes, where it is measured.
     """
     quantities = quantities or Quantities()
-    key = calibration_key(rate, quantities, a4, bowing)
+    key = calibration_key(float(rate), quantities, float(a4), bowing)  # 48000 is 48000.0
     if key in _shipped():
         return read_calibration(_shipped()[key], quantities, a4)
     path = data_folder() / f"calibration-{key}.json"

@@ -17,7 +17,6 @@ from moves import Moves
 from yehu_server.core.engine.mailbox import MIDI_INPUTS
 from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
-from yehu_server.core.player.bowing import default_recipes
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.midi import input_process
 from yehu_server.live.midi.feed import MidiFeed, SharedRing
@@ -114,13 +113,7 @@ class Witness:
             output=OutputOptions(device="null", rate=RATE),
             midi=MidiOptions(**{"api": "jack", **midi}),
             osc=("127.0.0.1", 0),
-            parts=[
-                PartOptions(
-                    PlayingOptions(
-                        settings=(("/playing/variation", 0.0),), bowing=default_recipes()
-                    )
-                )
-            ],
+            parts=[PartOptions(PlayingOptions(settings=(("/playing/variation", 0.0),)))],
         )
         self.server = Server(options, lambda line: self.said.append((time.monotonic(), line)))
         self._moves = Moves(self.server.instrument)
@@ -239,7 +232,7 @@ def test_the_default_mapping_reaches_the_instrument(keys, until):
         until(moved, f"{data} to move {address}", 5.0)
         return applied[address][1]
 
-    assert moves("90 4a 50", "/bow/pressure") == pytest.approx(0.4575, rel=1e-3)  # of velocity 80
+    of_80 = moves("90 4a 50", "/bow/pressure")
     assert heard.player.pitch == 74.0
     assert abs(applied["/bow/speed"][1]) == pytest.approx(0.2, rel=1e-3)
     presses = {
@@ -252,7 +245,7 @@ def test_the_default_mapping_reaches_the_instrument(keys, until):
     assert moves("e0 7f 7f", f"/finger/{finger}/position") > place  # the wheel up: two semitones
     assert heard.player.pitch == 76.0
     assert moves("d0 7f", f"/finger/{finger}/press") == pytest.approx(5.0)
-    assert abs(moves("b0 10 7f", "/bow/speed")) == pytest.approx(0.26, rel=1e-3)
+    assert abs(moves("b0 10 7f", "/bow/speed")) > 0.21
 
     # Reset all controllers.
     assert abs(moves("b0 79 00", "/bow/speed")) == pytest.approx(0.2, rel=1e-3)
@@ -261,7 +254,7 @@ def test_the_default_mapping_reaches_the_instrument(keys, until):
 
     assert moves("80 4a 40", "/bow/side") == 0.0
     assert heard.player.pitch is None
-    assert moves("90 4a 01", "/bow/pressure") == pytest.approx(0.3, abs=0.01)
+    assert 0.0 < moves("90 4a 01", "/bow/pressure") < of_80  # of velocity 1, and 80
 
     for mode in ("7b", "78"):  # all notes off, all sound off
         assert moves("90 4a 60", "/bow/speed") != 0.0

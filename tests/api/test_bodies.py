@@ -1,5 +1,7 @@
 """``yehu.body``: bodies are looked at, fitted, kept and played."""
 
+import subprocess
+
 import matplotlib as mpl
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ import soundfile
 from lab.body import bodies
 
 import yehu_server as yehu
+from yehu_server.lab.body import apart, fit
 from yehu_server.playing import calibration_store
 
 
@@ -44,6 +47,30 @@ def test_a_body_of_files_is_fitted_drawn_kept_and_played(tmp_path, monkeypatch):
     monkeypatch.setattr(calibration_store, "calibrate", lambda *_, **__: usual)  # it is not heard
     fiddle = yehu.Instrument(instrument=found)
     assert fiddle.quantities.body == yehu.body.load(fiddle.quantities).body == found.body
+
+
+def test_a_fit_is_made_in_a_process_with_one_thread_and_what_it_finds_is_the_same(
+    told, monkeypatch
+):
+    measured = yehu.body.average(yehu.body.made_taps(count=2, seconds=0.3))
+    how = {"band_hz": (250.0, 2000.0), "sections": 8}
+    here = fit(measured, **how)
+    given, run = [], subprocess.run
+
+    def heard(*words, env, **more):
+        given.append(env[apart.THREADS])
+        return run(*words, env=env, **more)
+
+    monkeypatch.delenv(apart.THREADS)
+    monkeypatch.setattr(subprocess, "run", heard)
+    hz = yehu.body.fit(measured, **how).modes.frequency_hz
+    np.testing.assert_allclose(hz, here.modes.frequency_hz, rtol=1e-9)
+    told("nothing was measured", yehu.body.fit, yehu.body.load().measurement)
+    assert given == ["1", "1"]
+    monkeypatch.setattr(subprocess, "run", lambda *_, **__: subprocess.CompletedProcess((), -9))
+    told("ended with code -9", yehu.body.fit, measured)
+    monkeypatch.setattr(subprocess, "run", lambda *_, **__: open("/no/such"))  # noqa: SIM115, PTH123
+    told("cannot be started: No such file", yehu.body.fit, measured)
 
 
 def test_what_is_wrong_is_told_in_one_line(told):

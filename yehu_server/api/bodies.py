@@ -9,8 +9,8 @@ from yehu_server.api.checks import PathLike, number, path_of, whole
 from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS, USUAL_SECTIONS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
+from yehu_server.lab.body.apart import fit_apart
 from yehu_server.lab.body.body_file import Fit, bare_fit, read_fit
-from yehu_server.lab.body.fitting import fit as fitted_to
 from yehu_server.lab.body.measurement import Measurement
 
 if TYPE_CHECKING:
@@ -106,7 +106,8 @@ def fit(
 ) -> Body:
     """Fit a body: bridge modes to the admittance, sections to the radiation.
 
-    What was not measured is kept of the measured yehu.
+    What was not measured is kept of the measured yehu. A process of its own does it, which keeps
+    one core busy.
 
     Parameters
     ----------
@@ -141,7 +142,7 @@ def fit(
         band_hz = lo, hi
     count = None if modes is None else whole(modes, "modes", 1, MAX_MODES)
     most = whole(sections, "sections", 1, MAX_SECTIONS)
-    return _with_methods(fitted_to(measurement, band_hz=band_hz, modes=count, sections=most))
+    return _with_methods(fit_apart(measurement, band_hz=band_hz, modes=count, sections=most))
 
 
 def _with_methods(found: Fit) -> Body:

@@ -11,9 +11,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from pythonosc import slip
 
-from yehu_server.live.osc.answering import MOST_BYTES, Framing, FramingError
+from yehu_server.live.osc.answering import Framing, FramingError
 
 ESC, END = b"\xdb", b"\xc0"
+MOST_BYTES = 65_535  # of a packet: as long as UDP can tell
 
 
 def prefixed(packets: Iterable[bytes]) -> bytes:
@@ -70,9 +71,12 @@ def test_answers_are_framed_as_the_peer_frames(packet):
 def test_a_packet_may_be_as_long_as_is_allowed_and_no_longer():
     longest = b"/" * MOST_BYTES
     assert read(Framing(), prefixed([longest])) == [longest]
-    assert read(Framing(), slipped([longest])) == [longest]
+    for packet in (longest, b"/" + END * (MOST_BYTES - 1)):  # SLIP sends an END as two bytes
+        assert read(Framing(), slipped([packet])) == [packet]
     with pytest.raises(FramingError, match="too long"):
         read(Framing(), prefixed([longest + b"/"])[:4])
+    with pytest.raises(FramingError, match="too long"):
+        read(Framing(), slipped([longest + b"/"]))
 
 
 def test_what_came_before_a_length_that_is_too_long_still_counts():

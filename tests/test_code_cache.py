@@ -2,6 +2,7 @@
 
 import errno
 import os
+import pickle
 import random
 from concurrent.futures import ThreadPoolExecutor
 
@@ -10,12 +11,24 @@ import pytest
 
 from yehu_server.compile import function_cache as cache
 from yehu_server.compile import jit, numba_compiler
+from yehu_server.compile.part_library import BITCODE_OF_PART
 from yehu_server.util import sealed
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
 
 def third_of(number: int) -> int:
     return number // 3
+
+
+third = third_of  # as compiled after one start
+
+
+def twice(number: int) -> int:
+    return third(number) * 2
+
+
+def thrice(number: int) -> int:
+    return third(number) * 3
 
 
 class Kept:
@@ -194,3 +207,14 @@ def test_numba_calls_what_we_put_in_the_place_of_its_cache():
     assert again(3) == 6
     assert sum(again._for_python.stats.cache_hits.values()) == 1
     assert isinstance(again.value, numba.core.registry.CPUDispatcher)
+
+
+def test_a_part_of_other_functions_is_kept_without_machine_code(kept, monkeypatch):
+    for function, result, hits in ((twice, 8, 0), (thrice, 12, 1)):
+        monkeypatch.setitem(globals(), "third", jit.compiled(third_of))
+        assert kept.start(function) == (result, False)
+        assert sum(third.value.stats.cache_hits.values()) == hits
+    (part,) = kept.folder.glob("*third_of*")
+    _, kind, bitcode = pickle.loads(read_sealed(part))  # noqa: S301 - our own
+    assert kind == BITCODE_OF_PART
+    assert bitcode.startswith(b"BC")

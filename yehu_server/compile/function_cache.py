@@ -20,6 +20,7 @@ from numba.core.compiler import CompileResult
 from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 
+from yehu_server.compile.part_library import BITCODE_OF_PART, PartLibrary
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
 log = logging.getLogger(__name__)
@@ -44,6 +45,31 @@ def parts_of(result: Any) -> tuple[Any, bytes]:
     code, *rest = result._reduce()  # noqa: SLF001 - there is no other way
     rest[TYPES_REPORT] = ""
     return code, dumps(tuple(rest))
+
+
+def _result(context: Any, code: Any, function: Any, environment: Any, *rest: Any) -> Any:
+    """What numba had compiled, of `parts_of` it."""
+    if code[1] != BITCODE_OF_PART:
+        return CompileResult._rebuild(context, code, function, environment, *rest)  # noqa: SLF001
+    part = PartLibrary.kept_as(context.codegen(), code)
+    signature, objectmode, lifted, type_annotation, reload_init, referenced_envs = rest
+    return CompileResult(
+        target_context=context,
+        typing_context=context.typing_context,
+        library=part,
+        environment=environment,
+        entry_point=context.get_executable(part, function, environment),
+        fndesc=function,
+        type_annotation=type_annotation,
+        signature=signature,
+        objectmode=objectmode,
+        lifted=lifted,
+        typing_error=None,
+        call_helper=None,
+        metadata=None,
+        reload_init=reload_init,
+        referenced_envs=referenced_envs,
+    )
 
 
 def payload_of(code: Any, rest: bytes) -> bytes:
@@ -81,7 +107,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
                 return None
             parts = io.BytesIO(payload)
             code, rest = pickle.load(parts), pickle.load(parts)  # noqa: S301 - it is sealed
-            return CompileResult._rebuild(target_context, code, *rest)  # noqa: SLF001
+            return _result(target_context, code, *rest)
         except Exception as error:  # noqa: BLE001 - nothing in a cache is worth not playing
             reason = error if isinstance(error, SealError) else repr(error)
             _tell(DAMAGED, f"{path}: {reason}; compiling anew")

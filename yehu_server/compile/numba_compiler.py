@@ -18,6 +18,7 @@ from numba.core.registry import cpu_target
 from yehu_server.compile import jit
 from yehu_server.compile.cache_folder import IS_CACHED, cache_folder
 from yehu_server.compile.function_cache import CodeCache
+from yehu_server.compile.part_library import PartLibrary
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
@@ -32,6 +33,19 @@ class NoAliasCompiler(Compiler):  # type: ignore[misc]
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self.state.flags.noalias = True
+
+
+class PartCompiler(Compiler):  # type: ignore[misc]
+    """numba's compiler, for functions that only become parts of others; see `PartLibrary`."""
+
+    def compile_extra(self, function: Callable[..., Any]) -> Any:
+        """Compile a function, with numba's name for this."""
+        self.state.library = PartLibrary(self.state.targetctx.codegen(), function.__qualname__)
+        return super().compile_extra(function)
+
+
+class NoAliasPartCompiler(NoAliasCompiler, PartCompiler):
+    """Both at once."""
 
 
 @extending.typeof_impl.register(jit.Deferred)  # type: ignore[untyped-decorator]
@@ -53,7 +67,10 @@ def dispatcher(
     one_version : bool
         Whether constants make no versions of their own.
     """
-    if no_alias:
+    is_part = "no_cpython_wrapper" in options
+    if is_part:
+        options["pipeline_class"] = NoAliasPartCompiler if no_alias else PartCompiler
+    elif no_alias:
         options["pipeline_class"] = NoAliasCompiler
     # A set's text has another order in each process.
     how = {name: sorted(each) if isinstance(each, set) else each for name, each in options.items()}

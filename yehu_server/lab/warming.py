@@ -20,11 +20,14 @@ def all_functions() -> tuple[Native, ...]:
     return tuple(call for call in with_called(CALLED) if call not in warming.all_functions())
 
 
-def warm_up() -> None:
-    """Compile what playing, simulations and sweeps need, or load it from the cache."""
+def warm_up(processes: int = 2) -> None:
+    """Compile what playing, simulations and sweeps need, or load it from the cache.
+
+    `processes`: see `core.engine.warming.warm_up`.
+    """
     if IS_PLAIN:
         return
-    warming.warm_up()
+    warming.warm_up(processes)
     if all(function.is_kept for function in CALLED):
         return
     for function in all_functions():

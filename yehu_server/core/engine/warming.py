@@ -43,13 +43,18 @@ def all_functions() -> tuple[Native, ...]:
     return tuple(with_called(CALLED))
 
 
-def warm_up() -> None:
-    """Compile all functions that playing needs, or load them from the cache."""
+def warm_up(processes: int = 2) -> None:
+    """Compile all functions that playing needs, or load them from the cache.
+
+    `processes`: how many compile at a time, 1 or 2. Two are sooner ready where nothing else is
+    done meanwhile, and take a quarter more of the processors' time.
+    """
     if IS_PLAIN or is_warm():
         return
     with contextlib.ExitStack() as stack:
         beside = None
-        if IS_CACHED and (os.cpu_count() or 1) > 1 and not sound.is_cached:
+        processes = min(processes, os.cpu_count() or 1)
+        if IS_CACHED and processes > 1 and not sound.is_cached:
             command = python_command("yehu_server.core.engine.warming")
             beside = subprocess.Popen(command, stderr=subprocess.DEVNULL)  # noqa: S603 - our own
             stack.callback(beside.kill)  # where we are interrupted

@@ -3,4 +3,8 @@
 # Its first string is slack, and its fingers reach few notes, so that few have to be measured.
 SLACK = {"string_1": {"T": 40.0, "reach": 3.0}, "string_2": {"reach": 3.0}}
 SLACK_RANGE = "D#4 to D#5"
-SLACK_TOML = "[string_1]\nT = 40.0\nreach = 3.0\n[string_2]\nreach = 3.0\n"
+SLACK_TOML = "".join(
+    f"{name}.{quantity} = {value}\n"
+    for name, values in SLACK.items()
+    for quantity, value in values.items()
+)

@@ -77,6 +77,7 @@ def test_a_block_that_a_device_died_in_as_it_started_is_put_in_order(monkeypatch
     stage = ensemble_for(way_out)
     with pytest.raises(DeviceError, match="it does not start"):
         way_out.begin(stage)
+    way_out.end()
     assert len(stage.gaps) == 1
 
 
@@ -93,6 +94,7 @@ def test_a_process_that_does_not_answer_is_waited_for_no_longer(monkeypatch, una
     way_out = Output(OutputOptions(device="card"), lambda _line: None)
     with pytest.raises(DeviceError, match=f"^{whose} does not answer$"):
         way_out.begin(ensemble_for(way_out))
+    way_out.end()
 
 
 @pytest.fixture

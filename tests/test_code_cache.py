@@ -1,17 +1,20 @@
 """Compiled code is cached on disk; a damaged or unusable cache never prevents playing."""
 
 import errno
+import io
 import os
 import pickle
 import random
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 
 import numba
+import numpy as np
 import pytest
 
 from yehu_server.compile import function_cache as cache
 from yehu_server.compile import jit, numba_compiler
-from yehu_server.compile.part_library import BITCODE_OF_PART
+from yehu_server.compile.libraries import BITCODE_OF_PART
 from yehu_server.util import sealed
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
@@ -31,6 +34,17 @@ def thrice(number: int) -> int:
     return third(number) * 3
 
 
+def number_of(row):
+    return row.number
+
+
+def made_by(factor):
+    def scaled(number: int) -> int:
+        return number * factor
+
+    return scaled
+
+
 class Kept:
     """A small function that is compiled, cached in a folder, and loaded again."""
 
@@ -39,6 +53,7 @@ class Kept:
         monkeypatch.setattr(numba_compiler, "cache_folder", lambda: folder)
         monkeypatch.setattr(numba_compiler, "IS_CACHED", True)
         monkeypatch.setattr(cache, "_reported", set())
+        monkeypatch.setattr(cache, "_parts", {})
 
     def start(self, function=third_of) -> tuple[int, bool]:
         """Call the function with 12, as after a start; the result, and whether it was cached."""
@@ -47,7 +62,14 @@ class Kept:
 
     @property
     def file(self):
-        (file,) = self.folder.iterdir()
+        """The one with the machine code."""
+        (file,) = self.folder.glob("*.code")
+        return file
+
+    @property
+    def source(self):
+        """The one with what it was made of."""
+        (file,) = self.folder.glob("*.ir")
         return file
 
 
@@ -72,7 +94,8 @@ DAMAGE = {
 @pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
 def test_damaged_code_is_compiled_anew_and_told_in_one_line(kept, caplog, damage):
     kept.start()
-    kept.file.write_bytes(damage(kept.file.read_bytes()))
+    for file in (kept.source, kept.file):
+        file.write_bytes(damage(file.read_bytes()))
     assert kept.start() == (4, False)
     (line,) = caplog.messages
     assert "damaged; compiling anew" in line
@@ -104,40 +127,101 @@ def test_one_functions_code_does_not_pass_for_anothers(kept):
 
 def test_sound_bytes_that_are_no_code_are_compiled_anew(kept, caplog):
     kept.start()
-    write_sealed(kept.file, b"not of numba")
+    for file in (kept.source, kept.file):
+        write_sealed(file, b"not of numba")
     assert kept.start() == (4, False)
     assert len(caplog.messages) == 1
 
 
 def test_a_folder_in_the_place_of_the_code_is_no_reason_not_to_play(kept, caplog):
     kept.start()
-    file = kept.file
-    file.unlink()
-    file.mkdir()
+    for file in (kept.source, kept.file):
+        file.unlink()
+        file.mkdir()
     assert kept.start() == (4, False)
     assert len(caplog.messages) == 2  # that it is damaged, and that it cannot be kept
 
 
-def test_code_of_another_processor_is_left_alone(kept, monkeypatch):
-    kept.start()
+@contextmanager
+def another_processor():
     codegen = type(cache.cpu_target.target_context.codegen())
-    with monkeypatch.context() as patch:
+    with pytest.MonkeyPatch.context() as patch:
         patch.setattr(codegen, "magic_tuple", lambda _: ("here", "another", "+none"))
-        assert kept.start() == (4, False)
-    assert len(list(kept.folder.iterdir())) == 2
+        patch.setattr(cache, "_parts", {})
+        yield
+
+
+def compiled_functions(monkeypatch) -> list[str]:
+    """The names of the functions that are compiled from now on, not just loaded or optimised."""
+    names = []
+    extract = numba.core.compiler.Compiler._compile_bytecode
+
+    def compile_bytecode(self):
+        names.append(self.state.func_id.func_name)
+        return extract(self)
+
+    monkeypatch.setattr(numba.core.compiler.Compiler, "_compile_bytecode", compile_bytecode)
+    return names
+
+
+def test_what_was_compiled_on_one_processor_is_only_optimised_on_another(kept, monkeypatch):
+    monkeypatch.setitem(globals(), "third", jit.compiled(third_of))
+    names = compiled_functions(monkeypatch)
+    assert kept.start(twice) == (8, False)
+    assert names == ["twice", "third_of"]
+    with another_processor():
+        assert kept.start(twice) == (8, True)
+        assert len(list(kept.folder.glob("*.code"))) == 3  # a part's is made again in no time
+        assert kept.start(twice) == (8, True)
+        assert kept.start(thrice) == (12, False)
+    assert names == ["twice", "third_of", "thrice"]
+
+
+def test_code_of_another_processor_is_left_alone(kept):
+    kept.start()
+    with another_processor():
+        assert kept.start() == (4, True)
+    assert len(list(kept.folder.glob("*.code"))) == 2
     assert kept.start() == (4, True)
 
 
+@pytest.mark.parametrize("lost", ["its file", "its name"])
+def test_without_a_part_that_it_was_made_of_it_is_compiled_anew(kept, caplog, monkeypatch, lost):
+    monkeypatch.setitem(globals(), "third", jit.compiled(third_of))
+    kept.start(twice)
+    (caller,), (part,) = kept.folder.glob("*twice*.ir"), kept.folder.glob("*third*.ir")
+    for code in kept.folder.glob("*.code"):
+        code.unlink()
+    if lost == "its file":
+        monkeypatch.setattr(cache, "_parts", {})
+        part.unlink()
+    else:  # LLVM would end the process, were it to look for it
+        read = io.BytesIO(read_sealed(caller))
+        name, kind, (modules, _links) = pickle.load(read)  # noqa: S301 - our own
+        write_sealed(caller, cache.payload_of((name, kind, (modules, [])), read.read()))
+    assert kept.start(twice) == (8, False)
+    (line,) = caplog.messages
+    assert "compiling anew" in line
+    assert kept.start(twice) == (8, True)
+
+
 def test_functions_of_one_name_have_code_of_their_own(kept):
-    def made(factor):
-        def scaled(number: int) -> int:
-            return number * factor
+    assert kept.start(made_by(2)) == (24, False)
+    assert kept.start(made_by(3)) == (36, False)
+    assert kept.start(made_by(2)) == (24, True)
 
-        return scaled
 
-    assert kept.start(made(2)) == (24, False)
-    assert kept.start(made(3)) == (36, False)
-    assert kept.start(made(2)) == (24, True)
+def test_parts_have_the_same_names_in_all_processes():
+    """Else what one process made of them would not find another's."""
+    how = {"no_alias": True, "one_version": False, "no_cpython_wrapper": True}
+    row = numba.from_dtype(np.dtype([("number", float)]))
+    names = set()
+    for _ in range(2):
+        made = numba_compiler.dispatcher(number_of, **how)
+        made.compile((row,))
+        names.add(made.overloads[row,].fndesc.mangled_name)
+    (name,) = names
+    assert str(row._code) not in name  # which counts types
 
 
 def in_order(falling: bool) -> type:
@@ -214,7 +298,7 @@ def test_a_part_of_other_functions_is_kept_without_machine_code(kept, monkeypatc
         monkeypatch.setitem(globals(), "third", jit.compiled(third_of))
         assert kept.start(function) == (result, False)
         assert sum(third.value.stats.cache_hits.values()) == hits
-    (part,) = kept.folder.glob("*third_of*")
+    (part,) = kept.folder.glob("*third_of*.code")
     _, kind, bitcode = pickle.loads(read_sealed(part))  # noqa: S301 - our own
     assert kind == BITCODE_OF_PART
     assert bitcode.startswith(b"BC")

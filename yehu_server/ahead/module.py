@@ -146,7 +146,12 @@ def joined(functions: Sequence[Native], target: Target) -> Any:
     They keep their names (`Native.name`, behind the target's prefix); all else is internal. Raises
     YehuError where they need what neither a page nor a C library has.
     """
-    module, *others = map(_module, with_called(functions))
+    called = [*with_called(functions)]
+    for function in reversed(called):
+        # A process that compiles for this processor meanwhile goes on from the first one: each
+        # finds half of the work done.
+        function.keep()
+    module, *others = map(_module, called)
     for other in others:
         module.link_in(other)
     machine = target.machine()
@@ -178,7 +183,8 @@ def unresolved(module: Any) -> list[str]:
 
 def _module(function: Native) -> Any:
     """The module of one function as numba optimised it, with the name that C calls it by."""
-    made = function.compiled
+    function.keep()
+    made = function.made
     # `inspect_llvm()` shows nothing of what came from the cache.
     text = str(made._library._get_module_for_linking())  # noqa: SLF001
     module = binding.parse_assembly(text)

@@ -1,8 +1,10 @@
 """Compiled code on disk, with a checksum; replaces numba's cache, which does not check its files.
 
 One file for each function, signature, processor and Python, sealed: so no index can name the
-wrong one, and processes that compile at once leave each other's files whole. What fails is
-told in one line and compiled anew; what cannot be kept is played all the same.
+wrong one, and processes that compile at once leave each other's files whole. Another one, for all
+processors, has what the function was made of, from which a process for another processor makes it
+in a third of the time. What fails is told in one line and compiled anew; what cannot be kept is
+played all the same.
 """
 
 from __future__ import annotations
@@ -20,15 +22,23 @@ from numba.core.compiler import CompileResult
 from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 
-from yehu_server.compile.part_library import BITCODE_OF_PART, PartLibrary
+from yehu_server.compile.libraries import (
+    BITCODE_OF_PART,
+    SOURCE,
+    SOURCE_OF_PART,
+    PartLibrary,
+    SourceLibrary,
+)
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
 log = logging.getLogger(__name__)
 
 TYPES_REPORT = 5  # its place in what numba keeps besides the machine code
+SOURCE_SUFFIX = ".ir"  # of a file for all processors
 
 DAMAGED, FULL = "is damaged", "cannot be kept"
 _reported: set[str] = set()  # of this process: each is told once
+_parts: dict[Path, PartLibrary] = {}  # of this process, by the files of what they were made of
 
 
 def _tell(trouble: str, line: str) -> None:
@@ -47,18 +57,17 @@ def parts_of(result: Any) -> tuple[Any, bytes]:
     return code, dumps(tuple(rest))
 
 
-def _result(context: Any, code: Any, function: Any, environment: Any, *rest: Any) -> Any:
-    """What numba had compiled, of `parts_of` it."""
-    if code[1] != BITCODE_OF_PART:
-        return CompileResult._rebuild(context, code, function, environment, *rest)  # noqa: SLF001
-    part = PartLibrary.kept_as(context.codegen(), code)
+def _result(context: Any, library: Any, function: Any, environment: Any, *rest: Any) -> Any:
+    """What numba had compiled, of its library and the rest of `parts_of` it."""
     signature, objectmode, lifted, type_annotation, reload_init, referenced_envs = rest
-    return CompileResult(
+    for prepare in reload_init:
+        prepare()
+    made = CompileResult(
         target_context=context,
         typing_context=context.typing_context,
-        library=part,
+        library=library,
         environment=environment,
-        entry_point=context.get_executable(part, function, environment),
+        entry_point=context.get_executable(library, function, environment),
         fndesc=function,
         type_annotation=type_annotation,
         signature=signature,
@@ -70,11 +79,78 @@ def _result(context: Any, code: Any, function: Any, environment: Any, *rest: Any
         reload_init=reload_init,
         referenced_envs=referenced_envs,
     )
+    for each in referenced_envs:
+        library.codegen.set_env(each.env_name, each)
+    return made
+
+
+def _library(codegen: Any, source: Path, kept: tuple[str, str, Any]) -> Any:
+    """A function's library, of what its file has, or the one for all processors, `source`."""
+
+    def part(name: str) -> PartLibrary:
+        file = source.with_name(name)
+        if file not in _parts:
+            payload = _read(_for_this_processor(file)) or _read(file)
+            if payload is None:
+                raise SealError(f"{name} is gone")
+            _library(codegen, file, _unpickled(payload))
+        return _parts[file]
+
+    kind = kept[1]
+    if kind in (BITCODE_OF_PART, SOURCE_OF_PART):
+        if source not in _parts:
+            is_made = kind == BITCODE_OF_PART
+            made = (
+                PartLibrary.kept_as(codegen, kept)
+                if is_made
+                else PartLibrary.made_of(codegen, kept, part)
+            )
+            _remember(source, made)
+        return _parts[source]
+    if kind == SOURCE:
+        return SourceLibrary.made_of(codegen, kept, part)
+    return codegen.unserialize_library(kept)
+
+
+def _remember(source: Path, part: PartLibrary) -> None:
+    part.file = source.name
+    _parts[source] = part
+
+
+def _for_this_processor(source: Path) -> Path:
+    """The file that has the code of a function for this processor, by the one for all."""
+    processor = cpu_target.target_context.codegen().magic_tuple()
+    return source.with_name(f"{source.stem}-{short_hash(*processor)}.code")
 
 
 def payload_of(code: Any, rest: bytes) -> bytes:
     """What a file of the cache holds."""
     return bytes(dumps(code)) + rest
+
+
+def _read(path: Path) -> io.BytesIO | None:
+    payload = read_sealed(path)
+    return None if payload is None else io.BytesIO(payload)
+
+
+def _unpickled(parts: io.BytesIO) -> Any:
+    return pickle.load(parts)  # noqa: S301 - it is sealed
+
+
+def code_of(function: Any) -> tuple[Any, ...]:
+    """What tells functions of one name apart: the code, and what it closes over.
+
+    Not its docstring, nor its line: a comment above would move it.
+    """
+    code = function.__code__
+    constants = [value for value in code.co_consts if value != function.__doc__]
+    cells = [cell.cell_contents for cell in function.__closure__ or ()]
+    return code.co_code, code.co_names, dumps((constants, cells))
+
+
+def short_hash(*what: Any) -> str:
+    """16 hex digits of what `repr` shows."""
+    return hashlib.sha256(repr(what).encode()).hexdigest()[:16]
 
 
 class CodeCache(NullCache):  # type: ignore[misc]
@@ -85,12 +161,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
         module = function.__module__.rpartition(".")[2]
         tag = sys.implementation.cache_tag
         self._stem = f"{module}.{function.__qualname__}-{tag}".translate({60: None, 62: None})
-        # What tells functions of one name apart: the code but for its docstring, and what it
-        # closes over. Not its line: a comment above would move it.
-        code = function.__code__
-        constants = [value for value in code.co_consts if value != function.__doc__]
-        cells = [cell.cell_contents for cell in function.__closure__ or ()]
-        self._own = (how, code.co_code, code.co_names, dumps((constants, cells)))
+        self._own = (how, *code_of(function))
 
     @property
     def cache_path(self) -> str:
@@ -100,25 +171,34 @@ class CodeCache(NullCache):  # type: ignore[misc]
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the code for a signature; None where it has to be compiled."""
         target_context.refresh()
-        path = self.path(sig)
-        try:
-            payload = read_sealed(path)
-            if payload is None:
-                return None
-            parts = io.BytesIO(payload)
-            code, rest = pickle.load(parts), pickle.load(parts)  # noqa: S301 - it is sealed
-            return _result(target_context, code, *rest)
-        except Exception as error:  # noqa: BLE001 - nothing in a cache is worth not playing
-            reason = error if isinstance(error, SealError) else repr(error)
-            _tell(DAMAGED, f"{path}: {reason}; compiling anew")
-            return None
+        source = self.source_path(sig)
+        for path in (self.path(sig), source):
+            try:
+                if (payload := _read(path)) is not None:
+                    kept, rest = _unpickled(payload), _unpickled(payload)
+                    made = _result(
+                        target_context, _library(target_context.codegen(), source, kept), *rest
+                    )
+                    if kept[1] == SOURCE:
+                        self.save_overload(sig, made)
+                    return made
+            except Exception as error:  # noqa: BLE001 - nothing in a cache is worth not playing
+                reason = error if isinstance(error, SealError) else repr(error)
+                _tell(DAMAGED, f"{path}: {reason}; compiling anew")
+        return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled for a signature, where there is room for it."""
-        if FULL in _reported or data.library.has_dynamic_globals or data.lifted:
+        library = data.library
+        if FULL in _reported or library.has_dynamic_globals or data.lifted:
             return
         try:
-            write_sealed(self.path(sig), payload_of(*parts_of(data)))
+            code, rest = parts_of(data)
+            if isinstance(library, SourceLibrary) and (source := library.source()) is not None:
+                write_sealed(self.source_path(sig), payload_of(source, rest))
+                if isinstance(library, PartLibrary):
+                    _remember(self.source_path(sig), library)
+            write_sealed(self.path(sig), payload_of(code, rest))
         except Exception as error:  # noqa: BLE001 - neither a full disk nor a numba unlike ours
             reason = getattr(error, "strerror", None) or repr(error)
             _tell(FULL, f"{self._folder}: {reason}; compiled code is not kept for the next start")
@@ -132,6 +212,8 @@ class CodeCache(NullCache):  # type: ignore[misc]
 
     def path(self, sig: Any) -> Path:
         """The file for a signature, on this processor."""
-        processor = cpu_target.target_context.codegen().magic_tuple()
-        key = repr((sig, processor, self._own))
-        return self._folder / f"{self._stem}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.code"
+        return _for_this_processor(self.source_path(sig))
+
+    def source_path(self, sig: Any) -> Path:
+        """The file for a signature, on all processors."""
+        return self._folder / f"{self._stem}-{short_hash(sig, self._own)}{SOURCE_SUFFIX}"

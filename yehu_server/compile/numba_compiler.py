@@ -17,8 +17,8 @@ from numba.core.registry import cpu_target
 
 from yehu_server.compile import jit
 from yehu_server.compile.cache_folder import IS_CACHED, cache_folder
-from yehu_server.compile.function_cache import CodeCache
-from yehu_server.compile.part_library import PartLibrary
+from yehu_server.compile.function_cache import CodeCache, code_of, short_hash
+from yehu_server.compile.libraries import PartLibrary, SourceLibrary
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
@@ -35,13 +35,32 @@ class NoAliasCompiler(Compiler):  # type: ignore[misc]
         self.state.flags.noalias = True
 
 
-class PartCompiler(Compiler):  # type: ignore[misc]
-    """numba's compiler, for functions that only become parts of others; see `PartLibrary`."""
+class SourceCompiler(Compiler):  # type: ignore[misc]
+    """numba's compiler, into a library that can be made again for another processor."""
+
+    library = SourceLibrary
 
     def compile_extra(self, function: Callable[..., Any]) -> Any:
         """Compile a function, with numba's name for this."""
-        self.state.library = PartLibrary(self.state.targetctx.codegen(), function.__qualname__)
+        self.state.library = self.library(self.state.targetctx.codegen(), function.__qualname__)
         return super().compile_extra(function)
+
+
+# numba names a record's type by a number of this process, which would be in the names of functions.
+types.Record.mangling_args = property(lambda record: ("Record", (short_hash(record.name),)))
+
+
+class PartCompiler(SourceCompiler):
+    """numba's compiler, for functions that only become parts of others; see `PartLibrary`."""
+
+    library = PartLibrary
+
+    def _compile_bytecode(self) -> Any:
+        # numba counts functions, and others call it by this name: by its code, all processes do.
+        named = self.state.func_id
+        named.unique_id = short_hash(named.modname, code_of(named.func))
+        named.unique_name = f"{named.func_qualname}${named.unique_id}"
+        return super()._compile_bytecode()
 
 
 class NoAliasPartCompiler(NoAliasCompiler, PartCompiler):
@@ -93,7 +112,7 @@ def c_function(native: jit.Native) -> Any:
     """numba's object for a function that is called by address."""
     options = {"nopython": True, "error_model": "numpy", "fastmath": jit.FASTMATH}
     returned, *arguments = _types(native)
-    made = CFunc(native.function, (tuple(arguments), returned), {}, options)
+    made = CFunc(native.function, (tuple(arguments), returned), {}, options, SourceCompiler)
     return _cached(made, native.function, "")
 
 

@@ -27,12 +27,13 @@ def warm_up(processes: int = 2) -> None:
     """
     if IS_PLAIN:
         return
+    is_kept = all(function.is_kept for function in CALLED)
+    if not is_kept:
+        # First: what compiles for pages meanwhile comes to these parts of the model last.
+        for function in all_functions():
+            _ = function.address
     warming.warm_up(processes)
-    if all(function.is_kept for function in CALLED):
-        return
-    for function in all_functions():
-        _ = function.address
-    if IS_CACHED:
+    if IS_CACHED and not is_kept:
         with contextlib.suppress(OSError, SealError):  # the cache has told of it
             machine_code.keep(cache_folder(), source_hash(), all_functions(), machine_code.LAB)
             machine_code.loaded.cache_clear()

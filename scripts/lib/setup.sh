@@ -3,6 +3,7 @@
 #
 #   setup run          what yehu-server needs: requirements.lock
 #   setup dev          that and what the checks need: requirements-dev.lock
+#   setup all          that and what the long checks and the site need: requirements-all.lock
 #   system_packages [NAMES...]
 #                      the system's own libraries and the ones named, where they are missing
 #
@@ -14,6 +15,7 @@
 root=$(CDPATH='' cd -P "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 venv=$root/.venv
 log=$venv/setup.log
+kinds=(run dev all) # each holds what those before it need
 
 # What we need from Debian: to play live, and to compile python-rtmidi, which has no wheels for
 # Python 3.13 and newer: for ALSA and, as its wheels are, for JACK.
@@ -45,9 +47,9 @@ die() {
     exit 1
 }
 
-# Sets up .venv for `run` or `dev`, unless that is done already.
+# Sets up .venv for one of `kinds`, unless that is done already.
 setup() {
-    local kind=$1 python fresh=
+    local kind=$1 each python fresh=
     is_set_up "$kind" && return
 
     trap 'exit 130' INT # without a page of pip's log
@@ -57,8 +59,9 @@ setup() {
     take_turns "$python" || exit
     if ! is_set_up "$kind"; then # another process may have done it while we waited
         if is_reusable; then python=$venv/bin/python; else fresh=yes; fi
-        rm -f "$venv/stamp-dev"
-        is_set_up run || rm -f "$venv/stamp-run"
+        for each in "${kinds[@]}"; do
+            is_set_up "$each" || rm -f "$venv/stamp-$each"
+        done
         if [ "$kind" = run ]; then system_packages; fi
         build_packages "$python"
         if [ "$fresh" ]; then
@@ -79,7 +82,7 @@ setup() {
 lock_of() {
     case $1 in
         run) echo requirements.lock ;;
-        dev) echo requirements-dev.lock ;;
+        *) echo "requirements-$1.lock" ;;
     esac
 }
 
@@ -88,8 +91,7 @@ lock_of() {
 fingerprint() {
     local hash=cksum
     if command -v sha256sum >/dev/null; then hash=sha256sum; fi
-    "$hash" "$root/requirements-dev.lock" "$root/requirements.lock" "$root/pyproject.toml" \
-        "$root/scripts/lib/setup.sh"
+    "$hash" "$root"/requirements*.lock "$root/pyproject.toml" "$root/scripts/lib/setup.sh"
 }
 
 is_set_up() {
@@ -160,18 +162,30 @@ install() (
     lock=$(lock_of "$1")
     made_from=$(fingerprint)
     cd "$root" || exit
+    # First pip, as Python may bring one that reads an index three times as long.
+    locked pip "$lock" >"$venv/pip.lock"
+    logged "${pip[@]}" --require-hashes -r "$venv/pip.lock"
     if compiles "$venv/bin/python"; then # first the rest, which has the locked tools to do it
-        awk '/^[^ ]/ { skip = /^python-rtmidi==/ } !skip' "$lock" >"$venv/rest.lock"
+        locked -v python-rtmidi "$lock" >"$venv/rest.lock"
         logged "${pip[@]}" --require-hashes -r "$venv/rest.lock"
     fi
     logged "${pip[@]}" --require-hashes --no-build-isolation -r "$lock"
     logged "${pip[@]}" --no-deps --no-build-isolation --editable .
-    # Both kinds hold what `run` needs. A stamp appears whole or not at all.
-    for kind in run "$1"; do
+    # A stamp appears whole or not at all.
+    for kind in "${kinds[@]}"; do
         printf '%s\n' "$made_from" >"$venv/stamp.new"
         mv "$venv/stamp.new" "$venv/stamp-$kind"
+        if [ "$kind" = "$1" ]; then break; fi
     done
 )
+
+# Prints what a lock file has for one package; with -v for all others.
+locked() {
+    local wanted=1
+    if [ "$1" = -v ]; then wanted=0 && shift; fi
+    awk -v begin="$1==" -v wanted="$wanted" \
+        '/^[^ ]/ { is_it = index($0, begin) == 1 } is_it == wanted' "$2"
+}
 
 # Whether this Python has to compile python-rtmidi, for lack of a wheel.
 compiles() {
@@ -228,7 +242,8 @@ node_packages() {
     if (cd "$root" && npm ci --ignore-scripts --no-audit --no-fund) >"$log" 2>&1 </dev/null; then
         printf '%s\n' "$made_from" >"$root/node_modules/.stamp"
     else
-        say "npm ci failed: the page is not tested in a browser; the log is $log"
+        say "npm ci failed: the page is not tested in a browser"
+        tail -n 30 "$log" >&2
     fi
 }
 
@@ -258,8 +273,8 @@ is_there() {
 apt_install() {
     [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || return
     say "installing $*"
-    {
-        apt-get update
+    # One at a time: scripts/test installs its own beside a set-up.
+    flock -o "$root/scripts/lib/setup.sh" bash -c 'apt-get update
         DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "$@"
-    } >"$log" 2>&1 </dev/null 9>&-
+    ' apt-get "$@" >"$log" 2>&1 </dev/null 9>&-
 }

@@ -7,6 +7,7 @@ for. In the place of a `jit.Native` it sees an external function.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numba
@@ -47,7 +48,8 @@ class SourceCompiler(Compiler):  # type: ignore[misc]
 
 
 # numba names a record's type by a number of this process, which would be in the names of functions.
-types.Record.mangling_args = property(lambda record: ("Record", (short_hash(record.name),)))
+types.Record.mangling_args = property(lambda record: ("Record", (_hash_of(record.name),)))
+_hash_of = cache(short_hash)  # names of large records have thousands of letters
 
 
 class PartCompiler(SourceCompiler):

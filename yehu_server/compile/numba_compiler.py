@@ -47,9 +47,9 @@ class SourceCompiler(Compiler):  # type: ignore[misc]
         return super().compile_extra(function)
 
 
+_hash_of = cache(short_hash)  # names of large records have thousands of letters
 # numba names a record's type by a number of this process, which would be in the names of functions.
 types.Record.mangling_args = property(lambda record: ("Record", (_hash_of(record.name),)))
-_hash_of = cache(short_hash)  # names of large records have thousands of letters
 
 
 class PartCompiler(SourceCompiler):

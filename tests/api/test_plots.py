@@ -226,6 +226,17 @@ def test_guettler_counts_periods_from_the_first_slip_and_leaves_out_what_never_c
     assert cells.compressed().tolist() == pytest.approx([10.0, 20.0])
 
 
+def test_a_sweep_is_drawn_as_the_map_that_its_axes_are_for(plt):
+    for other, values, label in (
+        ("bow_velocity", [0.1, 0.2], "bow speed, m/s"),
+        ("bow_position", [0.25, 0.26], "bow position β"),
+        ("bow_acceleration", [1.0, 2.0], "acceleration of the bow, m/s²"),
+    ):
+        plt.figure()
+        axes = yehu.plot.sweep(result({"bow_force": [0.1, 0.2], other: values}))
+        assert axes.get_xlabel() == label
+
+
 # ---------------------------------------------------------------- axes in, axes out
 
 

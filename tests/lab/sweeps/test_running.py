@@ -120,16 +120,29 @@ def test_a_task_of_a_cluster_finds_what_a_thread_finds_or_tells_what_is_wrong(da
     assert "note: 12" in perform((text, numbers.tobytes()))
 
 
-def test_what_a_stranger_answers_is_no_finding_and_workers_that_die_are_told(data):
-    strangers = [Event(0, 1.0, result=each) for each in (None, b"", b"\xff" * 10**4, [1], 5)]
+def test_what_a_stranger_answers_is_no_finding_and_workers_that_die_are_told(data, result):
+    def answers(answer):
+        """A cluster that answers a task with something made of what this machine finds."""
+
+        def perform_all(perform, tasks):
+            for job, task in enumerate(tasks):
+                yield Event(job, 1.0, result=answer(perform(task)))
+
+        return SimpleNamespace(perform_all=perform_all)
+
     dead = SimpleNamespace(is_end=True, died="4 workers", job=0, result=None)
-    for event, told in (
-        *((each, "a worker answered with what are no findings") for each in strangers),
-        (dead, "4 workers"),
+    no_findings = "a worker answered with what are no findings"
+    for cluster, told in (
+        *((answers(lambda _, each=each: each), no_findings) for each in (None, b"", [1], 5)),
+        (answers(lambda found: found + found[:1]), no_findings),
+        (answers(lambda found: b"\xff" * len(found)), no_findings),  # regimes that there are not
+        (answers(lambda _: "no room"), "no room"),
+        (SimpleNamespace(perform_all=lambda *_: iter([dead])), "4 workers"),
     ):
-        cluster = SimpleNamespace(perform_all=lambda *_, event=event: iter([event]))
         with pytest.raises(YehuError, match=told):
             sweep(study_of(data()), cluster=cluster)
+    found = sweep(study_of(data()), cluster=answers(lambda found: found))
+    assert found.arrays()["regime"].tobytes() == result.arrays()["regime"].tobytes()
 
 
 def test_all_of_the_coarse_grid_is_computed_and_asked_only_the_border_of_helmholtz_motion_refined(

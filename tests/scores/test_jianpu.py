@@ -88,6 +88,7 @@ PLAYED = {
     "'1'3": [76],
     "1,3,": [52],
     "1'3": [72],
+    "##1 bb3": [62, 62],
     "> 13": [64],  # the base octave moves no chord
     "1\uff1dF \uff11 \uff12\uff0c \uff13\u2019 \u266f\uff11": [65, 55, 81, 66],  # of full width
 }
@@ -207,8 +208,8 @@ def test_what_the_documentation_shows_is_understood(subtests):
 
 
 def test_words_that_are_not_understood_are_counted_by_name_up_to_some():
-    score = written("1 wibble 2 wibble 3 souyin \\wobble ^\"mumble\" x 1'''''")
-    counted = {"wibble": 2, "souyin": 1, "\\wobble": 1, '^"mumble"': 1, "1'''''": 1}
+    score = written("1 wibble 2 wibble 3 souyin \\wobble ^\"mumble\" x 1''''' ###1")
+    counted = {"wibble": 2, "souyin": 1, "\\wobble": 1, '^"mumble"': 1, "1'''''": 1, "###1": 1}
     assert dict(score.unknown) == counted
     assert any("percussion" in warning for warning in score.warnings)
     score = written("1 " + " ".join(f"w{chr(0x4E00 + number)}" for number in range(150)))

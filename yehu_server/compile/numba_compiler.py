@@ -46,6 +46,13 @@ class SourceCompiler(Compiler):  # type: ignore[misc]
         self.state.library = self.library(self.state.targetctx.codegen(), function.__qualname__)
         return super().compile_extra(function)
 
+    def _compile_bytecode(self) -> Any:
+        # numba names a function by a number of this process. By its code, all processes call it so.
+        named = self.state.func_id
+        named.unique_id = short_hash(named.modname, code_of(named.func))
+        named.unique_name = f"{named.func_qualname}${named.unique_id}"
+        return super()._compile_bytecode()
+
 
 _hash_of = cache(short_hash)  # names of large records have thousands of letters
 # numba names a record's type by a number of this process, which would be in the names of functions.
@@ -56,13 +63,6 @@ class PartCompiler(SourceCompiler):
     """numba's compiler, for functions that only become parts of others; see `PartLibrary`."""
 
     library = PartLibrary
-
-    def _compile_bytecode(self) -> Any:
-        # numba counts functions, and others call it by this name: by its code, all processes do.
-        named = self.state.func_id
-        named.unique_id = short_hash(named.modname, code_of(named.func))
-        named.unique_name = f"{named.func_qualname}${named.unique_id}"
-        return super()._compile_bytecode()
 
 
 class NoAliasPartCompiler(NoAliasCompiler, PartCompiler):

@@ -12,6 +12,7 @@ from yehu_server.lab.sweeps import running
 from yehu_server.lab.sweeps.journal import Journal, journal_of
 from yehu_server.lab.sweeps.running import findings_of, perform, sweep, sweep_to
 from yehu_server.lab.sweeps.study import study_of
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.rendering.workers import Event
 
 
@@ -109,6 +110,19 @@ def test_a_result_is_replaced_only_where_it_may_be(tmp_path, data):
     assert target.read_text() == "mine"
     with pytest.raises(OutputError, match=r"ends in \.npz"):
         sweep_to(study_of(data()), tmp_path / "mine.csv")
+
+
+def test_a_tension_is_a_share_of_what_the_string_is_tuned_to(data):
+    shares, tuned = [0.9, 1.1], calibration_for(44100.0).tensions[0]
+    found = [
+        sweep(study_of(data(vary={name: values}, refine={}))).arrays()
+        for name, values in (
+            ("tension", shares),
+            ("instrument.string_1.T", [share * tuned for share in shares]),
+        )
+    ]
+    for name in ("regime", "level_db"):
+        np.testing.assert_array_equal(found[0][name], found[1][name])
 
 
 def test_a_task_of_a_cluster_finds_what_a_thread_finds_or_tells_what_is_wrong(data):

@@ -104,6 +104,18 @@ def test_parameters_are_set_held_and_given_back(fiddle):
     assert fiddle.get("/bow/position") != pytest.approx(0.2)
 
 
+def test_a_glide_is_the_least_time_of_a_move_that_follows():
+    forces = []
+    for glide in (0.0, 0.2):
+        fiddle = yehu.Instrument()
+        fiddle.note_on("G4")
+        fiddle.play(0.4)
+        fiddle.set("/playing/pressure", 0.5, glide=glide)
+        forces.append(fiddle.record(0.3).arrays["bow_force"])
+    differs = np.abs(forces[1] - forces[0]) > 1e-3
+    assert np.flatnonzero(differs)[-1] / RATE == pytest.approx(0.2, abs=0.02)
+
+
 def test_settings_and_presets_hold_from_the_beginning():
     fiddle = yehu.Instrument(settings={"/playing/attack": 77.0}, preset="flautando")
     assert fiddle.get("/playing/attack") == 77.0

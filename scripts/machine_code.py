@@ -3,7 +3,7 @@
     .venv/bin/python scripts/machine_code.py [LEVEL ...]
 
 For systems of this kind, numba as installed here, and the sources as they are. Run it before a
-wheel is built. Takes two minutes for the first level of processors, half a minute for each other.
+wheel is built. Takes two minutes for the first level of processors, less than one for each other.
 """
 
 from __future__ import annotations

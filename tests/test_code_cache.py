@@ -143,10 +143,10 @@ def test_a_folder_in_the_place_of_the_code_is_no_reason_not_to_play(kept, caplog
 
 
 @contextmanager
-def another_processor():
+def another_processor(name="another"):
     codegen = type(cache.cpu_target.target_context.codegen())
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(codegen, "magic_tuple", lambda _: ("here", "another", "+none"))
+        patch.setattr(codegen, "magic_tuple", lambda _: ("here", name, "+none"))
         patch.setattr(cache, "_parts", {})
         yield
 
@@ -174,6 +174,8 @@ def test_what_was_compiled_on_one_processor_is_only_optimised_on_another(kept, m
         assert len(list(kept.folder.glob("*.code"))) == 3  # a part's is made again in no time
         assert kept.start(twice) == (8, True)
         assert kept.start(thrice) == (12, False)
+    with another_processor("a third"):
+        assert kept.start(twice) == (8, True)
     assert names == ["twice", "third_of", "thrice"]
 
 

@@ -29,6 +29,7 @@ class SourceLibrary(JITCodeLibrary):  # type: ignore[misc]
         super().__init__(codegen, name)
         self.file = ""  # where what it was made of is kept, if it is
         self._modules: list[bytes] = []
+        self._made_of: tuple[str, str, Any] | None = None  # where it was made of what was kept
         self.enable_object_caching()
 
     def add_llvm_module(self, ll_module: Any) -> None:
@@ -41,6 +42,8 @@ class SourceLibrary(JITCodeLibrary):  # type: ignore[misc]
 
         That is files of other functions, and modules of numba's own. None where one is not kept.
         """
+        if self._made_of is not None:
+            return self._made_of
         links: list[str | bytes] = []
         for other in dict.fromkeys(self._linking_libraries):
             if not isinstance(other, SourceLibrary):
@@ -58,6 +61,7 @@ class SourceLibrary(JITCodeLibrary):  # type: ignore[misc]
         """Make it for a processor of what `source` gave; `part` finds the function of a file."""
         name, _, (modules, links) = kept
         made = cls(codegen, name)
+        made._made_of = kept
         for module in modules:
             made.add_llvm_module(binding.parse_bitcode(module))
         for link in links:  # as `finalize` does, and in its order

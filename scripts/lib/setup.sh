@@ -23,7 +23,8 @@ debian_packages=(libportaudio2)
 debian_build_packages=(g++ libasound2-dev libjack-jackd2-dev pkg-config)
 # What only tests need: a JACK server, real OSC senders, a linker for WebAssembly, what runs it and
 # the page, and another reader of ABC.
-debian_test_packages=(jackd2 liblo-tools puredata-core lld npm chromium abcmidi)
+debian_test_packages=(jackd2 liblo-tools puredata-core lld npm chromium chromium-headless-shell
+    abcmidi)
 
 # Python 3.12 and 3.11 first, since nothing has to be compiled for them. numba sets the newest.
 python_candidates=(python3.12 python3.11 python3.13 python3.14 python3 python)

@@ -14,7 +14,7 @@ from yehu_server.lab.plot.study import facts_of, limits_along, write_page
 from yehu_server.lab.plot.sweep_maps import plane_of
 from yehu_server.lab.sweeps.study import study_of
 
-CHROMIUM = shutil.which("chromium")
+CHROMIUM = shutil.which("chromium-headless-shell") or shutil.which("chromium")
 
 
 def test_the_plane_has_the_force_upright():

@@ -23,6 +23,8 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[2]
 WEB = ROOT / "web"
 NODE, CHROMIUM = shutil.which("node"), shutil.which("chromium")
+# Chromium without its own user interface, which is a page as well: opens one with half the work.
+SHELL = shutil.which("chromium-headless-shell") or CHROMIUM
 PLAYWRIGHT = ROOT / "node_modules" / "playwright-core"
 LIMIT_S = 120.0
 
@@ -101,7 +103,7 @@ class Driver:
     def _lines(self) -> tuple[IO[str], IO[str]]:
         if self._process is None or self._process.poll() is not None:
             self._process = subprocess.Popen(
-                [str(NODE), str(HERE / "driver.mjs"), str(CHROMIUM)],
+                [str(NODE), str(HERE / "driver.mjs"), str(SHELL), str(CHROMIUM)],
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
             )  # fmt: skip
         assert self._process.stdin is not None

@@ -65,6 +65,7 @@ function tellHidden(page, isHidden) {
   }, isHidden);
 }
 
+export const hasTabs = true;
 export const isDrawnInFull = true;
 
 export default async function (browser, url, { words: [folder] }) {

@@ -63,12 +63,13 @@ setup() {
         for each in "${kinds[@]}"; do
             is_set_up "$each" || rm -f "$venv/stamp-$each"
         done
-        if [ "$kind" = run ]; then system_packages; fi
         build_packages "$python"
         if [ "$fresh" ]; then
             say "setting up .venv with Python $(python_version "$python"); takes a minute, once"
             empty_venv
             logged "$python" -I -m venv --prompt yehu "$venv"
+        elif is_set_up run; then
+            say "adding what the checks need"
         else
             say "bringing .venv up to date"
         fi
@@ -163,15 +164,18 @@ install() (
     lock=$(lock_of "$1")
     made_from=$(fingerprint)
     cd "$root" || exit
-    # First pip, as Python may bring one that reads an index three times as long.
-    locked pip "$lock" >"$venv/pip.lock"
-    logged "${pip[@]}" --require-hashes -r "$venv/pip.lock"
+    if ! is_set_up run; then # pip first, as Python may bring one that reads an index three times as long
+        locked pip "$lock" >"$venv/pip.lock"
+        logged "${pip[@]}" --require-hashes -r "$venv/pip.lock"
+    fi
     if compiles "$venv/bin/python"; then # first the rest, which has the locked tools to do it
         locked -v python-rtmidi "$lock" >"$venv/rest.lock"
         logged "${pip[@]}" --require-hashes -r "$venv/rest.lock"
     fi
     logged "${pip[@]}" --require-hashes --no-build-isolation -r "$lock"
-    logged "${pip[@]}" --no-deps --no-build-isolation --editable .
+    if ! is_set_up run; then # else it may be in use
+        logged "${pip[@]}" --no-deps --no-build-isolation --editable .
+    fi
     # A stamp appears whole or not at all.
     for kind in "${kinds[@]}"; do
         printf '%s\n' "$made_from" >"$venv/stamp.new"

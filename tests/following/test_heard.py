@@ -1,5 +1,6 @@
 """What is heard of sounds whose pitch is known."""
 
+import itertools
 import tracemalloc
 
 import numpy as np
@@ -9,7 +10,7 @@ from voices import tune, vibrato, voice
 
 from yehu_server.errors import YehuError
 from yehu_server.following.heard import hear
-from yehu_server.following.notes import midi_of, strokes_of
+from yehu_server.following.notes import STEP, _cheapest, midi_of, strokes_of
 from yehu_server.following.recording import Recording, recording_of_file, recording_of_samples
 
 RATE = 22050
@@ -94,6 +95,17 @@ def test_a_long_way_is_a_slide_and_a_short_one_a_step():
 # ---------------------------------------------------------------- odd sounds
 
 TONE = voice(tune([(REST, 0.1), (57.0, 0.6), (REST, 0.1)], RATE), RATE)
+
+
+def test_notes_are_the_cheapest_path_of_all():
+    generator = np.random.default_rng(5)
+    for _ in range(20):
+        cost = generator.uniform(0.0, STEP, (5, 3))
+        price = {
+            path: cost[range(5), path].sum() + STEP * np.count_nonzero(np.diff(path))
+            for path in itertools.product(range(3), repeat=5)
+        }
+        assert price[tuple(_cheapest(cost))] == pytest.approx(min(price.values()))
 
 
 def test_what_has_no_voice_is_refused():

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.player.rows import VELOCITY
-from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, STOP, WISH
+from yehu_server.core.player.rows import ROW, VELOCITY
+from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, STOP, WISH, WRITE
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
@@ -160,6 +160,7 @@ def test_a_capture_is_written_as_its_players_played(tmp_path):
         (0, BEGIN, 0, 67.0, 67.0),
         (second, BEGIN, 0, 60.0, 72.0),  # C4, moved into range; it begins while G4 is held
         (second + 500, END, 0, 67.0, 0.0),
+        (2 * second - 1, WRITE, ROW["/bow/force"], 1.0, 0.0),  # which no score has
         (2 * second, STOP, 0, 0.0, 0.0),
     ]
     writer.wishes(np.array(wishes, WISH))
@@ -171,7 +172,7 @@ def test_a_capture_is_written_as_its_players_played(tmp_path):
         (1, 1, 72.0),
     ]
     assert [(span.name, span.begin, span.end) for span in part.spans] == [("slur", 0, 1)]
-    assert not left
+    assert left == {"moves of bow and fingers": 1}
     assert [tempo.quarters_per_minute for tempo in written.tempi] == [60.0]
 
 

@@ -15,11 +15,11 @@ class TokenBucket:
     def __init__(self, per_s: float, at_once: float) -> None:
         self._per_s = per_s
         self._at_once = self._left = at_once
-        self._looked = -math.inf
+        self._looked = math.inf  # never yet
 
     def left(self, now: float) -> float:
         """The number of tokens at a time."""
-        gained = self._per_s * (now - self._looked)
+        gained = self._per_s * max(now - self._looked, 0.0)
         self._left = min(self._left + gained, self._at_once)
         self._looked = now
         return self._left

@@ -14,6 +14,7 @@ from yehu_server.core.midi.events import LEAVE, RELEASE_ALL
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, STOP, WRITE
 from yehu_server.live.page import guests as admitting
+from yehu_server.live.page import sockets as serving
 from yehu_server.live.page.guests import DIGITS, TRIES, Admission, Guests, new_pin
 from yehu_server.live.page.players import permitted
 from yehu_server.live.page.sockets import NO_PIN, PageSockets
@@ -102,8 +103,14 @@ class View:
         return True
 
 
-def visit(role: str | None, *wishes: tuple[int, int, float]) -> tuple[list[int], int | None, str]:
-    """Send wishes as a page of a role: what was posted, the close code, and the role told."""
+Wish = tuple[int, int, float]
+
+
+def visit(role: str | None, *wishes: Wish, at_once: int = 9) -> tuple[list[int], int | None, str]:
+    """Send wishes as a page of a role: what was posted, the close code, and the role told.
+
+    `at_once`: wishes of one message.
+    """
 
     async def meet() -> tuple[list[int], int | None, str]:
         view, told = View(), ""
@@ -127,7 +134,8 @@ def visit(role: str | None, *wishes: tuple[int, int, float]) -> tuple[list[int],
                 if message.type is WSMsgType.TEXT:
                     told = message.json()["status"]["role"]
                     rows = [[-1.0, *wish, 0.0] for wish in wishes]
-                    await socket.send_bytes(np.array(rows, "<f8").tobytes())
+                    for some in (rows[at : at + at_once] for at in range(0, len(rows), at_once)):
+                        await socket.send_bytes(np.array(some, "<f8").tobytes())
                     await asyncio.sleep(0.1)
                 return list(view.posted), socket.close_code, told
 
@@ -140,3 +148,9 @@ def test_silence_is_a_players_own_an_owners_for_all_and_a_listener_or_a_stranger
     assert visit("play", WISHES["a note"], WISHES["silence"]) == ([BEGIN, LEAVE], None, "play")
     assert visit("play", WISHES["silence"])[0] == []
     assert RELEASE_ALL in visit("own", WISHES["silence"])[0]
+
+
+def test_a_page_that_wishes_too_much_has_to_wait(monkeypatch):
+    monkeypatch.setattr(serving, "WISHES_PER_S", 0.001)
+    monkeypatch.setattr(serving, "WISHES_AT_ONCE", 3.0)
+    assert visit("own", *[WISHES["a note"]] * 6, at_once=2)[0] == [BEGIN] * 4

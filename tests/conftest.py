@@ -29,7 +29,8 @@ settings.load_profile("yehu")
 COLLECT_AFTER = (50_000, 20, 20)  # objects: Python's own 700 would look through all of them often
 
 CHANGED_S = 60.0  # how long tests of a change begin
-WAITING = {"ahead", "documentation", "page"}  # folders of tests that mostly wait for a browser
+BEGAN = pytest.StashKey[float]()
+WAITING = {"ahead", "documentation", "page", "real_time"}  # folders of tests that mostly wait
 LAST_WAITS = 0.92  # of all files: when the last that waits begins
 
 
@@ -100,22 +101,18 @@ def combinations(items: list[pytest.Item]) -> list[pytest.Item]:
 
 
 def places(files: list[Path]) -> dict[Path, float]:
-    """When each file begins: those that mostly wait for a browser are spread among the others."""
+    """When each file begins: those that mostly wait are spread among the others."""
     waiting = [file for file in files if file.parent.name in WAITING]
     others = [file for file in files if file.parent.name not in WAITING]
     spread = {file: LAST_WAITS * n / len(waiting) for n, file in enumerate(waiting)}
     return {file: n / len(others) for n, file in enumerate(others)} | spread
 
 
-@pytest.fixture(autouse=True, scope="session")
-def _began() -> float:
-    return time.monotonic()
-
-
-@pytest.fixture(autouse=True)
-def _within_a_minute(request, _began) -> None:
-    """Skip what comes after a minute, where a minute is asked for."""
-    if request.config.getoption("--changed") and time.monotonic() > _began + CHANGED_S:
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip what comes after a minute, where a minute is asked for, before anything is set up."""
+    began = item.session.stash.setdefault(BEGAN, time.monotonic())
+    if item.config.getoption("--changed") and time.monotonic() > began + CHANGED_S:
         pytest.skip("the minute of --changed is over")
 
 

@@ -177,7 +177,14 @@ def test_an_interrupted_data_set_goes_on_where_it_was(command, tmp_path, signum)
     words = (tmp_path / "d.toml", "-o", tmp_path / "out")
     process = start("dataset", *words, "--jobs", 1)
     hidden = tmp_path / "out" / ".yehu-server"
-    until(lambda: process.poll() is not None or list(hidden.glob("sounds-*.json")), within_s=LONG_S)
+    until(
+        # A record that is being put in its place is empty for a moment.
+        lambda: (
+            process.poll() is not None
+            or any(record.stat().st_size for record in hidden.glob("sounds-*.json"))
+        ),
+        within_s=LONG_S,
+    )
     process.send_signal(signum)
     _, err = process.communicate(timeout=60)
     if signum == signal.SIGTERM:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -151,6 +152,13 @@ def test_silence_is_a_players_own_an_owners_for_all_and_a_listener_or_a_stranger
 
 
 def test_a_page_that_wishes_too_much_has_to_wait(monkeypatch):
+    waited: list[float] = []
+
+    async def wait(seconds: float) -> None:
+        waited.append(seconds)
+
     monkeypatch.setattr(serving, "WISHES_PER_S", 0.001)
     monkeypatch.setattr(serving, "WISHES_AT_ONCE", 3.0)
-    assert visit("own", *[WISHES["a note"]] * 6, at_once=2)[0] == [BEGIN] * 4
+    monkeypatch.setattr(serving, "asyncio", SimpleNamespace(sleep=wait))
+    assert visit("own", *[WISHES["a note"]] * 6, at_once=2)[0] == [BEGIN] * 6
+    assert waited == pytest.approx([1000.0, 3000.0], rel=0.01)

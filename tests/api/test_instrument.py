@@ -63,6 +63,18 @@ def test_what_is_asked_for_at_a_time_happens_then_and_the_same_again_after_a_res
     np.testing.assert_array_equal(*takes)
 
 
+def test_the_note_that_is_named_ends(fiddle):
+    fiddle.note_on("G4")
+    fiddle.note_on("B4")
+    fiddle.note_off("B4")
+    sounding = fiddle.play(0.6)
+    assert fiddle.pitch == pytest.approx(67.0, abs=0.01)
+    fiddle.note_off("G4")
+    fiddle.play(1.0)
+    assert fiddle.pitch is None
+    assert level(fiddle.play(0.2)) < 0.01 * level(sounding[-8000:])
+
+
 def test_the_finger_slides_and_bends(fiddle):
     fiddle.note_on("G4")
     fiddle.play(0.3)

@@ -100,6 +100,16 @@ def test_a_style_plays_less_of_the_loudness():
     assert least[0] < least[1] < least[2] == 1.0
 
 
+def test_a_slow_beginning_is_played_slowly():
+    pitches, even = held((np.nan, 9), (70.0, 200)), np.full(209, -20.0)
+    slow = even.copy()
+    slow[9:29] = np.linspace(-60.0, -20.0, 20)
+    quickly, slowly = (
+        settings(played(pitches, level=level), "/playing/attack") for level in (even, slow)
+    )
+    assert slowly[0] > 2.0 * quickly[0]
+
+
 def test_its_midi_file_has_the_same_notes_and_bends(tmp_path):
     found = played(held((np.nan, 9), (70.3, 100), (73.4, 100), (np.nan, 9)))
     data, lost = midi_of_performance(found.score, 0.5)

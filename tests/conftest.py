@@ -29,7 +29,7 @@ settings.load_profile("yehu")
 COLLECT_AFTER = (50_000, 20, 20)  # objects: Python's own 700 would look through all of them often
 
 CHANGED_S = 60.0  # how long tests of a change begin
-BEGAN = pytest.StashKey[float]()
+BEGAN = pytest.StashKey[float]()  # when the first test did
 WAITING = {"ahead", "documentation", "page", "real_time"}  # folders of tests that mostly wait
 LAST_WAITS = 0.92  # of all files: when the last that waits begins
 

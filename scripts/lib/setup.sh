@@ -69,7 +69,7 @@ setup() {
             empty_venv
             logged "$python" -I -m venv --prompt yehu "$venv"
         elif is_set_up run; then
-            say "adding what the checks need"
+            say "adding what else is needed"
         else
             say "bringing .venv up to date"
         fi

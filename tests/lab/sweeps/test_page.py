@@ -1,20 +1,18 @@
 """The page of a result, and what it is made of."""
 
 import base64
-import shutil
 import subprocess
 import zlib
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from live.page.browser import SHELL
 
 from yehu_server.lab.plot.cells import edges, is_log
 from yehu_server.lab.plot.study import facts_of, limits_along, write_page
 from yehu_server.lab.plot.sweep_maps import plane_of
 from yehu_server.lab.sweeps.study import study_of
-
-CHROMIUM = shutil.which("chromium-headless-shell") or shutil.which("chromium")
 
 
 def test_the_plane_has_the_force_upright():
@@ -96,11 +94,11 @@ def test_a_title_is_text_and_no_code(tmp_path, result):
     assert "<h1>A short study of &lt;C5&gt;</h1>" in text
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="needs chromium")
+@pytest.mark.skipif(SHELL is None, reason="needs chromium")
 def test_a_browser_draws_the_page_from_the_file_alone(tmp_path, result):
     write_page(result, tmp_path / "page.html")
     command = [
-        CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=4000",
+        SHELL, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=4000",
         f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", f"file://{tmp_path}/page.html",
     ]  # fmt: skip
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)

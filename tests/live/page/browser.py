@@ -23,7 +23,7 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[2]
 WEB = ROOT / "web"
 NODE, CHROMIUM = shutil.which("node"), shutil.which("chromium")
-# Chromium without its own user interface, which is a page as well: opens one with half the work.
+# Chromium without its own interface, which is a page as well: it opens a page with half the work.
 SHELL = shutil.which("chromium-headless-shell") or CHROMIUM
 PLAYWRIGHT = ROOT / "node_modules" / "playwright-core"
 LIMIT_S = 120.0

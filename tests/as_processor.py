@@ -1,10 +1,10 @@
-"""Runs a command as another x86-64 processor would run it, rounding for rounding.
+"""Runs a command as a processor of another level of x86-64 would run it, rounding for rounding.
 
-    .venv/bin/python tests/as_processor.py generic .venv/bin/pytest tests/core/physics
+    .venv/bin/python tests/as_processor.py x86-64-v2 .venv/bin/pytest tests/core/physics
 
-numba compiles for that processor; numpy, its linear algebra and the C library do not use the code
-that they have for newer ones. Where this processor can't run the other's code, the script says so
-and exits with 77. Set `NUMBA_CACHE_DIR` to a folder for each processor.
+Our code is compiled for that level; numpy, its linear algebra and the C library do not use the code
+that they have for newer processors. Where this processor can't run the other's code, the script
+says so and exits with 77.
 """
 
 from __future__ import annotations
@@ -16,25 +16,26 @@ from dataclasses import dataclass
 
 CANNOT = 77  # exit code
 NUMPY_WITHOUT = "NPY_DISABLE_CPU_FEATURES"
+V2, V3, V4 = "x86-64-v2", "x86-64-v3", "x86-64-v4"
 
 
 @dataclass(frozen=True)
 class Processor:
-    """The features of an x86-64 processor, as each library names them."""
+    """What libraries use on processors of a level, as each library names it."""
 
-    needs: frozenset[str]  # LLVM's features beyond those of 2003
+    level: str  # of our code
     openblas: str
     numpy: frozenset[str]  # levels that numpy has code for
     without: str = ""  # glibc's features that it lacks
+    needs: frozenset[str] = frozenset()  # LLVM's features, beyond those of the level of our code
 
 
-OF_2013 = frozenset(("avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"))
 AVX_512 = frozenset(("avx512f", "avx512cd", "avx512bw", "avx512dq", "avx512vl"))
 
-PROCESSORS = {  # by LLVM's names
-    "generic": Processor(frozenset(), "Nehalem", frozenset(), "-AVX2,-AVX,-FMA,-FMA4"),
-    "haswell": Processor(OF_2013, "Haswell", frozenset(("X86_V3",))),
-    "skylake-avx512": Processor(OF_2013 | AVX_512, "SkylakeX", frozenset(("X86_V3", "X86_V4"))),
+PROCESSORS = {
+    V2: Processor(V2, "Nehalem", frozenset(), "-AVX2,-AVX,-FMA,-FMA4"),
+    V3: Processor(V3, "Haswell", frozenset(("X86_V3",)), "-AVX512F,-AVX512VL"),
+    V4: Processor(V3, "SkylakeX", frozenset(("X86_V3", "X86_V4")), needs=AVX_512),
 }
 
 
@@ -44,8 +45,11 @@ def missing(name: str) -> list[str]:
         return ["x86-64"]
     from llvmlite import binding
 
+    from yehu_server.compile.levels import LEVELS
+
     here = binding.get_host_cpu_features()
-    return sorted(feature for feature in PROCESSORS[name].needs if not here.get(feature))
+    needs = LEVELS["x86_64"][PROCESSORS[name].level] | PROCESSORS[name].needs
+    return sorted(feature for feature in needs if not here.get(feature))
 
 
 def environment(name: str) -> dict[str, str]:
@@ -56,8 +60,7 @@ def environment(name: str) -> dict[str, str]:
     levels = set(np.show_config(mode="dicts")["SIMD Extensions"].get("found", []))
     levels |= set(os.environ.get(NUMPY_WITHOUT, "").split())  # where we run inside of ourselves
     return {
-        "NUMBA_CPU_NAME": name,
-        "NUMBA_CPU_FEATURES": "",  # else those of this processor stay
+        "YEHU_LEVEL": processor.level,
         NUMPY_WITHOUT: " ".join(sorted(levels - processor.numpy)),
         "OPENBLAS_CORETYPE": processor.openblas,
         "GLIBC_TUNABLES": f"glibc.cpu.hwcaps={processor.without}",

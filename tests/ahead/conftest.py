@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from ahead.phrases import PHRASES, played
 
-from yehu_server.ahead.build import ANY, page_linker, page_module
+from yehu_server.ahead.build import page_linker, page_module
 from yehu_server.ahead.interpreter import look_length
+from yehu_server.compile import levels
 
 HERE = Path(__file__).parent
 
@@ -25,8 +26,7 @@ def wasm() -> Path:
 def _any_processor(folder: Path) -> Path:
     environment = {
         **os.environ,
-        "NUMBA_CPU_NAME": ANY,
-        "NUMBA_CPU_FEATURES": "",
+        levels.VARIABLE: levels.lowest(),
         "PYTHONPATH": os.pathsep.join(map(str, (HERE.parent, HERE.parents[1]))),
     }
     command = [sys.executable, str(HERE / "phrases.py"), str(folder)]

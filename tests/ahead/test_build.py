@@ -51,8 +51,8 @@ def test_a_section_is_read_as_it_was_written_and_what_has_none_tells_nothing():
 
 
 def test_what_cannot_be_built_is_refused(tmp_path, monkeypatch, refused):
-    with pytest.raises(ParameterError, match="'pdp11' is no processor"):
-        build("library", tmp_path, cpu="pdp11")
+    with pytest.raises(ParameterError, match="'pdp11' is no level"):
+        build("library", tmp_path, level="pdp11")
     with pytest.raises(YehuError, match=r"^sample rate: 5.0 Hz is not within"):
         build("library", tmp_path, rates=[5.0])
     monkeypatch.setenv("PATH", str(tmp_path))

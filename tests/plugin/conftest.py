@@ -6,11 +6,11 @@ import pytest
 from ahead.conftest import node, wasm  # noqa: F401 - fixtures
 
 from yehu_server.ahead import build as ahead
+from yehu_server.compile import levels
 from yehu_server.errors import YehuError
 from yehu_server.plugin.build import build
 from yehu_server.plugin.carried import carried
 from yehu_server.plugin.parameters import parameters
-from yehu_server.plugin.targets import ANY, WIDE
 
 HERE = Path(__file__).parent
 HEADERS = Path("/usr/share/dpf/distrho/src")
@@ -71,11 +71,6 @@ def play(tmp_path, built, host):
 @pytest.fixture(scope="session")
 def library(tmp_path_factory) -> Path:
     """The library for C programs, of the version that the plug-in chooses on this machine."""
-    flags = next(
-        line
-        for line in Path("/proc/cpuinfo").read_text().splitlines()
-        if line.startswith(("flags", "Features"))
-    ).split()
     folder = tmp_path_factory.mktemp("library")
-    ahead.build("library", folder, cpu=WIDE if "avx2" in flags and "bmi2" in flags else ANY)
+    ahead.build("library", folder, level=levels.level())
     return folder / ahead.LIBRARY_FILE

@@ -1,6 +1,6 @@
 """Compile and link the instrument for pages and for C programs, in a process of its own.
 
-numba compiles for one processor in a process, so another one's code is made in another process:
+A process compiles for one level of processors, so another level's code is made in another process:
 `python -m yehu_server.ahead.build`.
 """
 
@@ -22,8 +22,9 @@ from yehu_server.ahead.header import header
 from yehu_server.ahead.interpreter import INTERPRETER
 from yehu_server.ahead.memory_images import image
 from yehu_server.ahead.module import PAGE, Target, here, joined
+from yehu_server.compile import levels
 from yehu_server.compile.cache_folder import data_folder
-from yehu_server.errors import OutputError, ParameterError, YehuError
+from yehu_server.errors import OutputError, YehuError
 from yehu_server.util import __version__
 from yehu_server.util.files import write_bytes
 from yehu_server.util.processes import machine_lock, python_command
@@ -34,8 +35,6 @@ PAGE_FILE, HEADER_FILE = "yehu.wasm", "yehu.h"
 LIBRARY_FILE = "libyehu.dylib" if sys.platform == "darwin" else "libyehu.so"
 WHATS = ("wasm", "library")
 RATES = (44100.0, 48000.0)  # Hz
-ANY = "generic"  # processor
-STRANGE = "is not a recognized processor"  # LLVM's word
 PAGE_LINKERS = ("wasm-ld", *(f"wasm-ld-{version}" for version in range(22, 13, -1)))
 LIBRARY_LINKERS = ("cc", "gcc", "clang")
 STACK_BYTES = 1 << 18
@@ -89,37 +88,38 @@ def run_compiler(command: Sequence[str]) -> None:
         raise YehuError(f"{Path(command[0]).name}: {done.stderr.strip() or done.returncode}")
 
 
-def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str = ANY) -> list[Path]:
+def build(
+    what: str, folder: Path, *, rates: Sequence[float] = RATES, level: str | None = None
+) -> list[Path]:
     """Build one of WHATS into a folder; return the files written.
 
     Raises YehuError where something is missing to build with, or the folder cannot be written.
 
     `rates`: sample rates (Hz) at which an instrument can be made.
-    `cpu`: the processor of a library, by LLVM's name.
+    `level`: the level of processors of a library; by default the lowest.
     """
     linker_of(what)  # or there would be none after minutes of compiling
-    words = (what, str(folder), cpu, *map(repr, rates))
-    done = compile_for(cpu, "yehu_server.ahead.build", *words)
+    level = levels.lowest() if level is None else levels.checked(level)
+    words = (what, str(folder), *map(repr, rates))
+    done = compile_for(level, "yehu_server.ahead.build", *words)
     return [Path(line) for line in done.splitlines()]
 
 
-def compile_for(cpu: str, module: str, *words: str) -> str:
-    """Run a module in a process that compiles for a processor (LLVM's name); return what it prints.
+def compile_for(level: str, module: str, *words: str) -> str:
+    """Run a module in a process that compiles for a level; return what it prints.
 
     Raises YehuError with the last line of what it said, where it fails.
     """
-    environment = {**os.environ, "NUMBA_CPU_NAME": cpu, "NUMBA_CPU_FEATURES": ""}
+    environment = {**os.environ, levels.VARIABLE: level}
     command = python_command(module, *words)
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603 - our own
-    if STRANGE in done.stderr:
-        raise ParameterError(f"{cpu!r} is no processor that LLVM knows")
     if done.returncode != 0:
         raise YehuError(done.stderr.strip().rpartition("\n")[2] or f"exit code {done.returncode}")
     return done.stdout
 
 
-def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> list[Path]:
-    """Build in this process, which compiles for the processor wanted; see `build`."""
+def build_here(what: str, folder: Path, rates: Sequence[float]) -> list[Path]:
+    """Build in this process, for the level that it compiles for; see `build`."""
     linker = linker_of(what)
     functions = interface.functions(rates, [image(rate) for rate in rates], build_hash())
     try:
@@ -132,7 +132,7 @@ def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> lis
                 link_page(linker, code, [function.name for function in functions], linked)
                 module = with_section(linked.read_bytes(), f"{__version__} {build_hash()}")
                 return [write_bytes(folder / PAGE_FILE, module)]
-            code.write_bytes(compiled(functions, here(cpu)))
+            code.write_bytes(compiled(functions, here()))
             linked = linked.with_name(LIBRARY_FILE)
             link_library(linker, code, linked)
             text = header(functions, version=__version__, sources=build_hash(), rates=rates)
@@ -192,8 +192,8 @@ def _made(module: Path) -> list[str]:
 
 if __name__ == "__main__":
     try:
-        _what, _folder, _cpu, *_rates = sys.argv[1:]
-        for _path in build_here(_what, Path(_folder), _cpu, [float(rate) for rate in _rates]):
+        _what, _folder, *_rates = sys.argv[1:]
+        for _path in build_here(_what, Path(_folder), [float(rate) for rate in _rates]):
             sys.stdout.write(f"{_path}\n")
     except YehuError as error:
         sys.exit(str(error))

@@ -13,6 +13,7 @@ from typing import Any
 
 from llvmlite import binding
 
+from yehu_server.compile import levels
 from yehu_server.compile.jit import Native, with_called
 from yehu_server.core.engine.processor import ARM_BIT, X86_BITS
 from yehu_server.errors import YehuError
@@ -60,9 +61,9 @@ class Target:
 PAGE = Target("wasm32-unknown-unknown", "", PAGE_FEATURES, reloc="static")
 
 
-def here(cpu: str = "generic") -> Target:
-    """Tell this machine, with the instructions of a processor (LLVM's name) or any."""
-    return Target(binding.get_process_triple(), cpu)
+def here() -> Target:
+    """Tell this machine, with the instructions of the level that this process compiles for."""
+    return Target(levels.triple(), levels.cpu(levels.level()))
 
 
 # What the machine's C library gives, or the page.
@@ -148,7 +149,7 @@ def joined(functions: Sequence[Native], target: Target) -> Any:
     """
     called = [*with_called(functions)]
     for function in reversed(called):
-        # A process that compiles for this processor meanwhile goes on from the first one: each
+        # A process that compiles for playing meanwhile goes on from the first one: each
         # finds half of the work done.
         function.keep()
     module, *others = map(_module, called)

@@ -44,11 +44,11 @@ def add_to(commands: Any) -> None:
         parser,
         """
         --rate HZ: sample rates that it can play at (default: 44100 48000)
-        --cpu NAME: processor of a library, by LLVM's name, such as x86-64-v3; native: this one
-            (default: any of its kind)
+        --level NAME: level of processors of a library: x86-64-v3 (with AVX2) or x86-64-v2; aarch64
+            (default: the lowest of this kind of machine)
         """,
         rate={"nargs": "+", "type": positive},
-        cpu={"default": "generic"},
+        level={},
     )
     tables = parser.add_word(
         "tables",
@@ -97,14 +97,12 @@ def write_tables(arguments: argparse.Namespace) -> int:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from llvmlite import binding
-
     from yehu_server.ahead.build import RATES, build
 
     folder: Path = arguments.output
-    cpu = binding.get_host_cpu_name() if arguments.cpu == "native" else arguments.cpu
-    if arguments.what == "wasm" and cpu != "generic":
-        raise ParameterError("--cpu is for libraries: a page has no processor of its own")
-    for path in build(arguments.what, folder, rates=arguments.rate or RATES, cpu=cpu):
+    if arguments.what == "wasm" and arguments.level:
+        raise ParameterError("--level is for libraries: a page has no processor of its own")
+    rates, level = arguments.rate or RATES, arguments.level
+    for path in build(arguments.what, folder, rates=rates, level=level):
         print_result(str(path))
     return 0

@@ -1,9 +1,9 @@
 """Compiled code on disk, with a checksum; replaces numba's cache, which does not check its files.
 
-One file for each function, signature, processor and Python, sealed: so no index can name the
-wrong one, and processes that compile at once leave each other's files whole. Another one, for all
-processors, has what the function was made of, from which a process for another processor makes it
-in a third of the time. What fails is told in one line and compiled anew; what cannot be kept is
+One file for each function, signature, level of processors and Python, sealed: so no index can name
+the wrong one, and processes that compile at once leave each other's files whole. Another one, for
+all levels, has what the function was made of, from which a process for another level makes it in a
+third of the time. What fails is told in one line and compiled anew; what cannot be kept is
 played all the same.
 """
 
@@ -19,9 +19,9 @@ from typing import Any
 
 from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
-from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 
+from yehu_server.compile import levels
 from yehu_server.compile.libraries import (
     BITCODE_OF_PART,
     SOURCE,
@@ -34,7 +34,7 @@ from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 log = logging.getLogger(__name__)
 
 TYPES_REPORT = 5  # its place in what numba keeps besides the machine code
-SOURCE_SUFFIX = ".ir"  # of a file for all processors
+SOURCE_SUFFIX = ".ir"  # of a file for all levels
 
 DAMAGED, FULL = "is damaged", "cannot be kept"
 _reported: set[str] = set()  # of this process: each is told once
@@ -85,12 +85,12 @@ def _result(context: Any, library: Any, function: Any, environment: Any, *rest: 
 
 
 def _library(codegen: Any, source: Path, kept: tuple[str, str, Any]) -> Any:
-    """A function's library, of what its file has, or the one for all processors, `source`."""
+    """A function's library, of what its file has, or the one for all levels, `source`."""
 
     def part(name: str) -> PartLibrary:
         file = source.with_name(name)
         if file not in _parts:
-            payload = _read(_for_this_processor(file)) or _read(file)
+            payload = _read(_for_this_level(file)) or _read(file)
             if payload is None:
                 raise SealError(f"{name} is gone")
             _library(codegen, file, _unpickled(payload))
@@ -117,10 +117,9 @@ def _remember(source: Path, part: PartLibrary) -> None:
     _parts[source] = part
 
 
-def _for_this_processor(source: Path) -> Path:
-    """The file that has the code of a function for this processor, by the one for all."""
-    processor = cpu_target.target_context.codegen().magic_tuple()
-    return source.with_name(f"{source.stem}-{short_hash(*processor)}.code")
+def _for_this_level(source: Path) -> Path:
+    """The file that has the code of a function for this level, by the one for all."""
+    return source.with_name(f"{source.stem}-{levels.level()}.code")
 
 
 def payload_of(code: Any, rest: bytes) -> bytes:
@@ -211,9 +210,9 @@ class CodeCache(NullCache):  # type: ignore[misc]
             return False
 
     def path(self, sig: Any) -> Path:
-        """The file for a signature, on this processor."""
-        return _for_this_processor(self.source_path(sig))
+        """The file for a signature, for this level."""
+        return _for_this_level(self.source_path(sig))
 
     def source_path(self, sig: Any) -> Path:
-        """The file for a signature, on all processors."""
+        """The file for a signature, for all levels."""
         return self._folder / f"{self._stem}-{short_hash(sig, self._own)}{SOURCE_SUFFIX}"

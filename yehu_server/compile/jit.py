@@ -13,7 +13,7 @@ from pathlib import Path
 from types import ModuleType, NoneType
 from typing import Annotated, Any, ParamSpec, TypeVar, cast, get_args, get_type_hints
 
-from yehu_server.compile import machine_code
+from yehu_server.compile import levels, machine_code
 from yehu_server.compile.cache_folder import IS_CACHED, cache_folder, source_hash
 from yehu_server.errors import YehuError
 
@@ -280,10 +280,11 @@ class Native:
     def address(self) -> int:
         """The function's address, for C.
 
-        Raises YehuError where nothing is compiled.
+        Raises YehuError where nothing is compiled, or this processor cannot run it.
         """
         if IS_PLAIN:
             raise YehuError("NUMBA_DISABLE_JIT: plain Python has no address for C")
+        levels.check_processor()
         kept = self._kept
         return int(self.compiled.address) if kept is None else kept
 

@@ -1,8 +1,8 @@
-"""What numba's functions are compiled into: code that can be made again for another processor.
+"""What numba's functions are compiled into: code that can be made again for another level.
 
 Most of the time that compiling takes is numba's own, to find types and to write LLVM's code, which
-is the same for all processors. So each function keeps that code, as it was before LLVM optimised
-it. Machine code is made only of functions that are called by address: of those that become parts of
+is the same for all levels. So each function keeps that code, as it was before LLVM optimised it.
+Machine code is made only of functions that are called by address: of those that become parts of
 others it would be a tenth of the time.
 """
 
@@ -38,7 +38,7 @@ class SourceLibrary(JITCodeLibrary):  # type: ignore[misc]
         super().add_llvm_module(ll_module)
 
     def source(self) -> tuple[str, str, Any] | None:
-        """What the cache keeps for all processors: its own modules, and what it links.
+        """What the cache keeps for all levels: its own modules, and what it links.
 
         That is files of other functions, and modules of numba's own. None where one is not kept.
         """
@@ -58,7 +58,7 @@ class SourceLibrary(JITCodeLibrary):  # type: ignore[misc]
     def made_of(
         cls, codegen: Any, kept: tuple[str, str, Any], part: Callable[[str], PartLibrary]
     ) -> Self:
-        """Make it for a processor of what `source` gave; `part` finds the function of a file."""
+        """Make it for this level of what `source` gave; `part` finds the function of a file."""
         name, _, (modules, links) = kept
         made = cls(codegen, name)
         made._made_of = kept

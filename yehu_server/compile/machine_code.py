@@ -1,8 +1,8 @@
 """Machine code of all functions that playing calls, kept in one file and loaded without numba.
 
 What simulations and sweeps call besides is in another one, which playing does not load.
-A file in the cache is for this very processor. Releases bring one for each of a few levels of
-processors, which is used where there is none in the cache, so that a first start compiles nothing.
+A file is for one level of processors. Releases bring one for each, used where there is none
+in the cache, so that a first start compiles nothing.
 
 The file is sealed. Inside are a line of JSON, which tells what it was made for and all sizes, and
 the functions' object files, compressed; each comes after those that it calls.
@@ -18,10 +18,11 @@ import logging
 import os
 import pickle
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from yehu_server.compile import levels
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
 log = logging.getLogger(__name__)
@@ -47,22 +48,14 @@ def add_symbol(name: str, address: int) -> None:
     binding.add_symbol(name, address)
 
 
-def processor() -> list[str]:
-    """The processor that code is made for, in full: system, name and features."""
-    from llvmlite import binding
-
-    # numba's own words, by which it takes this processor for another one.
-    name = os.environ.get("NUMBA_CPU_NAME") or binding.get_host_cpu_name()
-    features = os.environ.get("NUMBA_CPU_FEATURES")
-    if features is None:
-        features = binding.get_host_cpu_features().flatten()
-    return [binding.get_process_triple(), name, features]
+def made_for(sources: str) -> list[str]:
+    """What code is made for here: the system, the level of processors, the sources."""
+    return [levels.triple(), levels.level(), sources]
 
 
 def file_in(folder: Path, what: str = PLAYING) -> Path:
-    """The file of this processor in a cache folder."""
-    key = zlib.crc32(json.dumps(processor()).encode())
-    return folder / f"machine-{key:08x}{what}.code"
+    """The file of this level in a folder."""
+    return folder / f"{levels.triple()}-{levels.level()}{what}.code"
 
 
 def keep(folder: Path, sources: str, functions: Iterable[Any], what: str = PLAYING) -> None:
@@ -85,38 +78,12 @@ def keep(folder: Path, sources: str, functions: Iterable[Any], what: str = PLAYI
         entry = described.llvm_cfunc_wrapper_name
         sizes.append([function.name, entry, len(parts[0])])
         objects.append(parts[0])
-    head = {"format": FORMAT, "made for": [*processor(), sources], "functions": sizes}
+    head = {"format": FORMAT, "made for": made_for(sources), "functions": sizes}
     body = zlib.compress(b"".join(objects), 1)
     write_sealed(file_in(folder, what), json.dumps(head).encode() + b"\n" + body)
 
 
 SHIPPED = Path(__file__).parent / "shipped"
-_V3 = {"avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"}
-_V4 = _V3 | {"avx512bw", "avx512cd", "avx512dq", "avx512f", "avx512vl"}
-# Levels that a release has code for, the highest first, with the features that they need. By LLVM's
-# names of processors and of features.
-LEVELS: dict[str, dict[str, set[str]]] = {
-    "x86_64": {"x86-64-v4": _V4, "x86-64-v3": _V3, "x86-64": set()},
-    "aarch64": {"generic": set()},
-    "arm64": {"generic": set()},
-}
-
-
-def levels() -> dict[str, set[str]]:
-    """The levels of processors of this kind of system, as LEVELS has them; none of a rare kind."""
-    return LEVELS.get(processor()[0].partition("-")[0], {})
-
-
-def shipped_files(what: str = PLAYING) -> Iterator[tuple[Path, list[str]]]:
-    """The files of a release that this processor can run, and what each was made for."""
-    from llvmlite import binding
-
-    if os.environ.get("NUMBA_CPU_NAME"):
-        return
-    triple, features = binding.get_process_triple(), binding.get_host_cpu_features()
-    for level, needs in levels().items():
-        if all(features.get(feature) for feature in needs):
-            yield SHIPPED / f"{triple}-{level}{what}.code", [triple, level, ""]
 
 
 def address_of(name: str, folder: Path, sources: str) -> int | None:
@@ -141,14 +108,14 @@ def loaded(folder: Path, sources: str, what: str = PLAYING) -> dict[str, int]:
     dict
         The functions' addresses by name; empty where they have to be compiled.
     """
-    for path, made_for in ((file_in(folder, what), processor()), *shipped_files(what)):
+    for path in (file_in(folder, what), file_in(SHIPPED, what)):
         try:
             payload = read_sealed(path)
             if payload is None:
                 continue
             head, _, body = payload.partition(b"\n")
             about = json.loads(head)
-            if about["format"] == FORMAT and about["made for"] == [*made_for, sources]:
+            if about["format"] == FORMAT and about["made for"] == made_for(sources):
                 return _load(about["functions"], zlib.decompress(body))
         except (SealError, ValueError, LookupError, TypeError, zlib.error) as error:
             log.warning("%s: %s; compiling anew", path, error)

@@ -16,10 +16,14 @@ from numba.core.ccallback import CFunc
 from numba.core.compiler import Compiler
 from numba.core.registry import cpu_target
 
-from yehu_server.compile import jit
+from yehu_server.compile import jit, levels
 from yehu_server.compile.cache_folder import IS_CACHED, cache_folder
 from yehu_server.compile.function_cache import CodeCache, code_of, short_hash
 from yehu_server.compile.libraries import PartLibrary, SourceLibrary
+
+# Before numba makes its code generator, and whatever the environment tells numba of processors.
+numba.config.CPU_NAME, numba.config.CPU_FEATURES = levels.cpu(levels.level()), ""
+cpu_target.target_context.codegen()
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:  # the command line reads the names, and does not wait for LLVM
     from yehu_server.ahead.module import Target
 
-ANY, WIDE = "generic", "x86-64-v3"  # processors, by LLVM's names
+LOWEST, WIDE = "x86-64-v2", "x86-64-v3"  # levels of processors
 WIDE_PREFIX = "wide_"
 X11 = "window_x11.cpp"
 
@@ -24,7 +24,7 @@ class System:
     zig: str  # zig's name
     ending: str  # of a shared library
     vst3: tuple[str, str]  # the folder of a VST3 bundle for the library, and its ending there
-    cpu: str = ANY  # the least processor that it runs on, by LLVM's name
+    cpu: str = LOWEST  # the least processor that it runs on, by LLVM's name
 
     @property
     def has_wide(self) -> bool:
@@ -72,6 +72,7 @@ SYSTEMS = (
         "aarch64-linux-gnu.2.31",
         ".so",
         ("aarch64-linux", ".so"),
+        cpu="generic",
     ),
     System(
         "windows", "x86_64-pc-windows-gnu", "x86_64-windows-gnu", ".dll", ("x86_64-win", ".vst3")

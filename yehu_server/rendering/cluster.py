@@ -19,6 +19,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from pathlib import Path
 from typing import Any, Self
 
+from yehu_server.compile import levels
 from yehu_server.errors import YehuError
 from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.plain_unpickling import ForeignError, plain_client
@@ -223,12 +224,13 @@ class Cluster:
         for worker, other in sorted(found.items()):
             if other.code != own.code:
                 raise YehuError(self._unlike(worker, other))
-        others = {other.processor for other in found.values()} - {own.processor}
+        others = {other.level for other in found.values()} - {own.level}
         if others:
-            kinds = ", ".join(sorted(others))
+            names = ", ".join(sorted(others))
             self._warn(
-                f"{self.address}: workers have other processors ({kinds}; here {own.processor}): "
-                "samples may differ in the last bits"
+                f"{self.address}: workers have other levels of processors ({names}; here "
+                f"{own.level}): samples differ. {levels.VARIABLE}={levels.lowest()} on all "
+                "makes them equal"
             )
 
     def _unlike(self, worker: str, other: cluster_worker.Identity) -> str:

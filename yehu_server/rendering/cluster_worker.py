@@ -13,6 +13,7 @@ from dataclasses import astuple, dataclass
 from functools import cache
 from typing import Any
 
+from yehu_server.compile import levels
 from yehu_server.rendering.workers import Perform
 from yehu_server.util import PACKAGE, __version__
 from yehu_server.util.processes import machine_lock
@@ -30,7 +31,7 @@ class Identity:
 
     version: str
     code: str  # key of all of the package's code
-    processor: str  # as LLVM names it, where that is installed
+    level: str  # of processors, where LLVM is installed
 
     @property
     def shown(self) -> str:
@@ -42,15 +43,14 @@ class Identity:
 def identity() -> Identity:
     """Who this process is."""
     code = key_of(sorted(PACKAGE.rglob("*.py")))
-    return Identity(__version__, code, _processor())
+    return Identity(__version__, code, _level())
 
 
-def _processor() -> str:
+def _level() -> str:
     try:
-        from llvmlite import binding
-    except ImportError:  # a scheduler may go without
+        return levels.level()
+    except ImportError:  # a scheduler may go without LLVM
         return platform.machine()
-    return f"{platform.machine()} {binding.get_host_cpu_name()}"
 
 
 def identity_of(told: Any) -> Identity:
@@ -61,7 +61,7 @@ def identity_of(told: Any) -> Identity:
 
 
 def who() -> tuple[str, str, str]:
-    """Tell version, code and processor of this process, as plain texts."""
+    """Tell version, code and level of processors of this process, as plain texts."""
     return astuple(identity())
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import platform
 from typing import Any
 
 import llvmlite
 import numpy as np
-from llvmlite import binding
 
+from yehu_server.compile import levels
 from yehu_server.compile.cache_folder import source_hash
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.player import wishes
@@ -36,8 +35,7 @@ def build() -> dict[str, str]:
         "sources": source_hash(),
         "numpy": np.__version__,
         "llvm": llvmlite.__version__,
-        "machine": platform.machine(),
-        "processor": str(binding.get_host_cpu_name()),
+        "level": levels.level(),
     }
 
 

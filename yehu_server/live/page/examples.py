@@ -18,7 +18,7 @@ from yehu_server.scores.reading import How, is_written, read_any
 from yehu_server.scores.score import ScoreEvent, Setting
 from yehu_server.util.files import shipped_folder, write_text
 
-PROCESSOR = {"machine": "wasm32", "processor": "any"}
+LEVEL = {"level": "wasm32"}
 
 
 def write_capture_headers(folder: Path) -> list[Path]:
@@ -28,7 +28,7 @@ def write_capture_headers(folder: Path) -> list[Path]:
     for rate in RATES:
         spec = PlayingOptions().spec(rate, calibration_for(rate))
         header = header_of(SessionStart((spec,), has_room=True))
-        header["build"] |= PROCESSOR
+        header["build"] |= LEVEL
         written.append(folder / f"{rate:.0f}.json")
         write_text(written[-1], json.dumps(header, separators=(",", ":")))
     return written

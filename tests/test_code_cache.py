@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from yehu_server.compile import function_cache as cache
-from yehu_server.compile import jit, numba_compiler
+from yehu_server.compile import jit, levels, numba_compiler
 from yehu_server.compile.libraries import BITCODE_OF_PART
 from yehu_server.util import sealed
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
@@ -143,10 +143,9 @@ def test_a_folder_in_the_place_of_the_code_is_no_reason_not_to_play(kept, caplog
 
 
 @contextmanager
-def another_processor(name="another"):
-    codegen = type(cache.cpu_target.target_context.codegen())
+def another_level(name="another"):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(codegen, "magic_tuple", lambda _: ("here", name, "+none"))
+        patch.setattr(levels, "level", lambda: name)
         patch.setattr(cache, "_parts", {})
         yield
 
@@ -169,19 +168,19 @@ def test_what_was_compiled_on_one_processor_is_only_optimised_on_another(kept, m
     names = compiled_functions(monkeypatch)
     assert kept.start(twice) == (8, False)
     assert names == ["twice", "third_of"]
-    with another_processor():
+    with another_level():
         assert kept.start(twice) == (8, True)
         assert len(list(kept.folder.glob("*.code"))) == 3  # a part's is made again in no time
         assert kept.start(twice) == (8, True)
         assert kept.start(thrice) == (12, False)
-    with another_processor("a third"):
+    with another_level("a third"):
         assert kept.start(twice) == (8, True)
     assert names == ["twice", "third_of", "thrice"]
 
 
-def test_code_of_another_processor_is_left_alone(kept):
+def test_code_of_another_level_is_left_alone(kept):
     kept.start()
-    with another_processor():
+    with another_level():
         assert kept.start() == (4, True)
     assert len(list(kept.folder.glob("*.code"))) == 2
     assert kept.start() == (4, True)

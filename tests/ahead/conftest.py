@@ -1,14 +1,12 @@
 import json
-import os
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from ahead.phrases import PHRASES, played
+from ahead.phrases import PHRASES, RATE, played
 
-from yehu_server.ahead.build import page_linker, page_module
+from yehu_server.ahead.build import build, page_linker, page_module
 from yehu_server.ahead.interpreter import look_length
 from yehu_server.compile import levels
 
@@ -23,34 +21,18 @@ def wasm() -> Path:
     return page_module()
 
 
-def _any_processor(folder: Path) -> Path:
-    environment = {
-        **os.environ,
-        levels.VARIABLE: levels.lowest(),
-        "PYTHONPATH": os.pathsep.join(map(str, (HERE.parent, HERE.parents[1]))),
-    }
-    command = [sys.executable, str(HERE / "phrases.py"), str(folder)]
-    subprocess.run(command, env=environment, check=True, capture_output=True)
-    return folder
-
-
 @pytest.fixture(scope="session")
-def library(once) -> Path:
-    """A folder with the library, its header, and the phrases by code for any processor."""
-    return once("any_processor", _any_processor)
+def library(tmp_path_factory) -> Path:
+    """A folder with the library of this level, and its header."""
+    folder = tmp_path_factory.mktemp("library")
+    build("library", folder, rates=[RATE], level=levels.level())
+    return folder
 
 
 @pytest.fixture(scope="session")
 def here() -> dict[str, np.ndarray]:
     """The samples of each phrase [shape=(frames, 2)], by this process."""
     return {name: played(wishes)[0] for name, wishes in PHRASES.items()}
-
-
-@pytest.fixture(scope="session")
-def by_any_processor(library) -> dict[str, np.ndarray]:
-    """The samples of each phrase, with instructions that any processor has."""
-    read = {name: np.fromfile(library / f"{name}.f32", np.float32) for name in PHRASES}
-    return {name: samples.reshape(-1, 2) for name, samples in read.items()}
 
 
 @pytest.fixture

@@ -1,11 +1,7 @@
 """Phrases of wishes, and how they sound in this process."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 
-from yehu_server.ahead.build import ANY, build_here
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, END, HOLD
@@ -54,10 +50,3 @@ def played(wishes, frames=FRAMES, block=BLOCK, channels=2) -> tuple[np.ndarray, 
     for start in range(0, frames, block):
         ensemble.process(out[start : start + block])
     return out, ensemble
-
-
-if __name__ == "__main__":  # as any processor: writes the library, and the samples of each phrase
-    folder = Path(sys.argv[1])
-    build_here("library", folder, ANY, [RATE])
-    for name, wishes in PHRASES.items():
-        played(wishes)[0].tofile(folder / f"{name}.f32")

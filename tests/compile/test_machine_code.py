@@ -3,9 +3,12 @@
 import argparse
 import json
 import os
+import re
+import struct
 import subprocess
 import sys
 import tomllib
+import zlib
 from functools import cache
 from pathlib import Path
 
@@ -79,6 +82,25 @@ def written(folder: Path, payload: bytes) -> dict[str, int]:
     return machine_code.loaded(folder, source_hash())
 
 
+def undefined_symbols(elf: bytes) -> set[str]:
+    """The symbols that an object file of ELF (64 bits) takes from elsewhere."""
+    (sections_at,) = struct.unpack_from("<Q", elf, 0x28)
+    size, count = struct.unpack_from("<HH", elf, 0x3A)
+    sections = [struct.unpack_from("<IIQQQQII", elf, sections_at + i * size) for i in range(count)]
+    found = set()
+    for _, kind, _, _, at, length, link, _ in sections:
+        if kind == SYMBOLS:
+            names_at = sections[link][4]
+            for symbol in range(at, at + length, 24):
+                name, _, _, section = struct.unpack_from("<IBBH", elf, symbol)
+                if section == 0 and name:
+                    found.add(elf[names_at + name : elf.index(0, names_at + name)].decode())
+    return found
+
+
+SYMBOLS = 2  # a section's kind
+
+
 @pytest.fixture(autouse=True)
 def _nothing_is_shipped(tmp_path, monkeypatch):
     monkeypatch.setattr(machine_code, "SHIPPED", tmp_path / "shipped")
@@ -105,6 +127,31 @@ def test_what_playing_needs_is_in_one_file_apart_from_what_studies_need_besides(
     machine_code.file_in(tmp_path).unlink()
     machine_code.loaded.cache_clear()  # without the first file the second one is not loaded
     assert machine_code.address_of(lab.CALLED[0].name, tmp_path, source_hash()) is None
+
+
+# What compiled code may take from elsewhere: its own parts, the system's clock, memory, and what
+# numba's wrappers call where a function raises, which none of ours does.
+FROM_ELSEWHERE = re.compile(
+    r"yehu_|clock_gettime$|mem(cpy|move|set)$|_?Py|numba_|NRT_|_?_GLOBAL_OFFSET"
+)
+
+
+@pytest.mark.usefixtures("kept")
+@pytest.mark.skipif(sys.platform != "linux", reason="object files are not ELF")
+def test_no_mathematics_of_a_c_library_is_called():
+    """It differs from system to system and by processor; see `core/physics/elementary.py`."""
+    lab.warm_up()
+    strange = {}
+    for what in (machine_code.PLAYING, machine_code.LAB):
+        file = machine_code.file_in(cache_folder.cache_folder(), what)
+        head, _, body = (read_sealed(file) or b"").partition(b"\n")
+        code, at = zlib.decompress(body), 0
+        for name, _, size in json.loads(head)["functions"]:
+            symbols = undefined_symbols(code[at : at + size])
+            strange[name] = [each for each in symbols if not FROM_ELSEWHERE.match(each)]
+            at += size
+    assert "yehu_callback" in strange
+    assert not any(strange.values()), strange
 
 
 def test_what_was_made_for_something_else_is_left_alone(kept, tmp_path, caplog):

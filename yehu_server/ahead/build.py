@@ -74,7 +74,7 @@ def link_library(linker: str, code: Path, into: Path) -> None:
     options = ["-shared", "-s"]
     if sys.platform == "linux":
         options += ["-Wl,--build-id=none", f"-Wl,-soname,{into.name}"]
-    run_compiler([linker, *options, str(code), "-lm", "-o", str(into)])
+    run_compiler([linker, *options, str(code), "-o", str(into)])
 
 
 def _first(names: Iterable[str]) -> str | None:

@@ -99,6 +99,18 @@ class Compiled(Deferred):
         return (self.py_func if _is_uncompiled.get() else self._for_python)(*arguments, **named)
 
 
+class Arithmetic(Compiled):
+    """A compiled function that is run as Python where Python calls it."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run it as Python."""
+        return self.py_func(*arguments)
+
+
+# fastmath is said, as a function without the word has its caller's.
+EXACTLY = {"fastmath": False, "one_version": True, "_nrt": False}
+
+
 def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
     if IS_PLAIN:
         return function
@@ -142,12 +154,20 @@ def compiled_exactly_apart(function: Callable[P, R]) -> Callable[P, R]:
     return _compiled_exactly(function, forceinline=True, no_alias=True)
 
 
+def arithmetic(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile a function of numbers alone as `compiled_exactly` does.
+
+    From Python it runs as Python, which gives the same bits.
+    """
+    if IS_PLAIN:
+        return function
+    return cast("Callable[P, R]", Arithmetic(function, **EXACTLY, no_alias=False))
+
+
 def _compiled_exactly(function: Callable[P, R], **options: Any) -> Callable[P, R]:
     if IS_PLAIN:
         return function
-    # fastmath is said, as a function without the word has its caller's.
-    options |= {"fastmath": False, "one_version": True, "_nrt": False}
-    return cast("Callable[P, R]", Compiled(function, **options))
+    return cast("Callable[P, R]", Compiled(function, **EXACTLY, **options))
 
 
 def intrinsic(plain: Callable[..., Any]) -> Callable[[Callable[..., Any]], Any]:

@@ -19,8 +19,9 @@ import numpy as np
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.quantities import Quantities, override
-from yehu_server.core.physics.shelf import shelf_response
+from yehu_server.core.physics.shelf import shelf_gain
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
@@ -165,7 +166,9 @@ def _bow(
 ) -> tuple[float, float]:
     """Pitch (Hz) and level (dB) of a string, bowed as the player does at medium pressure."""
     steady = _steady(setup, string, pitch, speed, x_f)
-    return pitch_hz(steady, setup.rate), a_weighted_db(steady, setup.rate)
+    # NumPy's transforms differ in their last bits from processor to processor; what is found here
+    # decides where the next finger goes.
+    return round(pitch_hz(steady, setup.rate), 9), round(a_weighted_db(steady, setup.rate), 9)
 
 
 def _steady(setup: _Setup, string: int, pitch: float, speed: float, x_f: float | None) -> Array:
@@ -229,10 +232,8 @@ def _colours(setup: _Setup, string: int, pitch: float, sharp: float | None) -> t
     if not power.any():
         return (0.0,) * len(GAINS), (0.0,) * len(GAINS)
     plain = frequencies @ power / power.sum()
-    shelves = np.array(
-        [shelf_response(frequencies, setup.rate, gain, ABOVE * plain) for gain in GAINS]
-    )
-    shelved = power * np.abs(shelves) ** 2
+    shelves = np.array([shelf_gain(frequencies, setup.rate, gain, ABOVE * plain) for gain in GAINS])
+    shelved = power * shelves**2
     heard = shelved @ a_weighting(frequencies) ** 2
     centroids = np.round(shelved @ frequencies / shelved.sum(axis=1), 1)
     louder = np.round(10.0 * np.log10(heard / heard[PLAIN]), 2)
@@ -241,7 +242,7 @@ def _colours(setup: _Setup, string: int, pitch: float, sharp: float | None) -> t
 
 def starting_tension(quantities: Quantities, a4: float, string: int) -> float:
     """Tension (N) from which an open string is tuned."""
-    return quantities.strings[string].T * (a4 / 440.0) ** 2
+    return quantities.strings[string].T * (a4 / 440.0) * (a4 / 440.0)
 
 
 def _tension(setup: _Setup, string: int) -> float:
@@ -256,7 +257,7 @@ def _tension(setup: _Setup, string: int) -> float:
         errors = [cents(f, target) for f in measured_hz if math.isfinite(f)]
         error = float(np.median(errors)) if errors else 0.0
         if abs(error) < PLAUSIBLE_CENTS:
-            tension *= math.exp2(-2.0 * error / 1200.0)
+            tension *= exp2(-2.0 * error / 1200.0)
         if abs(error) < ENOUGH_CENTS:
             break
     return tension
@@ -289,7 +290,7 @@ def _search(
     best, nearest = (math.nan, math.nan), IN_TUNE_CENTS
     flat, high = math.inf, -math.inf  # the least sharpening that was flat, the most that was sharp
     for _ in range(ROUNDS):
-        x_f = ideal_position(setup.quantities, string, target * math.exp2(-sharp / 1200.0))
+        x_f = ideal_position(setup.quantities, string, target * exp2(-sharp / 1200.0))
         measured_hz, level = _bow(setup, string, note, speed, x_f)
         error = cents(measured_hz, target) if math.isfinite(measured_hz) else math.inf
         if abs(error) > PLAUSIBLE_CENTS:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.core.physics.elementary import log2, log10
 from yehu_server.util.loudness import a_weighting
 
 Array = Any
@@ -33,7 +34,7 @@ def note_name(pitch: float) -> str:
 
 def cents(frequency_hz: float, reference_hz: float) -> float:
     """Return how far a frequency lies above another (cents)."""
-    return 1200.0 * math.log2(frequency_hz / reference_hz)
+    return 1200.0 * log2(frequency_hz / reference_hz)
 
 
 def autocorrelation(samples: Array, longest: int) -> Array:
@@ -105,4 +106,4 @@ def a_weighted_db(samples: Array, rate: float) -> float:
     spectrum = np.fft.rfft(x * np.hanning(len(x)))
     power = np.abs(spectrum * a_weighting(np.fft.rfftfreq(len(x), 1.0 / rate))) ** 2
     mean = 2.0 * power.sum() / (len(x) ** 2 * 0.375)  # 0.375: the window's own power
-    return 10.0 * math.log10(mean) if mean > 0.0 else SILENCE_DB
+    return 10.0 * log10(mean) if mean > 0.0 else SILENCE_DB

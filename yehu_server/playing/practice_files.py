@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from functools import lru_cache
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.core.physics.elementary import log
 from yehu_server.core.player.bowing import FIRST, LAST, PLACES, RECIPE, default_recipes
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import STRING_NAMES
@@ -30,7 +30,7 @@ HIGHEST = (2.0, 12.0, 12.0, 12.0, 5.0, 10.0)
 def shipped_practice(rate: float) -> Array:
     """The practice that comes with this version, of the nearest sample rate (Hz)."""
     tables = _shipped()
-    return tables[min(tables, key=lambda practised: abs(math.log(practised / rate)))].copy()
+    return tables[min(tables, key=lambda practised: abs(log(practised / rate)))].copy()
 
 
 @lru_cache(maxsize=1)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from yehu_server.core.physics.elementary import log
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
@@ -68,7 +68,7 @@ ROUNDS = (elsewhere, slower, pressed, firmer, nearby)  # tried one after another
 def lighter(usual: Array) -> Iterator[tuple[Array, float]]:
     """Other shares for flautando, and what each loses for being another."""
     for share in FLAUTANDO_SHARES:
-        yield changed(usual, AT_FLAUTANDO, usual[AT_FLAUTANDO] * share), CHANGED * math.log(share)
+        yield changed(usual, AT_FLAUTANDO, usual[AT_FLAUTANDO] * share), CHANGED * log(share)
 
 
 def moved(table: Array, string: int, note: int, place: int) -> Array:
@@ -86,8 +86,8 @@ def moved(table: Array, string: int, note: int, place: int) -> Array:
 
 def lost(recipe: Array, usual: Array) -> float:
     """What a recipe loses for its distance from the usual one."""
-    away = abs(math.log(recipe[DISTANCE_FACTOR] / usual[DISTANCE_FACTOR]))
-    return AWAY * away + CHANGED * abs(math.log(recipe[AT_LIGHT] / usual[AT_LIGHT]))
+    away = abs(log(recipe[DISTANCE_FACTOR] / usual[DISTANCE_FACTOR]))
+    return AWAY * away + CHANGED * abs(log(recipe[AT_LIGHT] / usual[AT_LIGHT]))
 
 
 def changed(recipe: Array, column: int, value: float) -> Array:

@@ -5,7 +5,6 @@ The first has the measured instrument; those of the others differ as instruments
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,7 +13,9 @@ import numpy as np
 
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.section_players import DISTANCE, GAIN, OWN_SEED, PAN, own_value
+from yehu_server.core.physics.elementary import exp2, sin_and_cos
 from yehu_server.core.physics.quantities import Body, Quantities, StringQuantities
+from yehu_server.core.physics.radiation import pole_of
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import find
@@ -101,7 +102,7 @@ def vary(
     tensions: list[float] = []
     for string, tension in zip(quantities.strings, calibration.tensions, strict=True):
         density, loss = factor(DENSITY), factor(LOSS)
-        tuned = math.exp2(float(by_chance.uniform(-TUNED_CENTS, TUNED_CENTS)) / 600.0)
+        tuned = exp2(float(by_chance.uniform(-TUNED_CENTS, TUNED_CENTS)) / 600.0)
         rho, stiffness = string.rho * density, string.E * factor(STIFFNESS)
         losses = {"sigma_0": string.sigma_0 * loss, "sigma_1": string.sigma_1 * loss}
         strings.append(replace(string, rho=rho, E=stiffness, **losses))
@@ -135,13 +136,14 @@ def _move(
 ) -> tuple[float, float, float, float]:
     """Move a radiated mode to a frequency times a factor; its amplitude and phase stay."""
     b0, b1, a1, a2 = section
-    pole = -0.5 * a1 + cmath.sqrt(0.25 * a1 * a1 - a2)
-    residue = (b0 + b1 / pole) / (1.0 - pole.conjugate() / pole)
-    angle = min(abs(cmath.phase(pole)) * factor, 0.99 * math.pi)
-    moved = cmath.rect(abs(pole), math.copysign(angle, cmath.phase(pole)))
+    radius, angle = pole_of(a1, a2)
+    sine, cosine = sin_and_cos(angle)
+    # The residue is (b0 pole + b1) / (pole - its conjugate); its real part is b0 / 2.
+    imaginary = -0.5 * (b0 * radius * cosine + b1) / (radius * sine)
+    moved_sine, moved_cosine = sin_and_cos(min(angle * factor, 0.99 * math.pi))
     return (
-        2.0 * residue.real,
-        -2.0 * (residue * moved.conjugate()).real,
-        -2.0 * moved.real,
-        abs(moved) ** 2,
+        b0,
+        -2.0 * radius * (0.5 * b0 * moved_cosine + imaginary * moved_sine),
+        -2.0 * radius * moved_cosine,
+        radius * radius,
     )

@@ -7,8 +7,7 @@ note is stopped and bowed as the note of the yehu that lies as far above the ope
 
 from __future__ import annotations
 
-import math
-
+from yehu_server.core.physics.elementary import log2
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import OPEN_NOTES, wave_speed
 from yehu_server.core.player.note_range import NoteRange
@@ -27,7 +26,7 @@ def notes_of(quantities: Quantities) -> NoteRange:
     """
     usual = Quantities()
     first, second = (
-        12.0 * math.log2(_hertz(quantities, string) / _hertz(usual, string)) for string in (0, 1)
+        12.0 * log2(_hertz(quantities, string) / _hertz(usual, string)) for string in (0, 1)
     )
     if abs(first - second) <= APART:
         first = second = 0.5 * (first + second)

@@ -15,6 +15,7 @@ from pathlib import Path
 from yehu_server.compile.jit import uncompiled
 from yehu_server.core.midi import tables
 from yehu_server.core.midi.notes import fitted, pitch_of_key
+from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, shipped_folder, why
@@ -90,7 +91,7 @@ class Tuning:
         pitch = uncompiled(pitch_of_key)(pitches, note)
         if math.isnan(pitch):
             return None
-        return pitch - 12.0 * math.log2(a4 / STANDARD_A4) if self.fixed else pitch
+        return pitch - 12.0 * log2(a4 / STANDARD_A4) if self.fixed else pitch
 
 
 EQUAL = Tuning("12-tone equal temperament")
@@ -239,6 +240,12 @@ class _Lines:
         return int(line)
 
 
+def _octaves(number: int) -> float:
+    """The logarithm to base 2 of a number of any size above zero."""
+    beyond = max(number.bit_length() - 1000, 0)
+    return log2(float(number >> beyond)) + beyond
+
+
 def _note(lines: _Lines, what: str) -> float:
     line = lines.take(what)
     if cents := _CENTS.match(line):
@@ -247,7 +254,7 @@ def _note(lines: _Lines, what: str) -> float:
         over, under = int(ratio[1]), int(ratio[2] or 1)
         if over <= 0 or under <= 0:
             raise lines.error(f"{what}: a ratio must be above zero, not {_quote(line)}")
-        semitones = 12.0 * (math.log2(over) - math.log2(under))
+        semitones = 12.0 * (_octaves(over) - _octaves(under))
     else:
         raise lines.error(f"{what}: expected cents or a ratio, got {_quote(line)}")
     if abs(semitones) > MOST_SEMITONES:
@@ -270,7 +277,7 @@ def _read_keyboard(path: Path) -> _Keyboard:
     if not LEAST_HZ <= float(line) <= MOST_HZ:
         bounds = f"{LEAST_HZ:g} to {MOST_HZ:g} Hz"
         raise lines.error(f"the reference frequency: {_quote(line)} is not within {bounds}")
-    pitch = A4 + 12.0 * math.log2(float(line) / STANDARD_A4)
+    pitch = A4 + 12.0 * log2(float(line) / STANDARD_A4)
     octave = lines.whole("the degree of the octave", 0, MOST_DEGREE)
     degrees: list[int | None] = [None] * size  # unmapped keys at the end may be left out
     for index in range(size):

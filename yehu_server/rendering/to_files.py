@@ -23,7 +23,7 @@ from yehu_server.scores.score import Score
 from yehu_server.util.files import anything, why
 from yehu_server.util.sound_file import SoundWriter, check_format, sound_file
 
-NORMALIZED_PEAK = 10.0 ** (-1.0 / 20.0)  # a true peak
+NORMALIZED_PEAK = 0.8912509381337456  # a true peak of -1 dB
 CHUNK = 1 << 18  # bytes that are read again at a time: whole frames
 
 

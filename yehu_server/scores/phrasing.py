@@ -127,7 +127,7 @@ def shaped(
     for _, run in groupby(phrase, key=lambda note: note.velocity if is_marked else 0):
         notes = list(run)
         places = [(n.start_s - begin) / (end - begin) if end > begin else 0.5 for n in notes]
-        arch = [1.0 - (2.0 * at - 1.0) ** 2 for at in places]  # a parabola, 1 in the middle
+        arch = [4.0 * at * (1.0 - at) for at in places]  # a parabola, 1 in the middle
         middle = sum(arch) / len(arch)
         for note, height in zip(notes, arch, strict=True):
             higher = 0.0 if is_marked else HIGHER * (note.key - usual)

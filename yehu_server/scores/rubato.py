@@ -63,7 +63,10 @@ def delays_of(notes: Sequence[ScoreNote]) -> Delays:
         for step in range(POINTS + 1):
             to_end = 2.0 * step / POINTS - 1.0  # the integral of the square less a third
             points.append(
-                (begin + length * step / POINTS, ARCH * length * (to_end**3 - to_end) / 6)
+                (
+                    begin + length * step / POINTS,
+                    ARCH * length * to_end * (to_end * to_end - 1.0) / 6,
+                )
             )
     return _with_end(notes, points)
 
@@ -93,7 +96,9 @@ def _with_end(notes: Sequence[ScoreNote], points: list[tuple[float, float]]) -> 
 def _slowed(seconds: float, begin: float, last: float, held_s: float) -> float:
     """The delay of the last beats, whose tempo sinks with the square of time."""
     share = min((seconds - begin) / (last - begin), 1.0)
-    return LAST * ((last - begin) * share**3 / 3.0 + min(max(seconds - last, 0.0), held_s))
+    return LAST * (
+        (last - begin) * share * share * share / 3.0 + min(max(seconds - last, 0.0), held_s)
+    )
 
 
 def _tempi(notes: Sequence[ScoreNote]) -> list[float]:

@@ -17,6 +17,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.core.physics.elementary import exp
 from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.gestures import BEARS_SLIDE, STEEP
 from yehu_server.core.player.note_range import NoteRange
@@ -45,7 +46,7 @@ def logistic(part: float) -> float:
     """How far a slide has come, 0 to 1, at a share of its time, 0 to 1; as `gestures.slid`."""
 
     def curve(at: float) -> float:
-        return 1.0 / (1.0 + math.exp(-STEEP * (2.0 * at - 1.0)))
+        return 1.0 / (1.0 + exp(-STEEP * (2.0 * at - 1.0)))
 
     low, high = curve(0.0), curve(1.0)
     return (curve(min(max(part, 0.0), 1.0)) - low) / (high - low)

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.rows import VELOCITY
 from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, STOP
 from yehu_server.errors import ScoreError
@@ -186,7 +187,7 @@ def _tempo_of(begins: Sequence[float]) -> float:
         near = [round(place) for place in places]
         off = sum(abs(place - at) for place, at in zip(places, near, strict=True))
         odd = sum((at % 2 > 0) + (at % 4 > 0) for at in near)
-        usual = abs(math.log2(tempo / notated.USUAL_TEMPO))
+        usual = abs(log2(tempo / notated.USUAL_TEMPO))
         return (off + OFF_BEAT * odd) / len(places) + UNUSUAL * usual
 
     return float(min(TEMPI, key=cost))

@@ -68,7 +68,7 @@ def test_the_running_filter_rings_as_its_formula(rate):
             y[n + 2] = b_0 * x + b_1 * x_before - a_1 * y[n + 1] - a_2 * y[n]
         expected += y[2:]
     impulse = impulse_response(model, frames)
-    assert np.abs(impulse - expected).max() < 1e-13 * np.abs(expected).max()
+    assert np.abs(impulse - expected).max() < 3e-13 * np.abs(expected).max()
 
 
 def test_every_rate_sounds_like_the_measured_body_and_none_shouts_where_nobody_measured():

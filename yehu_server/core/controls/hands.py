@@ -36,6 +36,7 @@ from yehu_server.core.controls.slots import (
     UPWARD,
     VIBRATO_PRESS,
 )
+from yehu_server.core.physics.elementary import exp2, log, sin
 from yehu_server.core.physics.layout import (
     CONTROLS_PER_FINGER,
     F_HAMMER,
@@ -67,7 +68,7 @@ ARRIVED = 1e-6  # m; as near as this to where the sounding length ends, the bow'
 # A contact that moves costs more than one that stands, so places drift every so many samples, by
 # steps of some thousandths of a cent.
 PLACES_EVERY = 16
-PER_CENT = math.log(2.0) / 1200.0
+PER_CENT = log(2.0) / 1200.0
 
 
 @compiled
@@ -92,7 +93,7 @@ def vibrato_at(c: Any, phase: float) -> float:
     if c.value[ONSET] <= ONSET_FROM:
         return 0.0
     come = (c.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM)
-    value = math.sin(2.0 * math.pi * phase) + c.value[UPWARD]
+    value = sin(2.0 * math.pi * phase) + c.value[UPWARD]
     return float(come * come * (3.0 - 2.0 * come) * value)
 
 
@@ -126,7 +127,7 @@ def turn_bow(c: Any) -> float:
 @compiled
 def turned(c: Any) -> float:
     """Factor of the bow's speed at this phase of the tremolo, -1 to 1."""
-    swing, depth = math.sin(2.0 * math.pi * c.tremolo), c.value[TREMOLO_DEPTH]
+    swing, depth = sin(2.0 * math.pi * c.tremolo), c.value[TREMOLO_DEPTH]
     quick = max(-1.0, min(1.0, TURN * swing))
     return float((1.0 - depth) * quick + depth * swing * abs(swing))
 
@@ -140,7 +141,7 @@ def stop_strings(c: Any, control: Array) -> float:
     vibrato = vibrate(c)
     stretch, harder = 1.0, 1.0
     if vibrato != 0.0:
-        stretch = 2.0 ** (-vibrato * c.value[DEPTH] / 1200.0)
+        stretch = exp2(-vibrato * c.value[DEPTH] / 1200.0)
         harder = 1.0 + vibrato * c.value[VIBRATO_PRESS]
     stop = 0.0
     for j in range(MAX_FINGERS):

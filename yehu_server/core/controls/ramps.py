@@ -18,17 +18,18 @@ from yehu_server.core.controls.slots import (
     SLOTS,
     TUNING,
 )
+from yehu_server.core.physics.elementary import exp, exp10
 from yehu_server.core.physics.layout import STRINGS
 
 
 def pole_of_time(seconds: float, rate: float) -> float:
     """Pole of the filter with a time constant (s), at a sample rate (Hz)."""
-    return math.exp(-1.0 / (seconds * rate))
+    return exp(-1.0 / (seconds * rate))
 
 
 def pole_of_cutoff(frequency: float, rate: float) -> float:
     """Pole of the filter with a cutoff frequency (Hz) far below the sample rate (Hz)."""
-    return math.exp(-2.0 * math.pi * frequency / rate)
+    return exp(-2.0 * math.pi * frequency / rate)
 
 
 @compiled
@@ -106,7 +107,7 @@ DECIBELS = 3
 def amplitude(c: Any, of: int, decibels: float) -> float:
     """Convert decibels to an amplitude factor, computed only when they change."""
     if decibels != c.decibels[of]:
-        c.decibels[of], c.factor[of] = decibels, 10.0 ** (decibels / 20.0)
+        c.decibels[of], c.factor[of] = decibels, exp10(decibels / 20.0)
     return float(c.factor[of])
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.elementary import power, tanh
 
 # Of samples. The wave between them, by which converters and codecs clip, rises above them: of a
 # quartet driven by 12, 18 and 24 dB by 0.4, 0.9 and 2.3 dB.
-CEILING = math.pow(10.0, -1.0 / 20.0)
+CEILING = power(10.0, -1.0 / 20.0)
 # A sample beyond these is an error: rounding takes the limiter's hardly beyond 1.
 LARGEST, LARGEST_LIMITED = 1e14, 2.0
 
@@ -24,7 +23,7 @@ def limit(x: float, soft: float) -> float:
     if size <= min(soft, CEILING):
         return x
     room = CEILING - soft
-    bent = CEILING if room <= 0.0 else soft + room * math.tanh((size - soft) / room)
+    bent = CEILING if room <= 0.0 else soft + room * tanh((size - soft) / room)
     return bent if x > 0.0 else -bent
 
 

@@ -33,6 +33,7 @@ from yehu_server.core.engine.rig import (
     count_parts,
 )
 from yehu_server.core.engine.telemetry import METERS, SHAPE_POINTS, displacement
+from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.layout import MAX_FINGERS, MODEL, STATE, STRINGS
 from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
 from yehu_server.core.player.notes import sounding_pitch
@@ -96,7 +97,7 @@ def look(rig: Any, into: Any) -> None:
     out = carray(into, (1,), LOOK)[0]
     out.frame, out.rate = c.frame, m.rate
     out.pitch = sounding_pitch(p)
-    out.frequency = p.a4 * math.exp2((out.pitch - 69.0) / 12.0)
+    out.frequency = p.a4 * exp2((out.pitch - 69.0) / 12.0)
     out.certainty, out.error, out.slips = p.ear.certainty, p.ear.error, p.ear.slips
     parts = count_parts(rig)
     if parts > 0:

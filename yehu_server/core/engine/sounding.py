@@ -67,6 +67,7 @@ from yehu_server.core.engine.rig import (
 )
 from yehu_server.core.engine.telemetry import METERS, close_window, hear
 from yehu_server.core.physics import kernel, refined
+from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.layout import MODEL, REFINED, RELATIVE_VELOCITY, STATE, STRINGS
 from yehu_server.core.physics.time_loop import advance_by
 from yehu_server.core.player.ear import EAR_SAMPLES, remember
@@ -113,9 +114,8 @@ def retune(model: Array, state: Array, c: Any) -> None:
         cents, loss = c.value[TUNING[i]], c.value[LOSS[i]]
         if cents != c.tuning[i] or loss != c.loss[i]:
             c.tuning[i], c.loss[i] = cents, loss
-            T = c.tension[i] * 2.0 ** (
-                cents / 600.0
-            )  # the frequency is proportional to its square root
+            # The frequency is proportional to the square root of the tension.
+            T = c.tension[i] * exp2(cents / 600.0)
             kernel.retune(model, state, i, T, c.sigma_0[i] * loss, c.sigma_1[i] * loss)
 
 

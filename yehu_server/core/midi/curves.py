@@ -7,6 +7,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.tables import EXPONENTIAL, POINTS, S
+from yehu_server.core.physics.elementary import asin, log, power, sin
 
 # Distance from the target's value within which a soft bind takes over, as a fraction of the span.
 PICKUP_WINDOW = 1.0 / 64.0
@@ -23,7 +24,7 @@ def along_curve(t: Any, bind: int, unit: float, lo: float, hi: float) -> float:
     """Map 0 to 1 to `lo` to `hi`, along a bind's curve."""
     curve = int(t.curve[bind])
     if curve == EXPONENTIAL:
-        return float(lo * (hi / lo) ** unit)
+        return float(lo * power(hi / lo, unit))
     if curve == POINTS:
         unit = fraction_at(t, bind, unit)
     elif curve == S:
@@ -53,10 +54,10 @@ def unit_of(curve: int, value: float, lo: float, hi: float) -> float:
         return 0.0
     value = min(max(value, min(lo, hi)), max(lo, hi))
     if curve == EXPONENTIAL:
-        return math.log(value / lo) / math.log(hi / lo)
+        return log(value / lo) / log(hi / lo)
     unit = (value - lo) / (hi - lo)
     if curve == S:
-        return 0.5 - math.sin(math.asin(1.0 - 2.0 * unit) / 3.0)
+        return 0.5 - sin(asin(1.0 - 2.0 * unit) / 3.0)
     return float(unit)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.record import ONSETS
-from yehu_server.core.physics.elementary import chance
+from yehu_server.core.physics.elementary import chance, log10
 from yehu_server.core.player.rows import HIGHEST, LOWEST, ROW, SEED, VARIATION
 
 OWN_SEED, GAIN, PAN, DISTANCE = "/engine/seed", "/output/gain", "/room/pan", "/room/distance"
@@ -51,7 +51,7 @@ def own_value(row: int, value: float, number: int, people: int) -> float:
     if people == 1:
         return value
     if row == GAIN_ROW:
-        own = value - 10.0 * math.log10(people)
+        own = value - 10.0 * log10(people)
         return float(min(max(own, LOWEST[GAIN_ROW]), HIGHEST[GAIN_ROW]))
     if row == DISTANCE_ROW:
         from_outside = min(number, people - 1 - number)

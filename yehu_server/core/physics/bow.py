@@ -31,10 +31,10 @@ def prepare_bow(model: np.void, quantities: Quantities) -> None:
     model["hair"], model["per_grain"] = bow.hair, 1.0 / bow.grain
     M_h, K_h, R_h = bow.M_h, bow.K_h, bow.R_h
     model["M_h"], model["K_h"], model["R_h"] = M_h, K_h, R_h
-    Lambda = 4.0 * M_h + k**2 * K_h + 2.0 * k * R_h
-    model["A_h"] = (8.0 * M_h - 2.0 * k**2 * K_h) / Lambda
-    model["B_h"] = (-4.0 * M_h - k**2 * K_h + 2.0 * k * R_h) / Lambda
-    model["C_h"] = 4.0 * k**2 / Lambda
+    Lambda = 4.0 * M_h + k * k * K_h + 2.0 * k * R_h
+    model["A_h"] = (8.0 * M_h - 2.0 * k * k * K_h) / Lambda
+    model["B_h"] = (-4.0 * M_h - k * k * K_h + 2.0 * k * R_h) / Lambda
+    model["C_h"] = 4.0 * k * k / Lambda
 
 
 def friction_bound(model: np.void, refined: np.void | None = None) -> float:

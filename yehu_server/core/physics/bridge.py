@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.elementary import each, tan
 from yehu_server.core.physics.grid import place_cubic, read
 from yehu_server.core.physics.layout import MAX_MODES, STRINGS, whole_vectors
 from yehu_server.core.physics.quantities import Quantities
@@ -40,13 +41,13 @@ def prepare_bridge(model: Any, quantities: Quantities) -> None:
         )
     M_m, R_m = np.array(body.mass), np.array(body.damping)
     # mu_tt bends frequencies down: sin^2(wk/2) M 4/k^2 = K cos^2(wk/2) at resonance.
-    K_m = M_m * (2.0 / k * np.tan(omega * k / 2.0)) ** 2
-    Lambda = 4.0 * M_m + k**2 * K_m + 2.0 * k * R_m
+    K_m = M_m * (2.0 / k * each(tan, omega * k / 2.0)) ** 2
+    Lambda = 4.0 * M_m + k * k * K_m + 2.0 * k * R_m
     model["modes"] = modes
     model["M_m"][:modes], model["K_m"][:modes], model["R_m"][:modes] = M_m, K_m, R_m
-    model["A_q"][:modes] = (8.0 * M_m - 2.0 * k**2 * K_m) / Lambda
-    model["B_q"][:modes] = (-4.0 * M_m - k**2 * K_m + 2.0 * k * R_m) / Lambda
-    model["C_q"][:modes] = 4.0 * k**2 / Lambda
+    model["A_q"][:modes] = (8.0 * M_m - 2.0 * k * k * K_m) / Lambda
+    model["B_q"][:modes] = (-4.0 * M_m - k * k * K_m + 2.0 * k * R_m) / Lambda
+    model["C_q"][:modes] = 4.0 * k * k / Lambda
     C_q_sum = model["C_q"].sum()
     model["C_q_sum"] = C_q_sum
     model["bridge_x"] = quantities.bridge_x

@@ -1,16 +1,21 @@
-"""Sine, cosine and powers of two over the ranges that the model needs, and numbers by chance.
+"""Elementary functions by arithmetic alone, and numbers by chance.
 
-Calling the C library makes the processor save its registers, and handles any argument.
-Polynomials here are summed in pairs, so that terms can be computed in parallel.
+C libraries, and NumPy, differ in their last bits from system to system and from processor to
+processor, and a bowed string is chaotic. So whatever reaches a sample is computed by these. Those
+of the first half are for the kernel, over the ranges that it needs; those of the second half take
+any number, and give the same bits compiled and as Python. Polynomials are summed in pairs, so that
+terms can be computed in parallel.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled
+from yehu_server.compile.jit import arithmetic, compiled
 
 
 @compiled
@@ -28,7 +33,7 @@ def chance(number: int) -> float:
 
 MANTISSA_BITS = 52
 EXPONENT_OF_1 = 1023
-LEAST_EXPONENT = -900
+LEAST_EXPONENT, MOST_EXPONENT = -1000.0, 1000.0
 R_1, R_2, R_3, R_4, R_5 = 1.0 / 2.0, -3.0 / 8.0, 5.0 / 16.0, -35.0 / 128.0, 63.0 / 256.0
 SLIGHT = 1e-3  # below it a few terms of the series are exact to rounding
 
@@ -46,11 +51,10 @@ P_7, P_8, P_9 = 1.5252733841556773e-05, 1.3215432535912375e-06, 1.01780570877339
 P_10, P_11 = 7.074194297288521e-09, 4.4558179083360645e-10
 
 
-@compiled
-def sine_and_cosine(half_turns: float) -> tuple[float, float]:
+def half_turn(half_turns: Any) -> tuple[Any, Any]:
     """Sine (to 5e-16) and cosine (to 3e-15) of pi times an argument within -1/2 to 1/2.
 
-    Real time: safe.
+    As Python it takes arrays, too. Real time: safe.
     """
     t = half_turns * half_turns
     t_2 = t * t
@@ -62,12 +66,18 @@ def sine_and_cosine(half_turns: float) -> tuple[float, float]:
     return half_turns * sine, cosine
 
 
-@compiled
-def power_of_2(x: float) -> float:
-    """Return 2 to the power of `x`, up to 1000; 2 to the power of -900 below that.
+sine_and_cosine = compiled(half_turn)  # for the kernel
+half_turn = arithmetic(half_turn)
 
-    To 4e-16. Real time: safe.
+
+def exp2(x: float) -> float:
+    """Return 2 to the power of `x`, which counts as -1000 below and as 1000 above that, to 4e-16.
+
+    Real time: safe.
     """
+    if math.isnan(x):  # which has no whole number beside it
+        return x
+    x = min(max(x, LEAST_EXPONENT), MOST_EXPONENT)
     twos = np.rint(x)
     t = x - twos
     t_2 = t * t
@@ -75,9 +85,12 @@ def power_of_2(x: float) -> float:
     low = (P_0 + P_1 * t) + t_2 * (P_2 + P_3 * t)
     middle = (P_4 + P_5 * t) + t_2 * (P_6 + P_7 * t)
     high = (P_8 + P_9 * t) + t_2 * (P_10 + P_11 * t)
-    exponent = max(np.int64(twos), np.int64(LEAST_EXPONENT))
-    scale = np.int64((exponent + EXPONENT_OF_1) << MANTISSA_BITS).view(np.float64)
+    scale = np.int64((np.int64(twos) + EXPONENT_OF_1) << MANTISSA_BITS).view(np.float64)
     return float(scale * ((low + t_4 * middle) + (t_4 * t_4) * high))
+
+
+power_of_2 = compiled(exp2)  # for the kernel
+exp2 = arithmetic(exp2)
 
 
 @compiled
@@ -88,3 +101,160 @@ def one_minus_inverse_root(t: float) -> float:
         return float(R_1 * t + t_2 * ((R_2 + R_3 * t) + t_2 * (R_4 + R_5 * t)))
     root = math.sqrt(1.0 + t)
     return t / (root * (1.0 + root))
+
+
+# ---------------------------------------------------------------- of any number
+
+# The natural logarithm of 2 in two parts, the first of few bits: products with whole numbers are
+# exact.
+LN_2, LN_2_HIGH, LN_2_LOW = 0.6931471805599453, 0.693147180369123816490, 1.90821492927058770002e-10
+LN_10, MOST = 2.302585092994046, 690.0
+BITS_OF_ROOT_HALF = 0x3FE6A09E667F3BCD  # of the square root of 1/2
+# Minimax polynomial of asin(x) / x in x^2, for x from -1/2 to 1/2 (off by 2e-17).
+ARC = (
+    1.0,
+    0.16666666666664942,
+    0.07500000000385201,
+    0.044642856805998936,
+    0.03038195969768514,
+    0.022371749733164054,
+    0.01735977964134998,
+    0.01388484282640208,
+    0.012170138592391726,
+    0.0065293020047365695,
+    0.019513468251252167,
+    -0.016187392271599134,
+    0.03187962140081284,
+)
+
+
+@arithmetic
+def exp(x: float) -> float:
+    """Return e to the power of `x`, beyond -690 and 690 as there, to 6e-16. Real time: safe."""
+    x = min(max(x, -MOST), MOST)
+    twos = np.rint(x / LN_2)
+    return float(exp2(twos) * exp2(((x - twos * LN_2_HIGH) - twos * LN_2_LOW) / LN_2))
+
+
+@arithmetic
+def exp10(x: float) -> float:
+    """Return 10 to the power of `x`; see `exp`."""
+    return float(exp(x * LN_10))
+
+
+@arithmetic
+def twos_and_log(x: Any) -> tuple[Any, Any]:
+    """How often 2 goes into a positive normal number, and the natural logarithm of what is left.
+
+    As Python it takes arrays, too.
+    """
+    bits = np.float64(x).view(np.int64)
+    twos = (bits - BITS_OF_ROOT_HALF) >> MANTISSA_BITS
+    part = np.int64(bits - (twos << MANTISSA_BITS)).view(np.float64)  # root of 1/2 to root of 2
+    # log((1 + s) / (1 - s)) = 2 (s + s^3/3 + s^5/5 + ...)
+    s = (part - 1.0) / (part + 1.0)
+    t = s * s
+    series = 1.0 / 21.0
+    for n in range(9, 0, -1):
+        series = series * t + 1.0 / (2.0 * n + 1.0)
+    return twos, 2.0 * s + 2.0 * s * t * series
+
+
+@arithmetic
+def log(x: float) -> float:
+    """Return the natural logarithm, of normal numbers to 4e-16. Real time: safe.
+
+    It is minus infinity at 0, and not a number below.
+    """
+    if not 0.0 < x < math.inf:
+        return -math.inf if x == 0.0 else (x if x > 0.0 else math.nan)
+    twos, rest = twos_and_log(x)
+    return float(twos * LN_2_HIGH + (rest + twos * LN_2_LOW))
+
+
+@arithmetic
+def log2(x: float) -> float:
+    """Return the logarithm to base 2; see `log`. That of a power of two is exact."""
+    if not 0.0 < x < math.inf:
+        return log(x)
+    twos, rest = twos_and_log(x)
+    return float(twos + rest / LN_2)
+
+
+@arithmetic
+def log10(x: float) -> float:
+    """Return the logarithm to base 10; see `log`."""
+    return float(log(x) / LN_10)
+
+
+@arithmetic
+def power(x: float, y: float) -> float:
+    """Return a positive number to the power of `y`, to some units in the last place."""
+    return float(exp(y * log(x)))
+
+
+@arithmetic
+def sin_and_cos(x: float) -> tuple[float, float]:
+    """Sine and cosine of an angle (rad), to 4e-16 and that times `x`. Real time: safe."""
+    turns = x / math.pi
+    whole = np.rint(turns)
+    sine, half = half_turn(turns - whole)[0], half_turn(0.5 * (turns - whole))[0]
+    sign = 1.0 - 2.0 * (whole - 2.0 * math.floor(0.5 * whole))
+    return float(sign * sine), float(sign * (1.0 - 2.0 * half * half))
+
+
+@arithmetic
+def sin(x: float) -> float:
+    """Sine of an angle; see `sin_and_cos`."""
+    return float(sin_and_cos(x)[0])
+
+
+@arithmetic
+def cos(x: float) -> float:
+    """Cosine of an angle; see `sin_and_cos`."""
+    return float(sin_and_cos(x)[1])
+
+
+@arithmetic
+def tan(x: float) -> float:
+    """Tangent of an angle; see `sin_and_cos`."""
+    sine, cosine = sin_and_cos(x)
+    return float(sine / cosine)
+
+
+@arithmetic
+def asin(x: float) -> float:
+    """Return the angle (rad) whose sine is `x`, -1 to 1, to 4e-16. Real time: safe."""
+    size = abs(x)
+    t = x * x if size <= 0.5 else 0.5 * (1.0 - size)
+    root = size if size <= 0.5 else math.sqrt(t)
+    series = 0.0
+    for term in ARC[::-1]:
+        series = series * t + term
+    angle = root * series
+    angle = angle if size <= 0.5 else 0.5 * math.pi - 2.0 * angle
+    return float(angle if x >= 0.0 else -angle)
+
+
+@arithmetic
+def tanh(x: float) -> float:
+    """Return the hyperbolic tangent, to 6e-16. Real time: safe."""
+    if abs(x) > 20.0:
+        return 1.0 if x > 0.0 else -1.0
+    if abs(x) > 0.5:
+        twice = exp(2.0 * x)
+        return float((twice - 1.0) / (twice + 1.0))
+    t = x * x  # its continued fraction
+    return float(x / (1.0 + t / (3.0 + t / (5.0 + t / (7.0 + t / (9.0 + t / (11.0 + t / 13.0)))))))
+
+
+def decibels(power: Any) -> Any:
+    """Return ten times the logarithm to base 10 of each number of an array, as Python."""
+    twos, rest = twos_and_log(power)
+    return 10.0 / LN_10 * (twos * LN_2 + rest)
+
+
+def each(function: Callable[[float], float], values: Iterable[float]) -> Any:
+    """Apply one of these to each number of an array, as Python."""
+    array = np.asarray(values, np.float64)
+    return np.array([function(x) for x in array.ravel().tolist()]).reshape(array.shape)

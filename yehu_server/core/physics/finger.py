@@ -25,10 +25,10 @@ def prepare_fingers(model: np.void, quantities: Quantities) -> None:
     finger = quantities.finger
     for name in ("M_f", "K_f", "beta", "rest_height"):
         model[name] = getattr(finger, name)
-    model["C_f"] = model["k"] ** 2 / finger.M_f
+    model["C_f"] = model["k"] * model["k"] / finger.M_f
     ghat_1 = math.sqrt(0.5 * finger.K_f * (finger.alpha + 1.0))
     prepare_power(model["ghat"], ghat_1, 0.5 * (finger.alpha - 1.0))
-    model["K_lift"] = finger.M_f * finger.omega_lift**2
+    model["K_lift"] = finger.M_f * finger.omega_lift * finger.omega_lift
     model["R_lift"] = 2.0 * finger.M_f * finger.omega_lift  # critical damping
 
 

@@ -11,12 +11,17 @@ from __future__ import annotations
 import math
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.elementary import one_minus_inverse_root, power_of_2, sine_and_cosine
+from yehu_server.core.physics.elementary import (
+    log,
+    one_minus_inverse_root,
+    power_of_2,
+    sine_and_cosine,
+)
 from yehu_server.core.physics.records import Model
 
 TOLERANCE = 2e-13  # m/s, on the residual of the bristle velocity
 MAX_ITERATIONS = 100
-PER_LN_2 = 1.0 / math.log(2.0)
+PER_LN_2 = 1.0 / log(2.0)
 
 Tangent = tuple[float, float, float]
 

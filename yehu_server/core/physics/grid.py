@@ -28,10 +28,11 @@ def least_spacing(string: StringQuantities, k: float, headroom: float = 1.0) -> 
     """
     c_squared = headroom * string.T / string.rho_A
     kappa_squared = string.EI / string.rho_A
+    middle = c_squared * k + 4.0 * string.sigma_1
     return math.sqrt(
-        c_squared * k**2 / 2.0
+        c_squared * k * k / 2.0
         + 2.0 * k * string.sigma_1
-        + k / 2.0 * math.sqrt((c_squared * k + 4.0 * string.sigma_1) ** 2 + 16.0 * kappa_squared)
+        + k / 2.0 * math.sqrt(middle * middle + 16.0 * kappa_squared)
     )
 
 

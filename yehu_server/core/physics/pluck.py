@@ -61,7 +61,7 @@ def pluck_string(model: Any, state: Any, i: int, position: float, amplitude: flo
     u = np.zeros(POINTS)
     u[GHOST : GHOST + intervals + 1] = shape
     first, weights = int(m["bridge_first"][i]), m["bridge_weights"][i]
-    at_bridge = uncompiled(read)(u, first, weights) / float(weights @ weights)
+    at_bridge = uncompiled(read)(u, first, weights) / float((weights * weights).sum())
     u[GHOST + first : GHOST + first + len(weights)] -= weights * at_bridge
     uncompiled(support)(u, intervals)
     s["u"][:, i, :] = u

@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.elementary import EXPONENT_OF_1, MANTISSA_BITS
+from yehu_server.core.physics.elementary import EXPONENT_OF_1, MANTISSA_BITS, each, exp2
+from yehu_server.core.physics.elementary import power as power_of
 from yehu_server.core.physics.records import Tables
 
 EXPONENTS = 2048  # of all floats
@@ -38,10 +39,11 @@ def prepare_power(tables: np.void, factor: float, exponent: float) -> None:
     """Write the tables by which `power` finds `factor` x^`exponent` (0 to 2)."""
     twos = np.clip(np.arange(EXPONENTS) - EXPONENT_OF_1, -EXTREME, EXTREME)
     coarse = float(np.float32(exponent))  # a product with this is not rounded
-    tables["of_twos"] = factor * 2.0 ** (coarse * twos) * 2.0 ** ((exponent - coarse) * twos)
+    of_twos = each(exp2, coarse * twos) * each(exp2, (exponent - coarse) * twos)
+    tables["of_twos"] = factor * of_twos
     per_midpoint = 1.0 / (1.0 + (np.arange(INTERVALS) + 0.5) / INTERVALS)
     tables["per_midpoint"] = per_midpoint
-    tables["of_midpoint"] = per_midpoint**-exponent
+    tables["of_midpoint"] = [power_of(x, -exponent) for x in per_midpoint.tolist()]
     term = 1.0
     for n in range(TERMS):
         term *= (exponent - n) / (n + 1.0)
@@ -50,7 +52,7 @@ def prepare_power(tables: np.void, factor: float, exponent: float) -> None:
 
 @compiled
 def power(tables: Tables, x: float) -> float:
-    """Return the power that `prepare_power` made tables for, of a positive number, to 7e-16.
+    """Return the power that `prepare_power` made tables for, of a positive number, to 1.3e-15.
 
     Below 1e-120 and above 1e120 it is about what it is there. Real time: safe.
     """

@@ -70,17 +70,17 @@ class StringQuantities:
     @property
     def rho_A(self) -> float:
         """Mass per length (kg/m)."""
-        return self.rho * math.pi * self.r**2
+        return self.rho * math.pi * self.r * self.r
 
     @property
     def EA(self) -> float:
         """Stiffness against stretching (N)."""
-        return self.E * math.pi * self.r**2
+        return self.E * math.pi * self.r * self.r
 
     @property
     def EI(self) -> float:
         """Bending stiffness of a round string (N m^2)."""
-        return self.E * math.pi * self.r**4 / 4.0
+        return self.E * math.pi * self.r * self.r * self.r * self.r / 4.0
 
 
 @dataclass(frozen=True)

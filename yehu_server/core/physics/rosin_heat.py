@@ -13,11 +13,10 @@ that steady slipping has the friction of eq. (17), and only what changes differs
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.elementary import each, exp
 from yehu_server.core.physics.layout import HEATS, STRINGS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Model, Motion, Work
@@ -32,12 +31,12 @@ def prepare_heat(model: np.void, quantities: Quantities) -> None:
     if not model["is_thermal"]:
         return
     v_r = np.linspace(0.0, HOTTEST * bow.v_s, 8 * HEATS)
-    mu = bow.mu_C + (bow.mu_S - bow.mu_C) * np.exp(-((v_r / bow.v_s) ** 2))
+    mu = bow.mu_C + (bow.mu_S - bow.mu_C) * each(exp, -((v_r / bow.v_s) ** 2))
     w = np.maximum.accumulate(mu * v_r)  # where it would fall, the contact runs through
     heats = np.linspace(0.0, w[-1], HEATS)
     model["softened"] = np.interp(heats, w, mu)
     model["per_heat"] = (HEATS - 1) / w[-1]
-    model["cooled"] = 1.0 - math.exp(-model["k"] / bow.cooling_time)
+    model["cooled"] = 1.0 - exp(-model["k"] / bow.cooling_time)
     model["per_v_s"] = 0.0  # friction does not depend on the speed itself
 
 

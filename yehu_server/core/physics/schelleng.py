@@ -9,6 +9,7 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.elementary import tan
 
 
 @compiled
@@ -25,7 +26,7 @@ def bridge_resistance(m: Any, f: float) -> float:
     ----------
     m : record of layout.MODEL
     """
-    w = 2.0 / m.k * math.tan(math.pi * f * m.k)
+    w = 2.0 / m.k * tan(math.pi * f * m.k)
     real, imaginary = 0.0, 0.0
     for i in range(m.modes):
         spring = m.K_m[i] - m.M_m[i] * w * w

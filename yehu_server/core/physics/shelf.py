@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.elementary import exp10, half_turn, tan
 
 Array = Any
 
@@ -52,9 +53,9 @@ def shelved(s: Any, x: float, gain_db: float, frequency: float) -> float:
     """
     if gain_db != s.gain_db or frequency != s.frequency:
         s.gain_db, s.frequency = gain_db, frequency
-        root = 10.0 ** (gain_db / 80.0)
+        root = exp10(gain_db / 80.0)
         half = root * root  # amplitude, of half the decibels
-        g = math.tan(math.pi * min(frequency / s.rate, HIGHEST)) * root
+        g = tan(math.pi * min(frequency / s.rate, HIGHEST)) * root
         s.a[0] = 1.0 / (1.0 + g * (g + 1.0 / Q))
         s.a[1] = g * s.a[0]
         s.a[2] = g * s.a[1]
@@ -69,10 +70,14 @@ def shelved(s: Any, x: float, gain_db: float, frequency: float) -> float:
     return float(s.m[0] * x + s.m[1] * band + s.m[2] * low)
 
 
-def shelf_response(frequencies: Array, rate: float, gain_db: float, frequency: float) -> Array:
-    """Complex response at some frequencies (Hz) below half the sample rate (Hz), closed form."""
-    half = 10.0 ** (gain_db / 40.0)
-    middle = np.tan(np.pi * min(frequency / rate, HIGHEST))
-    s = 1j * np.tan(np.pi * np.asarray(frequencies) / rate) / middle
-    damping = math.sqrt(half) / Q * s
-    return half * (half * s * s + damping + 1.0) / (s * s + damping + half)
+def shelf_gain(frequencies: Array, rate: float, gain_db: float, frequency: float) -> Array:
+    """Amplitude factor at some frequencies (Hz) up to half the sample rate (Hz), closed form."""
+    half = exp10(gain_db / 40.0)
+    middle = tan(math.pi * min(frequency / rate, HIGHEST))
+    sine, cosine = half_turn(np.asarray(frequencies) / rate)
+    t = sine / cosine / middle
+    t_2 = t * t
+    damped = math.sqrt(half) / Q * t
+    up, down = 1.0 - half * t_2, half - t_2
+    damped = damped * damped
+    return half * np.sqrt((up * up + damped) / (down * down + damped))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.elementary import each, sin
 from yehu_server.core.physics.grid import intervals
 from yehu_server.core.physics.layout import GHOST, LEVELS, STENCIL, whole_vectors
 from yehu_server.core.physics.quantities import Quantities
@@ -35,7 +36,7 @@ def felt_at_nodes(L: float, N: int, quantities: Quantities) -> np.ndarray:
     """
     nodes, bridge = np.arange(1, N), quantities.bridge_x * N / L
     behind = np.where(nodes > int(bridge) + STENCIL // 2, (nodes - bridge) / (N - bridge), 0.0)
-    return np.asarray(quantities.felt_loss * np.sin(np.pi * behind) ** 2)
+    return np.asarray(quantities.felt_loss * each(sin, np.pi * behind) ** 2)
 
 
 @compiled
@@ -46,15 +47,15 @@ def set_string_weights(model: Model, i: int, T: float, sigma_0: float, sigma_1: 
     Real time: safe. Source: [Yehu] eqs. (27), (31), (32).
     """
     k, h, rho_A, EI = model.k, model.h[i], model.rho_A[i], model.EI[i]
-    A_s = rho_A / k**2 + rho_A * sigma_0 / k
+    A_s = rho_A / (k * k) + rho_A * sigma_0 / k
     # D2 u = (u[l-1] - 2 u[l] + u[l+1]) / h^2, and D4 = D2 D2.
-    d2 = (T + 2.0 * rho_A * sigma_1 / k) / h**2
-    d4 = EI / h**4
-    model.B[i, 0] = (2.0 * rho_A / k**2 - 2.0 * d2 - 6.0 * d4) / A_s
+    d2 = (T + 2.0 * rho_A * sigma_1 / k) / (h * h)
+    d4 = EI / (h * h * h * h)
+    model.B[i, 0] = (2.0 * rho_A / (k * k) - 2.0 * d2 - 6.0 * d4) / A_s
     model.B[i, 1] = (d2 + 4.0 * d4) / A_s
     model.B[i, 2] = -d4 / A_s
-    loss = 2.0 * rho_A * sigma_1 / (k * h**2)
-    model.C[i, 0] = (-rho_A / k**2 + rho_A * sigma_0 / k + 2.0 * loss) / A_s
+    loss = 2.0 * rho_A * sigma_1 / (k * h * h)
+    model.C[i, 0] = (-rho_A / (k * k) + rho_A * sigma_0 / k + 2.0 * loss) / A_s
     model.C[i, 1] = -loss / A_s
     model.spread[i] = 1.0 / (h * A_s)
     model.T[i], model.sigma_0[i], model.sigma_1[i] = T, sigma_0, sigma_1
@@ -63,10 +64,10 @@ def set_string_weights(model: Model, i: int, T: float, sigma_0: float, sigma_1: 
 @compiled
 def max_stable_sigma_1(model: Model, i: int, T: float) -> float:
     """Return the largest sigma_1 (m^2/s) that is stable at a tension (N), by eq. (57)."""
-    k, h_squared = model.k, model.h[i] ** 2
+    k, h_squared = model.k, model.h[i] * model.h[i]
     rho_A = model.rho_A[i]
     kappa_squared = model.EI[i] / rho_A
-    room = h_squared - 4.0 * k**2 * kappa_squared / h_squared - T / rho_A * k**2
+    room = h_squared - 4.0 * k * k * kappa_squared / h_squared - T / rho_A * k * k
     return float(max(0.0, room / (4.0 * k)))
 
 

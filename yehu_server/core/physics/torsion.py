@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.elementary import sine_and_cosine
+from yehu_server.core.physics.elementary import cos, each, exp, sin, sine_and_cosine, tanh
 from yehu_server.core.physics.layout import LEVELS, MAX_TWISTS, STRINGS, VECTOR
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Contacts, Model, Refined, Work
@@ -52,25 +52,25 @@ def prepare_torsion(refined: Any, quantities: Quantities, k: float) -> None:
             )
         sigma = omega / (2.0 * string.Q_t)
         ringing = np.sqrt(omega**2 - sigma**2)
-        decay, loss = np.exp(-sigma * k), np.tanh(sigma * k)
+        decay, loss = each(exp, -sigma * k), each(tanh, sigma * k)
         modes = slice(0, len(omega))
         # q[n+1] = A q[n] + B q[n-1] + C f is sampled from the mode that k f sets off.
-        A = 2.0 * decay * np.cos(ringing * k)
-        C = 4.0 * k / (string.rho_A * x_c) * decay * np.sin(ringing * k) / ringing
+        A = 2.0 * decay * each(cos, ringing * k)
+        C = 4.0 * k / (string.rho_A * x_c) * decay * each(sin, ringing * k) / ringing
         refined["A_t"][i, modes], refined["B_t"][i, modes] = A, -(decay**2)
         refined["C_t"][i, modes] = C
         # The same as M delta_tt q + R delta_t. q + K q = f, for the ledger.
-        M = k**2 / (C * (1.0 + loss))
+        M = k * k / (C * (1.0 + loss))
         refined["M_t"][i, modes], refined["R_t"][i, modes] = M, 2.0 * M * loss / k
-        refined["K_t"][i, modes] = M / k**2 * (2.0 - A * (1.0 + loss))
+        refined["K_t"][i, modes] = M / (k * k) * (2.0 - A * (1.0 + loss))
         most = max(most, len(omega))
     refined["twists"] = -(-most // VECTOR) * VECTOR
 
 
 def largest_yielding(refined: np.void) -> float:
     """Return how far a newton moves the surface by torsion within a step, at most (m)."""
-    shapes = np.sin(np.pi * np.outer(np.linspace(0.0, 0.5, 101), np.arange(1, MAX_TWISTS + 1)))
-    return float((shapes**2 @ refined["C_t"].T).max())
+    shapes = each(sin, math.pi * np.outer(np.linspace(0.0, 0.5, 101), np.arange(1, MAX_TWISTS + 1)))
+    return float((shapes[:, np.newaxis] ** 2 * refined["C_t"]).sum(axis=2).max())
 
 
 @compiled

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.elementary import log
 from yehu_server.core.physics.layout import STRINGS
 
 Array = Any
@@ -35,7 +36,7 @@ DEFAULT_RECIPE = (0.6, FLAUTANDO, LIGHT, FIRM, 1.0, 0.0)
 FIRST, LAST = 64, 96
 # The bow positions of the table; beyond them all notes are bowed as at these.
 PLACES = (0.06, 0.08, 0.1, 0.13, 0.165, 0.2, 0.25)
-LOG_PLACES = np.array([math.log(place) for place in PLACES])
+LOG_PLACES = np.array([log(place) for place in PLACES])
 NOTES = LAST - FIRST + 1
 # On the F string the bow is no nearer to the bridge than here: nearer, the body disturbs it more,
 # and Schelleng's wedge is narrower.
@@ -63,7 +64,7 @@ def recipe_value(table: Array, string: int, place: float, pitch: float, column: 
     column : int
         TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR or LEAST_PRESS.
     """
-    at = math.log(place)
+    at = log(place)
     row = 0
     while row < len(LOG_PLACES) - 2 and at >= LOG_PLACES[row + 1]:
         row += 1

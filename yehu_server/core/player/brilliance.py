@@ -10,12 +10,12 @@ has to.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, uncompiled
+from yehu_server.core.physics.elementary import exp2, log2
 from yehu_server.core.player.calibration import ABOVE, GAINS, PLAIN
 from yehu_server.core.player.intonation import ALL, in_tables, place_in
 from yehu_server.core.player.ownership import USUAL_MS, move
@@ -50,8 +50,8 @@ def octaves_brighter(effort: float, place: float) -> float:
     place : float
         Distance of the bow from the bridge, as a share of the sounding length.
     """
-    harder = HARDER * math.log2(effort / PLAIN_EFFORT)
-    return float(harder - NEARER * math.log2(place / PLAIN_PLACE))
+    harder = HARDER * log2(effort / PLAIN_EFFORT)
+    return float(harder - NEARER * log2(place / PLAIN_PLACE))
 
 
 @compiled_exactly
@@ -64,7 +64,7 @@ def set_brilliance(p: Any, c: Any, string: int, pitch: float, effort: float) -> 
     plain = measured(p.centroids[string], row, part, PLAIN)
     if not (effort > 0.0 and plain > 0.0):  # no bow, or no calibration
         return
-    aim = plain * math.exp2(octaves_brighter(effort, p.value[POSITION]))
+    aim = plain * exp2(octaves_brighter(effort, p.value[POSITION]))
     gain_db, below = GAINS[0], 0.0
     for column in range(len(GAINS)):
         above = measured(p.centroids[string], row, part, column)
@@ -90,7 +90,7 @@ def usual_shelf(centroids: Any, string: int, pitch: float) -> tuple[float, float
     rows = np.array(centroids)
     own = [np.interp(pitch, ALL[string], column) for column in rows.T]
     brighter = uncompiled(octaves_brighter)(USUAL_EFFORT, USUAL_PLACE)
-    aim = own[PLAIN] * 2.0**brighter
+    aim = own[PLAIN] * exp2(brighter)
     return float(np.interp(aim, np.maximum.accumulate(own), GAINS)), float(ABOVE * own[PLAIN])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.quantities import Quantities
 
 Tables = tuple[tuple[tuple[float, ...], ...], ...]  # of strings, notes, speeds
@@ -69,7 +70,7 @@ class Calibration:
 
 def frequency_hz(pitch: float, a4: float) -> float:
     """Frequency of a fractional MIDI note in equal temperament."""
-    return a4 * math.exp2((pitch - 69.0) / 12.0)
+    return a4 * exp2((pitch - 69.0) / 12.0)
 
 
 def wave_speed(quantities: Quantities, string: int) -> float:

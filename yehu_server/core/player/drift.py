@@ -22,7 +22,7 @@ from yehu_server.core.controls.record import (
     PRESS_DRIFT,
     SPEED_DRIFT,
 )
-from yehu_server.core.physics.elementary import chance
+from yehu_server.core.physics.elementary import chance, cos, each, exp
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.rows import (
     BOW_FORCE,
@@ -47,21 +47,22 @@ TOGETHER = 0.6  # correlation with it
 # than violinists' [Seashore]. Half of the variance wanders: it keeps this much from turn to turn.
 UNEVEN_PACE, UNEVEN_WIDTH = 0.4, 0.4
 WANDERING = 0.85
-WANDERED = math.sqrt(3.0 * (1.0 - WANDERING**2))
+WANDERED = math.sqrt(3.0 * (1.0 - WANDERING * WANDERING))
 MOST_UNEVEN = 0.5  # of rate and width, up or down
 FOLLOW = 0.15  # of the way to those of the next turn, in a hop
 
 TIMES_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is the drift
 TIMES = 4
-# Here and below rounded, as the last bits of exp and cos differ from processor to processor, and
-# what is compiled ahead, on another one, is to play the same samples.
-KEPT = np.round(np.exp(-HOP_S / TIMES_S), 12)
+KEPT = each(exp, -HOP_S / TIMES_S)
 # Uniform numbers in -1..1 have a variance of 1/3; the sums have one of 1.
 ADDED = np.sqrt(3.0 * (1.0 - KEPT**2) / TIMES)
 TREMOR_HZ, WIDTH_HZ = 10.0, 3.0
-RADIUS = round(math.exp(-math.pi * WIDTH_HZ * HOP_S), 12)
-TURN = round(2.0 * RADIUS * math.cos(2.0 * math.pi * TREMOR_HZ * HOP_S), 12)
-KICK = math.sqrt(3.0 * (1.0 - RADIUS**2) * ((1.0 + RADIUS**2) ** 2 - TURN**2) / (1.0 + RADIUS**2))
+RADIUS = exp(-math.pi * WIDTH_HZ * HOP_S)
+TURN = 2.0 * RADIUS * cos(2.0 * math.pi * TREMOR_HZ * HOP_S)
+SQUARE = RADIUS * RADIUS
+KICK = math.sqrt(
+    3.0 * (1.0 - SQUARE) * ((1.0 + SQUARE) * (1.0 + SQUARE) - TURN * TURN) / (1.0 + SQUARE)
+)
 HANDS = 2
 CALMING, STEADY = 0.8, 1e-6  # a hand that does not play comes to rest, by so much in a hop
 LATE = 2  # hops after which what a finger did is heard
@@ -95,7 +96,7 @@ def advance_drift(p: Any, c: Any) -> None:
     u, amount = p.drift_state, p.value[VARIATION]
     for hand in range(HANDS):
         now, before = u.tremor[hand, 0], u.tremor[hand, 1]
-        u.tremor[hand, 0] = TURN * now - RADIUS**2 * before + KICK * draw(p)
+        u.tremor[hand, 0] = TURN * now - SQUARE * before + KICK * draw(p)
         u.tremor[hand, 1] = now
     for i in range(DRIFTS):
         for k in range(TIMES):

@@ -16,6 +16,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled, compiled_exactly
 from yehu_server.core.controls.record import CHUNK
+from yehu_server.core.physics.elementary import exp2, log2
 from yehu_server.core.player.rows import LISTENING, POSITION, SPEED
 
 
@@ -23,8 +24,8 @@ from yehu_server.core.player.rows import LISTENING, POSITION, SPEED
 def learning_bin(p: Any, string: int, pitch: float) -> tuple[int, int, int]:
     """Where what is learnt of a pitch is kept: numbers of pitch, bow position and bow speed."""
     row = int(np.rint(2.0 * (pitch - p.open_note[string]))) + 2  # a bent one may be below the open
-    place = int(np.rint(4.0 * math.log2(p.value[POSITION] / 0.05)))
-    pace = int(np.rint(2.0 * math.log2(p.value[SPEED] / 0.03)))
+    place = int(np.rint(4.0 * log2(p.value[POSITION] / 0.05)))
+    pace = int(np.rint(2.0 * log2(p.value[SPEED] / 0.03)))
     return (
         min(max(row, 0), p.learnt.shape[1] - 1),
         min(max(place, 0), p.learnt.shape[2] - 1),
@@ -148,7 +149,7 @@ def hear(ear: Any, heard: Array, frame: int, period: float) -> None:
     lowest, highest = int(expected * (1.0 - SEARCHED)), int(expected * (1.0 + SEARCHED)) + 1
     first, last = lowest, highest
     if ear.certainty > SURE:
-        near = int(np.rint(expected * 2.0 ** (-ear.error / 1200.0)))
+        near = int(np.rint(expected * exp2(-ear.error / 1200.0)))
         first, last = max(lowest, near - NEAR), min(highest, near + NEAR)
     lag = best_lag(heard, end, span, first, last)
     ear.certainty = 0.0
@@ -159,6 +160,6 @@ def hear(ear: Any, heard: Array, frame: int, period: float) -> None:
         above = correlation(heard, end, span, lag + 1, own)
         bend = below - 2.0 * best + above
         if bend < 0.0:
-            ear.error = 1200.0 * math.log2(expected / (lag + 0.5 * (below - above) / bend))
+            ear.error = 1200.0 * log2(expected / (lag + 0.5 * (below - above) / bend))
             ear.certainty = best
     ear.slips = count_slips(heard, end, int(np.rint(expected))) / periods

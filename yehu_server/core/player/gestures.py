@@ -14,6 +14,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SPEED as BOW_SPEED
+from yehu_server.core.physics.elementary import exp, log10
 from yehu_server.core.player.harmonics import GAINS_DB, NONE, node_of, string_of
 from yehu_server.core.player.phrasing import (
     HURRIED_ATTACK_MS,
@@ -272,7 +273,7 @@ def gain_of(g: Any) -> float:
     own = GAINS_DB[string_of(g.node)] if g.node != NONE else 0.0
     if g.is_off != 0 or g.speed <= LEAST_FACTOR:
         return float(own)
-    return float(own + 20.0 * LEVEL_EXPONENT * math.log10(g.speed))
+    return float(own + 20.0 * LEVEL_EXPONENT * log10(g.speed))
 
 
 @compiled_exactly
@@ -323,7 +324,7 @@ STEEP = 3.0  # of the logistic curve that slides follow
 def slid(g: Any, at_s: float) -> float:
     """Where a slide is (semitones) at a time; logistic in time, as huqin players' are [Yang]."""
     part = min(max((at_s - g.slide_at) / g.slide_s, 0.0), 1.0)
-    end = 1.0 / (1.0 + math.exp(-STEEP))
-    come = 1.0 / (1.0 + math.exp(-STEEP * (2.0 * part - 1.0)))
+    end = 1.0 / (1.0 + exp(-STEEP))
+    come = 1.0 / (1.0 + exp(-STEEP * (2.0 * part - 1.0)))
     come = 0.5 + (come - 0.5) * 0.5 / (end - 0.5)
     return float(g.slide_from + (g.slide_to - g.slide_from) * come)

@@ -7,12 +7,12 @@ finger touches: what a finger that presses there would sound.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.fingering import wished_string
 
 # String, where the finger touches (semitones above the open string), and the parts that swing.
@@ -30,7 +30,7 @@ GAINS_DB = np.array((0.0, 10.0))
 
 def sounding_above(parts: float) -> float:
     """The interval (semitones) from an open string to its harmonic of so many parts."""
-    return float(round(12.0 * math.log2(parts)))
+    return float(round(12.0 * log2(parts)))
 
 
 @compiled_exactly

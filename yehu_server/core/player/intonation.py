@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.elementary import exp2, log
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, ROWS_OF_A_YEHU, SPEEDS
 from yehu_server.core.player.rows import CALIBRATION
@@ -17,7 +17,7 @@ Array = Any
 OPEN_OF_TABLES = np.array(OPEN_NOTES, np.float64)
 STOPPED = np.array(PITCHES)
 ALL = np.array([(float(note), *row) for note, row in zip(OPEN_NOTES, PITCHES, strict=True)])
-LOG_SPEEDS = np.array([math.log(speed) for speed in SPEEDS])
+LOG_SPEEDS = np.array([log(speed) for speed in SPEEDS])
 
 
 @compiled_exactly
@@ -38,7 +38,7 @@ def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float)
     sharp = sharper + p.value[CALIBRATION] * read(
         p.sharpening[string], STOPPED[string], stopped, speed
     )
-    frequency = p.a4 * math.exp2((pitch - sharp / 100.0 - 69.0) / 12.0)
+    frequency = p.a4 * exp2((pitch - sharp / 100.0 - 69.0) / 12.0)
     return float(p.bridge_x - p.wave_speed[string] / (2.0 * frequency))
 
 
@@ -77,7 +77,7 @@ def place_in(pitches: Array, pitch: float) -> tuple[int, float]:
 @compiled_exactly
 def at_speed(row: Array, speed: float) -> float:
     """Interpolate a value for each of SPEEDS, over the logarithm of the speed (m/s)."""
-    logarithm = math.log(max(speed, 1e-3))
+    logarithm = log(max(speed, 1e-3))
     column = 0
     while column < len(LOG_SPEEDS) - 2 and logarithm >= LOG_SPEEDS[column + 1]:
         column += 1

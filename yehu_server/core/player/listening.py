@@ -11,6 +11,7 @@ from yehu_server.compile.memory import carray
 from yehu_server.core.controls.hands import vibrato_at
 from yehu_server.core.controls.record import Controls
 from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
+from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.player.articulating import articulate
 from yehu_server.core.player.bowing_by_ear import correct_pressure
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
@@ -40,7 +41,7 @@ def listen(p: Any, c: Any, heard: Any) -> None:
         return
     pitch = sounding_pitch(p)
     aim = pitch + vibrato_semitones(p, c) + heard_semitones(p)
-    hear(p.ear, heard, c.frame, p.rate / (p.a4 * 2.0 ** ((aim - 69.0) / 12.0)))
+    hear(p.ear, heard, c.frame, p.rate / (p.a4 * exp2((aim - 69.0) / 12.0)))
     if not by_hand:  # who draws the bow corrects it
         tune(p, c, pitch)
         correct_pressure(p, c, pitch)

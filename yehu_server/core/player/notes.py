@@ -278,7 +278,7 @@ def set_assist(p: Any, c: Any) -> None:
 def set_level(p: Any, c: Any) -> None:
     """Set the output's level."""
     level = (p.value[VOLUME] * p.value[EXPRESSION]) ** 2
-    level *= p.value[DYNAMICS] ** DYNAMICS_EXPONENT
+    level *= p.value[DYNAMICS] * math.sqrt(p.value[DYNAMICS])  # to the DYNAMICS_EXPONENT
     move(p, c, OUTPUT_LEVEL, level, USUAL_MS)
 
 

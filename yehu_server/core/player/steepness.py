@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.core.physics.elementary import decibels, each, exp2
 from yehu_server.core.physics.quantities import Body
-from yehu_server.core.physics.radiation import response
-from yehu_server.core.physics.shelf import shelf_response
+from yehu_server.core.physics.radiation import magnitude, response_parts
+from yehu_server.core.physics.shelf import shelf_gain
 from yehu_server.core.player.brilliance import usual_shelf
 from yehu_server.core.player.calibration import OPEN_NOTES, Tables
 from yehu_server.core.player.fingering import OPEN_WITHIN
@@ -51,7 +52,7 @@ def vibrato_table(
     """
     margin = USUAL + STRAY + MOST_OFF
     pitches = open_notes[0] + 0.01 * np.arange(-margin, 50 * (STEPS - 1) + margin + 1)
-    frequency_hz = np.outer(a4 * np.exp2((pitches - 69.0) / 12.0), np.arange(1, HARMONICS + 1))
+    frequency_hz = np.outer(a4 * each(exp2, (pitches - 69.0) / 12.0), np.arange(1, HARMONICS + 1))
     heard = _plain(body, frequency_hz)
     table = np.empty((STEPS, 2))
     for row in range(STEPS):
@@ -62,10 +63,8 @@ def vibrato_table(
             string = int(pitch >= open_notes[1] + OPEN_WITHIN)
             on_a_yehu = pitch - open_notes[string] + OPEN_NOTES[string]
             gain_db, shelf_hz = usual_shelf(centroids[string], string, on_a_yehu)
-            own = own * np.abs(
-                shelf_response(frequency_hz[near], body.radiation_rate, gain_db, shelf_hz)
-            )
-        depth, off = _way(10.0 * np.log10((own**2).sum(axis=1) + 1e-30), margin)
+            own = own * shelf_gain(frequency_hz[near], body.radiation_rate, gain_db, shelf_hz)
+        depth, off = _way(decibels((own * own).sum(axis=1) + 1e-30), margin)
         table[row] = depth / USUAL, off / depth
     table.flags.writeable = False
     return table
@@ -98,9 +97,9 @@ def _plain(body: Body, frequency_hz: Array) -> Array:
     (A-weighted). `frequency_hz`: of the harmonics, in columns. Returns amplitudes in that shape.
     """
     n = np.arange(1, frequency_hz.shape[1] + 1)
-    radiated = response(
-        np.array(body.sections), np.array([body.direct_gain]), body.radiation_rate,
-        frequency_hz.ravel(),
-    ).reshape(frequency_hz.shape)  # fmt: skip
     is_measured = frequency_hz < 0.5 * body.radiation_rate
-    return np.abs(radiated) * is_measured * a_weighting(frequency_hz) / n
+    radiated = response_parts(
+        np.array(body.sections), np.array([body.direct_gain]), body.radiation_rate,
+        np.where(is_measured, frequency_hz, 0.0),
+    )  # fmt: skip
+    return magnitude(radiated) * is_measured * a_weighting(frequency_hz) / n

@@ -12,6 +12,7 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.elementary import exp10, tan
 
 CROSSOVER = 2500.0  # Hz
 HIGHEST_DAMPING = 0.8
@@ -47,10 +48,10 @@ def set_shelf(shelf: Any, line: int, time: float, decay: float, damping: float) 
     shelf : record with ``rate`` and the coefficients ``b_0``, ``b_1``, ``a_1``
         Of several filters; that of `line` is written.
     """
-    low = 10.0 ** (-loss_low(decay) * time / 20.0)
+    low = exp10(-loss_low(decay) * time / 20.0)
     more_db = (loss_high(decay, damping) - loss_low(decay)) * time
-    step = 10.0 ** (-more_db / 40.0)  # square root of the shelf's height
-    warped = math.tan(math.pi * min(CROSSOVER / shelf.rate, 0.45))
+    step = exp10(-more_db / 40.0)  # square root of the shelf's height
+    warped = tan(math.pi * min(CROSSOVER / shelf.rate, 0.45))
     scale = 1.0 / (1.0 / step + warped)
     shelf.b_0[line] = low * (step + warped) * scale
     shelf.b_1[line] = low * (warped - step) * scale

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.elementary import cos, sin, tan
 
 SECTIONS = 4
 # By ear: frequencies (Hz) and quality of the all-pass filters; the lowest lobes of a shell of
@@ -52,10 +53,10 @@ def prepare_sides(sides: Any, rate: float, body: int = 0) -> None:
     spread = SPREAD * np.random.default_rng(body).uniform(-1.0, 1.0, SECTIONS) * (body > 0)
     for k, hertz in enumerate(TURNS_HZ * (1.0 + spread)):
         angle = 2.0 * math.pi * min(hertz / rate, 0.45)
-        alpha = math.sin(angle) / (2.0 * QUALITY)
+        alpha = sin(angle) / (2.0 * QUALITY)
         sides["c_2"][k] = (1.0 - alpha) / (1.0 + alpha)
-        sides["c_1"][k] = -2.0 * math.cos(angle) / (1.0 + alpha)
-    warped = math.tan(math.pi * FROM_HZ / rate)
+        sides["c_1"][k] = -2.0 * cos(angle) / (1.0 + alpha)
+    warped = tan(math.pi * FROM_HZ / rate)
     sides["pass_b"] = 1.0 / (1.0 + warped)
     sides["pass_a"] = (1.0 - warped) / (1.0 + warped)
     rest_sides(sides)

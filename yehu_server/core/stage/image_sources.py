@@ -11,6 +11,7 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.elementary import cos, exp, sin
 
 Array = Any
 
@@ -51,7 +52,7 @@ def mean_free_path(size: float) -> float:
 @compiled_exactly
 def reflection(size: float, decay: float) -> float:
     """Share of the pressure that a wall reflects, for a decay of 60 dB in a time (s) [Eyring]."""
-    return math.exp(-0.5 * SABINE * volume(size) / (surface(size) * decay))
+    return exp(-0.5 * SABINE * volume(size) / (surface(size) * decay))
 
 
 @compiled_exactly
@@ -91,8 +92,8 @@ def find_images(
     at_x, at_y = LISTENER_X * width, LISTENER_Y * size
     at_z = min(LISTENER_Z, LISTENER_HIGHEST * height)
     direction = FAR_SIDE * pan
-    x = within(at_x + distance * math.sin(direction), WALL_GAP, width - WALL_GAP)
-    y = within(at_y + distance * math.cos(direction), WALL_GAP, size - WALL_GAP)
+    x = within(at_x + distance * sin(direction), WALL_GAP, width - WALL_GAP)
+    y = within(at_y + distance * cos(direction), WALL_GAP, size - WALL_GAP)
     z = min(PLAYER_Z, PLAYER_HIGHEST * height)
     direct = length(x - at_x, y - at_y, z - at_z)
     reflected = reflection(size, decay)

@@ -16,6 +16,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, compiled_exactly_apart
 from yehu_server.core.controls.record import CHUNK
+from yehu_server.core.physics.elementary import exp10, log, log2, power
 from yehu_server.core.stage import absorption, image_sources
 
 Array = Any
@@ -97,7 +98,7 @@ ROOM = np.dtype(
 
 def power_of_two(least: float) -> int:
     """The least power of two that is no less than a number."""
-    return 1 << math.ceil(math.log2(least))
+    return 1 << math.ceil(log2(least))
 
 
 def prepare_room(room: Any, rate: float) -> None:
@@ -142,7 +143,7 @@ def set_room(r: Any, size: float, decay: float, damping: float) -> None:
         for i in range(LINES):
             frames = r.length[i] + (1.0 - r.moved) * (r.was_length[i] - r.length[i])
             absorption.set_shelf(r, i, frames / r.rate, decay, damping)
-            left = 10.0 ** (-absorption.loss_low(decay) * r.entry[i] / r.rate / 20.0)
+            left = exp10(-absorption.loss_low(decay) * r.entry[i] / r.rate / 20.0)
             r.entry_gain[i] = ENTRY_SIGN[i] * INTO_LINES * left
 
 
@@ -167,14 +168,14 @@ def measure(r: Any, size: float) -> None:
     middle = min(max(middle, LEAST_S), MOST_S)
     frames = 0
     for i in range(LINES):
-        ratio = SHORTEST * (LONGEST / SHORTEST) ** (i / (LINES - 1.0))
+        ratio = SHORTEST * power(LONGEST / SHORTEST, i / (LINES - 1.0))
         r.was_length[i] = r.length[i]
         r.length[i] = next_prime(int(middle * ratio * r.rate))
         frames += r.length[i]
     # Of the energy that entered, which decays, each frame of the lines has the same; each ear
     # hears half of the lines. A steady sound of power 1 is heard with half of this, over the decay
     # (s), of which the diffuse field has as much.
-    heard = LINES * r.rate / (frames * math.log(1e6))
+    heard = LINES * r.rate / (frames * log(1e6))
     r.was_per_level = r.per_level
     r.per_level = image_sources.diffuse_level(size, 1.0) / math.sqrt(0.5 * heard)
 

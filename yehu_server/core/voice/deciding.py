@@ -14,6 +14,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.tables import KEYS
+from yehu_server.core.physics.elementary import each, exp, log, log10
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.notes import DYNAMICS_EXPONENT
 from yehu_server.core.player.right_hand import SOFTEST
@@ -57,9 +58,10 @@ MOST_WISHES = 8
 
 def dynamics_of(level_db: Any) -> Any:
     """The dynamics that are so many dB below full ones, as ``player`` plays them."""
-    dynamics = np.geomspace(LEAST_DYNAMICS, 1.0, 400)
+    dynamics = each(exp, np.linspace(log(LEAST_DYNAMICS), 0.0, 400))
     speed = SOFTEST + (1.0 - SOFTEST) * dynamics
-    return np.interp(level_db, 20.0 * np.log10(dynamics**DYNAMICS_EXPONENT * speed), dynamics)
+    level = DYNAMICS_EXPONENT * each(log10, dynamics) + each(log10, speed)
+    return np.interp(level_db, 20.0 * level, dynamics)
 
 
 QUIETEST_DB, STEPS = -60, 4  # by dB

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.elementary import cos, exp, exp2, log2, log10, sin
 from yehu_server.core.player.ear import EAR_SAMPLES, product, remember
 
 Array = Any
@@ -77,19 +78,19 @@ def prepare_hearing(h: Any, rate: float) -> None:
     angle = 2.0 * math.pi * min(CUTOFF_HZ, OF_RATE * thinned) / rate
     for section in range(2):
         set_lowpass(h.lowpass[section], angle, BUTTERWORTH[section])
-    h.keep_steady = math.exp(-2.0 * math.pi * STEADY_HZ / thinned)
-    h.keep_below = math.exp(-2.0 * math.pi * LOUDNESS_HZ / thinned)
-    h.keep_power = math.exp(-1.0 / (LOUDNESS_S * thinned))
-    h.level_db, h.expected = 10.0 * math.log10(SILENT), math.nan
+    h.keep_steady = exp(-2.0 * math.pi * STEADY_HZ / thinned)
+    h.keep_below = exp(-2.0 * math.pi * LOUDNESS_HZ / thinned)
+    h.keep_power = exp(-1.0 / (LOUDNESS_S * thinned))
+    h.level_db, h.expected = 10.0 * log10(SILENT), math.nan
 
 
 @compiled_exactly
 def set_lowpass(b: Array, angle: float, q: float) -> None:
     """Set the coefficients of a second-order low-pass; the angle is by sample."""
-    alpha, cos = math.sin(angle) / (2.0 * q), math.cos(angle)
-    b[0] = 0.5 * (1.0 - cos) / (1.0 + alpha)
+    alpha, cosine = sin(angle) / (2.0 * q), cos(angle)
+    b[0] = 0.5 * (1.0 - cosine) / (1.0 + alpha)
     b[1], b[2] = 2.0 * b[0], b[0]
-    b[3], b[4] = -2.0 * cos / (1.0 + alpha), (1.0 - alpha) / (1.0 + alpha)
+    b[3], b[4] = -2.0 * cosine / (1.0 + alpha), (1.0 - alpha) / (1.0 + alpha)
 
 
 @compiled_exactly
@@ -122,10 +123,10 @@ def take(h: Any, sample: float) -> bool:
 @compiled_exactly
 def hear(h: Any) -> None:
     """Hear what the last samples have."""
-    h.level_db = 10.0 * math.log10(h.power + SILENT)
+    h.level_db = 10.0 * log10(h.power + SILENT)
     end = EAR_SAMPLES + (h.heard & (EAR_SAMPLES - 1))
     compare(h.likeness, h.sound, end, h.span, h.lags)
-    expected = h.rate / (A4_HZ * 2.0 ** ((h.expected - 69.0) / 12.0))
+    expected = h.rate / (A4_HZ * exp2((h.expected - 69.0) / 12.0))
     lag = first_peak(h.likeness, h.lags, int(h.rate / HIGHEST_HZ), expected)
     h.certainty = min(height_at(h.likeness, lag), 1.0) if lag > 0 else 0.0
     if lag == 0:
@@ -137,7 +138,7 @@ def hear(h: Any) -> None:
             break
         times *= 2
         period = peak_at(h.likeness, near) / times
-    h.pitch = 69.0 + 12.0 * math.log2(h.rate / (period * A4_HZ))
+    h.pitch = 69.0 + 12.0 * log2(h.rate / (period * A4_HZ))
 
 
 @compiled_exactly

@@ -14,6 +14,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
+from yehu_server.core.physics.elementary import cos, log10, sin
 from yehu_server.core.player.ear import SEARCHED, STICKING, count_slips
 from yehu_server.errors import ParameterError
 from yehu_server.lab.regimes.columns import (
@@ -224,7 +225,7 @@ def transform(real: Array, imaginary: Array, size: int) -> None:
     while length <= size:
         half = length >> 1
         turn = -2.0 * math.pi / length
-        step_real, step_imaginary = math.cos(turn), math.sin(turn)
+        step_real, step_imaginary = cos(turn), sin(turn)
         for begin in range(0, size, length):
             w_real, w_imaginary = 1.0, 0.0
             for a in range(begin, begin + half):
@@ -253,7 +254,7 @@ def centroid_hz(signal: Array, end: int, rate: float, work: Array) -> float:
         mean += signal[i]
     mean /= size
     for i in range(size):
-        hann = 0.5 - 0.5 * math.cos(2.0 * math.pi * i / size)
+        hann = 0.5 - 0.5 * cos(2.0 * math.pi * i / size)
         real[i], imaginary[i] = (signal[end - size + i] - mean) * hann, 0.0
     transform(real, imaginary, size)
     total, moment = 0.0, 0.0
@@ -272,7 +273,7 @@ def level_db(signal: Array, begin: int, end: int) -> float:
         total += signal[i]
         squares += signal[i] * signal[i]
     mean = total / (end - begin)
-    return 10.0 * math.log10(max(squares / (end - begin) - mean * mean, 1e-30))
+    return 10.0 * log10(max(squares / (end - begin) - mean * mean, 1e-30))
 
 
 def judge(

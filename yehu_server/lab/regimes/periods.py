@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled, compiled_exactly
+from yehu_server.core.physics.elementary import exp
 from yehu_server.core.player.ear import SLIPPING, STICKING
 
 Array = Any
@@ -122,7 +123,7 @@ def times_of_slips(
     A slip begins and ends as the player's ear has it, relative to the largest of late. `slipping`
     is as of `rectify`, the period (samples) that of the note. Returns frames, -1 for never.
     """
-    fade = math.exp(-1.0 / (FADING * period))
+    fade = exp(-1.0 / (FADING * period))
     largest, is_slipping = 0.0, False
     first, last, begun, regular = -1, -1, -1, 0
     for i in range(frames):

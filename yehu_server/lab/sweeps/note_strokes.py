@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.core.physics.elementary import log
 from yehu_server.core.physics.layout import F_N, FINGER_CONTROLS, TEXTURE, V_B, X_B
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.player.calibration import (
@@ -101,7 +102,7 @@ class Tuned:
         tuned = self.calibration
         frequency = frequency_hz(note, STANDARD_A4)
         rows = np.array(tuned.sharpening[string])
-        logarithm = math.log(speed)
+        logarithm = log(speed)
         at_speed = [float(np.interp(logarithm, np.log(SPEEDS), row)) for row in rows]
         in_tables = note - (tuned.open_notes[string] - OPEN_NOTES[string])
         sharp = float(np.interp(in_tables, PITCHES[string], at_speed))

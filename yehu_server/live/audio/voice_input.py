@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from yehu_server.core.physics.elementary import log2
 from yehu_server.core.voice.deciding import VOICE, VOICE_KEYS, ends_of
 from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.output import OutputOptions, SharedMemory
@@ -34,7 +35,7 @@ def tuned_as(playing: PlayingOptions) -> dict[str, Any]:
     a4 = playing.a4
     pitches = [playing.tuning.pitch(key, a4) for key in KEYS]
     return {
-        "sharper": 12.0 * math.log2(STANDARD_A4 / a4),
+        "sharper": 12.0 * log2(STANDARD_A4 / a4),
         "tuning": [math.nan if pitch is None else pitch for pitch in pitches],
     }
 

@@ -74,7 +74,7 @@ def test_text_of_a_preset_is_shown_and_steers_nothing(tmp_path, capsys):
 
 
 def test_names_of_devices_are_no_markup_and_steer_nothing(capsys):
-    device = AudioDevice(0, EVIL, "[red]api", 2, 48000.0, 1.0, is_default=False)
+    device = AudioDevice(0, EVIL, "[red]api", 2, 48000.0, 1.0)
     devices_report([device], [device], "", "[red]", [EVIL], "")
     devices_report([], [], EVIL, "alsa", [], EVIL)
     out, _ = capsys.readouterr()

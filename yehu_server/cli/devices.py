@@ -1,9 +1,10 @@
 """List the audio outputs, audio inputs and MIDI inputs that serve can use.
 
   yehu-server devices
-  yehu-server serve --audio-device "system, JACK" --midi-in keystep
+  yehu-server serve --audio-device JACK --midi-in keystep
 
-A device may be named by any words that no other device has.
+serve plays on the first output, and follows the first input. A host API's name alone, such as
+JACK, chooses the first of its devices; any words that no other device has choose that one.
 """
 
 from __future__ import annotations
@@ -50,8 +51,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _rows(devices: Sequence[AudioDevice]) -> list[dict[str, Any]]:
-    fields = ("full_name", "name", "host_api", "channels", "rate", "latency_ms", "is_default")
-    return [{field: getattr(device, field) for field in fields} for device in devices]
+    fields = ("full_name", "name", "host_api", "channels", "rate", "latency_ms")
+    return [
+        {field: getattr(device, field) for field in fields} | {"is_default": device is devices[0]}
+        for device in devices
+    ]
 
 
 def devices_report(
@@ -88,7 +92,7 @@ def _audio_table(title: str, devices: Sequence[AudioDevice]) -> Any:
         table.add_column(column, overflow="fold")
     for device in devices:
         numbers = (str(device.channels), f"{device.rate:g} Hz", f"{device.latency_ms:.1f} ms")
-        mark = "default" if device.is_default else ""
+        mark = "default" if device is devices[0] else ""
         table.add_row(one_line(device.name), one_line(device.host_api), *numbers, mark)
     return table
 

@@ -36,8 +36,9 @@ def add_arguments(parser: Parser) -> None:
     add_options(
         parser.add_argument_group("audio"),
         """
-        --audio-device NAME: words of the output's name and host API (see yehu-server devices), or
-            null for silence (default: the system's output)
+        --audio-device NAME: words of the output's name and host API (see yehu-server devices), a
+            host API alone, such as JACK, for its default output, or null for silence (default:
+            JACK's output where JACK runs, or the system's)
         --rate HZ: sample rate (default: the device's)
         --blocksize FRAMES: number of frames computed at a time; JACK keeps its own period (default:
             128)
@@ -45,7 +46,7 @@ def add_arguments(parser: Parser) -> None:
         --channels N: number of channels, left and right in turn; 1 has the mean of both (default:
             2, or as the device has)
         --follow NAME: play what a voice sings into an audio input, named as the output is (default
-            name: the system's input)
+            name: the input of a JACK server where one runs, or the system's)
         --follow-transpose SEMITONES: how far from the voice it is played (default: by octaves, so
             that the first note is in the lower half)
         --follow-correct SHARE: how far it is moved to the tuning, 0 to 1 (default: 0)

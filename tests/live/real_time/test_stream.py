@@ -202,7 +202,7 @@ def refused(jackd, folder: Path, *words: object) -> str:
 def test_a_device_that_is_not_there_is_refused(jackd, tmp_path):
     jackd.start(512)
     line = refused(jackd, tmp_path, "--audio-device", "hifi", *files(tmp_path))
-    assert line == f"yehu-server: no audio output matches 'hifi' (there are: {DEVICE})"
+    assert line.startswith(f"yehu-server: no audio output matches 'hifi' (there are: {DEVICE}")
 
 
 def test_a_rate_the_named_device_does_not_have_is_refused_once_and_no_file_left(jackd, tmp_path):

@@ -14,7 +14,11 @@ from typing import Any
 from yehu_server.errors import DeviceError
 
 OUTPUT, INPUT = "output", "input"  # kinds
-CLIENTS = {OUTPUT: b"yehu-server", INPUT: b"yehu-server voice"}  # their names in JACK
+CLIENTS = {OUTPUT: b"yehu-server", INPUT: b"yehu-server voice"}  # their names in JACK, kept for it
+OURS = CLIENTS[OUTPUT].decode()  # what they begin with
+JACK, PULSEAUDIO = "JACK Audio Connection Kit", "PulseAudio"  # host APIs of sound servers
+JACKS_CARD = "system"  # of a JACK server; PipeWire in its place has other names
+ALSA_NAMES = {"pulseaudio": "pulse"}  # of plug-ins that are not named as their server is
 NO_PORTAUDIO = "PortAudio is not installed (Debian: sudo apt-get install libportaudio2)"
 
 
@@ -28,7 +32,6 @@ class AudioDevice:
     channels: int
     rate: float  # Hz; the default one
     latency_ms: float
-    is_default: bool
 
     @property
     def full_name(self) -> str:
@@ -64,9 +67,21 @@ def load_portaudio(kind: str = OUTPUT) -> Any:
 
 
 def devices(sounddevice: Any, kind: str = OUTPUT) -> list[AudioDevice]:
-    """List all outputs, or inputs, the default one marked."""
+    """List all outputs, or inputs, in the order in which they are preferred.
+
+    A sound server's own host API comes before ALSA, whose plug-ins lead to the same server by a
+    detour; but the first input of PipeWire in JACK's place is what it plays itself. Of each host
+    API the default device comes first. JACK's clients are devices to PortAudio; those of this
+    program are left out, or it would follow itself.
+    """
     apis = sounddevice.query_hostapis()
-    default = default_index(sounddevice, kind)
+
+    def order(device: Any) -> tuple[bool, bool, int, bool]:
+        api = apis[device["hostapi"]]
+        is_jack = api["name"] == JACK and (kind == OUTPUT or device["name"] == JACKS_CARD)
+        is_default = device["index"] == api[f"default_{kind}_device"]
+        return not is_jack, api["name"] != PULSEAUDIO, device["hostapi"], not is_default
+
     return [
         AudioDevice(
             index=device["index"],
@@ -75,19 +90,10 @@ def devices(sounddevice: Any, kind: str = OUTPUT) -> list[AudioDevice]:
             channels=device[f"max_{kind}_channels"],
             rate=device["default_samplerate"],
             latency_ms=1e3 * device[f"default_low_{kind}_latency"],
-            is_default=device["index"] == default,
         )
-        for device in sounddevice.query_devices()
-        if device[f"max_{kind}_channels"] > 0
+        for device in sorted(sounddevice.query_devices(), key=order)
+        if device[f"max_{kind}_channels"] > 0 and not device["name"].startswith(OURS)
     ]
-
-
-def default_index(sounddevice: Any, kind: str = OUTPUT) -> int:
-    """Index of PortAudio's default device, or of the first host API that has one; -1 for none."""
-    index = int(sounddevice.default.device[kind == OUTPUT])
-    apis = sounddevice.query_hostapis()
-    candidates = [index, *(api[f"default_{kind}_device"] for api in apis)]
-    return next((candidate for candidate in candidates if candidate >= 0), -1)
 
 
 NOTHING = "there is no audio {}"
@@ -96,26 +102,28 @@ ADVICE = "connect one and start its sound server, or listen in the page: serve -
 
 
 def choose(devices: Sequence[AudioDevice], wanted: str | None, kind: str = OUTPUT) -> AudioDevice:
-    """Choose a device by its full name, its name, or words in these.
+    """Choose a device by its full name, its host API alone, its name, or words in these.
 
     Raises DeviceError where none or several match.
 
-    `wanted`: such as ``"hifi"`` or ``"system, JACK"``; by default the default one.
+    `devices`: as `devices` lists them; the first is the default, also of its host API.
+    `wanted`: such as ``"hifi"``, ``"JACK"`` or ``"system, JACK"``; None for the default.
     """
     if wanted is None:
-        fitting = [device for device in devices if device.is_default]
-        if not fitting:
+        if not devices:
             raise DeviceError(NOTHING.format(kind))
-        return fitting[0]
-    by_full_name = [device for device in devices if device.full_name == wanted]
-    by_name = [device for device in devices if device.name == wanted]
-    for fitting in (by_full_name, by_name):
+        return devices[0]
+    name = wanted.lower()
+    words = name.replace(",", " ").split()
+    of_apis = {device.host_api: device for device in reversed(devices)}.values()
+    for fitting in (
+        [device for device in devices if device.full_name == wanted],
+        [device for device in of_apis if device.host_api.lower().startswith(name)],
+        [device for device in devices if device.name.lower() in (name, ALSA_NAMES.get(name))],
+        [d for d in devices if all(word in d.full_name.lower() for word in words)],
+    ):
         if len(fitting) == 1:
             return fitting[0]
-    words = wanted.lower().replace(",", " ").split()
-    fitting = [d for d in devices if all(word in d.full_name.lower() for word in words)]
-    if len(fitting) == 1:
-        return fitting[0]
     advice = f"none; {ADVICE}" if kind == OUTPUT else "none"
     names = "; ".join(device.full_name for device in fitting or devices) or advice
     if fitting:

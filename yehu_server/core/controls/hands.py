@@ -191,6 +191,27 @@ def bow_force(c: Any, string: int, speed: float) -> float:
 
 
 @compiled
+def is_still(c: Any) -> bool:
+    """Whether `write_controls` would write the same again, with the bow off the strings.
+
+    Phases of vibrato and tremolo may go on, where no finger and no bow follows them.
+    """
+    if c.moving_count > 0 or c.silence_in > 0 or c.drifting != 0:
+        return False
+    if c.value[SPEED] != 0.0 or c.value[SIDE] != 0.0 or c.value[PLUCK] != 0.0:
+        return False
+    shakes = c.value[DEPTH] != 0.0 or c.value[VIBRATO_PRESS] != 0.0
+    shakes = shakes and c.value[ONSET] > ONSET_FROM
+    for j in range(MAX_FINGERS):
+        if c.value[FINGER_PRESS[j]] > 0.0:
+            if shakes:
+                return False
+        elif c.finger_up[j] < c.park_after:
+            return False
+    return True
+
+
+@compiled
 def write_controls(c: Any, control: Array) -> None:
     """Write the kernel's controls for this sample. Real time: safe.
 

@@ -42,6 +42,7 @@ from yehu_server.core.stage.seat import (
     LEFT,
     RIGHT,
     SEAT,
+    is_silent,
     mute_when_closed,
     reflect,
     set_direct,
@@ -130,16 +131,19 @@ def take_up(rigs: Any, sounded: Any, apart: int, part: int, first: int, frames: 
                 own[PAN_NOW],
             )
         x = o.dry[n]
-        side = 0.0
-        if stage.has_room != 0:
-            side = own[WIDTH_NOW] * side_signal(s.sides, x)
-            reflect(s, first + n, x if room_inputs[LEVEL_NOW] > 0.0 else 0.0)
-            stage.bus[n, EARLY + LEFT] += s.early[LEFT]
-            stage.bus[n, EARLY + RIGHT] += s.early[RIGHT]
-        stage.bus[n, SEND + LEFT] += s.send[LEFT] * x
-        stage.bus[n, SEND + RIGHT] += s.send[RIGHT] * x
-        stage.own[n, LEFT] = s.direct[LEFT] * (x + side)
-        stage.own[n, RIGHT] = s.direct[RIGHT] * (x - side)
+        if is_silent(s, x):
+            stage.own[n, LEFT], stage.own[n, RIGHT] = 0.0, 0.0
+        else:
+            side = 0.0
+            if stage.has_room != 0:
+                side = own[WIDTH_NOW] * side_signal(s.sides, x)
+                reflect(s, first + n, x if room_inputs[LEVEL_NOW] > 0.0 else 0.0)
+                stage.bus[n, EARLY + LEFT] += s.early[LEFT]
+                stage.bus[n, EARLY + RIGHT] += s.early[RIGHT]
+            stage.bus[n, SEND + LEFT] += s.send[LEFT] * x
+            stage.bus[n, SEND + RIGHT] += s.send[RIGHT] * x
+            stage.own[n, LEFT] = s.direct[LEFT] * (x + side)
+            stage.own[n, RIGHT] = s.direct[RIGHT] * (x - side)
         s.direct[LEFT] += s.direct_step[LEFT]
         s.direct[RIGHT] += s.direct_step[RIGHT]
         if n == o.silenced_at:

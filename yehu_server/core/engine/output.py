@@ -10,6 +10,7 @@ from yehu_server.compile.jit import compiled
 from yehu_server.core.controls.ramps import pole_of_cutoff, pole_of_time
 from yehu_server.core.controls.record import CHUNK, FADE_S
 from yehu_server.core.controls.slots import STAGE_INPUTS
+from yehu_server.core.engine.sleep import SLEEP, wake_up
 from yehu_server.core.physics.layout import (
     BRIDGE_FORCE,
     ITERATIONS,
@@ -53,6 +54,7 @@ OUTPUT = np.dtype(
         ("swing", np.float64),
         ("blocker", np.float64),
         ("shelf", SHELF),
+        ("sleep", SLEEP),
         ("controls", np.float64, (CHUNK, control_columns(MAX_FINGERS))),
         ("probes", np.float64, (CHUNK, probe_columns(MAX_FINGERS))),
         ("gain", np.float64, CHUNK),
@@ -80,6 +82,7 @@ def rest_output(output: Any) -> None:
     for name in ("last", "ghost", "pressure", "swing"):
         output[name] = 0.0
     output["shelf"]["held"] = 0.0
+    wake_up(output["sleep"])
 
 
 @compiled

@@ -8,7 +8,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled, compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
-from yehu_server.core.controls.hands import write_controls
+from yehu_server.core.controls.hands import is_still, write_controls
 from yehu_server.core.controls.ramps import (
     TO_BODY,
     TO_LIMITER,
@@ -65,6 +65,7 @@ from yehu_server.core.engine.rig import (
     REPORTS_AT,
     STATE_AT,
 )
+from yehu_server.core.engine.sleep import WINDOW, begin_window, watch
 from yehu_server.core.engine.telemetry import METERS, close_window, hear
 from yehu_server.core.physics import kernel, refined
 from yehu_server.core.physics.elementary import exp2
@@ -72,7 +73,7 @@ from yehu_server.core.physics.layout import MODEL, REFINED, RELATIVE_VELOCITY, S
 from yehu_server.core.physics.time_loop import advance_by
 from yehu_server.core.player.ear import EAR_SAMPLES, remember
 from yehu_server.core.player.listening import attend
-from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.record import PLAYER, SILENT
 from yehu_server.core.player.wishes import WISH, fulfil
 
 Array = Any
@@ -119,6 +120,71 @@ def retune(model: Array, state: Array, c: Any) -> None:
             kernel.retune(model, state, i, T, c.sigma_0[i] * loss, c.sigma_1[i] * loss)
 
 
+@compiled_with_aliasing
+def write_row(c: Any, o: Any, n: int) -> bool:
+    """Write row `n` of controls and gains; return whether the sound is faded out by then."""
+    move(c)
+    write_controls(c, o.controls[n])
+    gain, silenced = level(c), False
+    if c.silence_in > 0:
+        c.silence_in -= 1
+        gain *= c.silence_in / c.fade
+        silenced = c.silence_in == 0
+    o.gain[n] = gain
+    o.body[n] = amplitude(c, TO_BODY, c.value[BODY])
+    o.blend[n] = c.value[BLEND]
+    o.brilliance[n] = c.value[BRILLIANCE]
+    o.brilliance_frequency[n] = c.value[BRILLIANCE_FREQUENCY]
+    return silenced
+
+
+@compiled_with_aliasing
+def write_stage_inputs(c: Any, sounded: Any, begin: int, end: int) -> None:
+    """Write what the stage needs of some rows, in which the controls stand still."""
+    soft = amplitude(c, TO_LIMITER, c.value[LIMITER])
+    for n in range(begin, end):
+        sounded.soft[n] = soft
+        for k in range(len(STAGE_INPUTS)):
+            sounded.stage_inputs[n, k] = c.value[STAGE_INPUTS[k]]
+
+
+@compiled
+def is_at_rest(p: Any, c: Any) -> bool:
+    """Whether the player has nothing to play, and bow and fingers stand still."""
+    return bool(p.sounding == SILENT and p.by_hand == 0 and is_still(c))
+
+
+@compiled_with_aliasing
+def sleep(rig: Any, p: Any, c: Any, sounded: Any, begin: int, end: int) -> int:
+    """Let frames pass in which nothing sounds, up to one that wakes the instrument.
+
+    Returns the row of that frame, or `end`.
+    """
+    mail, o = record_at(rig, MAIL_AT, MAIL), record_at(rig, OUTPUT_AT, OUTPUT)
+    heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
+    done = begin
+    while done < end:
+        until = c.frame + end - done
+        if mail.waiting > 0:
+            until = min(until, heap[0].wish.frame)
+        if until > c.frame == p.ear.next:
+            attend(p, c, at(rig, EAR_BUFFER_AT))
+        if until <= c.frame or not is_at_rest(p, c):
+            o.sleep.is_asleep = 0
+            break
+        if p.ear.next > c.frame:
+            until = min(until, p.ear.next)
+        done += until - c.frame
+        c.frame = until
+    write_stage_inputs(c, sounded, begin, done)
+    sounded.dry[begin:done] = 0.0
+    t = record_at(rig, METERS_AT, METERS)
+    t.window_frames += done - begin
+    t.slept += done - begin
+    o.last = 0.0
+    return done
+
+
 @native
 def sound(rig: Any, wanted: int, into: Any) -> None:
     """Compute the next frames of an instrument, at most CHUNK, into a record of dtype SOUNDED.
@@ -139,30 +205,25 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
     sounded.silenced_at = NOT_SILENCED
     done = 0
     while done < wanted:
+        if o.sleep.is_asleep == 0 and c.frame & (WINDOW - 1) == 0:
+            begin_window(o.sleep, is_at_rest(p, c))
+        if o.sleep.is_asleep != 0:
+            done = sleep(rig, p, c, sounded, done, wanted)
+            close_window(t, model[0], state[0].motion)
+            if done == wanted:
+                return
         first, start = c.frame, done
-        silenced, retuned = False, False
-        while done < wanted and not silenced and not retuned:
+        silenced, retuned, ends = False, False, False
+        while done < wanted and not (silenced or retuned or ends):
             apply(rig, mail, p, c)
             if c.frame == p.ear.next:
                 attend(p, c, at(rig, EAR_BUFFER_AT))
-            move(c)
-            write_controls(c, o.controls[done])
-            gain = level(c)
-            if c.silence_in > 0:
-                c.silence_in -= 1
-                gain *= c.silence_in / c.fade
-                silenced = c.silence_in == 0
-            o.gain[done] = gain
-            o.body[done] = amplitude(c, TO_BODY, c.value[BODY])
-            o.blend[done] = c.value[BLEND]
-            o.brilliance[done] = c.value[BRILLIANCE]
-            o.brilliance_frequency[done] = c.value[BRILLIANCE_FREQUENCY]
-            sounded.soft[done] = amplitude(c, TO_LIMITER, c.value[LIMITER])
-            for k in range(len(STAGE_INPUTS)):
-                sounded.stage_inputs[done, k] = c.value[STAGE_INPUTS[k]]
+            silenced = write_row(c, o, done)
+            write_stage_inputs(c, sounded, done, done + 1)
             retuned = has_new_strings(c)
             c.frame += 1
             done += 1
+            ends = c.frame & (WINDOW - 1) == 0
         # Strings are retuned at the very sample.
         begin, end = start, done - 1 if retuned else done
         while begin < done:
@@ -199,6 +260,8 @@ def write_output(rig: Any, dry: Array, first: int, start: int, end: int) -> None
         remember(heard, first + n - start, o.probes[n, RELATIVE_VELOCITY])
         dry[n] = output_sample(o, n)
         hear(t, dry[n])
+        if o.sleep.is_watched != 0:
+            watch(o.sleep, o.probes[n], abs(o.swing) + abs(o.ghost))
 
 
 @native

@@ -74,6 +74,7 @@ METERS = np.dtype(
         ("shapes", np.float32, (STRINGS, SHAPE_POINTS)),  # m; displacement, end to end
         ("unconverged", np.int64),
         ("lost", np.int64),
+        ("slept", np.int64),  # number of frames that were not computed, as nothing sounded
         # The mailbox.
         ("late_events", np.int64),
         ("applied", np.int64),

@@ -49,6 +49,9 @@ TURN, SHIFT = 5, 3
 LARGEST_GAP = 128 + CHUNK  # frames by which a prime may be longer than asked, and a block
 MOVE_S = 0.05  # in which lines take on the lengths of another size
 CLOSE_S, OPEN_S = 0.005, 0.02  # fades when the room is emptied
+# Of what is in the lines, in full scale: 55 dB below half a step of 24 bits, as eight are heard at
+# once. It cannot grow, since the matrix keeps the energy.
+QUIET = 1e-10
 
 ROOM = np.dtype(
     [
@@ -73,6 +76,10 @@ ROOM = np.dtype(
         ("emptying", np.int64),  # frames for which its lines still give nothing
         ("close_step", np.float64),
         ("open_step", np.float64),
+        # Nothing is computed while it is asleep: see `begin_window`.
+        ("is_asleep", np.int64),
+        ("is_watched", np.int64),  # whether nothing has entered in this window
+        ("loudest", np.float64),  # in the lines, of what they were given in this window
         ("length", np.int64, LINES),
         ("b_0", np.float64, LINES),
         ("b_1", np.float64, LINES),
@@ -119,6 +126,7 @@ def empty_room(room: Any) -> None:
         room[name] = 0.0
     # A room of no size is closed; that which is asked for first is open at once.
     room["size"], room["closing"], room["emptying"], room["moved"] = 0.0, 1, 0, 1.0
+    room["is_asleep"] = room["is_watched"] = 0
 
 
 @compiled_exactly
@@ -158,6 +166,7 @@ def is_settled(r: Any, size: float, decay: float, damping: float) -> bool:
 def reset_state(r: Any) -> None:
     """Clear all sound and filter state after an invalid sample. Real time: safe."""
     r.size, r.open, r.closing, r.emptying = 0.0, 0.0, 1, LENGTH
+    r.is_asleep, r.is_watched = 0, 0
 
 
 @compiled_exactly
@@ -210,11 +219,21 @@ def reverberate(r: Any, frame: int, level: Array, sound: Array, heard: Array) ->
     while done < frames:
         if level[done] == 0.0 or r.size == 0.0:
             r.open, r.closing, r.opened[done] = 0.0, 1, 0.0
+            r.is_asleep, r.is_watched = 0, 0
             heard[done, 0], heard[done, 1] = 0.0, 0.0
             done += 1
             continue
+        if r.is_asleep == 0 and (frame + done) & r.mask == 0:
+            begin_window(r)
+        if r.is_asleep != 0:
+            if is_open(r) and sound[done, 0] == 0.0 and sound[done, 1] == 0.0:
+                r.opened[done] = r.open
+                heard[done, 0], heard[done, 1] = 0.0, 0.0
+                done += 1
+                continue
+            r.is_asleep = 0
         end = done + 1
-        while end < frames and level[end] != 0.0:
+        while end < frames and level[end] != 0.0 and (frame + end) & r.mask != 0:
             end += 1
         if r.emptying > 0:
             end = min(end, done + r.emptying)
@@ -222,7 +241,37 @@ def reverberate(r: Any, frame: int, level: Array, sound: Array, heard: Array) ->
         open_room(r, opened)
         enter(r, frame + done, opened, sound[done:end])
         go_round(r, frame + done, level[done:end], opened, heard[done:end])
+        if r.is_watched != 0:
+            watch(r, sound[done:end])
         done = end
+
+
+@compiled_exactly
+def is_open(r: Any) -> bool:
+    """Whether the room is open, and its lines stay as long as they are."""
+    return bool(r.closing == 0 and r.emptying == 0 and r.open >= 1.0 and r.moved >= 1.0)
+
+
+@compiled_exactly
+def begin_window(r: Any) -> None:
+    """Begin a window of as many frames as lines are kept for; fall asleep after a silent one.
+
+    Where nothing entered in a whole window, and all that lines were given in it is QUIET, all that
+    they keep is. It stays there: what enters later wakes the room, and goes round among it.
+    """
+    r.is_asleep = 1 if r.is_watched != 0 and r.loudest < QUIET and is_open(r) else 0
+    r.is_watched, r.loudest = 1 - r.is_asleep, 0.0
+
+
+@compiled_exactly
+def watch(r: Any, sound: Array) -> None:
+    """Take frames into the window, after sound has entered and gone round."""
+    for n in range(sound.shape[0]):
+        if sound[n, 0] != 0.0 or sound[n, 1] != 0.0:
+            r.is_watched = 0
+            return
+        for i in range(LINES):
+            r.loudest = max(r.loudest, abs(r.row[i, n]))
 
 
 @compiled_exactly

@@ -46,6 +46,7 @@ SEAT = np.dtype(
         ("before", np.float64),
         ("filtered", np.float64),
         ("early", np.float64, EARS),  # what is reflected
+        ("silent", np.int64),  # frames since there was sound
         ("kept", np.float64, SPAN),
     ],
     align=True,
@@ -73,7 +74,7 @@ def rest_seat(seat: Any) -> None:
     rest_sides(seat["sides"])
     for name in ("before", "filtered", "early", "kept"):
         seat[name] = 0.0
-    seat["mute"] = 0
+    seat["mute"], seat["silent"] = 0, 0
 
 
 @compiled_exactly
@@ -125,6 +126,16 @@ def set_reflections(
     low /= 1.0 + s.a_1[0]
     s.b_0[0] /= low
     s.b_1[0] /= low
+
+
+@compiled_exactly
+def is_silent(s: Any, x: float) -> bool:
+    """Take note of a sample; whether neither it nor any other is heard, now or later.
+
+    Of SPAN zeros nothing is left, in filters or among what is kept. Real time: safe.
+    """
+    s.silent = s.silent + 1 if x == 0.0 else 0
+    return bool(s.silent > SPAN and s.mute == 0 and s.moved >= 1.0)
 
 
 @compiled_exactly
@@ -182,7 +193,7 @@ def mute(s: Any) -> None:
 @compiled_exactly
 def reset_state(s: Any) -> None:
     """Reset the seat to its start state after an invalid sample. Real time: safe."""
-    s.mute = SPAN
+    s.mute, s.silent = SPAN, 0
     s.before, s.filtered, s.size, s.moved = 0.0, 0.0, 0.0, 1.0
     for ear in range(EARS):
         s.early[ear], s.direct[ear] = 0.0, math.nan

@@ -87,7 +87,7 @@ def _mark(file: Path) -> tuple[int, int, int] | None:
 LINES_PER_S, LINES_AT_ONCE = 0.1, 1.0  # of each count
 UNDER_RUNS_EVERY_S = 60.0
 HINT = "a larger --blocksize, or --latency high, leaves more time"
-LOOK_EVERY_S = 0.5  # at files of mappings and presets
+LOOK_EVERY_S = 0.5  # at files of mappings and presets, and at what went wrong
 TURN_EVERY_S = 0.05
 
 
@@ -249,18 +249,18 @@ class Housekeeper:
             player.delay = self._delay.frames  # as the device's period requires
         if self.capture is not None:
             self.capture.keep_up()
-        self._counters.look(
-            {
-                "the model lost its state and was put back to rest": self._ensemble.lost_states,
-                "events were dropped, as the ring was full or their time too far ahead": sum(
-                    instrument.dropped_events for instrument in self._ensemble.instruments
-                ),
-                "OSC packets were dropped by the system": self._osc_drops(),
-            }
-        )
-        self._under_runs.look(self._gaps()[0])
         if time.monotonic() > self._next_look:
             self._next_look = time.monotonic() + LOOK_EVERY_S
+            self._counters.look(
+                {
+                    "the model lost its state and was put back to rest": self._ensemble.lost_states,
+                    "events were dropped, as the ring was full or their time too far ahead": sum(
+                        instrument.dropped_events for instrument in self._ensemble.instruments
+                    ),
+                    "OSC packets were dropped by the system": self._osc_drops(),
+                }
+            )
+            self._under_runs.look(self._gaps()[0])
             for follower in self._followers:
                 follower.look()
             for player in self._players:

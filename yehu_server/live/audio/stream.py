@@ -22,8 +22,8 @@ from yehu_server.util.processes import Message, Parent
 
 LOOK_EVERY_S, LATER_EVERY_S = 0.5, 2.0
 LATER = 60  # looks
-WATCH_EVERY_S = 0.02
-STALLED = 50  # of these, with nothing new from an input: it is lost, though it does not say so
+WATCH_EVERY_S = 0.1
+STALLED = 10  # of these, with nothing new from an input: it is lost, though it does not say so
 CLOSE_WITHIN_S = 0.5
 MOST_CHANNELS = 64
 

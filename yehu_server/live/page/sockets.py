@@ -58,7 +58,6 @@ WISH = 5  # numbers: frame or NOW, kind, index, value, other
 NOW = -1.0
 SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is the row of a parameter
 LOOK_S, SOUND_S, STATUS_S = 1 / 60, 0.001, 1.0
-IDLE_S = 0.05  # between looks whether somebody listens
 MOST_PAGES = MOST_WEB_SOCKETS
 MOST_UNSENT = 1 << 16  # bytes
 MOST_WISHES = 1024  # of a message
@@ -102,6 +101,7 @@ class PageSockets:
         self._status = status
         self._pages: dict[web.WebSocketResponse, Page] = {}
         self._listeners: dict[web.WebSocketResponse, Any] = {}
+        self._has_pages, self._has_listeners = asyncio.Event(), asyncio.Event()
         # Of each part, the values that it has where its instrument has others: in a section, whose
         # players have seats of their own.
         self._own: dict[int, dict[int, float]] = {}
@@ -122,6 +122,7 @@ class PageSockets:
         number = next(number for number in range(MOST_PAGES + 1) if number not in taken)
         page = Page(number, part, role, request.transport)
         self._pages[socket] = page
+        self._has_pages.set()
         try:
             self._send_status(page)
             async for message in socket:
@@ -137,6 +138,8 @@ class PageSockets:
                 await self._pass_on(page, wishes)
         finally:
             del self._pages[socket]
+            if not self._pages:
+                self._has_pages.clear()
             self._players.leave(page.number, time.monotonic_ns())
             text = frame_of(json.dumps({"left": page.number}).encode(), TEXT)
             for other in self._pages.values():
@@ -150,11 +153,14 @@ class PageSockets:
             await socket.close(code=NO_PIN, message=b"the PIN is missing or wrong")
             return socket
         self._listeners[socket] = request.transport
+        self._has_listeners.set()
         try:
             async for _ in socket:  # only its end matters
                 pass
         finally:
             self._listeners.pop(socket, None)
+            if not self._listeners:
+                self._has_listeners.clear()
         return socket
 
     def _part_of(self, request: web.Request) -> int | None:
@@ -202,7 +208,7 @@ class PageSockets:
 
     async def send_looks(self) -> None:
         """Send looks, for ever."""
-        async for _ in every(LOOK_S):
+        async for _ in every(LOOK_S, self._has_pages):
             viewers = [page for page in self._pages.values() if page.looks]
             for part in {page.part for page in viewers}:
                 look = self._view.look(self._rigs[part], self._own.get(part, {}))
@@ -216,9 +222,8 @@ class PageSockets:
         sent = 0
         while True:
             if not self._listeners:
-                await asyncio.sleep(IDLE_S)
+                await self._has_listeners.wait()
                 sent = self._view.taped() - FIRST_FRAMES
-                continue
             end = self._view.taped()
             if end > sent:
                 begin, samples = self._view.sound(max(sent, 0), end)
@@ -230,7 +235,7 @@ class PageSockets:
 
     async def send_status(self) -> None:
         """Send the status, for ever."""
-        async for _ in every(STATUS_S):
+        async for _ in every(STATUS_S, self._has_pages):
             for page in self._pages.values():
                 self._send_status(page)
 
@@ -272,10 +277,10 @@ def read_wishes(data: bytes) -> Any:
     return wishes if is_right else None
 
 
-async def every(period_s: float) -> AsyncIterator[None]:
-    """Yield periodically; periods that were missed are left out."""
+async def every(period_s: float, is_wanted: asyncio.Event) -> AsyncIterator[None]:
+    """Yield periodically while an event is set; periods that were missed are left out."""
     due = time.monotonic()
-    while True:
+    while await is_wanted.wait():
         yield
         due = max(due + period_s, time.monotonic())
         await asyncio.sleep(due - time.monotonic())

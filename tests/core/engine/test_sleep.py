@@ -288,3 +288,18 @@ def test_a_room_is_heard_until_nobody_could_hear_it(level):
     assert 0.0 < np.max(peaks[-9:-1]) < 1e-9
     ensemble.process(piece)
     assert not piece.any()
+
+
+def test_what_a_low_gain_hid_is_not_heard_where_the_gains_are_raised_in_sleep():
+    ensemble = alone(RATE)
+    one = ensemble.first
+    damp(one)
+    one.write("/body/gain", -24.0, ramp_ms=0.0)
+    one.write("/output/gain", -60.0, ramp_ms=0.0)
+    pluck(one, FROM)
+    run(ensemble, FROM)
+    until_asleep(ensemble)
+    one.write("/body/gain", 24.0)
+    one.write("/output/gain", 24.0)
+    heard = run(ensemble, WINDOW)
+    assert 0.0 < np.abs(heard).max() < 2.0**-24  # half a step of 24 bits

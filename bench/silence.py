@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -73,6 +74,8 @@ def idle_share(parts: int) -> float:
         time.sleep(SETTLED_S)
         began, before = time.monotonic(), spent_s(server.pid)
         time.sleep(WATCHED_S)
+        if server.poll() is not None:
+            sys.exit("the server has ended")
         return (spent_s(server.pid) - before) / (time.monotonic() - began)
     finally:
         server.send_signal(signal.SIGINT)

@@ -73,7 +73,7 @@ from yehu_server.core.physics.layout import MODEL, REFINED, RELATIVE_VELOCITY, S
 from yehu_server.core.physics.time_loop import advance_by
 from yehu_server.core.player.ear import EAR_SAMPLES, remember
 from yehu_server.core.player.listening import attend
-from yehu_server.core.player.record import PLAYER, SILENT
+from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.wishes import WISH, fulfil
 
 Array = Any
@@ -148,12 +148,6 @@ def write_stage_inputs(c: Any, sounded: Any, begin: int, end: int) -> None:
             sounded.stage_inputs[n, k] = c.value[STAGE_INPUTS[k]]
 
 
-@compiled
-def is_at_rest(p: Any, c: Any) -> bool:
-    """Whether the player has nothing to play, and bow and fingers stand still."""
-    return bool(p.sounding == SILENT and p.by_hand == 0 and is_still(c))
-
-
 @compiled_with_aliasing
 def sleep(rig: Any, p: Any, c: Any, sounded: Any, begin: int, end: int) -> int:
     """Let frames pass in which nothing sounds, up to one that wakes the instrument.
@@ -169,7 +163,7 @@ def sleep(rig: Any, p: Any, c: Any, sounded: Any, begin: int, end: int) -> int:
             until = min(until, heap[0].wish.frame)
         if until > c.frame == p.ear.next:
             attend(p, c, at(rig, EAR_BUFFER_AT))
-        if until <= c.frame or not is_at_rest(p, c):
+        if until <= c.frame or not is_still(c):
             o.sleep.is_asleep = 0
             break
         if p.ear.next > c.frame:
@@ -206,7 +200,7 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
     done = 0
     while done < wanted:
         if o.sleep.is_asleep == 0 and c.frame & (WINDOW - 1) == 0:
-            begin_window(o.sleep, is_at_rest(p, c))
+            begin_window(o.sleep, is_still(c))
         if o.sleep.is_asleep != 0:
             done = sleep(rig, p, c, sounded, done, wanted)
             close_window(t, model[0], state[0].motion)

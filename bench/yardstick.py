@@ -19,10 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 from parts import BOW_X, FINGER_X, PRESS, SETTLED_S, SPEED
 
+from yehu_server.compile import levels
 from yehu_server.core.physics.quantities import Quantities
 
 SOURCE = Path(__file__).with_name("yardstick.cpp")
-FLAGS = ["-O3", "-march=native", "-ffast-math", "-std=c++17"]
+# For the level that our own code is compiled for, by GCC's name.
+MARCH = {"aarch64": "armv8-a"}.get(levels.level(), levels.level())
+FLAGS = ["-O3", f"-march={MARCH}", "-ffast-math", "-std=c++17"]
 RATE, FORCE = 44100.0, 0.5  # Hz, N
 STRING = ("L", "rho", "r", "T", "E", "sigma_0", "sigma_1")
 

@@ -25,7 +25,9 @@ from yehu_server.compile import levels
 from yehu_server.compile.libraries import (
     BITCODE_OF_PART,
     SOURCE,
+    SOURCE_OF_COLD_PART,
     SOURCE_OF_PART,
+    ColdPartLibrary,
     PartLibrary,
     SourceLibrary,
 )
@@ -97,14 +99,13 @@ def _library(codegen: Any, source: Path, kept: tuple[str, str, Any]) -> Any:
         return _parts[file]
 
     kind = kept[1]
-    if kind in (BITCODE_OF_PART, SOURCE_OF_PART):
+    if kind in (BITCODE_OF_PART, SOURCE_OF_PART, SOURCE_OF_COLD_PART):
         if source not in _parts:
-            is_made = kind == BITCODE_OF_PART
-            made = (
-                PartLibrary.kept_as(codegen, kept)
-                if is_made
-                else PartLibrary.made_of(codegen, kept, part)
-            )
+            if kind == BITCODE_OF_PART:
+                made = PartLibrary.kept_as(codegen, kept)
+            else:
+                library = PartLibrary if kind == SOURCE_OF_PART else ColdPartLibrary
+                made = library.made_of(codegen, kept, part)
             _remember(source, made)
         return _parts[source]
     if kind == SOURCE:

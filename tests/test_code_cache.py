@@ -153,13 +153,14 @@ def another_level(name="another"):
 def compiled_functions(monkeypatch) -> list[str]:
     """The names of the functions that are compiled from now on, not just loaded or optimised."""
     names = []
-    extract = numba.core.compiler.Compiler._compile_bytecode
+    compiler = numba.core.compiler.CompilerBase
+    extract = compiler._compile_bytecode
 
     def compile_bytecode(self):
         names.append(self.state.func_id.func_name)
         return extract(self)
 
-    monkeypatch.setattr(numba.core.compiler.Compiler, "_compile_bytecode", compile_bytecode)
+    monkeypatch.setattr(compiler, "_compile_bytecode", compile_bytecode)
     return names
 
 

@@ -9,7 +9,7 @@
 #
 # A stamp in .venv, written last, holds the hash of what the set-up was made from. A use that
 # finds it right runs nothing else; one that does not, sets up again. An interrupted set-up
-# leaves no stamp, and two at once take turns. Messages go to stderr; pip's go to a log, shown
+# leaves no stamp, and two at once take turns. Messages go to stderr; uv's and pip's go to a log, shown
 # only on failure. Nothing here relies on `set -e`. Bash 3.2 (macOS) is enough.
 
 root=$(CDPATH='' cd -P "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -56,7 +56,7 @@ setup() {
     trap 'exit 130' INT # without a page of pip's log
     python=$(find_python) || exit
     mkdir -p "$venv" || die "cannot write to $root"
-    exec 9>>"$venv/.lock"
+    exec 9>>"$venv/.setup.lock" # uv has .lock for its own
     take_turns "$python" || exit
     if ! is_set_up "$kind"; then # another process may have done it while we waited
         if is_reusable; then python=$venv/bin/python; else fresh=yes; fi
@@ -65,7 +65,7 @@ setup() {
         done
         build_packages "$python"
         if [ "$fresh" ]; then
-            say "setting up .venv with Python $(python_version "$python"); takes a minute, once"
+            say "setting up .venv with Python $(python_version "$python"), once"
             empty_venv
             logged "$python" -I -m venv --prompt yehu "$venv"
         elif is_set_up run; then
@@ -154,27 +154,26 @@ except OSError:
 
 # Removes what an earlier set-up left, but for the lock that we hold and the log.
 empty_venv() {
-    find "$venv" -mindepth 1 -maxdepth 1 ! -name .lock ! -name "${log##*/}" -exec rm -rf {} +
+    find "$venv" -mindepth 1 -maxdepth 1 ! -name .setup.lock ! -name "${log##*/}" -exec rm -rf {} +
 }
 
 install() (
     trap 'exit 130' INT
-    pip=(env PATH="$venv/bin:$PATH" "$venv/bin/python" -I -m pip --disable-pip-version-check
-        --no-input install --no-compile --progress-bar off)
+    unset PYTHONDONTWRITEBYTECODE
+    PATH=$venv/bin:$PATH
     lock=$(lock_of "$1")
     made_from=$(fingerprint)
     cd "$root" || exit
-    if ! is_set_up run; then # pip first, as Python may bring one that reads an index three times as long
-        locked pip "$lock" >"$venv/pip.lock"
-        logged "${pip[@]}" --require-hashes -r "$venv/pip.lock"
-    fi
+    bring_uv
     if compiles "$venv/bin/python"; then # first the rest, which has the locked tools to do it
         locked -v python-rtmidi "$lock" >"$venv/rest.lock"
-        logged "${pip[@]}" --require-hashes -r "$venv/rest.lock"
+        packages --require-hashes -r "$venv/rest.lock"
     fi
-    logged "${pip[@]}" --require-hashes --no-build-isolation -r "$lock"
+    packages --require-hashes --no-build-isolation -r "$lock"
     if ! is_set_up run; then # else it may be in use
-        logged "${pip[@]}" --no-deps --no-build-isolation --editable .
+        packages --no-deps --no-build-isolation --editable .
+        # Loaded once, it leaves bytecode, which a start may not be allowed to.
+        logged "$venv/bin/python" -I -c 'import yehu_server.cli.render_one, yehu_server.live.server'
     fi
     # A stamp appears whole or not at all.
     for kind in "${kinds[@]}"; do
@@ -183,6 +182,43 @@ install() (
         if [ "$kind" = "$1" ]; then break; fi
     done
 )
+
+# Brings the locked uv, which installs in a fifth of pip's time, unless there is one.
+bring_uv() {
+    command -v uv >/dev/null && return
+    locked uv requirements-dev.lock >"$venv/uv.lock"
+    pip_install --require-hashes -r "$venv/uv.lock" >"$log" 2>&1 </dev/null
+}
+
+# Installs by uv; by pip where uv cannot.
+packages() {
+    if command -v uv >/dev/null; then
+        (
+            eval "$(settings_of_pip)"
+            # Hashes tell which file is right, whichever index has it.
+            UV_INDEX_STRATEGY=unsafe-best-match uv pip install --python "$venv/bin/python" "$@"
+        ) >"$log" 2>&1 </dev/null && return
+    fi
+    logged pip_install "$@"
+}
+
+pip_install() {
+    "$venv/bin/python" -I -m pip --disable-pip-version-check --no-input install --no-compile \
+        --progress-bar off "$@"
+}
+
+# Prints what pip is told of indexes, as exports for uv.
+settings_of_pip() {
+    "$venv/bin/python" -I -m pip config list 2>/dev/null | "$venv/bin/python" -I -c '
+import ast, shlex, sys
+names = {"index-url": "UV_DEFAULT_INDEX", "extra-index-url": "UV_INDEX", "find-links": "UV_FIND_LINKS"}
+for line in sys.stdin:
+    key, _, value = line.partition("=")
+    if name := names.get(key.rpartition(".")[2]):
+        separator = "," if name == "UV_FIND_LINKS" else " "
+        print("export", name + "=" + shlex.quote(separator.join(ast.literal_eval(value).split())))
+'
+}
 
 # Prints what a lock file has for one package; with -v for all others.
 locked() {

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from yehu_server.compile.jit import IS_PLAIN, Native
-from yehu_server.core.engine.warming import CALLED, warm_up
+from yehu_server.core.engine.warming import CALLED, COMPILING, warm_up
 from yehu_server.core.physics.grid import HIGHEST_RATE, LOWEST_RATE
 from yehu_server.core.physics.quantities import Quantities, override, read_quantities
 from yehu_server.errors import ParameterError
@@ -33,7 +33,7 @@ def get_ready(functions: Sequence[Native] = CALLED) -> None:
     By default those that playing needs; others are compiled at their first use.
     """
     if not IS_PLAIN and not all(function.is_ready for function in functions):
-        log.warning("compiling the model for this machine, once; it takes up to a minute")
+        log.warning(COMPILING)
     if functions is CALLED:
         warm_up()
 

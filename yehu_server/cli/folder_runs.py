@@ -17,11 +17,10 @@ from yehu_server.cli.folder_cluster import render_on_cluster
 from yehu_server.cli.folder_tasks import Done, Line, Task, perform
 from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.cli.terminal import (
-    ending_at_once,
+    compile_all,
     print_result,
     progress_bar,
     warn,
-    warn_of_compiling,
 )
 from yehu_server.errors import one_line
 
@@ -69,8 +68,7 @@ def prepare(arguments: argparse.Namespace, progress: Any = None) -> None:
     """Compile, and measure the instrument, once on a machine before all its processes need it."""
     from yehu_server.core.engine.warming import warm_up
 
-    with ending_at_once():
-        warm_up()
+    warm_up()
     playing = playing_options_of(arguments)
     playing.calibration(float(arguments.rate), instrument_of(arguments), progress)
 
@@ -87,7 +85,7 @@ def render_all(
     `total`: number of scores in the folder, those that are up to date included.
     """
     if cluster is None:
-        warn_of_compiling(arguments)
+        compile_all(arguments)
         with progress_bar(arguments, "calibrating", "notes") as progress:
             prepare(arguments, progress)
     ended = _on_cores(arguments, tasks) if cluster is None else render_on_cluster(tasks, cluster)

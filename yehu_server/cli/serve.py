@@ -27,11 +27,11 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.arguments import add_command
 from yehu_server.cli.serve_options import add_arguments, options_of
 from yehu_server.cli.terminal import (
+    compile_all,
     ending_at_once,
     interrupt,
     progress_bar,
     set_up_log,
-    warn_of_compiling,
 )
 from yehu_server.errors import YehuError
 from yehu_server.live.network import lan_address, lan_interface
@@ -121,7 +121,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     log = logging.getLogger("yehu_server")
     report = log.info
     options = options_of(arguments)
-    warn_of_compiling(arguments)
+    compile_all(arguments)
     with progress_bar(arguments, "calibrating", "notes") as progress, ending_at_once():
         server = ending.server = Server(options, report, progress)
     if server.output.state.problem and arguments.audio_device != "null":

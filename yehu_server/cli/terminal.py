@@ -98,7 +98,7 @@ def warn_of_compiling(arguments: argparse.Namespace, functions: Iterable[Native]
     By default those that playing needs.
     """
     from yehu_server.compile.cache_folder import WHY_NOT_CACHED, cache_folder
-    from yehu_server.core.engine.warming import CALLED
+    from yehu_server.core.engine.warming import CALLED, COMPILING
 
     if arguments.quiet:
         return
@@ -106,16 +106,16 @@ def warn_of_compiling(arguments: argparse.Namespace, functions: Iterable[Native]
     if WHY_NOT_CACHED and not is_ready:
         warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
     elif not is_ready:
-        warn("compiling for this machine, once, for half a minute ...")
+        warn(f"{COMPILING} ...")
 
 
 def compile_all(arguments: argparse.Namespace) -> None:
-    """Compile what playing needs, or load it; warn where that takes long."""
+    """Compile what playing needs, or load it; tell where it is compiled, and how far that is."""
     from yehu_server.core.engine.warming import warm_up
 
     warn_of_compiling(arguments)
-    with ending_at_once():
-        warm_up()
+    with progress_bar(arguments, "compiling", "%") as progress, ending_at_once():
+        warm_up(progress=lambda done, total: progress(100.0 * done / total, 100.0))
 
 
 @contextlib.contextmanager

@@ -14,6 +14,7 @@ import io
 import logging
 import pickle
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,9 @@ from yehu_server.compile import levels
 from yehu_server.compile.libraries import (
     BITCODE_OF_PART,
     SOURCE,
+    SOURCE_OF_COLD_PART,
     SOURCE_OF_PART,
+    ColdPartLibrary,
     PartLibrary,
     SourceLibrary,
 )
@@ -37,6 +40,8 @@ TYPES_REPORT = 5  # its place in what numba keeps besides the machine code
 SOURCE_SUFFIX = ".ir"  # of a file for all levels
 
 DAMAGED, FULL = "is damaged", "cannot be kept"
+# Called with the qualified name of each function that is compiled or read.
+on_ready: list[Callable[[str], None]] = []
 _reported: set[str] = set()  # of this process: each is told once
 _parts: dict[Path, PartLibrary] = {}  # of this process, by the files of what they were made of
 
@@ -97,14 +102,13 @@ def _library(codegen: Any, source: Path, kept: tuple[str, str, Any]) -> Any:
         return _parts[file]
 
     kind = kept[1]
-    if kind in (BITCODE_OF_PART, SOURCE_OF_PART):
+    if kind in (BITCODE_OF_PART, SOURCE_OF_PART, SOURCE_OF_COLD_PART):
         if source not in _parts:
-            is_made = kind == BITCODE_OF_PART
-            made = (
-                PartLibrary.kept_as(codegen, kept)
-                if is_made
-                else PartLibrary.made_of(codegen, kept, part)
-            )
+            if kind == BITCODE_OF_PART:
+                made = PartLibrary.kept_as(codegen, kept)
+            else:
+                library = PartLibrary if kind == SOURCE_OF_PART else ColdPartLibrary
+                made = library.made_of(codegen, kept, part)
             _remember(source, made)
         return _parts[source]
     if kind == SOURCE:
@@ -161,6 +165,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
         tag = sys.implementation.cache_tag
         self._stem = f"{module}.{function.__qualname__}-{tag}".translate({60: None, 62: None})
         self._own = (how, *code_of(function))
+        self._name = function.__qualname__
 
     @property
     def cache_path(self) -> str:
@@ -180,6 +185,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
                     )
                     if kept[1] == SOURCE:
                         self.save_overload(sig, made)
+                    self._tell_ready()
                     return made
             except Exception as error:  # noqa: BLE001 - nothing in a cache is worth not playing
                 reason = error if isinstance(error, SealError) else repr(error)
@@ -188,6 +194,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled for a signature, where there is room for it."""
+        self._tell_ready()
         library = data.library
         if FULL in _reported or library.has_dynamic_globals or data.lifted:
             return
@@ -201,6 +208,10 @@ class CodeCache(NullCache):  # type: ignore[misc]
         except Exception as error:  # noqa: BLE001 - neither a full disk nor a numba unlike ours
             reason = getattr(error, "strerror", None) or repr(error)
             _tell(FULL, f"{self._folder}: {reason}; compiled code is not kept for the next start")
+
+    def _tell_ready(self) -> None:
+        for tell in on_ready:
+            tell(self._name)
 
     def holds(self, sig: Any) -> bool:
         """Whether the code for a signature is there and sound."""

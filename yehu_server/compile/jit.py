@@ -8,7 +8,7 @@ import importlib
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextvars import ContextVar
-from functools import cached_property, update_wrapper
+from functools import cache, cached_property, update_wrapper
 from pathlib import Path
 from types import ModuleType, NoneType
 from typing import Annotated, Any, ParamSpec, TypeVar, cast, get_args, get_type_hints
@@ -222,14 +222,7 @@ class Native:
         """Those that it calls, itself or by functions that are compiled into it."""
         if self._calls is not None:
             return self._calls
-        found: dict[Any, None] = {}
-        ahead = [self.function]
-        while ahead:
-            for value in _values_named_in(ahead.pop()):
-                if isinstance(value, (Native, Compiled)) and value not in found:
-                    found[value] = None
-                    ahead += [value.py_func] if isinstance(value, Compiled) else []
-        return [value for value in found if isinstance(value, Native)]
+        return [value for value in _reached(self.function) if isinstance(value, Native)]
 
     @cached_property
     def made(self) -> Any:
@@ -321,6 +314,33 @@ def with_called(functions: Iterable[Native]) -> dict[Native, None]:
         if function not in found:
             found |= with_called(function.calls) | {function: None}
     return found
+
+
+def parts_of(native: Native) -> list[Compiled]:
+    """The functions that are compiled into one."""
+    return [value for value in _reached(native.function) if isinstance(value, Compiled)]
+
+
+@cache
+def _reached(function: Callable[..., Any]) -> tuple[Native | Compiled, ...]:
+    """What a function calls, itself or by functions that are compiled into it."""
+    found: dict[Any, None] = {}
+    ahead = [function]
+    while ahead:
+        for value in _named_in(ahead.pop()):
+            if value not in found:
+                found[value] = None
+                ahead += [value.py_func] if isinstance(value, Compiled) else []
+    return tuple(found)
+
+
+@cache
+def _named_in(function: Callable[..., Any]) -> tuple[Any, ...]:
+    """The compiled functions that a function's code names, each once."""
+    kinds = (Native, Compiled)
+    return tuple(
+        dict.fromkeys(value for value in _values_named_in(function) if isinstance(value, kinds))
+    )
 
 
 def _values_named_in(function: Callable[..., Any]) -> Iterator[Any]:

@@ -17,7 +17,8 @@ from numba.core.itanium_mangler import PREFIX as ITANIUM
 
 # What a library is kept as; numba has words for other kinds.
 BITCODE_OF_PART = "bitcode of a part"
-SOURCE, SOURCE_OF_PART = "source", "source of a part"
+SOURCE = "source"
+SOURCE_OF_PART, SOURCE_OF_COLD_PART = "source of a part", "source of a cold part"
 
 
 class SourceLibrary(JITCodeLibrary):  # type: ignore[misc]
@@ -115,3 +116,15 @@ class PartLibrary(SourceLibrary):
         self._finalize_dynamic_globals()
         self._verify_declare_only_symbols()
         self._finalized = True
+
+
+class ColdPartLibrary(PartLibrary):
+    """A part that is no more than tidied, and optimised with what takes it in.
+
+    For what decides: it is not called for each sample.
+    """
+
+    kept_source_as = SOURCE_OF_COLD_PART
+
+    def _optimize_final_module(self) -> None:
+        """Leave this to what it becomes a part of."""

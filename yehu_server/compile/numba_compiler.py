@@ -13,13 +13,13 @@ from typing import Any
 import numba
 from numba import extending, types
 from numba.core.ccallback import CFunc
-from numba.core.compiler import Compiler
 from numba.core.registry import cpu_target
 
-from yehu_server.compile import jit, levels
+from yehu_server.compile import jit, levels, numba_shortcuts  # noqa: F401
 from yehu_server.compile.cache_folder import IS_CACHED, cache_folder
 from yehu_server.compile.function_cache import CodeCache, code_of, short_hash
-from yehu_server.compile.libraries import PartLibrary, SourceLibrary
+from yehu_server.compile.libraries import ColdPartLibrary, PartLibrary, SourceLibrary
+from yehu_server.compile.numba_passes import LeanCompiler
 
 # Before numba makes its code generator, and whatever the environment tells numba of processors.
 numba.config.CPU_NAME, numba.config.CPU_FEATURES = levels.cpu(levels.level()), ""
@@ -28,7 +28,7 @@ cpu_target.target_context.codegen()
 OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 
-class NoAliasCompiler(Compiler):  # type: ignore[misc]
+class NoAliasCompiler(LeanCompiler):
     """numba's compiler, told that no two arguments of a function overlap, as C's `restrict` does.
 
     Else each loop over several rows of one record first compares their addresses, a tenth of the
@@ -40,7 +40,7 @@ class NoAliasCompiler(Compiler):  # type: ignore[misc]
         self.state.flags.noalias = True
 
 
-class SourceCompiler(Compiler):  # type: ignore[misc]
+class SourceCompiler(LeanCompiler):
     """numba's compiler, into a library that can be made again for another processor."""
 
     library = SourceLibrary
@@ -73,6 +73,12 @@ class NoAliasPartCompiler(NoAliasCompiler, PartCompiler):
     """Both at once."""
 
 
+class ColdPartCompiler(SourceCompiler):
+    """numba's compiler, for parts that are not called for each sample."""
+
+    library = ColdPartLibrary
+
+
 @extending.typeof_impl.register(jit.Deferred)  # type: ignore[untyped-decorator]
 def _type_of(deferred: jit.Deferred, _context: Any) -> Any:
     value, typing = deferred.value, cpu_target.typing_context
@@ -94,7 +100,10 @@ def dispatcher(
     """
     is_part = "no_cpython_wrapper" in options
     if is_part:
-        options["pipeline_class"] = NoAliasPartCompiler if no_alias else PartCompiler
+        is_hot = "forceinline" in options
+        options["pipeline_class"] = (
+            NoAliasPartCompiler if no_alias else PartCompiler if is_hot else ColdPartCompiler
+        )
     elif no_alias:
         options["pipeline_class"] = NoAliasCompiler
     # A set's text has another order in each process.

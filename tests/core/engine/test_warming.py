@@ -1,34 +1,55 @@
-"""What playing needs is compiled in two processes, and kept."""
+"""What playing needs is compiled by processes of their own, and kept."""
 
 import os
 import subprocess
 import sys
-from functools import cache
 from unittest.mock import Mock
 
 import pytest
 
-from yehu_server.compile.jit import Native
+from yehu_server.compile import helpers, machine_code
+from yehu_server.compile.cache_folder import cache_folder
 from yehu_server.core.engine import warming
-from yehu_server.core.engine.sounding import sound
+from yehu_server.core.engine.native import post_from, read_reports
 from yehu_server.util.processes import python_command
 
 
-def test_what_is_not_kept_is_compiled_by_two_processes_where_there_are_two_processors(monkeypatch):
+@pytest.mark.parametrize(("processors", "expected"), [(1, 1), (2, 2)])
+def test_what_is_not_kept_is_compiled_by_a_process_for_each_of_two_processors(
+    processors, expected, monkeypatch
+):
     warming.warm_up()
-    command = python_command("yehu_server.core.engine.warming")
-    for is_kept, processors, expected in ((True, 2, []), (False, 1, []), (False, 2, [command])):
+    command = python_command("yehu_server.compile.helpers")
+    for is_kept, commands in ((True, []), (False, [command] * expected)):
         with monkeypatch.context() as patch:
-            popen = Mock()
-            popen.return_value.wait.return_value = 0
-            patch.setattr(warming.subprocess, "Popen", popen)
-            patch.setattr(warming.os, "cpu_count", lambda count=processors: count)
+            popen = Mock(wraps=helpers.subprocess.Popen)
+            patch.setattr(helpers.subprocess, "Popen", popen)
+            patch.setattr(helpers.os, "cpu_count", lambda: processors)
             if not is_kept:
-                patch.setattr(Native, "is_cached", property(lambda self: self is not sound))
-                patch.setattr(warming.machine_code, "loaded", cache(lambda *_: {}))
-            assert warming.is_warm() == is_kept
+                patch.setattr(warming, "is_warm", lambda: False)
             warming.warm_up()
-            assert [call.args[0] for call in popen.call_args_list] == expected
+            assert [call.args[0] for call in popen.call_args_list] == commands
+
+
+def test_how_far_compiling_is_grows_to_all_of_it():
+    told = []
+    functions = [post_from, read_reports]
+    warming.warm_up()
+    helpers.compile_apart(functions, "-test", 2, lambda done, total: told.append((done, total)))
+    shares = [done / total for done, total in told]
+    assert len(shares) >= len(functions)  # what is kept already has its parts in it
+    assert shares == sorted(shares)
+    assert 0.0 < shares[0] < shares[-1] <= 1.0
+    code = machine_code.file_in(cache_folder(), "-test")
+    assert code.is_file()
+    code.unlink()
+
+
+def test_what_a_helper_cannot_compile_is_compiled_at_its_first_use(monkeypatch):
+    monkeypatch.setattr(helpers, "python_command", lambda _: [sys.executable, "-c", ""])
+    monkeypatch.setattr(warming, "is_warm", lambda: False)
+    warming.warm_up()
+    assert all(function.address for function in warming.CALLED)
 
 
 WARM_UP = """
@@ -38,12 +59,12 @@ warming.warm_up()
 assert warming.is_warm()
 """
 IS_WARM = """
-import sys
+import subprocess, sys
 from yehu_server.core.engine import warming
 assert warming.is_warm()
 def refuse(*_, **__):
     raise AssertionError("compiled again")
-warming.subprocess.Popen = refuse
+subprocess.Popen = refuse
 warming.warm_up()
 assert "numba" not in sys.modules
 """

@@ -49,11 +49,16 @@ class Pages:
             view, order["rigs"], lambda: self._status | {"sounds": self._sounds}
         )
         self._loop = asyncio.new_event_loop()
+        self._finder: Child | None = None
+
+    def _prepare(self) -> None:
+        """Have the module for pages found, or compiled, once a page is opened."""
 
         def found(event: Message) -> None:
             self._loop.call_soon_threadsafe(self._found, event)
 
-        self._finder = Child("yehu_server.live.page.module_process", found)
+        if self._finder is None:
+            self._finder = Child("yehu_server.live.page.module_process", found)
 
     def _found(self, event: Message) -> None:
         """Hear of the module for pages."""
@@ -71,7 +76,8 @@ class Pages:
         for order in orders:
             self._loop.call_soon_threadsafe(self._status.update, order["status"])
             self._loop.call_soon_threadsafe(self._sockets.set_own_values, order["own"])
-        self._finder.kill()
+        if self._finder is not None:
+            self._finder.kill()
         os._exit(0)
 
     def run(self) -> None:
@@ -92,6 +98,7 @@ class Pages:
 
     async def _respond(self, request: web.Request) -> web.StreamResponse:
         check(request, self._allowed, self._names)
+        self._prepare()
         serve = {SOCKET: self._sockets.serve_page, SOUND: self._sockets.serve_listener}
         if request.path not in serve:
             return self._site.answer(request)

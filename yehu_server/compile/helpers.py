@@ -1,0 +1,147 @@
+"""Compile functions in processes of their own, which tell how far they are.
+
+Functions call each other by name, so they can be compiled at a time. A process that plays does not
+even import numba then: it loads what these leave in the cache.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from importlib import import_module
+from typing import Any
+
+from yehu_server.compile import machine_code
+from yehu_server.compile.cache_folder import cache_folder, source_hash
+from yehu_server.compile.jit import Native, parts_of
+from yehu_server.util.processes import python_command
+
+Progress = Callable[[float, float], None]
+DONE, KEEP = "done", "keep"
+LLVM_FASTER = 3.0  # with a function than numba with all its parts, by the bytes of their bytecode
+# The compiler leaves little garbage, of which a third of its time went into looking for more.
+COLLECT_AFTER = 50_000, 20, 100
+
+
+def compile_apart(
+    functions: Sequence[Native], what: str, processes: int, progress: Progress | None = None
+) -> None:
+    """Compile functions into the cache, and keep their machine code in the file `what` is for.
+
+    `functions`: each after those that it calls.
+    `processes`: how many compile at a time, if there are as many processors.
+    `progress`: called with the weight of what is done, and of all.
+
+    Where a process fails, some are not kept.
+    """
+    work = _Work(functions, progress)
+    with contextlib.ExitStack() as stack:
+        helpers, threads = [], []
+        for _ in range(min(processes, os.cpu_count() or 1, len(functions))):
+            helper = subprocess.Popen(  # noqa: S603 - our own
+                python_command("yehu_server.compile.helpers"),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                text=True,
+            )
+            stack.callback(_end, helper)  # also where we are interrupted
+            helpers.append(helper)
+            threads.append(threading.Thread(target=work.hand_out, args=(helper,), daemon=True))
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        with contextlib.suppress(OSError):
+            list(_ask(helpers[0], " ".join([KEEP + what, *map(_name, functions)])))
+
+
+def _end(helper: subprocess.Popen[str]) -> None:
+    helper.kill()
+    with contextlib.suppress(BrokenPipeError):  # an order that it did not live to read
+        helper.communicate()
+
+
+def _name(function: Native) -> str:
+    return f"{function.function.__module__}:{function.function.__name__}"
+
+
+def _ask(helper: subprocess.Popen[str], order: str) -> Iterator[str]:
+    """Have a helper do something; yield what it tells of meanwhile. OSError: it has ended."""
+    if helper.stdin is None or helper.stdout is None:
+        raise BrokenPipeError
+    print(order, file=helper.stdin, flush=True)
+    while (line := helper.stdout.readline().strip()) != DONE:
+        if not line:
+            raise BrokenPipeError
+        yield line
+
+
+def weight(function: Native) -> float:
+    """How much there is to compile of a function, and of its parts, which it takes in."""
+    return _length(function.function) + sum(_length(part.py_func) for part in parts_of(function))
+
+
+def _length(function: Callable[..., Any]) -> int:
+    return len(function.__code__.co_code)
+
+
+class _Work:
+    """What is to be compiled, the heaviest last, and what is done."""
+
+    def __init__(self, functions: Iterable[Native], progress: Progress | None) -> None:
+        self._queue, self._progress = sorted(functions, key=weight), progress
+        self._turn = threading.Lock()
+        self._left = {function.name: weight(function) / LLVM_FASTER for function in self._queue}
+        for function in self._queue:
+            for part in (function.function, *(part.py_func for part in parts_of(function))):
+                self._left[part.__qualname__] = float(_length(part))
+        self._total = sum(self._left.values())
+
+    def hand_out(self, helper: subprocess.Popen[str]) -> None:
+        """Give a helper one function after another, for as long as it works."""
+        with contextlib.suppress(OSError, IndexError):
+            while True:
+                with self._turn:
+                    function = self._queue.pop()
+                for name in _ask(helper, _name(function)):
+                    self._tell(name)
+                self._tell(function.name)
+
+    def _tell(self, name: str) -> None:
+        with self._turn:
+            if self._left.pop(name, 0.0) and self._progress is not None:
+                self._progress(self._total - sum(self._left.values()), self._total)
+
+
+def main() -> None:
+    """Compile the functions that the input names, one a line; tell of each that is ready."""
+    from yehu_server.compile import function_cache
+
+    output = sys.stdout
+    function_cache.on_ready.append(lambda name: print(name, file=output, flush=True))
+    gc.freeze()
+    gc.set_threshold(*COLLECT_AFTER)
+    for line in sys.stdin:
+        order, *names = line.split()
+        if order.startswith(KEEP):
+            what = order.removeprefix(KEEP)
+            machine_code.keep(cache_folder(), source_hash(), map(_named, names), what)
+        else:
+            _named(order).keep()
+        print(DONE, file=output, flush=True)
+
+
+def _named(name: str) -> Native:
+    module, _, attribute = name.partition(":")
+    found: Native = getattr(import_module(module), attribute)
+    return found
+
+
+if __name__ == "__main__":
+    main()

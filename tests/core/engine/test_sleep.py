@@ -16,8 +16,8 @@ from yehu_server.core.engine.output import SOUNDED
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.sleep import QUIET, WINDOW
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.player.rows import EXPRESSION, TREMOLO
-from yehu_server.core.player.wishes import BEGIN, END, WRITE
+from yehu_server.core.player.rows import EXPRESSION, ROW, TREMOLO
+from yehu_server.core.player.wishes import BEGIN, END, HOLD, WRITE
 from yehu_server.core.stage.seat import SPAN
 
 RATE = 44100.0
@@ -141,6 +141,26 @@ def test_what_comes_in_sleep_sounds_as_it_does_at_rest_from_that_frame_on(frame)
     expected, heard = run(at_rest, 3000), run(asleep, 3000)
     assert np.abs(expected).max() > 1e-3
     np.testing.assert_array_equal(heard, expected)
+
+
+@pytest.mark.parametrize("speed", [0.0, 6.0])
+def test_a_note_is_the_same_after_a_silence_that_was_slept_through_and_one_that_was_not(speed):
+    """Phases of vibrato and tremolo went on, and as many numbers were drawn by chance."""
+    heard = []
+    for keeps_awake in (False, True):
+        ensemble = alone(RATE, seed=7)
+        one = ensemble.first
+        one.post(HOLD, index=ROW["/playing/vibrato"], value=1.0)
+        one.post(HOLD, index=ROW["/playing/variation"], value=1.0)
+        one.write("/vibrato/depth", 20.0, ramp_ms=0.0)
+        one.write("/bow/tremolo", speed, ramp_ms=0.0)
+        for frame in range(0, 3 * WINDOW, 50) if keeps_awake else ():
+            one.write("/bow/position", 0.13, frame=frame, ramp_ms=0.0)
+        play(one, 3 * WINDOW + 5, frames=20_000)
+        heard.append(run(ensemble, 12 * WINDOW))
+        assert (slept(one) > WINDOW) == (not keeps_awake)
+    assert np.abs(heard[0]).max() > 1e-3
+    np.testing.assert_array_equal(heard[0], heard[1])
 
 
 def test_it_wakes_as_if_it_had_been_computed_all_the_time():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from yehu_server.compile.jit import compiled
+from yehu_server.compile.jit import compiled, compiled_exactly
 from yehu_server.core.controls.ramps import one_pole, take
 from yehu_server.core.controls.record import (
     CENTS_DRIFT,
@@ -97,31 +97,54 @@ def vibrato_at(c: Any, phase: float) -> float:
     return float(come * come * (3.0 - 2.0 * come) * value)
 
 
-@compiled
-def vibrate(c: Any) -> float:
-    """Advance the vibrato by one sample; its value."""
+@compiled_exactly
+def advance_vibrato(c: Any) -> None:
+    """Advance the phase of the vibrato by one sample."""
     if c.value[DEPTH] == 0.0 and c.value[VIBRATO_PRESS] == 0.0:
         c.vibrato = 0.0
-        return 0.0
+        return
     c.vibrato += c.vibrato_pace * c.value[RATE] / c.second
     c.vibrato -= math.floor(c.vibrato)
-    return float(c.vibrato_width * vibrato_at(c, c.vibrato))
 
 
-@compiled
-def turn_bow(c: Any) -> float:
-    """Advance the tremolo by one sample; factor of the bow's speed, -1 to 1."""
+@compiled_exactly
+def advance_tremolo(c: Any) -> None:
+    """Advance the phase of the tremolo by one sample; without one, to the end of its stroke."""
     strokes = c.value[TREMOLO]
     if strokes == 0.0:
         if c.tremolo == FORWARD:
-            return 1.0
+            return
         strokes = LAST_STROKES
     before = c.tremolo
     c.tremolo += 0.5 * strokes / c.second
     if c.value[TREMOLO] == 0.0 and before < FORWARD <= c.tremolo:
         c.tremolo = FORWARD
     c.tremolo -= math.floor(c.tremolo)
-    return turned(c)
+
+
+@compiled_exactly
+def pass_still(c: Any, frames: int) -> None:
+    """Advance the controls by frames in which they stand still: phases go on. See `is_still`."""
+    for _ in range(frames):
+        advance_vibrato(c)
+        advance_tremolo(c)
+    c.frame += frames
+
+
+@compiled
+def vibrate(c: Any) -> float:
+    """Advance the vibrato by one sample; its value."""
+    advance_vibrato(c)
+    if c.value[DEPTH] == 0.0 and c.value[VIBRATO_PRESS] == 0.0:
+        return 0.0
+    return float(c.vibrato_width * vibrato_at(c, c.vibrato))
+
+
+@compiled
+def turn_bow(c: Any) -> float:
+    """Advance the tremolo by one sample; factor of the bow's speed, -1 to 1."""
+    advance_tremolo(c)
+    return 1.0 if c.value[TREMOLO] == 0.0 and c.tremolo == FORWARD else turned(c)
 
 
 @compiled

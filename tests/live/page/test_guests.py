@@ -159,6 +159,6 @@ def test_a_page_that_wishes_too_much_has_to_wait(monkeypatch):
 
     monkeypatch.setattr(serving, "WISHES_PER_S", 0.001)
     monkeypatch.setattr(serving, "WISHES_AT_ONCE", 3.0)
-    monkeypatch.setattr(serving, "asyncio", SimpleNamespace(sleep=wait))
+    monkeypatch.setattr(serving, "asyncio", SimpleNamespace(**vars(asyncio) | {"sleep": wait}))
     assert visit("own", *[WISHES["a note"]] * 6, at_once=2)[0] == [BEGIN] * 6
     assert waited == pytest.approx([1000.0, 3000.0], rel=0.01)

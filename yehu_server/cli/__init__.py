@@ -21,10 +21,32 @@ from yehu_server.util import __version__
 from yehu_server.util.files import why
 from yehu_server.util.signals import when_asked_to_end
 
-COMMANDS = (  # each a module of this package, in the order of the help
-    "serve", "body", "build", "dataset", "devices", "follow", "learn", "mappings", "page",
-    "practise", "presets", "render", "replay", "score", "simulate", "surfaces", "sweep",
-)  # fmt: skip
+# What each command is for; each is a module of this package. In the order of the help.
+COMMANDS = {
+    "serve": "play live, by MIDI and OSC",
+    "body": "put the body of your own fiddle into the model, from measurements",
+    "build": "compile the instrument for web pages, or as a library for C programs",
+    "dataset": "make labelled sounds for learners, with all hidden forces, from a description",
+    "devices": "list audio outputs, audio inputs and MIDI inputs",
+    "follow": "play what a voice hums, or another instrument plays, from a sound file",
+    "learn": "bind a knob, pedal or OSC address to a parameter of a running server",
+    "mappings": "list, show, check and convert mappings: what controllers move",
+    "page": "the instrument in a web page, which sounds without a server",
+    "practise": "find how each note of an instrument is best bowed",
+    "presets": "list, show and check presets",
+    "render": "render MIDI files to a sound file, or a folder of them to a folder",
+    "replay": "render a captured session to a sound file",
+    "score": "show what is understood of a score, or write it as MusicXML or jianpu",
+    "simulate": "run a gesture in physical units, and keep all signals as arrays",
+    "surfaces": "write control surfaces for TouchOSC, Max, Pure Data, Open Stage Control",
+    "sweep": "bow many strokes and name the regime of each, on all cores; draw the maps",
+}
+OF_ALL: tuple[list[str], ...] = (
+    [],
+    ["-h"],
+    ["--help"],
+    ["--version"],
+)  # words for which no command is imported
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -43,7 +65,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         try:
             words = sys.argv[1:] if argv is None else argv
-            arguments = parse(words, _parser(*words[:1]))
+            arguments = parse(words, _parser(words, whole=False))
             code: int = arguments.run(arguments)
         finally:
             with contextlib.suppress(BrokenPipeError):
@@ -71,8 +93,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     return code
 
 
-def _parser(command: str = "") -> Parser:
-    """The parser of one command, for which no other is imported; where it is none, of all."""
+def _parser(words: Sequence[str] = (), *, whole: bool = True) -> Parser:
+    """The parser of some words.
+
+    Of those that begin with a command it has that one alone, so that no other is imported; it has
+    all of them else, and of those of OF_ALL their names, unless it is to be `whole`.
+    """
     parser = Parser(
         prog="yehu-server",
         description="A virtual yehu, the Chinese two-stringed fiddle: its physics, simulated.",
@@ -84,6 +110,10 @@ def _parser(command: str = "") -> Parser:
     commands = parser.add_subparsers(
         title="commands", metavar="COMMAND", required=True, prog=parser.prog
     )
-    for name in (command,) if command in COMMANDS else COMMANDS:
+    if list(words) in OF_ALL and not whole:
+        for name, text in COMMANDS.items():
+            commands.add_parser(name, help=text)
+        return parser
+    for name in words[:1] if COMMANDS.keys() & set(words[:1]) else COMMANDS:
         importlib.import_module(f"yehu_server.cli.{name}").add_to(commands)
     return parser

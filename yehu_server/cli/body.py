@@ -35,9 +35,7 @@ if TYPE_CHECKING:
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands, "body: put the body of your own fiddle into the model, from measurements", __doc__
-    )
+    parser = add_command(commands, "body", __doc__)
     actions = add_actions(parser)
     _add_fit(actions)
     show = add_action(actions, "show", _show, "show a body, beside what was measured")

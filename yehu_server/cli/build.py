@@ -30,7 +30,7 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "build: compile the instrument for web pages, or as a library for C programs",
+        "build",
         __doc__,
         run,
     )

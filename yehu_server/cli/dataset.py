@@ -47,7 +47,7 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "dataset: make labelled sounds for learners, with all hidden forces, from a description",
+        "dataset",
         __doc__,
         run,
     )

@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands, "devices: list audio outputs, audio inputs and MIDI inputs", __doc__, run
-    )
+    parser = add_command(commands, "devices", __doc__, run)
     add_options(parser, "--json: print one JSON object")
 
 

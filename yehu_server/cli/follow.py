@@ -54,7 +54,7 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "follow: play what a voice hums, or another instrument plays, from a sound file",
+        "follow",
         __doc__,
         run,
     )

@@ -33,7 +33,7 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "learn: bind a knob, pedal or OSC address to a parameter of a running server",
+        "learn",
         __doc__,
         run,
     )

@@ -45,9 +45,7 @@ BINDING = ("source", "target", "from", "to", "curve", "terms", "place", "value")
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands, "mappings: list, show, check and convert mappings: what controllers move", __doc__
-    )
+    parser = add_command(commands, "mappings", __doc__)
     actions = add_actions(parser)
     add_action(actions, "list", _list, "list the shipped mappings and your own")
     show = add_action(actions, "show", _show, "show the binds of a mapping")

@@ -56,9 +56,7 @@ PORT = 8010
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands, "page: the instrument in a web page, which sounds without a server", __doc__, run
-    )
+    parser = add_command(commands, "page", __doc__, run)
     wish = "write the page here and end; the folder is created if missing"
     add_folder(parser, required=False, text=wish)
     add_options(

@@ -35,9 +35,7 @@ from yehu_server.util.files import check_distinct, check_target
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands, "practise: find how each note of an instrument is best bowed", __doc__, run
-    )
+    parser = add_command(commands, "practise", __doc__, run)
     add_options(
         parser,
         """

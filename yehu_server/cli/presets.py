@@ -24,7 +24,7 @@ from yehu_server.params.table import find
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(commands, "presets: list, show and check presets", __doc__)
+    parser = add_command(commands, "presets", __doc__)
     actions = add_actions(parser)
     listed = add_action(actions, "list", _list, "list the presets")
     show = add_action(actions, "show", _show, "show the values of a preset")

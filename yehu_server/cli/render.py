@@ -58,7 +58,7 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "render: render MIDI files to a sound file, or a folder of them to a folder",
+        "render",
         __doc__,
         run,
     )

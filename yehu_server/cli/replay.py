@@ -28,9 +28,7 @@ MAX_DURATION_H = 12.0
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands, "replay: render a captured session to a sound file", __doc__, run
-    )
+    parser = add_command(commands, "replay", __doc__, run)
     add_options(parser, "capture CAPTURE: a file of serve --capture", capture=Path)
     add_output(parser)
     add_options(

@@ -44,7 +44,7 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "score: show what is understood of a score, or write it as MusicXML or jianpu",
+        "score",
         __doc__,
     )
     actions = add_actions(parser)

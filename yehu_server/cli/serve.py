@@ -71,7 +71,7 @@ REFRESHES_PER_SECOND = 10
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(commands, "serve: play live, by MIDI and OSC", __doc__, run)
+    parser = add_command(commands, "serve", __doc__, run)
     add_arguments(parser)
 
 

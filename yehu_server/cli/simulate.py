@@ -28,7 +28,7 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "simulate: run a gesture in physical units, and keep all signals as arrays",
+        "simulate",
         __doc__,
         run,
     )

@@ -25,7 +25,7 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "surfaces: write control surfaces for TouchOSC, Max, Pure Data, Open Stage Control",
+        "surfaces",
         __doc__,
         run,
     )

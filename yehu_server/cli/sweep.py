@@ -38,7 +38,7 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(
         commands,
-        "sweep: bow many strokes and name the regime of each, on all cores; draw the maps",
+        "sweep",
         __doc__,
         run,
     )

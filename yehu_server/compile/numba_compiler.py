@@ -15,11 +15,17 @@ from numba import extending, types
 from numba.core.ccallback import CFunc
 from numba.core.registry import cpu_target
 
-from yehu_server.compile import jit, levels, numba_shortcuts  # noqa: F401
+from yehu_server.compile import jit, levels
 from yehu_server.compile.cache_folder import IS_CACHED, cache_folder
 from yehu_server.compile.function_cache import CodeCache, code_of, short_hash
 from yehu_server.compile.libraries import ColdPartLibrary, PartLibrary, SourceLibrary
-from yehu_server.compile.numba_passes import LeanCompiler
+
+# The numba whose inner parts these two know. Another one compiles the same in twice the time.
+if numba.__version__.startswith("0.68."):
+    from yehu_server.compile import numba_shortcuts  # noqa: F401
+    from yehu_server.compile.numba_passes import LeanCompiler
+else:
+    from numba.core.compiler import Compiler as LeanCompiler  # type: ignore[no-redef]
 
 # Before numba makes its code generator, and whatever the environment tells numba of processors.
 numba.config.CPU_NAME, numba.config.CPU_FEATURES = levels.cpu(levels.level()), ""
@@ -41,7 +47,7 @@ class NoAliasCompiler(LeanCompiler):
 
 
 class SourceCompiler(LeanCompiler):
-    """numba's compiler, into a library that can be made again for another processor."""
+    """numba's compiler, into a library that can be made again for another level."""
 
     library = SourceLibrary
 

@@ -167,11 +167,11 @@ install() (
     bring_uv
     if compiles "$venv/bin/python"; then # first the rest, which has the locked tools to do it
         locked -v python-rtmidi "$lock" >"$venv/rest.lock"
-        packages --require-hashes -r "$venv/rest.lock"
+        install_packages --require-hashes -r "$venv/rest.lock"
     fi
-    packages --require-hashes --no-build-isolation -r "$lock"
+    install_packages --require-hashes --no-build-isolation -r "$lock"
     if ! is_set_up run; then # else it may be in use
-        packages --no-deps --no-build-isolation --editable .
+        install_packages --no-deps --no-build-isolation --editable .
         # Loaded once, it leaves bytecode, which a start may not be allowed to.
         logged "$venv/bin/python" -I -c 'import yehu_server.cli.render_one, yehu_server.live.server'
     fi
@@ -191,7 +191,7 @@ bring_uv() {
 }
 
 # Installs by uv; by pip where uv cannot.
-packages() {
+install_packages() {
     if command -v uv >/dev/null; then
         (
             eval "$(settings_of_pip)"

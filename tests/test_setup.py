@@ -49,7 +49,7 @@ def run(checkout: Path, code: str, **environment: str) -> str:
 
 def test_uv_installs_where_pip_would_look(checkout):
     write(checkout / ".venv" / "bin" / "uv", 'echo "$UV_INDEX|$UV_FIND_LINKS|$*"')
-    told = run(checkout, 'PATH=$venv/bin:$PATH; packages --require-hashes -r x; cat "$log"')
+    told = run(checkout, 'PATH=$venv/bin:$PATH; install_packages --require-hashes -r x; cat "$log"')
     indexes, links, call = told.strip().split("|")
     assert (indexes, links) == ("https://a.invalid https://b.invalid", "/w")
     assert call.startswith("pip install --python ")
@@ -58,7 +58,7 @@ def test_uv_installs_where_pip_would_look(checkout):
 
 def test_pip_installs_where_uv_cannot(checkout):
     write(checkout / ".venv" / "bin" / "uv", "exit 1")
-    told = run(checkout, 'PATH=$venv/bin:$PATH; packages --require-hashes -r x; cat "$log"')
+    told = run(checkout, 'PATH=$venv/bin:$PATH; install_packages --require-hashes -r x; cat "$log"')
     assert told.startswith("pip -I -m pip ")
     assert told.endswith("--require-hashes -r x\n")
 

@@ -37,10 +37,11 @@ TABLES = np.dtype(
 
 def prepare_power(tables: np.void, factor: float, exponent: float) -> None:
     """Write the tables by which `power` finds `factor` x^`exponent` (0 to 2)."""
-    twos = np.clip(np.arange(EXPONENTS) - EXPONENT_OF_1, -EXTREME, EXTREME)
+    twos = np.arange(-EXTREME, EXTREME + 1)
     coarse = float(np.float32(exponent))  # a product with this is not rounded
     of_twos = each(exp2, coarse * twos) * each(exp2, (exponent - coarse) * twos)
-    tables["of_twos"] = factor * of_twos
+    known = np.clip(np.arange(EXPONENTS) - EXPONENT_OF_1, -EXTREME, EXTREME) + EXTREME
+    tables["of_twos"] = factor * of_twos[known]
     per_midpoint = 1.0 / (1.0 + (np.arange(INTERVALS) + 0.5) / INTERVALS)
     tables["per_midpoint"] = per_midpoint
     tables["of_midpoint"] = [power_of(x, -exponent) for x in per_midpoint.tolist()]

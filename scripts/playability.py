@@ -21,6 +21,7 @@ from measures.hunting import hunting
 from measures.in_tune import chromatic, grid, isolated, presets, quarters, steady, strings
 from measures.life import life
 from measures.loudness import evenness, velocity
+from measures.onsets import onsets
 from measures.phrases import phrases
 from measures.shares import Share, whole
 from measures.shuffled import WAYS, shuffled
@@ -38,7 +39,8 @@ MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
     each.__name__: each
     for each in (
         *(grid, isolated, chromatic, steady, quarters, legato, bends, tunes, detached),
-        *(hunting, life, clicks, evenness, velocity, shuffled, strings, presets, phrases, vibrato),
+        *(hunting, life, clicks, onsets, evenness, velocity, shuffled, strings, presets, phrases),
+        vibrato,
     )
 }
 

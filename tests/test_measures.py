@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -168,3 +169,25 @@ def test_an_erhu_plays_its_two_and_a_half_octaves_in_tune():
     (found,) = grid(Setup(44100.0, own=read_quantities(file), bowing=bowing))
     assert found.of == 32 * 20
     assert found.right >= 0.96 * found.of
+
+
+def test_each_note_comes_once_after_each_other_note():
+    from measures.onsets import circuit
+    from measures.take import NOTES
+
+    order = circuit(3)
+    pairs = list(pairwise(order))
+    assert len(pairs) == len(set(pairs)) == len(NOTES) ** 2
+    assert order != circuit(4)
+
+
+def test_a_note_that_begins_as_another_is_told_from_one_that_begins_right():
+    from measures.onsets import BELOW, OLD, RATE, RIGHT, faults_of
+
+    random = np.random.default_rng(1)
+    for note in range(65, 90):
+        own, old = tone(note, 0.1, RATE, random), tone(note + 3, 0.1, RATE, random)
+        beneath = tone(note - 12, 0.1, RATE, random)
+        assert (faults_of(own + 0.1 * old, note + 3, note) == RIGHT).all()
+        assert (faults_of(own + 3.0 * old, note + 3, note) == OLD).all()
+        assert (faults_of(own + 0.7 * beneath, note + 3, note) == BELOW).all()

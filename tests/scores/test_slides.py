@@ -107,13 +107,18 @@ def test_a_slide_over_both_strings_is_on_the_inner_one():
 
 @pytest.mark.parametrize("keys", [(74, 79), (79, 74), (74, 67)])
 def test_the_finger_is_heard_to_leave_before_the_beat_and_to_be_there_on_it(keys):
+    """By four of five players at least, each with a seed of its own."""
     notes = [(keys[0], 0.0, HALVES), (keys[1], HALVES, HALVES)]
-    usual = {"settings": {"/playing/variation": 0.0}, "dry": True, "mono": True}
     for phrasing, is_on_the_way in ((0.0, False), (0.5, True)):
-        sound = yehu.render(notes, phrasing=phrasing, sample_rate=RATE, **usual).sound
-        before, after = (heard_about(sound, HALVES + s, *sorted(keys)) for s in (-0.035, 0.05))
-        assert after == pytest.approx(keys[1], abs=0.3)
-        assert (min(keys) + 1.0 < before < max(keys) - 1.0) == is_on_the_way, (phrasing, before)
+        usual = {"phrasing": phrasing, "sample_rate": RATE, "dry": True, "mono": True}
+        heard, right = [], 0
+        for seed in range(5):
+            sound = yehu.render(notes, seed=seed, **usual).sound
+            before, after = (heard_about(sound, HALVES + s, *sorted(keys)) for s in (-0.035, 0.05))
+            was_on_the_way = min(keys) + 1.0 < before < max(keys) - 1.0
+            right += abs(after - keys[1]) < 0.3 and was_on_the_way == is_on_the_way
+            heard.append((before, after))
+        assert right >= 4, (phrasing, heard)
 
 
 def watched(seconds: tuple[float, float], playing: PlayingOptions) -> Iterator[Performance]:

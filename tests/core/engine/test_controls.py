@@ -162,6 +162,34 @@ def test_the_bow_moves_smoothly_when_a_finger_lands(instrument):
     assert max(np.abs(np.diff(places))) < 1e-4  # m a sample: below 5 m/s
 
 
+def test_a_bow_leaves_a_string_at_rest_and_meets_the_other_at_rest(instrument):
+    put(instrument, bow_side=1.0, bow_speed=0.2, bow_pressure=0.5)
+    speed, force = rows(instrument, 0.01)[-1, [V_B, F_N]]
+    instrument.write("/bow/side", -1.0, ramp_ms=40.0)
+    instrument.write("/bow/speed", 0.1, ramp_ms=40.0)
+    found = rows(instrument, 0.05)
+    speeds, forces = found[:, V_B], found[:, F_N]
+    half, middle, end = round(0.01 * RATE), round(0.02 * RATE), round(0.04 * RATE)
+    assert speeds[half // 2] == pytest.approx(0.5 * speed, rel=0.02)
+    assert np.abs(speeds[half : middle - 1]).max() < 1e-3
+    assert forces[half] == pytest.approx(0.25 * force, rel=0.02)
+    assert (np.diff(forces[: middle - 1]) < 0.0).all()
+    assert forces[middle - 1] == pytest.approx(0.0, abs=1e-4 * force)
+    assert speeds[(middle + end) // 2] == pytest.approx(0.05, rel=0.02)
+    assert speeds[end] == 0.1
+    assert (np.diff(forces[middle:end]) <= 0.0).all()
+
+
+@pytest.mark.parametrize("ramp_ms", [0.0, 20.0])
+def test_a_bow_that_turns_back_before_it_has_left_a_string_bows_on(instrument, ramp_ms):
+    put(instrument, bow_side=1.0, bow_speed=0.2, bow_pressure=0.5)
+    before = rows(instrument, 0.01)[-1, [V_B, F_N]]
+    instrument.write("/bow/side", -1.0, ramp_ms=40.0)
+    run(instrument, round(0.01 * RATE))
+    instrument.write("/bow/side", 1.0, ramp_ms=ramp_ms)
+    assert rows(instrument, 0.03)[-1, [V_B, F_N]] == pytest.approx(before)
+
+
 # ---------------------------------------------------------------- fingers, tremolo, plucking
 
 

@@ -27,6 +27,8 @@ LANDING_MS, LIFTING_MS = 3.0, 5.0
 # A position nearer than this is reached by a slide, as no second finger fits beside the first.
 NEAREST_STEP = 2e-3  # m
 SETTLING_MS = 8.0
+# A finger that lands while the bow changes strings: it stops both, and would strike the one left.
+CROSSING_LANDING_MS = 10.0
 
 
 @compiled_exactly
@@ -52,35 +54,38 @@ def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide
         another string it always steps.
     """
     before = OPEN if p.string < 0 else p.position
+    landing_ms = LANDING_MS
     if string != p.string:
         slide_ms = STEP_MS
+        landing_ms = LANDING_MS if p.string < 0 else CROSSING_LANDING_MS
     p.string, p.position = string, position
     if OPEN in (position, before):
         if position != OPEN:
             land(p, c, position)
-        press(p, c, least_press)
+        press(p, c, least_press, landing_ms)
         return
     if slide_ms < 0.0 and abs(position - before) < NEAREST_STEP:
         slide_ms = SETTLING_MS
     if slide_ms >= 0.0:
         move(p, c, FINGER_POSITION[p.finger], position, slide_ms)
-        press(p, c, least_press)
+        press(p, c, least_press, landing_ms)
         return
     land(p, c, position)
-    press(p, c, least_press)
+    press(p, c, least_press, landing_ms)
     for finger in range(FINGER_COUNT):  # all, since a direct write may have put others down
         if finger != p.finger:
             move(p, c, FINGER_PRESS[finger], 0.0, LIFTING_MS)
 
 
 @compiled_exactly
-def press(p: Any, c: Any, least_press: float) -> None:
+def press(p: Any, c: Any, least_press: float, landing_ms: float) -> None:
     """Set the wished finger force, or lift the finger where the string is open."""
     force = 0.0
     if p.string >= 0 and p.position != OPEN:
         force = max(p.value[PRESS], least_press) if p.gesture.node == NONE else TOUCH_N
     if force != p.pressing or force > 0.0:
-        landing_ms = varied_landing(p, LANDING_MS) if p.pressing == 0.0 else LANDING_MS
+        if p.pressing == 0.0:
+            landing_ms = varied_landing(p, landing_ms)
         move(p, c, FINGER_PRESS[p.finger], force, landing_ms if force > 0.0 else LIFTING_MS)
     p.pressing = force
 

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.controls.slots import SIDE
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
@@ -51,7 +52,9 @@ from yehu_server.params.table import find
 
 Array = Any
 
-CROSSING_MS = 20.0  # time to change from one string to the other
+# Most time in which the bow changes to the other string; it meets that after half of it.
+CROSSING_MS = 36.0
+PUT_AWAY_MS = 20.0  # before a pluck
 SLURRED_MS = 25.0  # ramp of bow speed from one slurred note to the next
 # Bow speed at dynamics 0, as a fraction of that at full dynamics. By ear.
 SOFTEST = 0.45
@@ -140,9 +143,10 @@ def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
         if p.side != 0.0:
             lift(p, c, p.value[RELEASE])
         return
-    crossing_ms = CROSSING_MS
     if p.side == 0.0:
-        ramp_ms, crossing_ms = attack_ms(p), attack_ms(p) / 4.0
+        ramp_ms = attack_ms(p)
+    is_on_string = c.value[SIDE] * side < 0.0 or p.side != 0.0
+    crossing_ms = min(ramp_ms, CROSSING_MS) if is_on_string else ramp_ms / 4.0
     p.side = side
     move(p, c, BOW_SIDE, side, crossing_ms)
     move(p, c, BOW_TREMOLO, tremolo_of(p), USUAL_MS)
@@ -162,7 +166,7 @@ def lift(p: Any, c: Any, release_ms: float) -> None:
 def pluck(p: Any, c: Any, side: float) -> None:
     """Pluck the string of a side where the articulation has it; lift the bow before."""
     if p.side != 0.0:
-        lift(p, c, CROSSING_MS)
+        lift(p, c, PUT_AWAY_MS)
     if p.position == OPEN:
         clear_string(p, c)
     at = SHAPES[p.gesture.row, PLUCKED_AT]

@@ -168,7 +168,7 @@ def follow(p: Any, c: Any, row: int) -> None:
     if row in (BEND, CALIBRATION):
         notes.follow_bend(p, c)
     elif row == PRESS:
-        left_hand.press(p, c, notes.least_press(p, max(p.string, 0)))
+        left_hand.press(p, c, notes.least_press(p, max(p.string, 0)), left_hand.LANDING_MS)
     elif row == DYNAMICS:
         notes.draw_on(p, c)
         notes.follow_bend(p, c)

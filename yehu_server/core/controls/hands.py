@@ -235,6 +235,35 @@ def is_still(c: Any) -> bool:
 
 
 @compiled
+def cross(c: Any, speed: float, side: float) -> tuple[float, float, float]:
+    """Carry the bow from one string to the other.
+
+    It comes to rest on the string that it leaves, which friction at a bow at rest soon damps, and
+    its weight leaves that slowly enough not to pluck it. It meets the other string at rest, so that
+    this begins by a bow that accelerates, while its force rises [Guettler].
+
+    Returns
+    -------
+    speed : float
+        Of the bow (m/s).
+    pressing : float
+        The speed that the bow's force is that of (m/s).
+    weight : float
+        Share of that force on the string, by its sign the inner (positive) or the outer one.
+    """
+    if side * c.target[SIDE] < 0.0:
+        if side * c.left_side <= 0.0:
+            c.left_side, c.left_speed = side, speed
+        left = side / c.left_side
+        return c.left_speed * max(0.0, 2.0 * left - 1.0), c.left_speed, side * left
+    if side * c.left_side < 0.0:
+        speed = c.value[SPEED] = 0.0
+        take(c, SPEED, c.target[SPEED], c.remaining[SPEED])
+    c.left_side, c.left_speed = side, speed
+    return speed, speed, side
+
+
+@compiled
 def write_controls(c: Any, control: Array) -> None:
     """Write the kernel's controls for this sample. Real time: safe.
 
@@ -246,14 +275,16 @@ def write_controls(c: Any, control: Array) -> None:
     advance_drifts(c)
     stop = stop_strings(c, control)
     speed, side = c.value[SPEED] * turn_bow(c), c.value[SIDE]
+    speed, pressing, weight = cross(c, speed, side)
     beta, firmness = c.value[POSITION], 1.0
     if c.drifting != 0:
         speed *= 1.0 + c.drift[SPEED_DRIFT]
+        pressing *= 1.0 + c.drift[SPEED_DRIFT]
         beta *= c.place_drift
         firmness += c.drift[FORCE_DRIFT]
     string = 0 if side >= 0.0 else 1
     sounding = c.bridge_x - c.sounding_from
-    control[F_N] = side * bow_force(c, string, speed) * firmness
+    control[F_N] = weight * bow_force(c, string, pressing) * firmness
     c.place += speed / c.second
     control[Y_B], control[TEXTURE] = c.place, c.value[NOISE]
     control[V_B] = speed

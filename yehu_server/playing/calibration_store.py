@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.compile import levels
 from yehu_server.compile.cache_folder import data_folder
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import (
@@ -76,7 +77,8 @@ def calibration_for(
     key = calibration_key(float(rate), quantities, float(a4), bowing)  # 48000 is 48000.0
     if key in _shipped():
         return read_calibration(_shipped()[key], quantities, a4)
-    path = data_folder() / f"calibration-{key}.json"
+    # Another level rounds otherwise, so another's calibration is not what is measured here.
+    path = data_folder() / f"calibration-{levels.level()}-{key}.json"
     found = _kept(path, quantities, a4) or _unkept.get(key)
     if found is None:
         found = calibrate(rate, quantities, a4=a4, bowing=bowing, progress=progress)

@@ -3,7 +3,7 @@
 It takes a minute. For a page it needs LLVM's wasm-ld, for a library a C compiler.
 
   yehu-server build wasm -o page
-  yehu-server build library -o lib --rate 48000 96000 --cpu native
+  yehu-server build library -o lib --rate 48000 96000 --level x86-64-v3
   yehu-server build plugin -o plug-ins
   yehu-server build tables --mapping wind --tuning chaozhou-seven-equal -o wind.tables
 

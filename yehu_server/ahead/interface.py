@@ -40,7 +40,7 @@ from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import MOST_HELD, PLAYER
 from yehu_server.core.player.rows import IS_ENGINES, IS_OWNED, ROWS, SLOT_OF
 from yehu_server.core.player.wishes import HOLD, RAMP, WISH, WRITE
-from yehu_server.core.stage.late_field import LINES
+from yehu_server.core.stage.delay_lines import LINES
 from yehu_server.core.stage.record import STAGE, TAPE_AT
 
 Array = Any

@@ -11,14 +11,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from yehu_server.laboratory import sweep_maps
+    from yehu_server.laboratory import guettler, regimes, schelleng
+    from yehu_server.laboratory import sweep_map as sweep
     from yehu_server.plot.shapes import energy, signals, strings
     from yehu_server.plot.sounds import level, pitch, spectrogram
-
-    guettler = sweep_maps.guettler
-    regimes = sweep_maps.regimes
-    schelleng = sweep_maps.schelleng
-    sweep = sweep_maps.sweep
 
 __all__ = [
     "energy",
@@ -33,20 +29,22 @@ __all__ = [
     "sweep",
 ]
 
-_OF_SIMULATIONS, _OF_SOUNDS = ("energy", "signals", "strings"), ("level", "pitch", "spectrogram")
+_MODULES = {
+    "energy": "plot.shapes",
+    "level": "plot.sounds",
+    "pitch": "plot.sounds",
+    "signals": "plot.shapes",
+    "spectrogram": "plot.sounds",
+    "strings": "plot.shapes",
+}
 
 
 def __getattr__(name: str) -> Any:
     """Load a function at its first use; the rest of the package needs none of them."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    if name in _OF_SIMULATIONS:
-        module = import_module("yehu_server.plot.shapes")
-    elif name in _OF_SOUNDS:
-        module = import_module("yehu_server.plot.sounds")
-    else:
-        module = import_module("yehu_server.laboratory").sweep_maps
-    return getattr(module, name)
+    module = import_module(f"yehu_server.{_MODULES.get(name, 'laboratory')}")
+    return getattr(module, "sweep_map" if name == "sweep" else name)
 
 
 def __dir__() -> list[str]:

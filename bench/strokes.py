@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 import report
 
+from yehu_lab.regimes.strokes import find
+from yehu_lab.sweeps.running import sweep
+from yehu_lab.sweeps.study import Study, study_of
 from yehu_server.core.physics import kernel, layout, time_loop
-from yehu_server.lab.regimes.strokes import find
-from yehu_server.lab.sweeps.running import sweep
-from yehu_server.lab.sweeps.study import Study, study_of
 
 RUNS = 5
 DATA = {

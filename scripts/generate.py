@@ -57,15 +57,20 @@ def layers() -> str:
     """The layers of pyproject.toml, with what the docstring of each package says it is for."""
     with (ROOT / "pyproject.toml").open("rb") as file:
         contract = tomllib.load(file)["tool"]["importlinter"]["contracts"][0]
-    rows = []
+    rows = [["`yehu_lab`", purpose("yehu_lab")]]
     for layer in contract["layers"]:
         names = re.findall(r"\w+", layer)
         if "(" in layer:  # no layer of its own
             continue
-        docs = [import_module(f"yehu_server.{name}").__doc__ or "" for name in names]
-        words = " ".join(" ".join(doc.split("\n\n")[0].split()) for doc in docs)
-        rows.append([", ".join(f"`{name}`" for name in names), words.replace("``", "`")])
+        words = " ".join(purpose(f"yehu_server.{name}") for name in names)
+        rows.append([", ".join(f"`{name}`" for name in names), words])
     return table("layer, what it is for", rows)
+
+
+def purpose(module: str) -> str:
+    """What a module is for, by the first paragraph of its docstring."""
+    doc = import_module(module).__doc__ or ""
+    return " ".join(doc.split("\n\n")[0].split()).replace("``", "`")
 
 
 def parameters(place: Place) -> str:

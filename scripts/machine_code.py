@@ -22,9 +22,9 @@ from yehu_server.util.sealed import read_sealed, write_sealed
 COMPILE = """
 from yehu_server.compile import machine_code
 from yehu_server.compile.cache_folder import cache_folder
-from yehu_server.lab.warming import warm_up
+from compile_all import CALLED, warm_up
 warm_up()
-for what in (machine_code.PLAYING, machine_code.LAB):
+for what in (machine_code.PLAYING, *CALLED):
     print(machine_code.file_in(cache_folder(), what))
 """
 
@@ -43,6 +43,7 @@ def write(level: str, folder: Path, cache: Path) -> list[Path]:
     told = subprocess.run(  # noqa: S603 - our own
         [sys.executable, "-c", COMPILE],
         env={**os.environ, **settings},
+        cwd=Path(__file__).parent,
         check=True,
         stdout=subprocess.PIPE,
         text=True,

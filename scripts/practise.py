@@ -14,13 +14,13 @@ import argparse
 import json
 import time
 
+from yehu_lab.practising.practice import Practice
+from yehu_lab.practising.recipes import DEFAULT
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import PLACES, default_recipes
 from yehu_server.playing.calibration import calibrate
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.practice import Practice
 from yehu_server.playing.practice_files import SHIPPED, as_data, as_text, shipped_practice
-from yehu_server.playing.practice_recipes import DEFAULT
 
 RATES = (44100.0, 48000.0, 96000.0)
 

@@ -16,16 +16,17 @@ from pathlib import Path
 import grimp
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGE = "yehu_server"
+PACKAGES = ("yehu_server", "yehu_lab")
 # What other files reach. A change of anything else reaches the files of tests that name it.
 FOLDERS = {
     "web": ("tests/live/page", "tests/ahead"),
     "mappings": ("tests/surfaces", "tests/test_mappings_command.py"),
     "docs": ("tests/test_docs.py", "tests/documentation"),
 }
-_RUN = re.compile(rf"\"({PACKAGE}(?:\.\w+)+)\"")  # a module that a process of its own runs
-_MODULE = re.compile(rf"\b{PACKAGE}(?:\.\w+)+")
-_IMPORT = re.compile(rf"^\s*from ({PACKAGE}[\w.]*) import \(?([\w\s,]+)", re.MULTILINE)
+_PACKAGE = "|".join(PACKAGES)
+_RUN = re.compile(rf"\"((?:{_PACKAGE})(?:\.\w+)+)\"")  # a module that a process of its own runs
+_MODULE = re.compile(rf"\b(?:{_PACKAGE})(?:\.\w+)+")
+_IMPORT = re.compile(rf"^\s*from ((?:{_PACKAGE})[\w.]*) import \(?([\w\s,]+)", re.MULTILINE)
 _HELPER = re.compile(r"^(?:from|import) ([a-z_][\w.]*)", re.MULTILINE)
 _COMMAND = re.compile(r"\b(?:command|refused|mappings)\(\s*\"(\w+)\"")
 
@@ -65,8 +66,8 @@ def distances(changed: set[str], files: Iterable[Path]) -> dict[Path, int]:
 
 def _distances_of_modules(changed: set[str]) -> dict[str, int]:
     """The number of imports from each module to one that changed."""
-    graph = grimp.build_graph(PACKAGE, cache_dir=str(ROOT / ".import_linter_cache"))
-    for file in (ROOT / PACKAGE).rglob("*.py"):
+    graph = grimp.build_graph(*PACKAGES, cache_dir=str(ROOT / ".import_linter_cache"))
+    for file in (file for name in PACKAGES for file in (ROOT / name).rglob("*.py")):
         name = _name(file).removesuffix(".py").removesuffix("/__init__").replace("/", ".")
         for run in set(_RUN.findall(file.read_text(encoding="utf-8"))) & graph.modules:
             graph.add_import(importer=name, imported=run)
@@ -103,7 +104,8 @@ def _read(file: Path) -> tuple[frozenset[str], frozenset[Path]]:
     modules = set(_MODULE.findall(text))
     for package, names in _IMPORT.findall(text):
         modules |= {f"{package}.{name.split()[0]}" for name in names.split(",") if name.strip()}
-    modules |= {f"{PACKAGE}.cli.{name}" for name in _COMMAND.findall(text)}
+    commands = _COMMAND.findall(text)
+    modules |= {f"{package}.cli.{name}" for package in PACKAGES for name in commands}
     # `a.b.name` may be a name of the module `a.b`.
     modules |= {module.rpartition(".")[0] for module in modules}
     places = [file.parent, ROOT / "tests"]

@@ -40,7 +40,7 @@ PREPARED = (
     "numpy.random",
     "rich.console",
     "yehu_server.cli",
-    "yehu_server.lab.simulation",
+    "yehu_server.simulation.run",
     "yehu_server.live.server",
     "yehu_server.rendering.replay",
     "yehu_server.rendering.to_files",

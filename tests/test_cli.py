@@ -463,7 +463,7 @@ def test_a_simulation_without_memory_says_so(refused, gesture, out, monkeypatch)
     def no_memory(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr("yehu_server.lab.simulation.simulate", no_memory)
+    monkeypatch.setattr("yehu_server.simulation.run.simulate", no_memory)
     refused("simulate", gesture, "-o", out / "x.npz")
     assert not list(out.iterdir())
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from pages import FENCED, PACKAGE, PAGES, ROOT, Page
+from pages import FENCED, PACKAGE, PACKAGES, PAGES, ROOT, Page
 from pages import page as page_named
 
 import yehu_server
@@ -142,7 +142,7 @@ def test_every_program_runs(name, program, tmp_path, monkeypatch, capsys):
 
 # ---------------------------------------------------------------- what is named
 
-FOLDERS = {path.name for path in (*ROOT.iterdir(), *PACKAGE.iterdir()) if path.is_dir()}
+FOLDERS = {path.name for each in (ROOT, *PACKAGES) for path in each.iterdir() if path.is_dir()}
 # Words in capitals stand for names that the reader gives; so do files of the reader's own.
 PLACEHOLDER = re.compile(r"\b[A-Z]{2,}\b|\.\.\.")
 MADE = {"web/facts.js", "web/examples.js"}  # that git ignores
@@ -154,7 +154,7 @@ OWN = (".h", ".json", ".npz", ".wav")  # endings of files of the reader's own
 def sources() -> dict[Path, set[str]]:
     """The words of each file of code, without the comments."""
     found = {}
-    for folder in (PACKAGE, *(ROOT / each for each in ("scripts", "bench", "tests", "web"))):
+    for folder in (*PACKAGES, *(ROOT / each for each in ("scripts", "bench", "tests", "web"))):
         for path in folder.rglob("*"):
             if path.suffix in {".py", ".js", ".mjs", ".sh", ""} and path.is_file():
                 text = re.sub(r"\s# .*", "", path.read_text(encoding="utf-8", errors="replace"))
@@ -179,10 +179,10 @@ def is_option(word: str, command: str) -> bool:
 
 def is_file(name: str, page: Page) -> bool:
     def places() -> Iterator[Path]:
-        for folder in (ROOT, PACKAGE, page.path.parent, ROOT / "tests"):
+        for folder in (ROOT, *PACKAGES, page.path.parent, ROOT / "tests"):
             yield from folder.glob(name)
         if "/" not in name:
-            for folder in (PACKAGE, *(ROOT / each for each in ("tests", "docs", "mappings"))):
+            for folder in (*PACKAGES, *(ROOT / each for each in ("tests", "docs", "mappings"))):
                 yield from folder.rglob(name)
 
     shipped = name.removeprefix("yehu_server/")
@@ -199,7 +199,8 @@ def is_symbol(name: str) -> bool:
                 return (PACKAGE / "/".join([*before[1:], last])).exists()
             found = getattr(found, part)
         return True
-    modules = list(PACKAGE.rglob("/".join(before) + ".py")) if before else []
+    file = "/".join(before) + ".py"
+    modules = [path for each in PACKAGES for path in each.rglob(file)] if before else []
     if modules:
         return any(last in sources()[path] for path in modules)
     made = re.sub("^yehu_|^YEHU_|_total$", "", last)  # a metric, or a name of yehu.h

@@ -5,14 +5,13 @@ from pathlib import Path
 
 import pytest
 
+from yehu_lab.body import read as measure
+from yehu_lab.sweeps.result import Result
 from yehu_server.cli import _parser
 from yehu_server.cli.config import read_config
 from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import FIRST, LAST, YehuError
 from yehu_server.following.recording import recording_of_file
-from yehu_server.lab.body import read as measure
-from yehu_server.lab.simulation import Simulation
-from yehu_server.lab.sweeps.result import Result
 from yehu_server.playing.mapping import load
 from yehu_server.playing.preset_folders import read_preset
 from yehu_server.playing.tuning import read_tuning
@@ -20,6 +19,7 @@ from yehu_server.scores.capture import read_capture
 from yehu_server.scores.gesture import read_gesture
 from yehu_server.scores.musicxml.reader import read_musicxml
 from yehu_server.scores.smf.reader import read_score
+from yehu_server.simulation.run import Simulation
 from yehu_server.util.parsing import MOST_DEPTH, parse_json, parse_toml
 
 SERVE = _parser().parse_args(["serve"]).command

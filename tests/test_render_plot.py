@@ -155,7 +155,7 @@ def test_a_folder_has_a_folder_of_pictures(tmp_path, command, monkeypatch):
     def stand_in(target: Path, *_: object, **_how: object) -> None:
         target.write_bytes(b"\x89PNG by yehu-server")
 
-    monkeypatch.setattr("yehu_server.lab.plot.png.write_picture", stand_in)
+    monkeypatch.setattr("yehu_server.plot.png.write_picture", stand_in)
     monkeypatch.setattr(
         "yehu_server.rendering.workers.perform_all",
         lambda perform, tasks, _: (

@@ -13,8 +13,8 @@ from pitch import cents, pitch_of
 
 from yehu_server.cli import main
 from yehu_server.errors import OutputError, ParameterError, ScoreError
-from yehu_server.lab.simulation import simulate
 from yehu_server.scores.gesture import gesture_from, read_gesture
+from yehu_server.simulation.run import simulate
 
 BODY = Path(__file__).resolve().parents[1] / "yehu_server" / "core" / "physics" / "body.json"
 GESTURE = {

@@ -20,15 +20,16 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.util import __version__
 
 if TYPE_CHECKING:
-    from yehu_server import body, plot
+    from yehu_server import plot
     from yehu_server.api.compared import Comparison, compare
     from yehu_server.api.followed import Followed, follow
     from yehu_server.api.instrument import Instrument
     from yehu_server.api.notes import Note
     from yehu_server.api.playback import AudioWidget, play
     from yehu_server.api.rendered import Rendering, render
-    from yehu_server.api.simulated import Simulation, Sweep, simulate, sweep
+    from yehu_server.api.simulated import Simulation, simulate
     from yehu_server.errors import YehuError
+    from yehu_server.laboratory import Sweep, body, sweep
 
 __all__ = [
     "AudioWidget",
@@ -60,16 +61,16 @@ _MODULES = {
     "Player": "api.playback",  # what AudioWidget was called before
     "Rendering": "api.rendered",
     "Simulation": "api.simulated",
-    "Sweep": "api.simulated",
+    "Sweep": "laboratory",
     "YehuError": "errors",
-    "body": "body",
+    "body": "laboratory",
     "compare": "api.compared",
     "follow": "api.followed",
     "play": "api.playback",
     "plot": "plot",
     "render": "api.rendered",
     "simulate": "api.simulated",
-    "sweep": "api.simulated",
+    "sweep": "laboratory",
 }
 
 
@@ -78,7 +79,7 @@ def __getattr__(name: str) -> Any:
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module = import_module(f"{__name__}.{_MODULES[name]}")
-    value = module if name in ("body", "plot") else getattr(module, name)
+    value = module if name == "plot" else getattr(module, name)
     globals()[name] = value
     return value
 

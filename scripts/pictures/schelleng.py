@@ -14,6 +14,12 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from pictures.saving import save
+from yehu_lab.plot.cells import LABELS, limit_lines, regime_patches
+from yehu_lab.plot.study import draw_limits_over
+from yehu_lab.plot.sweep_maps import draw_map, map_of
+from yehu_lab.sweeps.result import Result
+from yehu_lab.sweeps.running import sweep
+from yehu_lab.sweeps.study import study_of
 from yehu_server.core.controls.hands import FAST, FAST_SHARE
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.schelleng import upper_limit
@@ -29,12 +35,6 @@ from yehu_server.core.player.bowing import (
     recipe_value,
     share,
 )
-from yehu_server.lab.plot.cells import LABELS, limit_lines, regime_patches
-from yehu_server.lab.plot.study import draw_limits_over
-from yehu_server.lab.plot.sweep_maps import draw_map, map_of
-from yehu_server.lab.sweeps.result import Result
-from yehu_server.lab.sweeps.running import sweep
-from yehu_server.lab.sweeps.study import study_of
 from yehu_server.params.table import find
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.pitch_and_level import note_name

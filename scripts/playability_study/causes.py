@@ -17,10 +17,10 @@ import numpy as np
 from maps import band, median
 from tables import BETA, named, table, write_table
 
+from yehu_lab.regimes.columns import HELMHOLTZ
+from yehu_lab.sweeps.running import sweep
+from yehu_lab.sweeps.study import study_of
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.lab.regimes.columns import HELMHOLTZ
-from yehu_server.lab.sweeps.running import sweep
-from yehu_server.lab.sweeps.study import study_of
 from yehu_server.params.table import find
 
 BOWS = list(range(9))  # seeds of the hair

@@ -22,8 +22,7 @@ from maps import KINDS, NEVER, Maps, bands, median, read
 from matplotlib.ticker import FormatStrFormatter
 from tables import STRINGS, Errors, named, write_tables
 
-from yehu_server.core.physics.quantities import measured_body
-from yehu_server.lab.plot.cells import (
+from yehu_lab.plot.cells import (
     LABELS,
     draw_cells,
     draw_limits,
@@ -31,7 +30,8 @@ from yehu_server.lab.plot.cells import (
     regime_colours,
     regime_patches,
 )
-from yehu_server.lab.plot.sweep_maps import PERIOD_COLOURS, PERIODS
+from yehu_lab.plot.sweep_maps import PERIOD_COLOURS, PERIODS
+from yehu_server.core.physics.quantities import measured_body
 from yehu_server.playing.pitch_and_level import note_name
 
 ROOT = Path(__file__).resolve().parents[2]

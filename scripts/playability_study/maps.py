@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.lab.regimes.columns import HELMHOLTZ
+from yehu_lab.regimes.columns import HELMHOLTZ
 
 Array = Any
 

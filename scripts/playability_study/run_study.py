@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 from maps import FILE, KINDS, NEVER
 
-from yehu_server.lab.sweeps.result import Result
-from yehu_server.lab.sweeps.running import sweep_to
-from yehu_server.lab.sweeps.study import limits_of, read_study
+from yehu_lab.sweeps.result import Result
+from yehu_lab.sweeps.running import sweep_to
+from yehu_lab.sweeps.study import limits_of, read_study
 
 MOST = NEVER - 1  # periods to Helmholtz motion, by bytes
 ALONG = 23  # places at which limits are kept

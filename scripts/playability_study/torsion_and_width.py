@@ -24,13 +24,13 @@ from maps import band
 from scipy.signal import welch
 from tables import BETA, SOON, named, table, write_table
 
-from yehu_server.lab.plot.cells import LABELS, draw_cells, regime_colours, regime_patches
-from yehu_server.lab.plot.sweep_maps import PERIOD_COLOURS, PERIODS
-from yehu_server.lab.regimes.columns import HELMHOLTZ
-from yehu_server.lab.simulation import simulate
-from yehu_server.lab.sweeps.result import Result
-from yehu_server.lab.sweeps.running import sweep_to
-from yehu_server.lab.sweeps.study import study_of
+from yehu_lab.plot.cells import LABELS, draw_cells, regime_colours, regime_patches
+from yehu_lab.plot.sweep_maps import PERIOD_COLOURS, PERIODS
+from yehu_lab.regimes.columns import HELMHOLTZ
+from yehu_lab.sweeps.result import Result
+from yehu_lab.sweeps.running import sweep_to
+from yehu_lab.sweeps.study import study_of
+from yehu_server.simulation.run import simulate
 
 WIDTH = 0.008  # m
 KINDS = {

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from validation import convergence
-from yehu_server.lab.regimes.columns import REGIMES
-from yehu_server.lab.sweeps.running import sweep
-from yehu_server.lab.sweeps.study import study_of
+from yehu_lab.regimes.columns import REGIMES
+from yehu_lab.sweeps.running import sweep
+from yehu_lab.sweeps.study import study_of
 
 STROKES, SEED = 200, 2026
 RATES = (44100.0, 352800.0)

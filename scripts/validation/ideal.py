@@ -19,8 +19,8 @@ from yehu_server.core.physics.quantities import (
     Quantities,
     StringQuantities,
 )
-from yehu_server.lab.simulation import Simulation, simulate
 from yehu_server.scores.gesture import Gesture
+from yehu_server.simulation.run import Simulation, simulate
 
 RATE = 176400.0
 SPEED = 0.2  # m/s

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from validation import convergence
-from yehu_server.lab.regimes.columns import HELMHOLTZ, REGIMES
-from yehu_server.lab.simulation import simulate
-from yehu_server.lab.sweeps.result import Result
+from yehu_lab.regimes.columns import HELMHOLTZ, REGIMES
+from yehu_lab.sweeps.result import Result
 from yehu_server.scores.gesture import gesture_from
+from yehu_server.simulation.run import simulate
 
 RATE = 176400.0
 NOTES = ("A♯4", "G5")  # of convergence.NOTES

@@ -9,7 +9,7 @@ import soundfile
 from lab.body import bodies
 
 import yehu_server as yehu
-from yehu_server.lab.body import apart, fit
+from yehu_lab.body import apart, fit
 from yehu_server.playing import calibration_store
 
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import yehu_server as yehu
+from yehu_lab.regimes.columns import FINDING, HELMHOLTZ
+from yehu_lab.sweeps.result import Result, result_of
+from yehu_lab.sweeps.study import study_of
 from yehu_server import YehuError
-from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ
-from yehu_server.lab.sweeps.result import Result, result_of
-from yehu_server.lab.sweeps.study import study_of
 
 RATE = 44100
 BOWED = {"bow_force": [[0, 0], [0.03, 0.7]], "bow_velocity": [[0, 0], [0.03, 0.3]]}

@@ -13,9 +13,10 @@ import matplotlib as mpl
 import pytest
 
 import yehu_server as yehu
+from yehu_lab import api as lab_api
+from yehu_lab import plot as lab_plot
 from yehu_server import api, plot
 from yehu_server.errors import YehuError
-from yehu_server.lab import plot as lab_plot
 
 HEAVY = {"numba", "llvmlite", "numpy", "matplotlib", "xarray", "scipy", "sounddevice", "IPython"}
 
@@ -56,7 +57,7 @@ def test_all_names_are_listed_and_a_wrong_one_is_told_as_python_does():
 
 
 def modules() -> Iterator[str]:
-    for package in (api, lab_plot):
+    for package in (api, plot, lab_api, lab_plot):
         for found in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
             yield found.name
     yield "yehu_server"

@@ -8,8 +8,12 @@ from collections.abc import Iterator
 from mypy import api
 from pages import PAGES, ROOT
 
-from yehu_server import api as interface
-from yehu_server.lab import plot
+import yehu_lab.api
+import yehu_lab.plot
+import yehu_server.api
+import yehu_server.plot
+
+WITH_EXAMPLES = (yehu_server.api, yehu_server.plot, yehu_lab.api, yehu_lab.plot)
 
 
 def examples() -> Iterator[tuple[str, str]]:
@@ -18,13 +22,13 @@ def examples() -> Iterator[tuple[str, str]]:
         for number, block in enumerate(page.blocks("python")):
             if page.name.startswith("docs/") and block.startswith("import "):
                 yield f"{page.path.stem}_{number}", block
-    for package in (interface, plot):
+    for package in WITH_EXAMPLES:
         for found in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
             module = importlib.import_module(found.name)
             for test in doctest.DocTestFinder().find(module):
                 source = "".join(example.source for example in test.examples)
                 if "import yehu_server" in source:
-                    yield test.name.rpartition("yehu_server.")[2].replace(".", "_"), source
+                    yield test.name.replace(".", "_"), source
 
 
 def test_examples_have_the_types_that_the_interface_declares(tmp_path, monkeypatch):

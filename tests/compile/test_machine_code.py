@@ -12,6 +12,7 @@ import zlib
 from functools import cache
 from pathlib import Path
 
+import compile_all
 import pytest
 
 from yehu_server.cli.terminal import warn_of_compiling
@@ -20,7 +21,6 @@ from yehu_server.compile.cache_folder import source_hash
 from yehu_server.compile.jit import Native
 from yehu_server.core.engine.warming import all_functions, warm_up
 from yehu_server.core.physics.time_loop import advance
-from yehu_server.lab import warming as lab
 from yehu_server.util.sealed import read_sealed, write_sealed
 
 ROOT = Path(__file__).parents[2]
@@ -47,9 +47,9 @@ print("numba" in sys.modules, np.sqrt(np.mean(np.square(block[44100:]))), block[
 
 STUDY = """
 import sys
-from yehu_server.lab.simulation import simulate
-from yehu_server.lab.sweeps.running import sweep
-from yehu_server.lab.sweeps.study import study_of
+from yehu_server.simulation.run import simulate
+from yehu_lab.sweeps.running import sweep
+from yehu_lab.sweeps.study import study_of
 from yehu_server.scores.gesture import gesture_from
 pluck = {"string": 1, "position": 0.1, "amplitude": 0.001}
 for instrument in ({}, {"torsion": "on"}):
@@ -110,7 +110,7 @@ def _nothing_is_shipped(tmp_path, monkeypatch):
 
 @pytest.mark.usefixtures("kept")
 def test_notes_simulations_and_sweeps_from_what_is_kept_need_no_numba_and_read_no_code():
-    lab.warm_up()
+    compile_all.warm_up()
     for code in (PLAY, STUDY):
         ran = subprocess.run(
             [sys.executable, "-c", code], check=True, capture_output=True, text=True
@@ -119,14 +119,16 @@ def test_notes_simulations_and_sweeps_from_what_is_kept_need_no_numba_and_read_n
 
 
 def test_what_playing_needs_is_in_one_file_apart_from_what_studies_need_besides(kept, tmp_path):
-    lab.warm_up()
+    compile_all.warm_up()
     found = set(written(tmp_path, kept))
     assert {function.name for function in all_functions()} <= found
-    assert not {function.name for function in lab.all_functions()} & found
-    assert all(function.is_kept for function in lab.all_functions())
+    besides = [call for what in compile_all.CALLED for call in compile_all.functions_of(what)]
+    assert len(besides) > len(compile_all.CALLED)
+    assert not {function.name for function in besides} & found
+    assert all(function.is_kept for function in besides)
     machine_code.file_in(tmp_path).unlink()
-    machine_code.loaded.cache_clear()  # without the first file the second one is not loaded
-    assert machine_code.address_of(lab.CALLED[0].name, tmp_path, source_hash()) is None
+    machine_code.loaded.cache_clear()  # without the first file the others are not loaded
+    assert all(machine_code.address_of(call.name, tmp_path) is None for call in besides)
 
 
 # What compiled code may take from elsewhere: its own parts, the system's clock, memory, and what
@@ -140,9 +142,9 @@ FROM_ELSEWHERE = re.compile(
 @pytest.mark.skipif(sys.platform != "linux", reason="object files are not ELF")
 def test_no_mathematics_of_a_c_library_is_called():
     """It differs from system to system and by processor; see `core/physics/elementary.py`."""
-    lab.warm_up()
+    compile_all.warm_up()
     strange = {}
-    for what in (machine_code.PLAYING, machine_code.LAB):
+    for what in (machine_code.PLAYING, *compile_all.CALLED):
         file = machine_code.file_in(cache_folder.cache_folder(), what)
         head, _, body = (read_sealed(file) or b"").partition(b"\n")
         code, at = zlib.decompress(body), 0
@@ -221,7 +223,7 @@ def test_a_release_takes_the_files_along():
 def test_code_for_a_level_of_processors_plays_without_numba(tmp_path):
     script = [sys.executable, ROOT / "scripts" / "machine_code.py", levels.level(), "-o", tmp_path]
     subprocess.run(script, check=True, stdout=subprocess.DEVNULL)
-    assert len(list(tmp_path.iterdir())) == 2
+    assert len(list(tmp_path.iterdir())) == 1 + len(compile_all.CALLED)
     of_level = f"""
 from yehu_server.compile import machine_code
 machine_code.SHIPPED = machine_code.Path({str(tmp_path)!r})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 import traceback
 from pathlib import Path
@@ -27,7 +28,7 @@ def place(error: BaseException) -> str:
     if isinstance(error, TooSlowError):
         return "TooSlowError"
     frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if "yehu_server" in frame.filename] or frames
+    own = [frame for frame in frames if re.search("yehu_(server|lab)", frame.filename)] or frames
     return f"{type(error).__name__} at {Path(own[-1].filename).name}:{own[-1].lineno}"
 
 

@@ -14,7 +14,7 @@ import atheris
 from fuzz.findings import Findings
 from fuzz.target import MOST_BYTES, ROOT, Target
 
-GUIDED_BY = ["yehu_server", "tomllib"]
+GUIDED_BY = ["yehu_server", "yehu_lab", "tomllib"]
 MOST_RESIDENT_MB = 2048
 STUCK_S = 60  # in one input, where no signal reaches Python
 _LAST = re.compile(r"#\d+\s+DONE\s+cov: (\d+) ft: (\d+)")

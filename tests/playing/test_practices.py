@@ -12,6 +12,18 @@ from commands import is_one_line
 from fiddles import SLACK_TOML
 from midi_files import midi_file, notes
 
+from yehu_lab.practising import practice as practising
+from yehu_lab.practising.passages import Passage, Search
+from yehu_lab.practising.practice import (
+    BEFORE_S,
+    EACH_S,
+    EARLY_S,
+    LATE_S,
+    LISTEN_S,
+    Practice,
+    has_pitch,
+)
+from yehu_lab.practising.recipes import slower
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import (
     AT_FIRM,
@@ -27,17 +39,7 @@ from yehu_server.core.player.bowing import (
 from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import find
-from yehu_server.playing import practice as practising
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.practice import (
-    BEFORE_S,
-    EACH_S,
-    EARLY_S,
-    LATE_S,
-    LISTEN_S,
-    Practice,
-    has_pitch,
-)
 from yehu_server.playing.practice_files import (
     FORMAT,
     HIGHEST,
@@ -49,8 +51,6 @@ from yehu_server.playing.practice_files import (
     shipped_practice,
     write_practice,
 )
-from yehu_server.playing.practice_passages import Passage, Search
-from yehu_server.playing.practice_recipes import slower
 
 RATE = 44100.0
 PLACE = PLACES.index(0.1)

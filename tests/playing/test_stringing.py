@@ -10,6 +10,7 @@ from hands import ideal
 from pitch import cents, hertz, pitch_of
 
 import yehu_server as yehu
+from yehu_lab.practising.passages import Search, pitches_near_notes, stops_of
 from yehu_server import YehuError
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
@@ -20,7 +21,6 @@ from yehu_server.errors import ParameterError
 from yehu_server.live.page.facts import facts
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
 from yehu_server.playing.practice_files import practice_beside, read_practice
-from yehu_server.playing.practice_passages import Search, pitches_near_notes, stops_of
 from yehu_server.playing.stringing import notes_of, range_text
 from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.scores.capture_header import SessionStart, header_of, read_header

@@ -9,14 +9,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 from yehu_server.compile.jit import IS_PLAIN, Native
 from yehu_server.core.engine.warming import CALLED, COMPILING, warm_up
 from yehu_server.core.physics.grid import HIGHEST_RATE, LOWEST_RATE
-from yehu_server.core.physics.quantities import Quantities, override, read_quantities
+from yehu_server.core.physics.quantities import Body, Quantities, override, read_quantities
 from yehu_server.errors import ParameterError
-from yehu_server.lab.body.body_file import Fit
 from yehu_server.params.table import HIGHEST_A4, LOWEST_A4, find
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.options import PlayingOptions
@@ -38,8 +37,16 @@ def get_ready(functions: Sequence[Native] = CALLED) -> None:
         warm_up()
 
 
+class HasBody(Protocol):
+    """What has a body for the model, such as a ``yehu.body.Body``."""
+
+    @property
+    def body(self) -> Body:
+        """What the model plays."""
+
+
 PathLike = str | os.PathLike[str]
-InstrumentLike = Quantities | Mapping[str, Any] | PathLike | Fit
+InstrumentLike = Quantities | Mapping[str, Any] | PathLike | HasBody
 
 
 def number(value: Any, name: str, lo: float = -math.inf, hi: float = math.inf) -> float:
@@ -94,10 +101,11 @@ def quantities_of(instrument: InstrumentLike | None) -> Quantities:
         return Quantities()
     if isinstance(instrument, Quantities):
         return instrument
-    if isinstance(instrument, Fit):
-        return Quantities(body=instrument.body)
     if isinstance(instrument, Mapping):
         return override(Quantities(), instrument)
+    body = getattr(instrument, "body", None)
+    if isinstance(body, Body):
+        return Quantities(body=body)
     return read_quantities(path_of(instrument, "instrument"))
 
 

@@ -25,11 +25,11 @@ from yehu_server.core.engine.instrument import Instrument as Engine
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError, YehuError
-from yehu_server.lab.simulation import Simulation
 from yehu_server.params.spec import Place
 from yehu_server.params.table import find
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.simulation.run import Simulation
 from yehu_server.util import __version__
 
 Sound = NDArray[np.float32]

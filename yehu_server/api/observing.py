@@ -16,9 +16,9 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS, control_columns, probe_columns
 from yehu_server.errors import ParameterError
-from yehu_server.lab.simulation import MAX_BYTES, Simulation, about, shape_of, signals
 from yehu_server.params.table import SLOT
 from yehu_server.playing.wishes import WishPoster
+from yehu_server.simulation.run import MAX_BYTES, Simulation, about, shape_of, signals
 
 Floats = NDArray[np.float64]
 

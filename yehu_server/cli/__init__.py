@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from yehu_server.cli.arguments import HelpFormatter, Parser
+from yehu_server.cli.commands import all_commands, module_of
 from yehu_server.cli.config import parse
 from yehu_server.cli.render_pipe import BROKEN_PIPE
 from yehu_server.cli.terminal import INTERRUPTED, interrupt, warn
@@ -21,26 +22,6 @@ from yehu_server.util import __version__
 from yehu_server.util.files import why
 from yehu_server.util.signals import when_asked_to_end
 
-# What each command is for; each is a module of this package. In the order of the help.
-COMMANDS = {
-    "serve": "play live, by MIDI and OSC",
-    "body": "put the body of your own fiddle into the model, from measurements",
-    "build": "compile the instrument for web pages, or as a library for C programs",
-    "dataset": "make labelled sounds for learners, with all hidden forces, from a description",
-    "devices": "list audio outputs, audio inputs and MIDI inputs",
-    "follow": "play what a voice hums, or another instrument plays, from a sound file",
-    "learn": "bind a knob, pedal or OSC address to a parameter of a running server",
-    "mappings": "list, show, check and convert mappings: what controllers move",
-    "page": "the instrument in a web page, which sounds without a server",
-    "practise": "find how each note of an instrument is best bowed",
-    "presets": "list, show and check presets",
-    "render": "render MIDI files to a sound file, or a folder of them to a folder",
-    "replay": "render a captured session to a sound file",
-    "score": "show what is understood of a score, or write it as MusicXML or jianpu",
-    "simulate": "run a gesture in physical units, and keep all signals as arrays",
-    "surfaces": "write control surfaces for TouchOSC, Max, Pure Data, Open Stage Control",
-    "sweep": "bow many strokes and name the regime of each, on all cores; draw the maps",
-}
 OF_ALL: tuple[list[str], ...] = (
     [],
     ["-h"],
@@ -111,9 +92,10 @@ def _parser(words: Sequence[str] = (), *, whole: bool = True) -> Parser:
         title="commands", metavar="COMMAND", required=True, prog=parser.prog
     )
     if list(words) in OF_ALL and not whole:
-        for name, text in COMMANDS.items():
+        for name, (_, text) in all_commands().items():
             commands.add_parser(name, help=text)
         return parser
-    for name in words[:1] if COMMANDS.keys() & set(words[:1]) else COMMANDS:
-        importlib.import_module(f"yehu_server.cli.{name}").add_to(commands)
+    named = module_of(words[0]) if words else None
+    for module in [named] if named else [module for module, _ in all_commands().values()]:
+        importlib.import_module(module).add_to(commands)
     return parser

@@ -244,7 +244,7 @@ def picture_output(arguments: argparse.Namespace) -> dict[str, Path]:
     """
     if arguments.plot is None:
         return {}
-    from yehu_server.lab.plot.png import check_picture
+    from yehu_server.plot.png import check_picture
 
     check_picture(arguments.plot, "--plot", overwrite=arguments.overwrite)
     return {"--plot": arguments.plot}

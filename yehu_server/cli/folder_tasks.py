@@ -121,7 +121,7 @@ def _keep_failure(task: Task, line: Line) -> None:
 
 def _made(task: Task, report_progress: ProgressCallback) -> Done:
     from yehu_server.cli.render_one import rendered
-    from yehu_server.lab.plot.png import check_picture
+    from yehu_server.plot.png import check_picture
 
     entry, options = task.entry, task.arguments
     may_replace = replaceable(options)

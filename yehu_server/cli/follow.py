@@ -194,7 +194,7 @@ def _render(
     may_replace = check_output(arguments)
     render(found.score, arguments.output, options, progress, may_replace, watch=watch)
     if watch is not None:
-        from yehu_server.lab.plot.rendered import write_followed
+        from yehu_server.plot.followed import write_followed
 
         watch.finish()
         write_followed(heard, found.semitones, watch, arguments.plot, overwrite=arguments.overwrite)

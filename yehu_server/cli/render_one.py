@@ -99,7 +99,7 @@ def rendered(
         listen = follow or progress
         summary = render(parts, arguments.output, options, listen, may_replace, stems, watch)
     if watch is not None:
-        from yehu_server.lab.plot.rendered import write_picture
+        from yehu_server.plot.rendered import write_picture
 
         watch.finish()
         voices = "" if len(parts) == 1 else f"{len(parts)} parts, "

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from yehu_server.errors import one_line
-from yehu_server.lab.simulation import Simulation
 from yehu_server.live.network import format_address
 from yehu_server.live.page.guests import LISTEN, OWN, PLAY, Guests
 from yehu_server.params.table import PREFIX, find
@@ -19,6 +18,7 @@ from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.rendering.replay import Replayed
 from yehu_server.rendering.summary import FATE, PartSummary, Summary, counted
+from yehu_server.simulation.run import Simulation
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -104,8 +104,8 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _plot(arguments: argparse.Namespace, written: Written) -> None:
-    from yehu_server.lab.plot.bowed_score import write_bowed_score
     from yehu_server.playing.stringing import notes_of
+    from yehu_server.plot.bowed_score import write_bowed_score
     from yehu_server.scores.chosen_parts import numbers_of
     from yehu_server.scores.written.in_range import usual_parts
 

@@ -52,8 +52,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.cli.report import simulate_report
     from yehu_server.core.physics.time_loop import advance, advance_booked
-    from yehu_server.lab.simulation import simulate
     from yehu_server.scores.gesture import read_gesture
+    from yehu_server.simulation.run import simulate
 
     gesture = read_gesture(arguments.gesture, arguments.instrument)
     check_target(arguments.output)

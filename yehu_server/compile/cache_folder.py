@@ -1,7 +1,7 @@
 """The folder of compiled code: where it is, what its name depends on, and when others go.
 
 numba does not notice when a compiled function's callee changes in another file, so the name has a
-hash of all sources that may be compiled.
+hash of all sources that may be compiled; functions of other packages have one of their own.
 """
 
 from __future__ import annotations
@@ -22,16 +22,35 @@ from yehu_server.util.source_key import key_of
 PREFIX = "compiled-"
 UNUSED_AFTER_S = 14 * 24 * 3600.0
 # Of all source that is compiled, or that compiled code reads constants of.
-SOURCE_FOLDERS = ("core", "params", "compile", "lab/regimes")
+SOURCE_FOLDERS = ("core", "params", "compile")
+others: dict[str, Path] = {}  # the same, of packages that use this one, by their names
+
+
+def register(package: str, folder: Path) -> None:
+    """Let another package have compiled code, from a folder of source.
+
+    A change there compiles that package's code anew, and none of this one's.
+    """
+    others[package] = folder
 
 
 @cache
-def source_hash() -> str:
-    """Key of all source that compiled code comes from or reads constants of (16 hex digits)."""
-    sources = [
-        source for folder in SOURCE_FOLDERS for source in sorted((PACKAGE / folder).rglob("*.py"))
-    ]
+def source_hash(package: str = "") -> str:
+    """Key of all source that compiled code comes from or reads constants of (16 hex digits).
+
+    `package`: another one's name, for the key of its source and ours.
+    """
+    folders = [PACKAGE / folder for folder in SOURCE_FOLDERS]
+    if package in others:
+        folders.append(others[package])
+    sources = [source for folder in folders for source in sorted(folder.rglob("*.py"))]
     return key_of(sources, version("numba"))
+
+
+def key_beside(module: str) -> str:
+    """What a function of a module is kept by beside the folder's name: another package's key."""
+    package = module.partition(".")[0]
+    return source_hash(package) if package in others else ""
 
 
 def cache_folder() -> Path:

@@ -131,7 +131,8 @@ def main() -> None:
         order, *names = line.split()
         if order.startswith(KEEP):
             what = order.removeprefix(KEEP)
-            machine_code.keep(cache_folder(), source_hash(), map(_named, names), what)
+            functions = [_named(name) for name in names]  # which registers their package
+            machine_code.keep(cache_folder(), source_hash(what), functions, what)
         else:
             _named(order).keep()
         print(DONE, file=output, flush=True)

@@ -14,7 +14,7 @@ from types import ModuleType, NoneType
 from typing import Annotated, Any, ParamSpec, TypeVar, cast, get_args, get_type_hints
 
 from yehu_server.compile import levels, machine_code
-from yehu_server.compile.cache_folder import IS_CACHED, cache_folder, source_hash
+from yehu_server.compile.cache_folder import IS_CACHED, cache_folder
 from yehu_server.errors import YehuError
 
 # NUMBA_DISABLE_JIT=1: what would be compiled runs as plain Python, under a debugger or coverage.
@@ -260,7 +260,7 @@ class Native:
 
     @property
     def _kept(self) -> int | None:
-        return machine_code.address_of(self.name, cache_folder(), source_hash())
+        return machine_code.address_of(self.name, cache_folder())
 
     @property
     def is_ready(self) -> bool:

@@ -1,6 +1,7 @@
 """Machine code of all functions that playing calls, kept in one file and loaded without numba.
 
-What simulations and sweeps call besides is in another one, which playing does not load.
+What simulations call besides is in another one, which playing does not load, and what each other
+package compiles in one more.
 A file is for one level of processors. Releases bring one for each, used where there is none
 in the cache, so that a first start compiles nothing.
 
@@ -22,13 +23,14 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from yehu_server.compile import levels
+from yehu_server.compile import cache_folder, levels
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
 log = logging.getLogger(__name__)
 
 FORMAT = 1
-PLAYING, LAB = "", "-lab"  # what a file is for; the second one's functions call the first one's
+# What a file is for, beside the names of other packages; functions call those of files before them.
+PLAYING, SIMULATING = "", "simulating"
 # What numba's wrappers call where a function raises or counts references. None of ours does.
 NEVER_CALLED = (
     "NRT_Free",
@@ -55,7 +57,8 @@ def made_for(sources: str) -> list[str]:
 
 def file_in(folder: Path, what: str = PLAYING) -> Path:
     """The file of this level in a folder."""
-    return folder / f"{levels.triple()}-{levels.level()}{what}.code"
+    kind = f"-{what}" if what else ""
+    return folder / f"{levels.triple()}-{levels.level()}{kind}.code"
 
 
 def keep(folder: Path, sources: str, functions: Iterable[Any], what: str = PLAYING) -> None:
@@ -86,12 +89,13 @@ def keep(folder: Path, sources: str, functions: Iterable[Any], what: str = PLAYI
 SHIPPED = Path(__file__).parent / "shipped"
 
 
-def address_of(name: str, folder: Path, sources: str) -> int | None:
+def address_of(name: str, folder: Path) -> int | None:
     """The address of a function by its name, or None where it has to be compiled; as `loaded`."""
-    playing = loaded(folder, sources)
-    if name in playing or not playing:
-        return playing.get(name)
-    return loaded(folder, sources, LAB).get(name)
+    for what in (PLAYING, SIMULATING, *cache_folder.others):
+        found = loaded(folder, cache_folder.source_hash(what), what)
+        if name in found or (not found and what == PLAYING):
+            return found.get(name)
+    return None
 
 
 @functools.cache

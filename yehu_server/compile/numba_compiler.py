@@ -16,7 +16,7 @@ from numba.core.ccallback import CFunc
 from numba.core.registry import cpu_target
 
 from yehu_server.compile import jit, levels
-from yehu_server.compile.cache_folder import IS_CACHED, cache_folder
+from yehu_server.compile.cache_folder import IS_CACHED, cache_folder, key_beside
 from yehu_server.compile.function_cache import CodeCache, code_of, short_hash
 from yehu_server.compile.libraries import ColdPartLibrary, PartLibrary, SourceLibrary
 
@@ -147,6 +147,6 @@ def _types(native: jit.Native) -> list[Any]:
 def _cached(made: Any, function: Callable[..., Any], how: str) -> Any:
     """Give numba's object for a function our cache, before anything is compiled."""
     if IS_CACHED:
-        cache = CodeCache(cache_folder(), function, how)
+        cache = CodeCache(cache_folder(), function, how + key_beside(function.__module__))
         made._cache = cache  # noqa: SLF001 - there is no other way
     return made

@@ -30,7 +30,7 @@ class Identity:
     """What has to be the same for the same samples, and what may differ in the last bit."""
 
     version: str
-    code: str  # key of all of the package's code
+    code: str  # key of all code of this package and of those beside it that use it
     level: str  # of processors, where LLVM is installed
 
     @property
@@ -42,7 +42,7 @@ class Identity:
 @cache
 def identity() -> Identity:
     """Who this process is."""
-    code = key_of(sorted(PACKAGE.rglob("*.py")))
+    code = key_of(sorted(PACKAGE.parent.glob("yehu_*/**/*.py")))
     return Identity(__version__, code, _level())
 
 

@@ -12,8 +12,8 @@ from core.physics.runs import play
 from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics.bridge import advance_bridge
 from yehu_server.core.physics.quantities import Quantities, StringQuantities
-from yehu_server.lab.simulation import simulate
 from yehu_server.scores.gesture import Gesture
+from yehu_server.simulation.run import simulate
 
 YEHU = Quantities()
 MODES = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text())[

@@ -9,13 +9,13 @@ import re
 import numpy as np
 from fuzz.target import target, written
 
+from yehu_lab.body.body_file import read_fit
+from yehu_lab.body.curve import Curve
+from yehu_lab.body.measurement import read
+from yehu_lab.dataset.description import read_description
+from yehu_lab.sweeps.result import Result
+from yehu_lab.sweeps.study import read_study, study_from_text
 from yehu_server.errors import MeasurementError, ParameterError, ScoreError
-from yehu_server.lab.body.body_file import read_fit
-from yehu_server.lab.body.curve import Curve
-from yehu_server.lab.body.measurement import read
-from yehu_server.lab.dataset.description import read_description
-from yehu_server.lab.sweeps.result import Result
-from yehu_server.lab.sweeps.study import read_study, study_from_text
 
 SHIPPED_RATE = re.compile(rb"^sample_rate *= *(44100|48000) *$", re.MULTILINE)
 CHANNELS = "force=100,velocity=0.5"

@@ -3,7 +3,7 @@
 import pytest
 from lab.body.bodies import with_velocity_only
 
-from yehu_server.lab.body import average, fit, made_taps
+from yehu_lab.body import average, fit, made_taps
 
 
 @pytest.fixture(scope="session")

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from lab.body.bodies import admittance
 
+from yehu_lab.plot.body import draw, write_picture
 from yehu_server.core.physics.quantities import read_quantities
-from yehu_server.lab.plot.body import draw, write_picture
 
 HZ = np.arange(300.0, 2500.0, 6.0)
 
@@ -131,7 +131,7 @@ def test_a_missing_library_is_one_line_that_names_its_extra(
 
 def test_many_modes_leave_the_picture_its_room(whole_fit, monkeypatch):
     lines = [f"row {number}" for number in range(99)]
-    monkeypatch.setattr("yehu_server.lab.plot.body.lines_of", lambda _: lines)
+    monkeypatch.setattr("yehu_lab.plot.body.lines_of", lambda _: lines)
     body = whole_fit.body
     modes = {name: getattr(body, name)[:1] * 64 for name in ("frequency_hz", "mass", "damping")}
     figure = draw(replace(whole_fit, body=replace(body, **modes)))

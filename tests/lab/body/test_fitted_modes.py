@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lab.body.bodies import DAMPING, HZ, MASS, admittance, off_db, rms
 
+from yehu_lab.body import Curve, Measurement, fit, fitting
+from yehu_lab.body.modes import Problem, amounts_of, look
 from yehu_server.core.physics.quantities import Quantities, measured_body
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body import Curve, Measurement, fit, fitting
-from yehu_server.lab.body.modes import Problem, amounts_of, look
 
 GRID = np.geomspace(200.0, 5000.0, 5000)
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from lab.body.bodies import off_db, radiation, rms
 
+from yehu_lab.body import Curve
+from yehu_lab.body.sections import Lines, fit_sections, moved, numerators, usable
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.radiation import response
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body import Curve
-from yehu_server.lab.body.sections import Lines, fit_sections, moved, numerators, usable
 
 GRID = np.geomspace(200.0, 5000.0, 4000)
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from lab.body.bodies import off_db, rms
 
+from yehu_lab.body.body_file import read_fit
 from yehu_server.core.physics.quantities import (
     BODY_FILE,
     measured_body,
@@ -15,7 +16,6 @@ from yehu_server.core.physics.quantities import (
     read_quantities,
 )
 from yehu_server.errors import MeasurementError, OutputError, ParameterError
-from yehu_server.lab.body.body_file import read_fit
 from yehu_server.util.files import MAX_SETTINGS_BYTES
 
 

@@ -7,10 +7,10 @@ import pytest
 from lab.body.bodies import DAMPING, MASS, admittance, radiation
 from lab.body.bodies import HZ as MODES_HZ
 
+from yehu_lab.body import Curve
+from yehu_lab.body.curve import to_mobility
+from yehu_lab.body.plausible import check_admittance, check_radiation
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body import Curve
-from yehu_server.lab.body.curve import to_mobility
-from yehu_server.lab.body.plausible import check_admittance, check_radiation
 
 HZ = np.linspace(100.0, 6000.0, 1000)
 TURN = 2j * np.pi * HZ

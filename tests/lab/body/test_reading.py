@@ -8,9 +8,9 @@ import pytest
 import soundfile
 from lab.body.bodies import admittance, off_db, radiation, rms
 
+from yehu_lab.body import plausible, read, tables
+from yehu_lab.body.tap import write_taps
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body import plausible, read, tables
-from yehu_server.lab.body.tap import write_taps
 
 HZ = np.arange(100.0, 5000.0, 10.0)
 Y = admittance(HZ)

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from lab.body.bodies import admittance, clipped, hit_twice, off_db, rms, with_velocity_only
 
+from yehu_lab.body import Curve, Modes, average, made_taps
+from yehu_lab.body.average import average_taps, hammer_reach
+from yehu_lab.body.body_file import Differences
+from yehu_lab.body.fitting import _doubts
+from yehu_lab.body.tables import Response
+from yehu_lab.body.tap import cut
 from yehu_server.errors import MeasurementError
-from yehu_server.lab.body import Curve, Modes, average, made_taps
-from yehu_server.lab.body.average import average_taps, hammer_reach
-from yehu_server.lab.body.body_file import Differences
-from yehu_server.lab.body.fitting import _doubts
-from yehu_server.lab.body.tables import Response
-from yehu_server.lab.body.tap import cut
 
 RATE = 44100.0
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from yehu_lab.dataset.draws import chance, read_distribution
 from yehu_server.errors import ParameterError
-from yehu_server.lab.dataset.draws import chance, read_distribution
 from yehu_server.util.documents import Fields
 
 MANY = 4000

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from yehu_lab.dataset.description import description_of
+from yehu_lab.dataset.notes import melody, stroke
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
-from yehu_server.lab.dataset.description import description_of
-from yehu_server.lab.dataset.notes import melody, stroke
 
 # Well between Schelleng's limits; then with hardly any force, and with far too much.
 ORDINARY = {"bow_velocity": 0.2, "bow_force": 0.7, "bow_position": 0.12, "stop": 2.0}

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from yehu_server.lab.regimes.columns import REGIMES
-from yehu_server.lab.regimes.judge import judge
+from yehu_lab.regimes.columns import REGIMES
+from yehu_lab.regimes.judge import judge
 
 HERE = Path(__file__).parent
 RATE, NOTE = 44100.0, 441.0

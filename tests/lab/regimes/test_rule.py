@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from lab.regimes.test_judge import LENGTH, NOTE, PERIOD, RATE, SPEED, WIDTH, every, found, slips
 
-from yehu_server.errors import ParameterError
-from yehu_server.lab.regimes.columns import (
+from yehu_lab.regimes.columns import (
     ANOMALOUS_LOW,
     APERIODIC,
     HELMHOLTZ,
@@ -16,8 +15,9 @@ from yehu_server.lab.regimes.columns import (
     RAUCOUS,
     SILENT,
 )
-from yehu_server.lab.regimes.judge import judge, name_regime
-from yehu_server.lab.regimes.periods import NOWHERE, refined, times_of_slips
+from yehu_lab.regimes.judge import judge, name_regime
+from yehu_lab.regimes.periods import NOWHERE, refined, times_of_slips
+from yehu_server.errors import ParameterError
 
 COUNT = 430  # lags
 

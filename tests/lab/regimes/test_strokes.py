@@ -9,11 +9,11 @@ import forks
 import numpy as np
 import pytest
 
-from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ, REGIMES, UNBOWED
-from yehu_server.lab.regimes.judge import judge
-from yehu_server.lab.regimes.strokes import find, value_at
-from yehu_server.lab.simulation import simulate
-from yehu_server.lab.sweeps.study import limits_of, study_of
+from yehu_lab.regimes.columns import FINDING, HELMHOLTZ, REGIMES, UNBOWED
+from yehu_lab.regimes.judge import judge
+from yehu_lab.regimes.strokes import find, value_at
+from yehu_lab.sweeps.study import limits_of, study_of
+from yehu_server.simulation.run import simulate
 
 DATA = {
     "duration": 0.15,
@@ -116,8 +116,8 @@ def test_schellengs_limits_are_his_formulas_and_bracket_helmholtz_motion():
 
 PRINT = """
 import numpy as np
-from yehu_server.lab.regimes.strokes import find
-from yehu_server.lab.sweeps.study import study_of
+from yehu_lab.regimes.strokes import find
+from yehu_lab.sweeps.study import study_of
 bow = {"bow_velocity": [[0.0, 0.0], [0.001, 0.2]], "bow_force": -0.4, "bow_position": 0.28,
        "finger_position": 0.25, "press_force": 2.0}
 study = study_of({"gesture": {"duration": 0.011, "controls": bow}, "vary": {"bow_force": [-0.4]}})

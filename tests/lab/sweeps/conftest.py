@@ -2,8 +2,8 @@
 
 import pytest
 
-from yehu_server.lab.sweeps.running import sweep
-from yehu_server.lab.sweeps.study import study_of
+from yehu_lab.sweeps.running import sweep
+from yehu_lab.sweeps.study import study_of
 
 
 def short(**more):

@@ -2,8 +2,8 @@
 
 import pytest
 
+from yehu_lab.sweeps.axes import axis_from, axis_of
 from yehu_server.errors import ParameterError
-from yehu_server.lab.sweeps.axes import axis_from, axis_of
 from yehu_server.util.documents import Fields
 
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from yehu_lab.regimes.columns import REGIMES
+from yehu_lab.regimes.judge import judge
+from yehu_lab.sweeps.running import sweep
+from yehu_lab.sweeps.study import study_of
 from yehu_server.errors import ParameterError
-from yehu_server.lab.regimes.columns import REGIMES
-from yehu_server.lab.regimes.judge import judge
-from yehu_server.lab.simulation import simulate
-from yehu_server.lab.sweeps.running import sweep
-from yehu_server.lab.sweeps.study import study_of
+from yehu_server.simulation.run import simulate
 
 GESTURE = {
     "duration": 0.15,

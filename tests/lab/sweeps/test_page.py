@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from live.page.browser import SHELL
 
-from yehu_server.lab.plot.cells import edges, is_log
-from yehu_server.lab.plot.study import facts_of, limits_along, write_page
-from yehu_server.lab.plot.sweep_maps import plane_of
-from yehu_server.lab.sweeps.study import study_of
+from yehu_lab.plot.cells import edges, is_log
+from yehu_lab.plot.study import facts_of, limits_along, write_page
+from yehu_lab.plot.sweep_maps import plane_of
+from yehu_lab.sweeps.study import study_of
 
 
 def test_the_plane_has_the_force_upright():

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from yehu_server.lab.regimes.columns import FINDING, HELMHOLTZ
-from yehu_server.lab.sweeps import running
-from yehu_server.lab.sweeps.axes import coarse_points, fill, finer_points
-from yehu_server.lab.sweeps.journal import Done
-from yehu_server.lab.sweeps.study import study_of
+from yehu_lab.regimes.columns import FINDING, HELMHOLTZ
+from yehu_lab.sweeps import running
+from yehu_lab.sweeps.axes import coarse_points, fill, finer_points
+from yehu_lab.sweeps.journal import Done
+from yehu_lab.sweeps.study import study_of
 
 LEVELS = 3
 

@@ -5,8 +5,8 @@ import tracemalloc
 import numpy as np
 import pytest
 
+from yehu_lab.sweeps.result import COLUMNS, Result
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.lab.sweeps.result import COLUMNS, Result
 
 
 def test_a_file_holds_all_of_a_result(tmp_path, result):

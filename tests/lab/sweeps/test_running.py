@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from yehu_lab.regimes.columns import HELMHOLTZ
+from yehu_lab.sweeps import running
+from yehu_lab.sweeps.journal import Journal, journal_of
+from yehu_lab.sweeps.running import findings_of, perform, sweep, sweep_to
+from yehu_lab.sweeps.study import study_of
 from yehu_server.errors import OutputError, YehuError
-from yehu_server.lab.regimes.columns import HELMHOLTZ
-from yehu_server.lab.sweeps import running
-from yehu_server.lab.sweeps.journal import Journal, journal_of
-from yehu_server.lab.sweeps.running import findings_of, perform, sweep, sweep_to
-from yehu_server.lab.sweeps.study import study_of
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.rendering.workers import Event
 

@@ -2,9 +2,9 @@
 
 import pytest
 
+from yehu_lab.sweeps.journal import key_of_study
+from yehu_lab.sweeps.study import read_study, study_from_text, study_of
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.lab.sweeps.journal import key_of_study
-from yehu_server.lab.sweeps.study import read_study, study_from_text, study_of
 from yehu_server.util.files import shipped_folder
 
 STUDIES = sorted((shipped_folder("examples") / "studies").glob("*.toml"))

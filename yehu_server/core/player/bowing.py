@@ -2,7 +2,7 @@
 
 Notes near the body's modes (A4 at 439 Hz above all) and the open F string jump to other
 registers under a fast or a heavy bow. How each note is bowed on each string is found by practising
-(`yehu_server.playing.practice`); `default_recipes` is what practising starts from.
+(`yehu_lab.practising.practice`); `default_recipes` is what practising starts from.
 """
 
 from __future__ import annotations

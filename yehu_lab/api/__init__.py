@@ -1,0 +1,1 @@
+"""What the laboratory adds to ``import yehu_server``; docs/python.md describes it."""

@@ -1,0 +1,95 @@
+"""Many gestures at once: how the model answers, with every combination of some values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from numpy.typing import NDArray
+
+from yehu_lab.regimes.strokes import bow_stroke
+from yehu_lab.sweeps.result import Result as Sweep
+from yehu_lab.sweeps.running import sweep as run_all
+from yehu_lab.sweeps.study import study_of
+from yehu_server.api.checks import PathLike, get_ready, number, whole
+from yehu_server.api.simulated import gesture_of, plain_gesture
+from yehu_server.errors import ParameterError
+from yehu_server.scores.gesture import Gesture
+
+__all__ = ["Sweep", "sweep"]
+
+MOST_WORKERS = 1024
+MOST_RUNS = 1_000_000
+
+
+def sweep(
+    gesture: Mapping[str, Any] | PathLike | Gesture,
+    vary: Mapping[str, Sequence[float] | NDArray[Any]],
+    *,
+    workers: int | None = None,
+    progress: Callable[[float, float], None] | None = None,
+) -> Sweep:
+    """Run a gesture with every combination of some values, on all cores.
+
+    Parameters
+    ----------
+    gesture : mapping or path
+        As of `simulate`. Bow and force begin at once, unless their curves say otherwise.
+    vary : mapping
+        Values by name: a control, such as ``bow_force``; ``bow_acceleration``, with which the bow
+        begins from rest, up to its speed; or the path of another entry, such as
+        ``instrument.bow.mu_S``. A curve is scaled, so that its largest point becomes the value.
+    workers : int, optional
+        Number of runs at a time; by default one for each core. The result is the same.
+    progress : callable, optional
+        Called with the number of runs done and of all.
+
+    Returns
+    -------
+    Sweep
+
+    Raises
+    ------
+    YehuError
+        Where the gesture or a value is wrong, or there are too many runs.
+
+    Examples
+    --------
+    >>> import yehu_server as yehu
+    >>> gesture = {"duration": 0.3, "controls": {"bow_velocity": 0.2}}
+    >>> found = yehu.sweep(gesture, {"bow_force": [0.02, 0.5], "bow_position": [0.25, 0.27]})
+    >>> found.grid("regime").shape
+    (2, 2)
+    """
+    axes = _axes(vary)
+    if (count := math.prod(map(len, axes.values()))) > MOST_RUNS:
+        raise ParameterError(
+            f"{count} runs are more than {MOST_RUNS}; `yehu-server sweep` does any number"
+        )
+    if isinstance(gesture, Mapping):
+        data = plain_gesture(gesture)
+    else:
+        data = dict(gesture_of(gesture).source)
+    study = study_of({"gesture": data, "vary": axes})
+    most = None if workers is None else whole(workers, "workers", 1, MOST_WORKERS)
+    get_ready([bow_stroke])
+    return run_all(study, workers=most, progress=progress)
+
+
+def _axes(vary: Any) -> dict[str, list[float]]:
+    """Check the values that are varied."""
+    if not vary or not isinstance(vary, Mapping):
+        raise ParameterError("vary: expected names and values, such as {'bow_force': [0.2, 0.5]}")
+    axes = {}
+    for name, given in vary.items():
+        if not isinstance(name, str) or not all(name.split(".")):
+            raise ParameterError(f"vary: {name!r}: expected a name, such as 'bow_force'")
+        try:
+            values = [number(value, name) for value in given]
+        except TypeError:
+            raise ParameterError(f"{name}: expected a list of numbers, not {given!r}") from None
+        if not values:
+            raise ParameterError(f"{name}: there are no values")
+        axes[name] = values
+    return axes

@@ -1,0 +1,1 @@
+"""Pictures of sweeps, studies and bodies, with matplotlib."""

@@ -1,0 +1,238 @@
+"""Whole strokes of the bow, each from rest to its finding, in one compiled call without the GIL.
+
+A stroke moves controls along curves that all strokes of a `ControlCurves` share: each stroke scales
+a curve's values, and moves and stretches its time. So many strokes are a few numbers each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+
+from yehu_lab.regimes.columns import FINDING, UNBOWED
+from yehu_lab.regimes.judge import BOW, RELATIVE, SIGNALS, SOUND, judge_signals
+from yehu_server.compile.jit import compiled_exactly, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.engine.atomics import at
+from yehu_server.core.physics import kernel
+from yehu_server.core.physics import refined as refined_kernel
+from yehu_server.core.physics.layout import (
+    F_N,
+    MODEL,
+    PRESSURE,
+    REFINED,
+    RELATIVE_VELOCITY,
+    STATE,
+    V_B,
+    Y_B,
+    control_columns,
+    new_record,
+    probe_columns,
+)
+from yehu_server.core.physics.pluck import pluck_string
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.time_loop import advance_by, kernel_of
+
+Array = Any
+
+BLOCK = 128  # frames computed at a time, so that controls and probes stay in the cache
+MOST_FAULTS = 255
+BLOCKS = np.dtype(
+    [
+        ("controls", np.float64, (BLOCK, control_columns(1))),
+        ("probes", np.float64, (BLOCK, probe_columns(1))),
+        ("come", np.int64, control_columns(1)),  # the point that each control's curve has come to
+    ],
+    align=True,
+)
+_FIELDS: Any = BLOCKS.fields
+PROBES_AT = int(_FIELDS["probes"][1])
+
+# What a stroke does with the curve of one control: value = scale * curve((time - start) * pace).
+MOVE = np.dtype([("scale", np.float64), ("start", np.float64), ("pace", np.float64)])
+
+STROKE = np.dtype(
+    [
+        ("model", np.int64),  # which of the models, and of their states at rest
+        ("hair", np.int64),  # which of many alike
+        ("frames", np.int64),
+        ("frequency_hz", np.float64),  # of the note
+        ("moves", MOVE, control_columns(1)),  # of each column of the kernel's controls
+    ],
+    align=True,
+)
+
+
+@dataclass(frozen=True)
+class ControlCurves:
+    """The curves of all controls, one after another."""
+
+    # [shape=(control columns + 1,), dtype=int64] where in the points the curve of each control
+    # begins; a control without points is 0.
+    first: Array
+    # The points; times (s) do not go back, and values are held before and after.
+    times: Array
+    values: Array
+
+
+def control_curves_of(curves: dict[int, list[tuple[float, float]]]) -> ControlCurves:
+    """The curves of some columns of the controls as arrays."""
+    points = [curves.get(column, []) for column in range(control_columns(1))]
+    first = np.cumsum([0, *map(len, points)])
+    flat = np.array([point for curve in points for point in curve], np.float64).reshape(-1, 2)
+    return ControlCurves(first, flat[:, 0].copy(), flat[:, 1].copy())
+
+
+class Instruments(NamedTuple):
+    """What `find` bows.
+
+    `models` (ndarray [dtype=layout.MODEL]): what is bowed.
+    `rests` (ndarray [dtype=layout.STATE]): the state from which each model begins.
+    `refined` (ndarray [dtype=layout.REFINED]): what each has besides; one with no points has
+    nothing.
+    """
+
+    models: Array
+    rests: Array
+    refined: Array
+
+
+def prepared(
+    quantities: Sequence[Quantities], rates: Sequence[float], plucks: Sequence[Any] = ()
+) -> Instruments:
+    """Prepare instruments for `find`.
+
+    `plucks` tells from where the string of each is let go (`gesture.Pluck`), or None.
+    """
+    count = len(quantities)
+    models, rests = np.zeros(count, MODEL), np.zeros(count, STATE)
+    refined = np.zeros(count, REFINED)
+    for i, (instrument, rate) in enumerate(zip(quantities, rates, strict=True)):
+        model = kernel.prepare(instrument, rate)
+        rest = kernel.at_rest(model)
+        if plucks and plucks[i] is not None:
+            pluck = plucks[i]
+            pluck_string(model, rest, pluck.string - 1, pluck.position, pluck.amplitude)
+        # Not by `concatenate`, which would give the records another layout.
+        models[i], rests[i] = model[0], rest[0]
+        more = refined_kernel.prepare(instrument, rate)
+        if more is not None:
+            refined[i] = more[0]
+    return Instruments(models, rests, refined)
+
+
+@compiled_exactly
+def value_at(times: Array, values: Array, at: int, last: int, time: float) -> float:
+    """The value between a point and the next, or at the first or last of a curve."""
+    if at == last or time <= times[at]:
+        return float(values[at])
+    slope = (values[at + 1] - values[at]) / (times[at + 1] - times[at])
+    return float(values[at] + slope * (time - times[at]))
+
+
+@compiled_exactly
+def write_controls(
+    moves: Array, first: Array, times: Array, values: Array, at: Array, frame: int, rate: float,
+    control: Array,
+) -> None:  # fmt: skip
+    """Write the controls of a frame but the bow's place; `at` keeps the point each has come to."""
+    for column in range(len(control)):
+        begin, last = first[column], first[column + 1] - 1
+        if last < begin:
+            control[column] = 0.0
+            continue
+        move = moves[column]
+        time = (frame / rate - move["start"]) * move["pace"]
+        point = at[column]
+        while point < last and times[point + 1] <= time:
+            point += 1
+        at[column] = point
+        control[column] = move["scale"] * value_at(times, values, point, last, time)
+
+
+@native
+def bow_stroke(
+    kernel: int,
+    model: Any,
+    state: Any,
+    more: Any,
+    stroke: Annotated[Any, STROKE],
+    first: Any,
+    times: Any,
+    values: Any,
+    block: Any,
+    signals: Any,
+    room: int,
+    out: Annotated[Any, FINDING],
+) -> None:
+    """Bow a stroke from rest, and judge it.
+
+    The first four are as of ``time_loop.advance_by``; `first`, `times` and `values` are pointers to
+    the arrays of `ControlCurves`. It works in `block`, and in `signals` as ``judge.judge_signals``
+    has them [shape=(SIGNALS, room)].
+    """
+    m, s = carray(model, (1,), MODEL)[0], carray(state, (1,), STATE)[0]
+    work = carray(block, (1,), BLOCKS)[0]
+    controls, probes, come = work.controls, work.probes, work.come
+    columns = len(come)
+    begins = carray(first, (columns + 1,), np.int64)
+    points = begins[columns]
+    curve_times = carray(times, (points,), np.float64)
+    curve_values = carray(values, (points,), np.float64)
+    rows = carray(signals, (SIGNALS, room), np.float64)
+    rate, place, force = m.rate, 0.0, 0.0
+    for column in range(columns):
+        come[column] = begins[column]
+    for begin in range(0, stroke.frames, BLOCK):
+        count = min(BLOCK, stroke.frames - begin)
+        for n in range(count):
+            write_controls(
+                stroke.moves,
+                begins,
+                curve_times,
+                curve_values,
+                come,
+                begin + n,
+                m.rate,
+                controls[n],
+            )
+            place += controls[n, V_B] / rate
+            controls[n, Y_B] = place
+        advance_by(kernel, model, state, more, block, at(block, PROBES_AT), 0, count)
+        for n in range(count):
+            rows[RELATIVE, begin + n] = probes[n, RELATIVE_VELOCITY]
+            rows[SOUND, begin + n] = probes[n, PRESSURE]
+            rows[BOW, begin + n] = controls[n, V_B]
+        force = controls[count - 1, F_N]
+    judge_signals(signals, room, stroke.frames, rate, stroke.frequency_hz, out)
+    if abs(force) < m.lift_force:
+        out.regime = UNBOWED
+    out.faults = min(MOST_FAULTS, s.unconverged + s.lost)
+
+
+def find(instruments: Instruments, strokes: Array, hands: ControlCurves) -> Array:
+    """Bow strokes, and judge each: findings [shape=(strokes,), dtype=FINDING].
+
+    The strokes do not touch each other: any order of them, in any number of calls, finds the same.
+    The instruments are not changed.
+    """
+    findings = np.zeros(len(strokes), FINDING)
+    strokes = np.ascontiguousarray(strokes)
+    model, state, more = new_record(MODEL), new_record(STATE), new_record(REFINED)
+    block = np.zeros(1, BLOCKS)
+    signals = np.zeros((SIGNALS, int(strokes["frames"].max(initial=0))))
+    own = [array.ctypes.data for array in (model, state, more)]
+    curves = [array.ctypes.data for array in (hands.first, hands.times, hands.values)]
+    for i, stroke in enumerate(strokes):
+        which = stroke["model"]
+        model[0], state[0], more[0] = (array[which] for array in instruments)
+        model["hair"] = stroke["hair"]
+        kernel = kernel_of(more if more["points"][0] else None)
+        bow_stroke.call(
+            kernel, *own, strokes[i:].ctypes.data, *curves, block.ctypes.data, signals.ctypes.data,
+            signals.shape[1], findings[i:].ctypes.data,
+        )  # fmt: skip
+    return findings

@@ -1,1 +1,0 @@
-"""The model studied: simulation, regimes, sweeps, data sets, bodies, pictures."""

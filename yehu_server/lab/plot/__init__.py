@@ -1,1 +1,0 @@
-"""Pictures of sounds, simulations, studies and bodies, with matplotlib."""

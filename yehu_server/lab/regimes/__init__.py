@@ -1,1 +1,0 @@
-"""How a bowed string moves: the rule that names its regime, and whole strokes judged by it."""

@@ -1,0 +1,266 @@
+"""Run the model with a gesture and keep every signal, to study the model.
+
+It uses the kernel that plays notes. docs/simulate.md describes the gesture file and the arrays.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from yehu_server.core.physics import kernel, layout, refined, time_loop
+from yehu_server.core.physics.bow import friction_bound
+from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
+from yehu_server.core.physics.pluck import pluck_string
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.errors import OutputError
+from yehu_server.scores.gesture import CONTROLS, Gesture
+from yehu_server.simulation.labels import as_data, as_json, dimensions, hash_of, label_of
+from yehu_server.util import __version__
+from yehu_server.util.extras import need
+from yehu_server.util.files import replacing
+from yehu_server.util.npz_file import read_npz
+
+if TYPE_CHECKING:
+    import xarray
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+MAX_BYTES = 8 * 2**30
+CHUNK = 1 << 14  # frames between two progress reports
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """The signals of one run, and what it was.
+
+    Attributes
+    ----------
+    arrays : mapping of ndarray
+        By name, with a value for each sample; docs/simulate.md lists them.
+    meta : mapping
+        The gesture, all quantities of the instrument, the version, the sample rate, the grid, and
+        counts of what went wrong.
+    """
+
+    arrays: Mapping[str, Floats]
+    meta: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        seconds = self.meta["frames"] / self.meta["sample_rate"]
+        rate = self.meta["sample_rate"]
+        return (
+            f"<yehu_server.Simulation of {seconds:g} s at {rate:g} Hz, {len(self.arrays)} arrays>"
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Everything as a data set with units, coordinates, and where it came from.
+
+        Its attributes are text and numbers, so that any format holds them: the version, all
+        quantities of the instrument and the gesture as JSON, the rate, and the hash of the values.
+
+        Raises
+        ------
+        ParameterError
+            Where xarray is missing.
+
+        Examples
+        --------
+        >>> import yehu_server as yehu
+        >>> controls = {"bow_force": 0.7, "bow_velocity": 0.3}
+        >>> data = yehu.simulate({"duration": 0.1, "controls": controls}).to_xarray()
+        >>> data.bridge_force.attrs["units"], data.sel(time=0.05, method="nearest").sizes
+        ('N', Frozen({'string': 2}))
+        """
+        need("xarray", "to_xarray", "lab")
+        import xarray
+
+        found = {
+            name: (dimensions(name, values), values, label_of(name).attributes)
+            for name, values in self.arrays.items()
+        }
+        coordinates = {name: each for name, each in found.items() if each[0] == (name,)}
+        sizes = {
+            name: n
+            for dims, values, _ in found.values()
+            for name, n in zip(dims, values.shape, strict=True)
+        }
+        coordinates |= {
+            name: ((name,), np.arange(1, sizes[name] + 1), {})
+            for name in ("finger", "string")
+            if name in sizes
+        }
+        told = dict(self.meta)
+        version = told.pop("version", __version__)
+        plain = {
+            name: value if isinstance(value, str | int | float) else as_json(value)
+            for name, value in told.items()
+        }
+        source = {"source": f"yehu-server {version}", "sha256": hash_of(self.arrays)}
+        others = {name: each for name, each in found.items() if name not in coordinates}
+        return xarray.Dataset(others, coords=coordinates, attrs=source | plain)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Simulation:
+        """Read a file that `save`, or the command, wrote.
+
+        Raises
+        ------
+        ScoreError
+            Where it cannot be read, or is none.
+        """
+        return read_npz(Path(path), cls._of, "the result of a simulation")
+
+    @classmethod
+    def _of(cls, arrays: dict[str, Floats]) -> Simulation:
+        meta = json.loads(str(arrays.pop("meta")))
+        if len(arrays["time"]) != meta["frames"] or not meta["sample_rate"] > 0.0:
+            raise ValueError("something is missing")
+        return cls(arrays, meta)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write an uncompressed ``.npz``; ``meta`` is JSON text within it.
+
+        Raises
+        ------
+        OutputError
+            Where it cannot be written.
+        """
+        target = Path(path)
+        with replacing(target) as partial, partial.open("wb") as file:
+            np.savez(file, allow_pickle=False, meta=np.array(json.dumps(self.meta)), **self.arrays)
+
+
+def simulate(
+    gesture: Gesture,
+    *,
+    energy: bool = False,
+    strings_every: int = 0,
+    progress: Callable[[float, float], None] | None = None,
+) -> Simulation:
+    """Run the model with a gesture.
+
+    Parameters
+    ----------
+    energy : bool
+        Keep the energy ledger too: energy (J), power and losses (W), energy_error (W).
+    strings_every : int
+        Keep the shapes of both strings every so many samples; 0 for never.
+    progress : callable
+        Called with the seconds done and in all.
+
+    Raises
+    ------
+    ParameterError
+        Where the quantities make no stable model at this rate.
+    OutputError
+        Where the arrays would take more than MAX_BYTES.
+    """
+    model = kernel.prepare(gesture.quantities, gesture.sample_rate)
+    more = refined.prepare(gesture.quantities, gesture.sample_rate)
+    m = model[0]
+    frames = gesture.frames
+    columns = layout.probe_columns(1) + layout.control_columns(1) + len(LEDGER) * energy
+    shapes = (frames // strings_every) * int(m["N"].sum() + STRINGS) if strings_every else 0
+    if 8 * (frames * columns + shapes) > MAX_BYTES:
+        raise OutputError(
+            f"{frames} samples would take more than {MAX_BYTES >> 30} GiB: "
+            "shorten the gesture or keep the strings less often"
+        )
+    state = kernel.at_rest(model)
+    if gesture.pluck is not None:
+        pluck = gesture.pluck
+        pluck_string(model, state, pluck.string - 1, pluck.position, pluck.amplitude)
+
+    controls = gesture.control_rows()
+    probes = np.zeros((frames, layout.probe_columns(1)))
+    ledger = np.zeros((frames if energy else 0, len(LEDGER)))
+    shaped: list[list[Floats]] = [[], []]
+    hop = strings_every or CHUNK
+    for start in range(0, frames, hop):
+        if strings_every:
+            for i in range(STRINGS):
+                shaped[i].append(shape_of(m, state["motion"][0], i))
+        part = slice(start, min(start + hop, frames))
+        kept = ledger[part] if energy else None
+        time_loop.run(model, state, more, controls[part], probes[part], kept)
+        if progress is not None:
+            progress(part.stop / gesture.sample_rate, gesture.duration)
+
+    arrays = signals(probes, controls, gesture.sample_rate)
+    if energy:
+        arrays |= {name: ledger[:, column] for column, name in enumerate(LEDGER)}
+    if strings_every:
+        arrays["strings_time"] = arrays["time"][::strings_every]
+        for i in range(STRINGS):
+            arrays[f"string_{i + 1}"] = np.array(shaped[i])
+            length = gesture.quantities.strings[i].L
+            arrays[f"x_{i + 1}"] = np.linspace(0.0, length, int(m["N"][i]) + 1)
+    told = {"gesture": dict(gesture.source), "seed": int(gesture.quantities.bow.hair)}
+    own = None if more is None else more[0]
+    return Simulation(arrays, told | about(m, state[0], frames, gesture.quantities, own))
+
+
+def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, Floats]:
+    """Name the columns of what the kernel gave and was given.
+
+    Of probes and controls [shape=(frames, columns)] as ``physics.layout`` has them, with one finger
+    or more: arrays by name, their first axis frames. With more than one finger, those of fingers
+    have one axis more.
+    """
+    fingers = (controls.shape[1] - layout.FINGER_CONTROLS) // layout.CONTROLS_PER_FINGER
+    shape = (len(probes), fingers, layout.PROBES_PER_FINGER)
+    touch = probes[:, layout.FINGER_PROBES :].reshape(shape)
+    hands = controls[:, layout.FINGER_CONTROLS :].reshape(len(controls), fingers, -1)
+    if fingers == 1:
+        touch, hands = touch[:, 0], hands[:, 0]
+    arrays: dict[str, Floats] = {
+        "time": np.arange(len(probes)) / sample_rate,
+        "bridge_force": probes[:, layout.BRIDGE_FORCE],
+        "bridge_force_1": probes[:, layout.BRIDGE_FORCE_1],
+        "bridge_force_2": probes[:, layout.BRIDGE_FORCE_2],
+        "bridge_velocity": probes[:, layout.BRIDGE_VELOCITY],
+        "pressure": probes[:, layout.PRESSURE],
+        "finger_displacement": touch[..., 0],
+        "contact_force": touch[..., 1:],
+        "friction_force": probes[:, layout.FRICTION_FORCE],
+        "relative_velocity": probes[:, layout.RELATIVE_VELOCITY],
+        "iterations": probes[:, layout.ITERATIONS].astype(np.int64),
+    }
+    for name, control in CONTROLS.items():
+        place = control.column - layout.FINGER_CONTROLS
+        arrays[name] = controls[:, control.column] if place < 0 else hands[..., place]
+    return arrays
+
+
+def about(
+    m: Any, state: Any, frames: int, quantities: Quantities, more: Any = None
+) -> dict[str, Any]:
+    """What a run's metadata tell of the model (MODEL, REFINED) and its state (STATE) at the end."""
+    return {
+        "version": __version__,
+        "instrument": as_data(quantities),
+        "sample_rate": float(m["rate"]),
+        "frames": frames,
+        "grid_intervals": [int(N) for N in m["N"]],
+        "grid_spacing_m": [float(h) for h in m["h"]],
+        "bridge_x_m": float(m["bridge_x"]),
+        "friction_bound": friction_bound(m, more),
+        "unconverged_solves": int(state["unconverged"]),
+        "lost_states": int(state["lost"]),
+    }
+
+
+def shape_of(m: Any, motion: Any, string: int) -> Floats:
+    """Displacement (m) of the nodes of string 0 or 1 now, from its end at the loop.
+
+    `m` and `motion` are records of ``layout.MODEL`` and ``layout.MOTION``.
+    """
+    now: Floats = motion["u"][int(motion["level"]), string]
+    return now[GHOST : GHOST + int(m["N"][string]) + 1].copy()

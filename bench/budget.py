@@ -56,19 +56,20 @@ PLAIN = "callback and posting: mono, dry, steady hands, no hair, no ear"
 WITH_ALL = "callback and posting: all on, as by default"
 BLOCK, POSTED = 128, 1 << 14  # frames: of the callback, and for which notes are posted at once
 ROUNDS = 2  # in one process
+KERNEL_FRAMES = 4410
 
 
 def kernel_row() -> Callable[[], int]:
     """The bare kernel, as it is called."""
-    from parts import FRAMES, Kernel
+    from kernel_loop import Kernel
 
     machine = Kernel(1, 1, 0.5)
-    rows = machine.rows(FRAMES)
+    rows = machine.rows(KERNEL_FRAMES)
 
     def work() -> int:
         for _ in range(40):
             machine.advance(*rows)
-        return 40 * FRAMES
+        return 40 * KERNEL_FRAMES
 
     return work
 

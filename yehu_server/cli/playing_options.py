@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.playing.tuning import Tuning
 
-# The preset of live playing where nothing is said. Compared in phrases (scripts/first_sound.py).
+# The preset of live playing where nothing is said. Compared in phrases (docs/playing.md).
 FIRST_LIVE = "vibrato"
 
 

@@ -77,7 +77,7 @@ def kernel_row() -> Callable[[], int]:
 def performances(name: str) -> Callable[[], Performance]:
     """Performances of the tune on one core, with all that rows up to this one have."""
     from yehu_server.playing.options import PlayingOptions
-    from yehu_server.rendering.options import Options
+    from yehu_server.rendering.options import Options, Part
     from yehu_server.rendering.performance import Performance
     from yehu_server.scores.smf.reader import read_score
 
@@ -87,10 +87,8 @@ def performances(name: str) -> Callable[[], Performance]:
             del settings[address]
         if row == name:
             break
-    made = Options(
-        playing=PlayingOptions(settings=tuple(settings.items())), jobs=1, **ROWS[name][1]
-    )
-    return lambda: Performance(score, made)
+    part = Part(score, PlayingOptions(settings=tuple(settings.items())))
+    return lambda: Performance([part], Options(jobs=1, **ROWS[name][1]))
 
 
 def tune_row(name: str) -> Callable[[], int]:

@@ -110,7 +110,7 @@ def test_a_picture_is_drawn_beside_the_sound_which_is_the_same_and_may_be_replac
 
 def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
     options = Options(is_dry=True, is_mono=True, tail_s=0.0, block=512)
-    performance = Performance(read_score(tune), options)
+    performance = Performance([Part(read_score(tune))], options)
     watch = PlotData(RATE, 0.6, 1)
     for samples in performance.blocks():
         watch.take(samples, performance.target_pitches)

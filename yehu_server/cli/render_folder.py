@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from yehu_server.cli.arguments import cluster_of, instrument_of
+from yehu_server.cli.arguments import cluster_of
 from yehu_server.cli.folder_tasks import Line, Task, perform
 from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.cli.render_pipe import is_piped
@@ -104,8 +104,7 @@ def _render_all(
     else:
         compile_all(arguments)
         with progress_bar(arguments, "calibrating", "notes") as progress:  # before all need it
-            playing, instrument = playing_options_of(arguments), instrument_of(arguments)
-            playing.calibration(float(arguments.rate), instrument, progress)
+            playing_options_of(arguments).calibration(float(arguments.rate), progress)
         cores = arguments.jobs or os.cpu_count() or 1
         ended = perform_all(perform, tasks, min(cores, len(tasks)))
     number = total - len(tasks)
@@ -186,7 +185,6 @@ def _check(arguments: argparse.Namespace) -> str:
         raise ParameterError("--jobs is for this machine: a cluster uses all of its workers")
     check_stage(arguments)
     check_format(form, arguments.subtype or "24", 1 if arguments.mono else 2)
-    instrument_of(arguments)
     playing_options_of(arguments)
     return str(form)
 

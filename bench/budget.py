@@ -56,19 +56,20 @@ PLAIN = "callback and posting: mono, dry, steady hands, no hair, no ear"
 WITH_ALL = "callback and posting: all on, as by default"
 BLOCK, POSTED = 128, 1 << 14  # frames: of the callback, and for which notes are posted at once
 ROUNDS = 2  # in one process
+KERNEL_FRAMES = 4410
 
 
 def kernel_row() -> Callable[[], int]:
     """The bare kernel, as it is called."""
-    from parts import FRAMES, Kernel
+    from kernel_loop import Kernel
 
     machine = Kernel(1, 1, 0.5)
-    rows = machine.rows(FRAMES)
+    rows = machine.rows(KERNEL_FRAMES)
 
     def work() -> int:
         for _ in range(40):
             machine.advance(*rows)
-        return 40 * FRAMES
+        return 40 * KERNEL_FRAMES
 
     return work
 
@@ -76,7 +77,7 @@ def kernel_row() -> Callable[[], int]:
 def performances(name: str) -> Callable[[], Performance]:
     """Performances of the tune on one core, with all that rows up to this one have."""
     from yehu_server.playing.options import PlayingOptions
-    from yehu_server.rendering.options import Options
+    from yehu_server.rendering.options import Options, Part
     from yehu_server.rendering.performance import Performance
     from yehu_server.scores.smf.reader import read_score
 
@@ -86,10 +87,8 @@ def performances(name: str) -> Callable[[], Performance]:
             del settings[address]
         if row == name:
             break
-    made = Options(
-        playing=PlayingOptions(settings=tuple(settings.items())), jobs=1, **ROWS[name][1]
-    )
-    return lambda: Performance(score, made)
+    part = Part(score, PlayingOptions(settings=tuple(settings.items())))
+    return lambda: Performance([part], Options(jobs=1, **ROWS[name][1]))
 
 
 def tune_row(name: str) -> Callable[[], int]:

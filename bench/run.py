@@ -27,7 +27,7 @@ import mido
 import report
 import soundfile
 from budget import KERNEL, PLAIN, ROOT, TUNE, WITH_ALL, Worker
-from parts import Kernel
+from kernel_loop import Kernel
 from yardstick import RATE, Yardstick
 
 RUNS = 9

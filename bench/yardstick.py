@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from kernel_loop import BOW_X, FINGER_X, PRESS, SETTLED_S, SPEED
 from numpy.typing import NDArray
-from parts import BOW_X, FINGER_X, PRESS, SETTLED_S, SPEED
 
 from yehu_server.compile import levels
 from yehu_server.core.physics.quantities import Quantities

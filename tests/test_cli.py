@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import argparse
 import io
+import itertools
 import json
 import os
 import pty
 import re
 import resource
+import shlex
 import signal
 import subprocess
 import sys
 import time
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -24,7 +28,8 @@ from forks import start
 from midi_files import midi_file, notes
 
 import yehu_server
-from yehu_server.cli import main
+from yehu_server.cli import _parser, main
+from yehu_server.cli.arguments import Parser
 from yehu_server.cli.serve import _Ending
 from yehu_server.errors import DeviceError
 from yehu_server.live.audio.output import SharedMemory
@@ -113,6 +118,42 @@ def test_the_pages_that_help_names_come_along(subtests, command, monkeypatch):
                 assert inside.parts[0] in wheel["only-include"]
                 assert wheel["sources"][inside.parts[0]] == f"yehu_server/{inside.parts[0]}"
                 assert not any(inside.is_relative_to(left_out) for left_out in wheel["exclude"])
+
+
+def parsers() -> Iterator[Parser]:
+    """Those of all commands and their actions."""
+    waiting = [_parser()]
+    while waiting:
+        parser = waiting.pop()
+        yield parser
+        for action in parser._actions:
+            if isinstance(action, argparse._SubParsersAction):
+                waiting += action.choices.values()
+        waiting += parser._actions_by_word.values()
+
+
+def test_headings_of_help_are_written_as_their_words_are(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    headings = set()
+    for parser in parsers():
+        titles = [group.title for group in parser._action_groups if group._group_actions]
+        found = re.findall(r"^(\w.*):$", parser.format_help(), re.MULTILINE)
+        found = [each for each in found if each != "examples"]
+        assert found == [title[0].upper() + title[1:] for title in titles]
+        headings |= set(found)
+    assert {"MIDI", "OSC", "OSCQuery", "The page", "Options", "Commands", "Actions"} <= headings
+
+
+def test_the_examples_of_help_can_be_given():
+    examples = [
+        shlex.split(line)[1:]
+        for parser in parsers()
+        for line in re.findall(r"^  (yehu-server .*)", parser.epilog or "", re.MULTILINE)
+    ]
+    assert {words[0] for words in examples} == {name for name in COMMANDS if " " not in name}
+    for words in examples:
+        given = list(itertools.takewhile(lambda word: word not in ("<", ">", "|"), words))
+        _parser(given).parse_args(given)  # exits where one is wrong
 
 
 def test_brackets_in_help_are_no_markup(command):

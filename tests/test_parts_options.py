@@ -64,9 +64,9 @@ def test_each_part_has_its_own_instrument():
         str(shipped_folder("examples") / f"{name}.toml") for name in ("erhu", "ideal_string")
     )
     parts = served("--parts", "3", "--instrument", erhu, "--part-instrument", "2=" + ideal).parts
-    notes = [notes_of(part.quantities).ends for part in parts]
+    notes = [notes_of(part.playing.quantities).ends for part in parts]
     assert notes == [(62, 93), (65, 89), (62, 93)]
-    assert [str(part.files[-1]) for part in parts] == [erhu, ideal, erhu]
+    assert [str(part.playing.instrument) for part in parts] == [erhu, ideal, erhu]
 
 
 def test_inputs_are_given_to_parts():

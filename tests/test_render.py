@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import mido
@@ -20,7 +19,7 @@ from pitch import cents, hertz, pitch_of
 from sound import rms
 
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.rendering.options import Options
+from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.to_files import render
 from yehu_server.scores.score import Score, concatenate
@@ -70,14 +69,13 @@ def play(command, tmp_path):
 
 def samples(path: Path, **options) -> np.ndarray:
     """The sound of a score, before it is written to a file."""
-    playing = PlayingOptions(
-        **{name: options.pop(name) for name in ("seed", "settings") if name in options}
-    )
-    return played(read_score(path), Options(playing=playing, is_dry=True, is_mono=True, **options))
+    own = {name: options.pop(name) for name in ("seed", "settings") if name in options}
+    return played(read_score(path), PlayingOptions(**own), **options)
 
 
-def played(score: Score, options: Options) -> np.ndarray:
-    return np.concatenate(list(Performance(score, options).blocks()))
+def played(score: Score, playing: PlayingOptions, **options) -> np.ndarray:
+    how = Options(is_dry=True, is_mono=True, **options)
+    return np.concatenate(list(Performance([Part(score, playing)], how).blocks()))
 
 
 # ---------------------------------------------------------------- the tune that ships
@@ -381,7 +379,7 @@ def test_a_pedal_or_fade_at_the_end_of_one_file_does_not_reach_the_next(midi):
 
     def second_half(path: Path) -> np.ndarray:
         score = concatenate([read_score(path), read_score(plain)])
-        sound = played(score, Options(is_dry=True, is_mono=True))
+        sound = played(score, PlayingOptions())
         return sound[round(0.6 * 44100) : round(0.75 * 44100)]
 
     expected, heard = second_half(plain), second_half(moved)
@@ -411,9 +409,9 @@ def test_other_rates_play_the_same_tune(play, tmp_path, midi, rate):
 def test_progress_is_told_in_seconds_up_to_the_end(phrase, tmp_path):
     told = []
     summary = render(
-        read_score(phrase),
+        [Part(read_score(phrase))],
         tmp_path / "out.wav",
-        replace(Options(), tail_s=0.5),
+        Options(tail_s=0.5),
         lambda done, total: told.append((done, total)),
     )
     assert {total for _, total in told} == {SCORE_S}

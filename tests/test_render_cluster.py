@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
 import pytest
 from clusters import cluster_in, needs_distributed
-from commands import is_one_line, results_in
+from commands import results_in
 from forks import in_the_place_of_workers, start
 from midi_files import midi_file, notes
 from waiting import LONG_S, until
@@ -21,7 +22,6 @@ pytestmark = needs_distributed
 
 DRY = ("--dry", "--mono", "--tail", "0")
 SCORES = 8
-SETTINGS = '{"bow": {"epsilon_0": 30000.0}}'
 
 
 @pytest.fixture(autouse=True)
@@ -99,14 +99,14 @@ def test_a_wrong_call_gets_one_line_and_makes_nothing(songs, refused, monkeypatc
         assert not (songs / "out").exists()
 
 
-# ---------------------------------------------------------------- workers that see no folder
+# ---------------------------------------------------------------- a cluster that is none
 
 
-class Elsewhere:
-    """A cluster on whose machines a folder is not there, or is, as `seen` tells."""
+class Here:
+    """A cluster whose workers are this process, in another folder."""
 
-    def __init__(self, folder: Path, *, seen: bool = False) -> None:
-        self._folder, self._seen = folder, seen
+    def __init__(self, elsewhere: Path) -> None:
+        self._elsewhere = elsewhere
 
     def __enter__(self) -> Self:
         return self
@@ -114,103 +114,67 @@ class Elsewhere:
     def __exit__(self, *_: object) -> None:
         pass
 
-    def ask(self, question, *arguments):
-        return {"tcp://worker": question(*arguments)}
-
     def perform_all(self, perform, tasks):
-        for job, task in enumerate(list(tasks)):
-            away = self._folder if self._seen else self._folder.with_name("away")
-            self._folder.rename(away)
-            try:
+        for job, task in enumerate(tasks):
+            with contextlib.chdir(self._elsewhere):
                 result = perform(task, lambda _done, _total: None)
-            finally:
-                away.rename(self._folder)
-            assert bool(result["made"]) != (self._seen or "error" in result["line"])
             yield Event(job, 1.0, result=result)
 
 
-@pytest.mark.parametrize("seen", [False, True])
-def test_scores_and_sounds_travel_where_workers_do_not_see_them(
-    alone, command, monkeypatch, seen, tmp_path
-):
-    home = write_songs(tmp_path / "home")
-    monkeypatch.setattr(
-        "yehu_server.rendering.cluster.Cluster", lambda *_: Elsewhere(home, seen=seen)
-    )
-    code, _, err = command("render", home / "in", "-o", home / "out", *DRY, "--dask", "x")
-    assert code == 1
-    assert err == "yehu-server: broken.mid: has a damaged header at byte 0\n"
-    assert results_in(home / "out") == alone
-    code, out, _ = command("render", home / "in", "-o", home / "out", *DRY)
+@pytest.fixture
+def rendered(songs, command, monkeypatch, tmp_path_factory):
+    """Render the songs, named from within their folder, on a cluster of a class."""
+    monkeypatch.chdir(songs)
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+
+    def run(kind: type[Here]) -> tuple[int, str, str]:
+        monkeypatch.setattr("yehu_server.rendering.cluster.Cluster", lambda *_: kind(elsewhere))
+        return command("render", "in", "-o", "out", *DRY, "--dask", "x")
+
+    return run
+
+
+def test_workers_render_from_the_commands_folder(alone, songs, rendered, command):
+    code, _, err = rendered(Here)
+    assert (code, err) == (1, "yehu-server: broken.mid: has a damaged header at byte 0\n")
+    assert results_in(songs / "out") == alone
+    code, out, _ = command("render", "in", "-o", "out", *DRY)
     assert f"0 rendered, {SCORES} up to date, 1 failed" in out
 
 
-def test_an_answer_that_is_no_result_is_an_error_of_its_score(songs, command, monkeypatch):
-    class Strange(Elsewhere):
+def test_workers_that_do_not_see_the_output_are_told(songs, rendered):
+    class Away(Here):
         def perform_all(self, perform, tasks):
-            for event in super().perform_all(perform, tasks):
-                good, job = event.result, event.job
-                line = good["line"]
-                strange = [
-                    None,
-                    {**good, "line": {**line, "file": "../0.mid"}},
-                    {**good, "line": {**line, "duration_s": "\x1b[2J"}},
-                    {**good, "line": {**line, "error": b"x"}},
-                    {**good, "made": ["text"]},
-                    {**good, "made": good["made"] * 2},
-                    {**good, "read": 5},
-                ]
-                yield replace(event, result=strange[job] if job < len(strange) else good)
+            tasks = list(tasks)
+            for mark in (songs / "out" / ".yehu-server").glob("seen-*"):
+                mark.unlink()
+            yield from super().perform_all(perform, tasks)
 
-    monkeypatch.setattr("yehu_server.rendering.cluster.Cluster", lambda *_: Strange(songs / "in"))
-    (songs / "in" / "broken.mid").unlink()
-    code, _, err = command("render", songs / "in", "-o", songs / "out", *DRY, "--dask", "x")
+    code, _, err = rendered(Away)
     assert code == 1
     told = [line.partition(".mid: ")[2] for line in err.splitlines()]
-    assert told == ["a worker answered with what is no result"] * (SCORES - 1)
-    assert len(list((songs / "out").rglob("*.wav"))) == 1
+    expected = "a worker does not see the output; keep it where all see it"
+    assert told == [expected] * (SCORES + 1)
+    assert not list((songs / "out").rglob("*.wav"))
 
 
-def test_a_file_of_the_users_own_is_not_replaced_by_what_has_travelled(songs, command, monkeypatch):
-    monkeypatch.setattr("yehu_server.rendering.cluster.Cluster", lambda *_: Elsewhere(songs / "in"))
-    own = songs / "out" / "0" / "0.wav"
-    own.parent.mkdir(parents=True)
-    own.write_bytes(b"my own")
-    code, _, err = command("render", songs / "in", "-o", songs / "out", *DRY, "--dask", "x")
+def test_an_answer_that_is_no_result_is_an_error_of_its_score(songs, rendered):
+    class Strange(Here):
+        def perform_all(self, perform, tasks):
+            for event in super().perform_all(perform, tasks):
+                line = event.result
+                strange = [
+                    None,
+                    {**line, "file": "../0.mid"},
+                    {**line, "duration_s": "\x1b[2J"},
+                    {**line, "error": b"x"},
+                    {"file": line["file"]},
+                ]
+                job = event.job
+                yield replace(event, result=strange[job] if job < len(strange) else line)
+
+    (songs / "in" / "broken.mid").unlink()
+    code, _, err = rendered(Strange)
     assert code == 1
-    assert "0/0.mid: exists; --overwrite replaces it" in err.replace(f"{own}: ", "")
-    assert own.read_bytes() == b"my own"
-
-
-def test_settings_that_a_worker_does_not_have_are_named(songs, refused, monkeypatch):
-    class Without(Elsewhere):
-        def ask(self, question, *arguments):
-            answers = super().ask(question, *arguments)
-            return {"tcp://worker": dict.fromkeys(answers["tcp://worker"], "")}
-
-    monkeypatch.setattr("yehu_server.rendering.cluster.Cluster", lambda *_: Without(songs / "in"))
-    (songs / "i.json").write_text(SETTINGS)
-    words = ("render", songs / "in", "-o", songs / "out", *DRY, "--dask", "x")
-    line = refused(*words, "--instrument", songs / "i.json")
-    assert is_one_line(line)
-    assert "i.json: the worker tcp://worker does not have this file" in line
-
-
-def test_paths_hold_on_other_machines_and_names_stay_names(tmp_path, monkeypatch):
-    from yehu_server.cli import _parser
-    from yehu_server.cli.folder_cluster import absolute
-
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "m.toml").touch()
-    (tmp_path / "wind").touch()
-
-    def given(*words: str):
-        return absolute(_parser().parse_args(["render", "in", "-o", "out", *words]))
-
-    found = given("--mapping", "m.toml", "--preset", "a/b.toml", "--tuning", "chaozhou")
-    assert (found.midi, found.output) == ([tmp_path / "in"], tmp_path / "out")
-    assert found.mapping == str(tmp_path / "m.toml")
-    assert found.preset == str(tmp_path / "a" / "b.toml")
-    assert (found.tuning, given("--ensemble").ensemble) == (Path("chaozhou"), Path())
-    assert given("--mapping", "wind").mapping == "wind"
-    assert given("--preset", "mine/x+hall").preset == "mine/x+hall"
+    told = [line.partition(".mid: ")[2] for line in err.splitlines()]
+    assert told == ["a worker answered with what is no result"] * 5

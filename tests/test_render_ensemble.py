@@ -16,8 +16,8 @@ from midi_files import midi_file, notes
 from yehu_server.cli import _parser
 from yehu_server.cli.ensemble_parts import players_of
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.note_range import NoteRange
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.stringing import notes_of
 from yehu_server.rendering import cores
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
@@ -248,10 +248,10 @@ def test_each_part_is_moved_into_the_range_of_its_own_instrument(tmp_path):
     words = ("render", tune, "-o", tmp_path / "out.wav", "--ensemble", band)
     arguments = _parser().parse_args([*map(str, words)])
 
-    def scores_for(within: NoteRange) -> list[Score]:
-        return [read_any(tune, How(all_parts=True, within=within))]
+    def scores_for(quantities: Quantities) -> list[Score]:
+        return [read_any(tune, How(all_parts=True, within=notes_of(quantities)))]
 
-    players = players_of(arguments, scores_for, PlayingOptions(), Quantities(), 0.0)
+    players = players_of(arguments, scores_for, PlayingOptions())
     keys = [
         [each.message.note for each in part.score.events if each.message.type == "note_on"]
         for part in players.parts

@@ -13,7 +13,6 @@ from midi_files import midi_file, notes
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.plot_data import COLUMNS, PlotData
-from yehu_server.rendering.workers import Event
 from yehu_server.scores.smf.reader import read_score
 
 DRY = ("--dry", "--tail", 0)  # in little time
@@ -111,7 +110,7 @@ def test_a_picture_is_drawn_beside_the_sound_which_is_the_same_and_may_be_replac
 
 def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
     options = Options(is_dry=True, is_mono=True, tail_s=0.0, block=512)
-    performance = Performance(read_score(tune), options)
+    performance = Performance([Part(read_score(tune))], options)
     watch = PlotData(RATE, 0.6, 1)
     for samples in performance.blocks():
         watch.take(samples, performance.target_pitches)
@@ -146,36 +145,5 @@ def test_what_is_no_picture_of_ours_is_not_replaced_and_a_wrong_name_gets_one_li
 
 def test_where_matplotlib_is_missing_the_extra_is_named(tune, refused, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    for source in (tune, tmp_path):
-        err = refused("render", source, "-o", tmp_path / "a", "--plot", tmp_path / "a.png")
-        assert "install yehu-server[plots]" in err
-
-
-def test_a_folder_has_a_folder_of_pictures(tmp_path, command, monkeypatch):
-    def stand_in(target: Path, *_: object, **_how: object) -> None:
-        target.write_bytes(b"\x89PNG by yehu-server")
-
-    monkeypatch.setattr("yehu_server.plot.png.write_picture", stand_in)
-    monkeypatch.setattr(
-        "yehu_server.rendering.workers.perform_all",
-        lambda perform, tasks, _: (
-            Event(job, 1.0, result=perform(task, lambda _done, _total: None))
-            for job, task in enumerate(tasks)
-        ),
-    )
-    (tmp_path / "in" / "x").mkdir(parents=True)
-    midi_file(tmp_path / "in" / "x" / "a.mid", notes((0.0, 0.1, 67, 90)))
-    words = ("render", tmp_path / "in", "-o", tmp_path / "out", *DRY)
-    pictures = ("--plot", tmp_path / "pictures")
-    for more, told in (
-        ((), "1 rendered, 0 up"),
-        (pictures, "1 rendered, 0 up"),
-        (pictures, "0 rendered, 1 up"),
-    ):
-        code, out, err = command(*words, *more)
-        assert (code, err) == (0, "")
-        assert told in out
-    picture = tmp_path / "pictures" / "x" / "a.png"
-    picture.unlink()
-    assert "1 rendered" in command(*words, *pictures)[1]
-    assert picture.exists()
+    err = refused("render", tune, "-o", tmp_path / "a.wav", "--plot", tmp_path / "a.png")
+    assert "install yehu-server[plots]" in err

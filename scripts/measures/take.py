@@ -98,14 +98,13 @@ class Take:
     ) -> None:
         self.rate = setup.rate
         start = tuple(Presets().load(preset).values.items()) if mapping == DEFAULT else ()
-        playing = PlayingOptions(
-            start=start, mapping=load(mapping), seed=setup.seed, bowing=setup.bowing
-        )
-        usual = setup.calibration
         quantities = quantities or setup.own
+        how = {"seed": setup.seed, "bowing": setup.bowing, "quantities": quantities}
+        playing = PlayingOptions(start=start, mapping=load(mapping), **how)
+        usual = setup.calibration
         first, second = usual.tensions
         strung = replace(usual, tensions=(tension * first, tension * second))
-        self.instrument = Instrument(playing.spec(setup.rate, strung, quantities))
+        self.instrument = Instrument(playing.spec(setup.rate, strung))
         _believe(self.instrument, usual.tuned(quantities))
         self.wishes = playing.wishes(self.instrument)
         self.wishes.write("/playing/variation", setup.variation, frame=0, hold=True)

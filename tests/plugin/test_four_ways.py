@@ -13,7 +13,7 @@ from plugin.sounds import PHRASE, played, prepared, script, write_midi
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.player.rows import ROW
 from yehu_server.rendering import performance
-from yehu_server.rendering.options import Options
+from yehu_server.rendering.options import Options, Part
 from yehu_server.scores.smf.reader import read_score
 
 pytestmark = [
@@ -45,7 +45,7 @@ def by_render(file, monkeypatch):
     """Samples and wishes of `render`, which is told the lengths of notes by the score else."""
     monkeypatch.setattr(performance, "notes_of", lambda _score: ())
     options = Options(rate=int(RATE), tail_s=0.0)
-    playing = performance.Performance(read_score(file), options, reports=True)
+    playing = performance.Performance([Part(read_score(file))], options, reports=True)
     samples = np.concatenate(list(playing.blocks()))[:FRAMES]
     wishes = wishes_in(playing.ensemble.first._rig)
     return samples, wishes[wishes["index"] != ROW["/playing/phrasing"]]

@@ -1,11 +1,11 @@
 """Which scores a folder has, and where they are rendered to."""
 
+import errno
 import os
+from pathlib import Path
 
 import pytest
 
-from yehu_server.errors import ScoreError
-from yehu_server.rendering import folder_tree
 from yehu_server.rendering.folder_tree import tree_of
 
 
@@ -65,7 +65,7 @@ def test_an_output_within_the_input_is_not_read(tmp_path):
     assert [entry.name for entry in both] == ["b.mid", "out/a.mid"]
 
 
-def test_links_are_followed_but_not_in_a_circle(tmp_path):
+def test_links_are_followed_but_no_folder_is_looked_into_twice(tmp_path):
     (tmp_path / "in" / "x").mkdir(parents=True)
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "elsewhere" / "a.mid").touch()
@@ -74,17 +74,19 @@ def test_links_are_followed_but_not_in_a_circle(tmp_path):
     (tmp_path / "in" / "self.mid").symlink_to("self.mid")
     found = tree_of(tmp_path / "in", tmp_path / "out", ".wav")
     assert [entry.name for entry in found.entries] == ["self.mid", "there/a.mid"]
-    assert found.skipped == (("x/round", "a link back to a folder it is in"),)
     assert found.problems == ()
 
 
-def test_there_is_a_bound(monkeypatch, made):
-    monkeypatch.setattr(folder_tree, "MOST_SCORES", 2)
-    with pytest.raises(ScoreError, match="more than 2 scores"):
-        made("a.mid", "b.mid", "c.mid")
+def test_a_folder_that_cannot_be_read_is_a_problem(tmp_path, made, monkeypatch):
+    made("a.mid", "x/b.mid")
+    scandir = os.scandir
 
+    def denied(path):
+        if Path(path).name == "x":
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), path)
+        return scandir(path)
 
-def test_folders_are_looked_into_up_to_a_depth(tmp_path, made):
-    made("/".join(["d"] * 80) + "/a.mid")
-    [(_, why)] = tree_of(tmp_path / "in", tmp_path / "out", ".wav").problems
-    assert why == "more than 64 folders deep"
+    monkeypatch.setattr(os, "scandir", denied)
+    found = tree_of(tmp_path / "in", tmp_path / "out", ".wav")
+    assert [entry.name for entry in found.entries] == ["a.mid"]
+    assert found.problems == (("x", "cannot be read: Permission denied"),)

@@ -11,6 +11,7 @@ from pitch import cents, frame_pitch, pitch_of
 from yehu_server.core.player.note_range import YEHU
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.rendering import options as rendering
 from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
 from yehu_server.scores.jianpu.reader import parse_jianpu
@@ -24,8 +25,8 @@ FLAGEOLET = Sign(Fraction(0), "articulation", float(NUMBER["flageolet"]))
 
 def played(written: Written, phrasing: float = 0.0) -> tuple[np.ndarray, Performance]:
     """The samples of a score, and what played it; the player's own vibrato comes with phrasing."""
-    options = Options(tail_s=0.0, is_dry=True, is_mono=True, phrasing=phrasing)
-    performance = Performance(performed(written), options)
+    part = rendering.Part(performed(written), PlayingOptions(phrasing=phrasing))
+    performance = Performance([part], Options(tail_s=0.0, is_dry=True, is_mono=True))
     return np.concatenate(list(performance.blocks())), performance
 
 
@@ -83,7 +84,7 @@ def test_marks_are_put_back_to_a_preset_and_move_nothing_that_is_held(how, is_mo
     notes = tuple(Note(Fraction(n), Fraction(1), 67.0) for n in range(2))
     signs = (Sign(Fraction(0), "sul-ponticello"), Sign(Fraction(1), "ordinary"))
     score = performed(Written((Part("", notes, (), signs),)))
-    performance = Performance(score, Options(tail_s=0.0, playing=playing, block=4410))
+    performance = Performance([rendering.Part(score, playing)], Options(tail_s=0.0, block=4410))
     places = [performance.wishes.value("/playing/bow_position") for _ in performance.blocks()]
     assert places[-1] == 0.18
     assert (len({*places}) > 1) == is_moved
@@ -93,7 +94,8 @@ def test_settings_of_a_part_that_is_not_played_set_nothing():
     note = Note(Fraction(0), Fraction(1), 67.0, (Mark("pizzicato"),))
     plain = Note(Fraction(0), Fraction(1), 67.0)
     score = performed(Written((Part("", (plain,)), Part("", (note,)))))
-    performance = Performance(score, Options(tail_s=0.0, channels=frozenset({0})))
+    part = rendering.Part(score, PlayingOptions(channels=frozenset({0})))
+    performance = Performance([part], Options(tail_s=0.0))
     next(performance.blocks())
     assert performance.wishes.value("/playing/pizzicato") == 0.0
 

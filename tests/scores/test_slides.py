@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import mido
 import numpy as np
@@ -14,7 +15,7 @@ from yehu_server.core.player.note_range import YEHU
 from yehu_server.core.player.rows import ROW
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.rendering.options import Options
+from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
 from yehu_server.scores.phrasing import phrased
 from yehu_server.scores.score import Score, ScoreEvent, Setting, notes_of
@@ -124,8 +125,8 @@ def test_the_finger_is_heard_to_leave_before_the_beat_and_to_be_there_on_it(keys
 def watched(seconds: tuple[float, float], playing: PlayingOptions) -> Iterator[Performance]:
     """A slide from G5 to D5, each 10 ms; how long both last."""
     score = score_of_notes([(79, 0.0, seconds[0]), (74, 0.5, seconds[1])])
-    options = Options(phrasing=0.5, playing=playing, block=441, is_dry=True, is_mono=True)
-    performance = Performance(phrased(score, 0.5, playing), options)
+    part = Part(phrased(score, 0.5, playing), replace(playing, phrasing=0.5))
+    performance = Performance([part], Options(block=441, is_dry=True, is_mono=True))
     for _ in performance.blocks():
         yield performance
 

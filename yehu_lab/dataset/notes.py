@@ -91,8 +91,8 @@ def melody(description: Description, number: int) -> Sound:
     }
     drawn["notes"] = _written(description, number, int(drawn["notes"]))
     _, calibration = calibrated(description)
-    spec = PlayingOptions(seed=number % 65536).spec(rate, calibration, description.quantities)
-    instrument = Instrument(spec)
+    playing = PlayingOptions(seed=number % 65536, quantities=description.quantities)
+    instrument = Instrument(playing.spec(rate, calibration))
     wishes = PlayingOptions().wishes(instrument)
     for address in description.draws:
         if address.startswith("/"):

@@ -6,7 +6,7 @@ import logging
 import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from numbers import Real
 from pathlib import Path
 from typing import Any, Literal, Protocol
@@ -19,7 +19,6 @@ from yehu_server.errors import ParameterError
 from yehu_server.params.table import HIGHEST_A4, LOWEST_A4, find
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.practice_files import practice_beside
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 
@@ -59,6 +58,11 @@ def number(value: Any, name: str, lo: float = -math.inf, hi: float = math.inf) -
     if not lo <= found <= hi:
         raise ParameterError(f"{name}: {found:g} is not within {lo:g} to {hi:g}")
     return found
+
+
+def rate_of(sample_rate: float) -> int:
+    """Return a sample rate (Hz) that instruments have; raises ParameterError."""
+    return whole(sample_rate, "sample_rate", LOWEST_RATE, HIGHEST_RATE)
 
 
 def whole(value: Any, name: str, lo: float, hi: float) -> int:
@@ -126,17 +130,7 @@ def name_of(value: Any, what: str) -> str:
 OutOfRange = Literal["transpose", "clamp", "skip"]
 
 
-@dataclass(frozen=True)
-class PlayingSetup:
-    """What instrument is played, and how."""
-
-    sample_rate: int
-    quantities: Quantities
-    playing: PlayingOptions
-
-
-def playing_setup_of(
-    sample_rate: float,
+def playing_of(
     instrument: InstrumentLike | None,
     *,
     preset: PathLike | None,
@@ -147,31 +141,23 @@ def playing_setup_of(
     seed: int,
     mapping: PathLike = DEFAULT,
     out_of_range: OutOfRange = "transpose",
-) -> PlayingSetup:
+) -> PlayingOptions:
     """Check options, and read the files that they name; see `render`. Raises YehuError."""
-    rate = whole(sample_rate, "sample_rate", LOWEST_RATE, HIGHEST_RATE)
-    presets = Presets(user_first=False)
-    file = None
-    start: tuple[tuple[str, float], ...] = ()
-    if preset is not None:
-        name = name_of(preset, "preset")
-        file, start = presets.find_file(name), tuple(presets.find(name).values.items())
     policies = [policy.value for policy in RangePolicy]
     if out_of_range not in policies:
         raise ParameterError(f"out_of_range: {out_of_range!r} is not one of {', '.join(policies)}")
-    most = find("/engine/seed").hi
     playing = PlayingOptions(
         mapping=load(name_of(mapping, "mapping"), user_first=False),
-        presets=presets,
-        preset=file,
-        start=start,
+        presets=Presets(user_first=False),
         settings=settings_of(settings),
         a4=number(a4, "a4", LOWEST_A4, HIGHEST_A4),
         tuning=EQUAL if tuning is None else read_tuning(path_of(tuning, "tuning")),
         policy=RangePolicy(out_of_range),
-        seed=whole(seed, "seed", 0, most),
+        seed=whole(seed, "seed", 0, find("/engine/seed").hi),
     )
-    quantities = quantities_of(instrument)
-    beside = Path(instrument) if isinstance(instrument, str | os.PathLike) else None
-    own = practice_beside(beside) if practice is None else path_of(practice, "practice")
-    return PlayingSetup(rate, quantities, playing.practised(own))
+    if preset is not None:
+        playing = playing.with_preset(name_of(preset, "preset"))
+    own = None if practice is None else path_of(practice, "practice")
+    if isinstance(instrument, str | os.PathLike):
+        return playing.on_instrument(Path(instrument), own)
+    return replace(playing, quantities=quantities_of(instrument)).on_instrument(None, own)

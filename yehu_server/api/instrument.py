@@ -14,7 +14,8 @@ from yehu_server.api.checks import (
     PathLike,
     get_ready,
     number,
-    playing_setup_of,
+    playing_of,
+    rate_of,
     setting,
     whole,
 )
@@ -97,8 +98,8 @@ class Instrument:
         practice: PathLike | None = None,
         seed: int = 0,
     ) -> None:
-        make = playing_setup_of(
-            sample_rate,
+        rate = rate_of(sample_rate)
+        playing = playing_of(
             instrument,
             preset=preset,
             settings=settings,
@@ -108,9 +109,8 @@ class Instrument:
             seed=seed,
         )
         get_ready()
-        calibration = make.playing.calibration(float(make.sample_rate), make.quantities)
-        spec = make.playing.spec(float(make.sample_rate), calibration, make.quantities)
-        self._build(make.sample_rate, make.playing, spec, stereo=stereo)
+        spec = playing.spec(float(rate), playing.calibration(float(rate)))
+        self._build(rate, playing, spec, stereo=stereo)
 
     def _build(
         self, rate: int, playing: PlayingOptions, spec: InstrumentSpec, *, stereo: bool

@@ -17,21 +17,20 @@ from yehu_server.api.checks import (
     get_ready,
     number,
     path_of,
-    playing_setup_of,
+    playing_of,
+    rate_of,
     whole,
 )
 from yehu_server.api.notes import Note, score_of
 from yehu_server.api.playback import AudioWidget, Subtype, write_sound
 from yehu_server.errors import ParameterError
 from yehu_server.playing.mapping import DEFAULT
-from yehu_server.playing.stringing import notes_of
-from yehu_server.playing.tuning import RangePolicy
-from yehu_server.rendering.options import Options
+from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
 from yehu_server.rendering.to_files import NORMALIZED_PEAK
 from yehu_server.rendering.true_peak import TruePeak
-from yehu_server.scores.phrasing import PHRASING, is_fingered, phrased
+from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.reading import How, read_any
 from yehu_server.scores.score import Score
 
@@ -190,8 +189,8 @@ def render(
     >>> tune.summary.notes_played, tune.sound.ndim
     (2, 2)
     """
-    make = playing_setup_of(
-        sample_rate,
+    rate = rate_of(sample_rate)
+    playing = playing_of(
         instrument,
         preset=preset,
         settings=settings,
@@ -203,53 +202,43 @@ def render(
         out_of_range=out_of_range,
     )
     is_file = isinstance(score, str) or hasattr(score, "__fspath__")
-    if phrasing is None:
-        usual = PHRASING if is_file else 0.0
-        phrasing = dict(make.playing.settings).get("/playing/phrasing", usual)
-    share = number(phrasing, "phrasing", 0.0, 1.0)
-    options = Options(
-        rate=make.sample_rate,
+    playing = replace(
+        playing,
         channels=_channels(channels),
-        tail_s=None if tail is None else number(tail, "tail", 0.0, LONGEST_TAIL_S),
+        phrasing=None if phrasing is None else number(phrasing, "phrasing", 0.0, 1.0),
+        rubato=None if rubato is None else number(rubato, "rubato", 0.0, 1.0),
         gain_db=None if gain_db is None else number(gain_db, "gain_db", *GAIN_DB),
-        playing=make.playing,
-        quantities=make.quantities,
+    ).shaping(PHRASING if is_file else 0.0)
+    options = Options(
+        rate=rate,
+        tail_s=None if tail is None else number(tail, "tail", 0.0, LONGEST_TAIL_S),
+        normalize=bool(normalize),
         block=BLOCK,
         is_dry=bool(dry),
         is_mono=bool(mono),
     )
     number_of_song = None if song is None else whole(song, "song", 1, 1 << 16)
-    playing = make.playing
-    how = How(
-        () if part is None else (str(part),),
-        all_parts=channels is not None,
-        in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
-        is_mpe=playing.mapping.mpe,
-        within=notes_of(make.quantities),
-    )
+    named = () if part is None else (str(part),)
+    how = How.by(playing, named, all_parts=channels is not None)
     if isinstance(score, Score):
         read = score
     elif is_file:
         read = read_any(path_of(score, "score"), how, song=number_of_song)
     else:
         read = score_of(score)
-    delay = share if rubato is None else number(rubato, "rubato", 0.0, 1.0)
-    score = phrased(read, share, playing, how.within, delay)
-    options = replace(options, phrasing=0.0 if is_fingered(score) else share)
+    whole_part = Part.shaped([read], playing)
     get_ready()
-    calibration = options.playing.calibration(float(options.rate), options.quantities)
-    options = replace(options, calibration=calibration)
-    sound, asked, summary = _played(score, replace(options, normalize=bool(normalize)), progress)
-    warnings = (*score.remarks, *score.warnings, *_remarks(summary))
-    return Rendering(sound, options.rate, score.name, warnings, summary, asked, options.playing.a4)
+    sound, asked, summary = _played(whole_part, options, progress)
+    warnings = (*read.remarks, *read.warnings, *_remarks(summary))
+    return Rendering(sound, rate, read.name, warnings, summary, asked, playing.a4)
 
 
 def _played(
-    score: Score, options: Options, progress: Callable[[float, float], None] | None
+    part: Part, options: Options, progress: Callable[[float, float], None] | None
 ) -> tuple[Sound, tuple[Floats, Floats], Summary]:
-    """Play a score; return its sound, the pitches that were asked for, and a summary."""
+    """Play a part; return its sound, the pitches that were asked for, and a summary."""
     start = time.perf_counter()
-    performance = Performance(score, options)
+    performance = Performance([part], options)
     blocks, times, pitches, frames = [], [], [], 0
     for samples in performance.blocks():
         blocks.append(samples)

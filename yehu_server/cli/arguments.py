@@ -27,6 +27,9 @@ class HelpFormatter(RawDescriptionRichHelpFormatter):
     """Shows texts as they are: brackets, as in yehu-server[follow], are no markup."""
 
     text_markup = help_markup = False
+    group_name_formatter = staticmethod(  # type: ignore[assignment]
+        lambda name: name[:1].upper() + name[1:]  # MIDI, not Midi
+    )
 
 
 def add_options(group: Any, table: str, /, **details: Any) -> None:

@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING
 from yehu_server.cli.sound_options import BY_MIDI, Values, is_of_room, room_of
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import EnsembleError, ParameterError, YehuError
-from yehu_server.scores.score import Score, concatenate
+from yehu_server.scores.score import Score
 
 if TYPE_CHECKING:
     from yehu_server.core.physics.quantities import Quantities
-    from yehu_server.core.player.note_range import NoteRange
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Part
     from yehu_server.scores.ensemble_file import EnsembleFile, PartEntry
@@ -36,26 +35,21 @@ class Players:
 
 def players_of(
     arguments: argparse.Namespace,
-    scores_for: Callable[[NoteRange], list[Score]],
+    scores_for: Callable[[Quantities], list[Score]],
     playing: PlayingOptions,
-    quantities: Quantities,
-    phrasing: float,
 ) -> Players:
     """Give each part of some scores, which are played one after another, a player.
 
     Raises YehuError where there are too many parts, or what a file names is not there.
 
     `scores_for`: reads the scores, with their parts moved into the range of an instrument.
-    `playing`, `quantities`, `phrasing`: of all players, where an ensemble file does not say
-    otherwise.
+    `playing`: of all players, where an ensemble file does not say otherwise.
     """
-    from yehu_server.core.physics.quantities import read_quantities
     from yehu_server.playing.parts import seated
-    from yehu_server.playing.practice_files import practice_beside, practices_beside
-    from yehu_server.playing.stringing import notes_of
-    from yehu_server.scores.reading import percussion_notes
+    from yehu_server.rendering.options import Part
+    from yehu_server.scores.reading import part_of, percussion_notes
 
-    scores = scores_for(notes_of(quantities))
+    scores = scores_for(playing.quantities)
     room: Values = ()
     ensemble = None
     files: list[Path] = []
@@ -77,21 +71,20 @@ def players_of(
         files.append(ensemble.path)
     per_part = seated([_options_of(entry, playing, room) for entry in entries])
     for entry, usual in zip(entries, per_part, strict=True):
-        instrument, own = quantities, usual
-        if entry.instrument is not None:
-            with _at(entry.where):
-                instrument = read_quantities(entry.instrument)
-            if arguments.practice is None:
-                own = replace(own, bowing=None, practice=None)
-                own = own.practised(practice_beside(entry.instrument))
-            files += [entry.instrument, *practices_beside(entry.instrument)]
-        files += own.files
+        own = replace(
+            usual,
+            channels=usual.channels if entry.channel is None else frozenset({entry.channel}),
+            seed=usual.seed if entry.seed is None else entry.seed,
+            gain_db=_gain_db(usual, entry, len(entries)),
+        )
         with _at(entry.where):
-            read = scores_for(notes_of(instrument))
-        part = _part(entry, read, instrument, own, phrasing, arguments)
-        seed = own.seed if entry.seed is None else entry.seed
-        gain_db = _gain_db(own, entry, len(entries), arguments)
-        parts.append(replace(part, playing=replace(own, seed=seed), gain_db=gain_db))
+            if entry.instrument is not None:
+                own = own.on_instrument(entry.instrument, arguments.practice)
+            read = scores_for(own.quantities)
+        files += own.files
+        what = f"track {entry.track}" if entry.channel is None else f"channel {entry.channel + 1}"
+        played = [part_of(score, entry.channel, entry.track) for score in read]
+        parts.append(Part.shaped(played, own, entry.name or what))
     if ensemble is not None:
         _warn_of_unplayed(ensemble, scores)
     return Players(tuple(parts), tuple(files), spare)
@@ -166,10 +159,9 @@ def _options_of(entry: PartEntry, playing: PlayingOptions, room: Values) -> Play
         if entry.mapping is not None:
             playing = replace(playing, mapping=load(entry.mapping))
         if entry.preset is not None:
-            presets = playing.presets
-            file, preset = presets.find_file(entry.preset), presets.find(entry.preset)
             kept = (pair for pair in playing.start if is_of_room(pair[0]))  # of --room
-            playing = replace(playing, preset=file, start=(*preset.values.items(), *kept))
+            playing = playing.with_preset(entry.preset)
+            playing = replace(playing, start=(*playing.start, *kept))
     own = dict(entry.settings)
     settings = (pair for pair in playing.settings if pair[0] not in own)
     place = {"/room/pan": entry.pan, "/room/distance": entry.distance, SECTION: entry.section}
@@ -178,41 +170,9 @@ def _options_of(entry: PartEntry, playing: PlayingOptions, room: Values) -> Play
     return replace(playing, start=starts, settings=(*settings, *own.items()))
 
 
-def _part(
-    entry: PartEntry,
-    scores: Sequence[Score],
-    quantities: Quantities,
-    playing: PlayingOptions,
-    phrasing: float,
-    arguments: argparse.Namespace,
-) -> Part:
-    """The part of an entry, before its player has a seat."""
-    from yehu_server.playing.stringing import notes_of
-    from yehu_server.rendering.options import Part
-    from yehu_server.scores.phrasing import is_fingered, phrased
-    from yehu_server.scores.reading import part_of
-
-    own = [part_of(score, entry.channel, entry.track) for score in scores]
-    how = {"playing": playing, "within": notes_of(quantities), "rubato": arguments.rubato}
-    score = concatenate([phrased(each, phrasing, **how) for each in own])
-    channels = frozenset({entry.channel}) if entry.channel is not None else None
-    if channels is None and arguments.channel is not None:
-        channels = frozenset(arguments.channel)
-    return Part(
-        score,
-        name=entry.name
-        or (f"track {entry.track}" if entry.channel is None else f"channel {entry.channel + 1}"),
-        channels=channels,
-        phrasing=0.0 if is_fingered(score) else phrasing,
-        quantities=quantities,
-    )
-
-
-def _gain_db(
-    playing: PlayingOptions, entry: PartEntry, parts: int, arguments: argparse.Namespace
-) -> float:
+def _gain_db(playing: PlayingOptions, entry: PartEntry, parts: int) -> float:
     """The gain of a part: as asked for, or so that all are about as loud together as one alone."""
-    gain_db: float | None = arguments.gain_db
+    gain_db = playing.gain_db
     if gain_db is None:
         gain_db = dict(playing.start).get("/output/gain", 0.0) - 10.0 * math.log10(parts)
     return gain_db + entry.gain_db

@@ -44,6 +44,7 @@ from yehu_server.util.files import check_distinct, check_target, write_bytes
 if TYPE_CHECKING:
     from yehu_server.following.heard import Heard
     from yehu_server.following.performance import Performed
+    from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Options
 
 STYLES = ("exact", "gentle", "even")
@@ -101,7 +102,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     start = time.perf_counter()
     need_follow("follow")
-    options = _options(arguments)
+    playing, options = _options(arguments)
     recording = recording_of_file(arguments.recording, arguments.max_duration)
     with progress_bar(arguments, "listening") as progress:
         heard = hear(recording, progress=progress)
@@ -110,14 +111,14 @@ def run(arguments: argparse.Namespace) -> int:
         correct=arguments.correct,
         keeps_vibrato=arguments.keep_vibrato,
         style=ALL[arguments.style],
-        tuning=options.playing.tuning,
-        a4=options.playing.a4,
-        within=notes_of(options.quantities),
+        tuning=playing.tuning,
+        a4=playing.a4,
+        within=notes_of(playing.quantities),
     )
     found = performed(heard, strokes_of(heard), wanted)
     for warning in heard.warnings:
         warn(f"{arguments.recording}: {warning}")
-    _write(arguments, options, heard, found)
+    _write(arguments, playing, options, heard, found)
     fields = {
         "duration_s": heard.duration_s,
         "voiced_s": float(heard.is_voiced.sum() * heard.times_s[1]),
@@ -133,8 +134,8 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _options(arguments: argparse.Namespace) -> Options:
-    """How to render; raises YehuError where something is wrong, before listening."""
+def _options(arguments: argparse.Namespace) -> tuple[PlayingOptions, Options]:
+    """How to play and to render; raises YehuError where something is wrong, before listening."""
     from yehu_server.util.sound_file import check_format, format_of
 
     ending = arguments.output.suffix.lower()
@@ -143,8 +144,7 @@ def _options(arguments: argparse.Namespace) -> Options:
     if arguments.plot is not None and ending in (*MIDI, *CAPTURE):
         raise OutputError("--plot shows what is played: name a sound file with -o")
     outputs = {"-o": arguments.output, **picture_output(arguments)}
-    own = [] if arguments.instrument is None else [arguments.instrument]
-    check_distinct(outputs, [arguments.recording, *playing.files, *own])
+    check_distinct(outputs, [arguments.recording, *playing.files])
     form = "wav"
     if ending in (*MIDI, *CAPTURE):
         check_target(arguments.output)
@@ -152,10 +152,16 @@ def _options(arguments: argparse.Namespace) -> Options:
         form = format_of(arguments.output)
         check_format(form, arguments.subtype)
         check_output(arguments)
-    return sound_options_of(arguments, playing, form, arguments.subtype)
+    return playing, sound_options_of(arguments, form, arguments.subtype)
 
 
-def _write(arguments: argparse.Namespace, options: Options, heard: Heard, found: Performed) -> None:
+def _write(
+    arguments: argparse.Namespace,
+    playing: PlayingOptions,
+    options: Options,
+    heard: Heard,
+    found: Performed,
+) -> None:
     """Write the file that is asked for."""
     ending = arguments.output.suffix.lower()
     if ending in MIDI:
@@ -168,31 +174,21 @@ def _write(arguments: argparse.Namespace, options: Options, heard: Heard, found:
         return
     compile_all(arguments)
     with progress_bar(arguments, "calibrating", "notes") as progress:
-        calibration = options.playing.calibration(float(options.rate), options.quantities, progress)
-    options = replace(options, calibration=calibration)
-    with progress_bar(arguments, "playing") as progress:
-        if ending in CAPTURE:
-            from yehu_server.rendering.to_files import render_capture
-
-            overwrite = arguments.overwrite
-            render_capture(found.score, arguments.output, options, progress, overwrite=overwrite)
-        else:
-            _render(arguments, options, heard, found, progress)
-
-
-def _render(
-    arguments: argparse.Namespace, options: Options, heard: Heard, found: Performed, progress: Any
-) -> None:
-    """Write the sound and, where it is asked for, the picture."""
+        playing.calibration(float(options.rate), progress)
+    from yehu_server.rendering.options import Part
     from yehu_server.rendering.plot_data import PlotData
-    from yehu_server.rendering.to_files import render
+    from yehu_server.rendering.to_files import render, render_capture
 
+    parts, output = [Part(found.score, playing)], arguments.output
     watch = None
     if arguments.plot is not None:
-        watch = PlotData(float(options.rate), found.score.duration_s, 1, options.playing.a4)
+        watch = PlotData(float(options.rate), found.score.duration_s, 1, playing.a4)
         options = replace(options, block=PLOTTED_BLOCK)
-    may_replace = check_output(arguments)
-    render(found.score, arguments.output, options, progress, may_replace, watch=watch)
+    with progress_bar(arguments, "playing") as progress:
+        if ending in CAPTURE:
+            render_capture(parts, output, options, progress, overwrite=arguments.overwrite)
+        else:
+            render(parts, output, options, progress, check_output(arguments), watch=watch)
     if watch is not None:
         from yehu_server.plot.followed import write_followed
 

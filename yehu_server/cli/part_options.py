@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_instrument, add_options, instrument_of
+from yehu_server.cli.arguments import add_instrument, add_options
 from yehu_server.cli.converters import whole_within
 from yehu_server.cli.playing_options import mapping_of, playing_options_of
 from yehu_server.cli.terminal import warn
@@ -65,14 +65,12 @@ def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
                 name = f"--{option.replace('_', '-')} {number}={text}"
                 raise ParameterError(f"{name}: {no_part(number, arguments.parts)}")
     usual = playing_options_of(arguments, is_live=True)
-    usual_instrument = instrument_of(arguments)
     options = []
     for number in range(1, arguments.parts + 1):
         own = _own(arguments, number)
         playing = usual if own is None else _options_of(own, number)
         reread = partial(mapping_of, own or arguments, is_live=True) if arguments.watch else None
-        strung = usual_instrument if own is None else instrument_of(own)
-        options.append(PartOptions(playing, strung, (own or arguments).instrument, reread))
+        options.append(PartOptions(playing, reread))
     number_of_instruments([part.playing for part in options])
     return options
 

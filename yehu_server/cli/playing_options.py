@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.playing.tuning import Tuning
 
-# The preset of live playing where nothing is said. Compared in phrases (scripts/first_sound.py).
+# The preset of live playing where nothing is said. Compared in phrases (docs/playing.md).
 FIRST_LIVE = "vibrato"
 
 
@@ -115,17 +115,25 @@ def add_presets_folder(group: Any) -> None:
 
 
 def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
-    """What the options of `add_playing` ask for, as `table_options_of`; raises YehuError."""
-    from yehu_server.core.player.fingering import OpenStrings
-    from yehu_server.playing.practice_files import practice_beside
+    """What the options of `add_playing` ask for, and those beside them; raises YehuError.
 
+    `is_live`: as of `table_options_of`.
+    """
+    from yehu_server.core.player.fingering import OpenStrings
+
+    beside: dict[str, Any] = {  # those of a command that has them
+        name: getattr(arguments, name, None) for name in ("phrasing", "rubato", "gain_db")
+    }
+    channel = getattr(arguments, "channel", None)
     playing = replace(
         table_options_of(arguments, is_live=is_live),
         settings=tuple(assignment(text) for text in arguments.set),
         open_strings=OpenStrings(arguments.open_strings),
         seed=arguments.seed,
+        channels=None if channel is None else frozenset(channel),
+        **beside,
     )
-    return playing.practised(arguments.practice or practice_beside(arguments.instrument))
+    return playing.on_instrument(arguments.instrument, arguments.practice)
 
 
 def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:
@@ -140,25 +148,19 @@ def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) ->
     from yehu_server.playing.tuning import RangePolicy
 
     user_first = is_live or arguments.presets is not None
-    presets = Presets(arguments.presets, user_first=user_first)
-    start: tuple[tuple[str, float], ...] = ()
-    file = None
-    name = arguments.preset
-    if name is None and is_live and arguments.mapping is None and not arguments.mpe:
-        name = FIRST_LIVE
-    if name is not None:
-        file = presets.find_file(name)
-        preset = presets.find(name)
-        start = tuple(preset.values.items())
-        for remark in preset.remarks():
-            warn(remark)
-    return PlayingOptions(
+    playing = PlayingOptions(
         mapping=mapping_of(arguments, is_live=is_live),
-        presets=presets,
-        preset=file,
-        start=start,
+        presets=Presets(arguments.presets, user_first=user_first),
         programs=arguments.programs,
         a4=arguments.a4,
         tuning=tuning_of(arguments),
         policy=RangePolicy(arguments.range),
     )
+    name = arguments.preset
+    if name is None and is_live and arguments.mapping is None and not arguments.mpe:
+        name = FIRST_LIVE
+    if name is None:
+        return playing
+    for remark in playing.presets.find(name).remarks():
+        warn(remark)
+    return playing.with_preset(name)

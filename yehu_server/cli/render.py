@@ -86,7 +86,7 @@ def add_to(commands: Any) -> None:
         --strict: refuse MIDI files with any damage, with exit code 1 (default: warn)
         --max-duration HOURS: refuse MIDI files that last longer together (default:
             {MAX_DURATION_H:g})
-        --plot PNG: also draw level, pitch asked and played, and spectrogram; of a folder, a folder
+        --plot PNG: also draw level, pitch asked and played, and spectrogram
         """,
         format={"choices": ("wav", "flac", "raw")},
         subtype={"choices": ("16", "24", "float")},

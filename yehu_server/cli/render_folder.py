@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
-from collections.abc import Sequence
-from functools import cache, partial
+import secrets
+import sys
+from collections.abc import Generator, Sequence
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from yehu_server.cli.arguments import cluster_of, instrument_of
-from yehu_server.cli.folder_tasks import Line, Task
+from yehu_server.cli.arguments import cluster_of
+from yehu_server.cli.folder_tasks import Line, Task, perform
+from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.cli.render_pipe import is_piped
-from yehu_server.cli.terminal import print_result, warn
-from yehu_server.errors import OutputError, ParameterError, ScoreError
+from yehu_server.cli.terminal import compile_all, print_result, progress_bar, warn
+from yehu_server.errors import OutputError, ParameterError, ScoreError, one_line
 from yehu_server.rendering import build_records
-from yehu_server.rendering.build_records import hash_of, previous_line, up_to_date
+from yehu_server.rendering.build_records import HIDDEN, checked_line, hash_of, up_to_date
 from yehu_server.util.source_key import key_of
 
 if TYPE_CHECKING:
+    from yehu_server.rendering.cluster import Cluster
     from yehu_server.rendering.folder_tree import Tree
+    from yehu_server.rendering.workers import Event
 
 SOUNDS = (".wav", ".wave", ".flac", ".raw")  # which no folder is to be called
 
@@ -40,8 +47,7 @@ def is_for_folder(arguments: argparse.Namespace) -> bool:
 
 def run(arguments: argparse.Namespace) -> int:
     """Render a folder; return the exit code: 1 where some of its scores failed."""
-    from yehu_server.cli.folder_cluster import absolute
-    from yehu_server.cli.folder_runs import prepare, render_all
+    from yehu_server.core.engine.warming import warm_up
     from yehu_server.rendering.folder_tree import tree_of
 
     [folder] = arguments.midi
@@ -49,11 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
     tree = tree_of(folder, arguments.output, f".{form}")
     if not tree.entries and not tree.problems:
         raise ScoreError(f"{folder}: has no scores")
-    for name, why in tree.skipped:
-        warn(f"{name}: {why}")
     places = {entry.target.parent for entry in tree.entries}
-    setup = partial(prepare, absolute(arguments))
-    with cluster_of(arguments, setup) as cluster, build_records.alone_in(arguments.output):
+    with cluster_of(arguments, warm_up) as cluster, build_records.alone_in(arguments.output):
         build_records.check_manifest(arguments.output)
         build_records.clear_work(places)
         lines: list[Line] = [{"file": name, "error": why} for name, why in tree.problems]
@@ -63,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
             print(json.dumps(line))
         try:
             if tasks:
-                render_all(arguments, tasks, len(tree.entries), lines, cluster)
+                _render_all(arguments, tasks, len(tree.entries), lines, cluster)
         except KeyboardInterrupt:
             made = sum("error" not in line for line in lines)
             raise KeyboardInterrupt(
@@ -73,14 +76,90 @@ def run(arguments: argparse.Namespace) -> int:
         finally:
             build_records.clear_work(places)
             build_records.write_manifest(arguments.output, lines)
-    return _report(arguments, lines, current)
+    failed = sorted((line for line in lines if "error" in line), key=lambda line: line["file"])
+    for line in failed:
+        warn(f"{line['file']}: {line['error']}")
+    if not arguments.json and not arguments.quiet:
+        made = len(lines) - len(failed) - len(current)
+        counts = f"{made} rendered, {len(current)} up to date, {len(failed)} failed"
+        print_result(f"{arguments.output}: {counts}")
+    return 1 if failed else 0
+
+
+def _render_all(
+    arguments: argparse.Namespace,
+    tasks: Sequence[Task],
+    total: int,
+    lines: list[Line],
+    cluster: Cluster | None,
+) -> None:
+    """Render all tasks; append what becomes of each to the lines of the manifest.
+
+    `total`: number of scores in the folder, those that are up to date included.
+    """
+    from yehu_server.rendering.workers import perform_all
+
+    if cluster is not None:
+        ended = _on_cluster(arguments, tasks, cluster)
+    else:
+        compile_all(arguments)
+        with progress_bar(arguments, "calibrating", "notes") as progress:  # before all need it
+            playing_options_of(arguments).calibration(float(arguments.rate), progress)
+        cores = arguments.jobs or os.cpu_count() or 1
+        ended = perform_all(perform, tasks, min(cores, len(tasks)))
+    number = total - len(tasks)
+    shares, done = [0.0] * len(tasks), 0.0
+    with progress_bar(arguments, "rendering", "scores") as progress, contextlib.closing(ended):
+        for event in ended:
+            done += event.share - shares[event.job]
+            shares[event.job] = event.share
+            progress(done, len(tasks))
+            if event.is_end:
+                lines.append(_line_of(tasks[event.job], event))
+                number += 1
+                _tell_one(arguments, lines[-1], number, total)
+
+
+def _on_cluster(
+    arguments: argparse.Namespace, tasks: Sequence[Task], cluster: Cluster
+) -> Generator[Event]:
+    """Yield what becomes of tasks on workers, which see all files under the same names."""
+    mark = arguments.output.absolute() / HIDDEN / f"seen-{secrets.token_hex(8)}"
+    mark.touch()
+    try:
+        sent = (replace(task, folder=Path.cwd(), mark=mark) for task in tasks)
+        yield from cluster.perform_all(perform, sent)
+    finally:
+        with contextlib.suppress(OSError):
+            mark.unlink()
+
+
+def _line_of(task: Task, event: Event) -> Line:
+    """The line of a task that is over, checked: anybody on a cluster may have sent it."""
+    name = task.entry.name
+    if event.died:
+        return {"file": name, "error": f"the process that rendered it was {event.died}"}
+    try:
+        line = checked_line(event.result, file=name)
+        if "error" not in line and not isinstance(line["duration_s"], float):
+            raise TypeError  # noqa: TRY301 - as where it is missing
+    except (KeyError, TypeError, ValueError, RecursionError):
+        return {"file": name, "error": "a worker answered with what is no result"}
+    return line
+
+
+def _tell_one(arguments: argparse.Namespace, line: Line, number: int, total: int) -> None:
+    """Tell of a file: as JSON, or as a line where there is no progress bar."""
+    if arguments.json:
+        print(json.dumps(line), flush=True)
+    elif not arguments.quiet and not sys.stderr.isatty():
+        what = "failed" if "error" in line else f"{line['duration_s']:.1f} s"
+        print_result(f"{number} of {total}: {one_line(line['file'])}: {what}", flush=True)
 
 
 def _check(arguments: argparse.Namespace) -> str:
     """Check the options before any file is looked at; return the format to write."""
-    from yehu_server.cli.playing_options import playing_options_of
     from yehu_server.cli.sound_options import check_stage
-    from yehu_server.core.physics.grid import check_rate
     from yehu_server.util.sound_file import check_format
 
     form = arguments.format or "wav"
@@ -91,8 +170,9 @@ def _check(arguments: argparse.Namespace) -> str:
             f"{arguments.midi[0]}: is a folder, which is rendered to a folder, "
             f"not to {arguments.output.name}"
         )
-    if arguments.stems is not None:
-        raise ParameterError("--stems is for one score, not for a folder")
+    for option in ("stems", "plot"):
+        if getattr(arguments, option) is not None:
+            raise ParameterError(f"--{option} is for one score, not for a folder")
     if form == "raw":
         raise ParameterError("--format raw is for -o -, not for a folder")
     if arguments.output.exists() and not arguments.output.is_dir():
@@ -103,35 +183,10 @@ def _check(arguments: argparse.Namespace) -> str:
         )
     if arguments.dask is not None and arguments.jobs is not None:
         raise ParameterError("--jobs is for this machine: a cluster uses all of its workers")
-    check_rate(arguments.rate)
     check_stage(arguments)
     check_format(form, arguments.subtype or "24", 1 if arguments.mono else 2)
-    instrument_of(arguments)
     playing_options_of(arguments)
-    if arguments.plot is not None:
-        from yehu_server.util.extras import need
-
-        need("matplotlib", "--plot", "plots")
     return str(form)
-
-
-def _report(arguments: argparse.Namespace, lines: Sequence[Line], current: Sequence[Line]) -> int:
-    """Tell of all files at the end; return the exit code.
-
-    `current`: the lines of those that were up to date, or had failed before.
-    """
-    failed = sorted((line for line in lines if "error" in line), key=lambda line: line["file"])
-    for line in failed:
-        warn(f"{line['file']}: {line['error']}")
-    if not arguments.json and not arguments.quiet:
-        before = sum("error" in line for line in current)
-        up_to_date = len(current) - before
-        made = len(lines) - len(failed) - up_to_date
-        counts = f"{made} rendered, {up_to_date} up to date, {len(failed)} failed"
-        if before:
-            counts += f" ({before} as before; --overwrite tries again)"
-        print_result(f"{arguments.output}: {counts}")
-    return 1 if failed else 0
 
 
 # What does not change the sound of a file. All other options do, also ones yet to be invented.
@@ -144,40 +199,24 @@ NEUTRAL = (
     "midi",
     "output",
     "overwrite",
-    "plot",
     "quiet",
 )
 SOUNDING = ("playing", "scores", "rendering", "util")  # folders of code, beside what is compiled
 
 
 def split_up_to_date(arguments: argparse.Namespace, tree: Tree) -> tuple[list[Task], list[Line]]:
-    """What is to be rendered; and the lines of what is up to date.
-
-    A score that failed is up to date too, as long as nothing has changed; ``--overwrite`` tries
-    it again.
-    """
+    """What is to be rendered; and the lines of what is up to date."""
     base = base_key(arguments)
     hashing = cache(hash_of)
     tasks, lines = [], []
     for entry in tree.entries:
-        picture = None
-        if arguments.plot is not None:
-            beside = os.path.relpath(entry.target.with_suffix(".png"), arguments.output)
-            picture = arguments.plot / beside
         key = f"{base}-{hash_of(entry.source)}"
-        task = Task(arguments, entry, picture, key, _seconds(previous_line(entry.target)))
-        line = up_to_date(entry.target, key, task.results, hashing)
-        if line is None or ("error" in line and arguments.overwrite):
-            tasks.append(task)
+        line = up_to_date(entry.target, key, [entry.target], hashing)
+        if line is None:
+            tasks.append(Task(arguments, entry, key))
         else:
             lines.append({**line, "file": entry.name})
     return tasks, lines
-
-
-def _seconds(line: Line) -> float:
-    """How long a score was when it was rendered before, in seconds; 0 where it was not."""
-    seconds: Any = line.get("duration_s", 0.0)
-    return float(seconds) if isinstance(seconds, int | float) else 0.0
 
 
 def base_key(arguments: argparse.Namespace) -> str:

@@ -21,15 +21,15 @@ from yehu_server.cli.sound_options import (
 from yehu_server.cli.terminal import compile_all, progress_bar, warn
 from yehu_server.errors import OutputError
 from yehu_server.scores.phrasing import PHRASING
-from yehu_server.scores.score import Score, check_duration, concatenate
+from yehu_server.scores.score import Score, check_duration
 from yehu_server.util.files import anything, check_distinct, make_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from yehu_server.core.player.note_range import NoteRange
+    from yehu_server.core.physics.quantities import Quantities
     from yehu_server.playing.options import PlayingOptions
-    from yehu_server.rendering.options import Options, Part
+    from yehu_server.rendering.options import Options
     from yehu_server.rendering.summary import PartSummary, Summary
 
 
@@ -52,33 +52,25 @@ def rendered(
     `follow`: called with the seconds done and those of the score, in place of a progress bar.
     """
     from yehu_server.playing.calibration import calibration_key
-    from yehu_server.playing.practice_files import practices_beside
+    from yehu_server.rendering.options import Part
     from yehu_server.rendering.to_files import render
 
     check_stage(arguments)
-    playing = playing_in_room(arguments)
-    phrasing = arguments.phrasing
-    if phrasing is None:
-        phrasing = dict(playing.settings).get("/playing/phrasing", PHRASING)
-    instrument = [] if arguments.instrument is None else [arguments.instrument]
+    playing = playing_in_room(arguments).shaping(PHRASING)
     outputs = {} if is_piped(arguments.output) else {"-o": arguments.output}
     outputs |= picture_output(arguments)
-    check_distinct(outputs, [*arguments.midi, *playing.files, *instrument])
+    check_distinct(outputs, [*arguments.midi, *playing.files])
     form = _format(arguments)
     may_replace = anything if is_piped(arguments.output) else check_output(arguments)
     _warn_of_own(arguments, playing)
-    options = sound_options_of(
-        arguments,
-        playing,
-        form,
-        arguments.subtype or ("float" if form == "raw" else "24"),
-        channels=None if arguments.channel is None else frozenset(arguments.channel),
-        jobs=arguments.jobs,
-    )
-    scores = cache(partial(_scores, arguments, options.playing))
-    players = _players(arguments, scores, options, phrasing)
-    read = [*arguments.midi, *playing.files, *instrument, *players.files]
-    read += practices_beside(arguments.instrument)
+    subtype = arguments.subtype or ("float" if form == "raw" else "24")
+    options = sound_options_of(arguments, form, subtype)
+    scores = cache(partial(_scores, arguments, playing))
+    if arguments.ensemble is None:
+        players = Players((Part.shaped(scores(playing.quantities), playing),))
+    else:
+        players = players_of(arguments, scores, playing)
+    read = [*arguments.midi, *playing.files, *players.files]
     stems = _stems(arguments, options, players)
     check_distinct({**outputs, **{f"stem {stem.name}": stem for stem in stems}}, read)
     played = [part.score for part in players.parts]
@@ -86,8 +78,11 @@ def rendered(
     for line in dict.fromkeys([*remarks, *played[0].warnings]):
         warn(line)
     compile_all(arguments)
-    parts = _calibrated(arguments, players.parts, float(options.rate))
-    key = calibration_key(float(options.rate), options.quantities, playing.a4)
+    parts = players.parts
+    with progress_bar(arguments, "calibrating", "notes") as progress:
+        for part in parts:
+            part.playing.calibration(float(options.rate), progress)
+    key = calibration_key(float(options.rate), playing.quantities, playing.a4)
     watch = None
     if arguments.plot is not None:
         from yehu_server.rendering.plot_data import PlotData
@@ -106,8 +101,7 @@ def rendered(
         title = f"{parts[0].score.name}: {voices}{options.rate / 1000.0:g} kHz"
         write_picture(watch, arguments.plot, title, overwrite=arguments.overwrite)
     summary = replace(summary, percussion_notes=summary.percussion_notes + players.percussion_notes)
-    rubato = phrasing if arguments.rubato is None else arguments.rubato
-    shaped = {"phrasing": phrasing, "rubato": rubato}
+    shaped = {"phrasing": playing.phrasing, "rubato": playing.rubato}
     fields = {**_fields(summary, playing, stems), **shaped, "calibration": key}
     return Rendered(summary, fields, read)
 
@@ -126,25 +120,6 @@ def _format(arguments: argparse.Namespace) -> str:
     return form or format_of(arguments.output)
 
 
-def _players(
-    arguments: argparse.Namespace,
-    scores: Callable[[NoteRange], list[Score]],
-    options: Options,
-    phrasing: float,
-) -> Players:
-    """Who plays: one instrument the whole score, or an ensemble."""
-    from yehu_server.playing.stringing import notes_of
-    from yehu_server.scores.phrasing import is_fingered, phrased
-
-    if arguments.ensemble is not None:
-        return players_of(arguments, scores, options.playing, options.quantities, phrasing)
-    within = notes_of(options.quantities)
-    shape = partial(phrased, playing=options.playing, within=within, rubato=arguments.rubato)
-    score = concatenate([shape(each, phrasing) for each in scores(within)])
-    part = options.solo(score)
-    return Players((replace(part, phrasing=0.0 if is_fingered(score) else phrasing),))
-
-
 def _stems(arguments: argparse.Namespace, options: Options, players: Players) -> list[Path]:
     """The files of the stems that are asked for; checks that they may be written."""
     if arguments.stems is None:
@@ -157,15 +132,6 @@ def _stems(arguments: argparse.Namespace, options: Options, players: Players) ->
     for stem in stems:
         check_output(arguments, stem)
     return stems
-
-
-def _calibrated(arguments: argparse.Namespace, parts: Sequence[Part], rate: float) -> list[Part]:
-    """Give all parts the calibration of their instruments."""
-    with progress_bar(arguments, "calibrating", "notes") as progress:
-        return [
-            replace(part, calibration=part.playing.calibration(rate, part.quantities, progress))
-            for part in parts
-        ]
 
 
 def _fields(summary: Summary, playing: PlayingOptions, stems: Sequence[Path]) -> dict[str, Any]:
@@ -189,24 +155,18 @@ def _counts(summary: Summary | PartSummary) -> dict[str, Any]:
 
 
 def _scores(
-    arguments: argparse.Namespace, playing: PlayingOptions, within: NoteRange
+    arguments: argparse.Namespace, playing: PlayingOptions, quantities: Quantities
 ) -> list[Score]:
-    """Read all files, for an instrument of some notes.
+    """Read all files, for an instrument of some quantities.
 
     Raises DamagedError where --strict refuses one; ScoreError where one cannot be read, or they
     last too long together.
     """
-    from yehu_server.playing.tuning import RangePolicy
     from yehu_server.scores.reading import How, read_any
 
     longest = arguments.max_duration
-    how = How(
-        arguments.part,
-        all_parts=arguments.ensemble is not None or arguments.channel is not None,
-        in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
-        is_mpe=playing.mapping.mpe,
-        within=within,
-    )
+    whole = arguments.ensemble is not None or arguments.channel is not None
+    how = How.by(replace(playing, quantities=quantities), arguments.part, all_parts=whole)
     read = partial(read_any, song=arguments.song, strict=arguments.strict, max_duration_h=longest)
     scores = []
     for path in arguments.midi:

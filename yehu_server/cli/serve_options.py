@@ -157,7 +157,7 @@ def options_of(arguments: argparse.Namespace) -> Any:
     config = [] if arguments.config is None else [arguments.config]
     check_distinct(
         {name: path for name, path in outputs.items() if path is not None},
-        [*(file for part in parts for file in part.files), *config],
+        [*(file for part in parts for file in part.playing.files), *config],
     )
     midi = None
     if arguments.midi_api != "none":

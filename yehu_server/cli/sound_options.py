@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_options, instrument_of
+from yehu_server.cli.arguments import add_options
 from yehu_server.cli.converters import number_within, positive, target, whole
 from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.errors import ParameterError
@@ -109,10 +109,8 @@ def playing_in_room(arguments: argparse.Namespace) -> PlayingOptions:
     return replace(playing, start=(*playing.start, *room))
 
 
-def sound_options_of(
-    arguments: argparse.Namespace, playing: PlayingOptions, form: str, subtype: str, **more: Any
-) -> Options:
-    """How to render, by all these options; `more` are fields of `Options`."""
+def sound_options_of(arguments: argparse.Namespace, form: str, subtype: str) -> Options:
+    """The sound that these options ask for."""
     from yehu_server.rendering.options import Options
 
     return Options(
@@ -120,13 +118,10 @@ def sound_options_of(
         format_name=form,
         subtype=subtype,
         tail_s=arguments.tail,
-        gain_db=arguments.gain_db,
         normalize=arguments.normalize,
-        playing=playing,
-        quantities=instrument_of(arguments),
         is_dry=arguments.dry,
         is_mono=arguments.mono,
-        **more,
+        jobs=getattr(arguments, "jobs", None),
     )
 
 

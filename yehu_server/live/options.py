@@ -8,7 +8,6 @@ from pathlib import Path
 
 from platformdirs import user_music_path
 
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.audio.voice_input import FollowOptions
 from yehu_server.live.midi.ports import MidiOptions
@@ -24,17 +23,9 @@ class PartOptions:
     """Options of one part."""
 
     playing: PlayingOptions = field(default_factory=PlayingOptions)
-    quantities: Quantities = field(default_factory=Quantities)  # of the instrument, to be tuned
-    instrument: Path | None = None  # the file of `quantities`
     reread: Callable[[], Mapping] | None = (
         None  # reads the mapping's files; None: they are not watched
     )
-
-    @property
-    def files(self) -> tuple[Path, ...]:
-        """All files that it was read from."""
-        own = () if self.instrument is None else (self.instrument,)
-        return (*self.playing.files, *own)
 
 
 @dataclass

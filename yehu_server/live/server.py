@@ -8,7 +8,7 @@ import logging
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -16,8 +16,6 @@ from functools import partial
 from yehu_server.compile.jit import IS_PLAIN
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.warming import warm_up
-from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import Calibration
 from yehu_server.errors import YehuError
 from yehu_server.live.announce import Announcer, announced
 from yehu_server.live.audio.output import Output
@@ -25,7 +23,7 @@ from yehu_server.live.audio.recordings import Recordings
 from yehu_server.live.audio.voice_input import VoiceInput
 from yehu_server.live.housekeeper import Housekeeper, MappingFollower
 from yehu_server.live.midi.ports import MidiPorts
-from yehu_server.live.options import PartOptions, ServeOptions
+from yehu_server.live.options import ServeOptions
 from yehu_server.live.osc.all_calls import more_calls
 from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.context import CallContext
@@ -82,7 +80,7 @@ class Server:
             undo.callback(self.output.end)
             warm_up()  # meanwhile the device is looked for
             rate = self.output.find()
-            tuned = _tuned(options.parts, rate, progress)
+            tuned = [playing.calibration(rate, progress) for playing in per_part]
             memory = self.output.memory.buffer
             self.ensemble, instruments = assemble(
                 per_part, rate, tuned, memory=memory, has_room=options.has_room
@@ -315,16 +313,6 @@ class Server:
         state = self.output.state
         delay_ms = 1e3 * self.player.delay / self.ensemble.rate
         return {"device": state.device, "latencyMs": state.latency_ms + delay_ms}
-
-
-def _tuned(
-    parts: Sequence[PartOptions], rate: float, progress: Progress | None
-) -> list[tuple[Calibration, Quantities]]:
-    """The calibration of each part's instrument, and what it is before it is tuned."""
-    return [
-        (part.playing.calibration(rate, part.quantities, progress), part.quantities)
-        for part in parts
-    ]
 
 
 def _sources(part: Part) -> PartSources:

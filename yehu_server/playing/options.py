@@ -1,4 +1,4 @@
-"""The options of playing that live playing and rendering share: mapping, tuning, preset."""
+"""The options of one player: instrument, mapping, tuning, preset, and how a score is shaped."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.quantities import Quantities, read_quantities
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.velocity import NEUTRAL
@@ -18,7 +18,12 @@ from yehu_server.playing.calibration import Progress
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.midi_poster import MidiPoster
-from yehu_server.playing.practice_files import read_practice, shipped_practice
+from yehu_server.playing.practice_files import (
+    practice_beside,
+    practices_beside,
+    read_practice,
+    shipped_practice,
+)
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning
@@ -32,12 +37,19 @@ AS_IT_SINGS = {**STILL_HANDS, "/playing/attack": 20.0, "/playing/velocity": NEUT
 
 @dataclass(frozen=True)
 class PlayingOptions:
-    """How to play; see ``yehu-server render --help``.
+    """What a player plays, and how; see ``yehu-server render --help``.
 
     `settings` (tuple of (address, value)): held parameters.
     `start` (tuple of (address, value)): the values of the preset.
     `preset`: the file of the preset.
+    `instrument`: the file of the quantities.
+    `channels`: MIDI channels that are played, counted from 0; None: all but percussion.
+    `phrasing`, `rubato`: how far a score is shaped (``scores.phrasing``); see `shaping`.
+    `gain_db`: None: that of the preset.
     """
+
+    quantities: Quantities = field(default_factory=Quantities)  # before it is tuned
+    instrument: Path | None = None
 
     mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
     settings: tuple[tuple[str, float], ...] = ()
@@ -52,46 +64,68 @@ class PlayingOptions:
     preset: Path | None = None
     bowing: Any = field(default=None, compare=False)  # how notes are bowed; None: as shipped
     practice: Path | None = None  # the file of `bowing`
+    channels: frozenset[int] | None = None
+    phrasing: float | None = None
+    rubato: float | None = None
+    gain_db: float | None = None
 
-    def practised(self, path: Path | None) -> PlayingOptions:
-        """The same options with notes bowed as a practice file says, unless another is asked for.
+    def on_instrument(self, file: Path | None, practice: Path | None = None) -> PlayingOptions:
+        """The same options on the instrument of a file, or on this one for None.
 
-        Raises YehuError where it cannot be read.
+        Notes are bowed as a practice file says, by default the one beside the instrument's, if it
+        is there. Raises YehuError where a file cannot be read.
         """
-        if path is None or self.bowing is not None:
-            return self
-        return replace(self, bowing=read_practice(path), practice=path)
+        playing = self
+        if file is not None:
+            found = read_quantities(file)
+            playing = replace(self, quantities=found, instrument=file, bowing=None, practice=None)
+        practice = practice or practice_beside(file)
+        if practice is None:
+            return playing
+        return replace(playing, bowing=read_practice(practice), practice=practice)
 
-    def calibration(
-        self, rate: float, quantities: Quantities, progress: Progress | None = None
-    ) -> Calibration:
-        """The calibration of an instrument that is bowed so; see `calibration_for`."""
-        return calibration_for(rate, quantities, a4=self.a4, bowing=self.bowing, progress=progress)
+    def with_preset(self, name: str) -> PlayingOptions:
+        """The same options with the sound of a preset; raises YehuError where it is none."""
+        values = self.presets.find(name).values
+        return replace(self, preset=self.presets.find_file(name), start=tuple(values.items()))
+
+    def shaping(self, usual: float) -> PlayingOptions:
+        """The same options with `phrasing` and `rubato` told: as asked for, or as usual."""
+        phrasing = self.phrasing
+        if phrasing is None:
+            phrasing = dict(self.settings).get("/playing/phrasing", usual)
+        rubato = phrasing if self.rubato is None else self.rubato
+        return replace(self, phrasing=phrasing, rubato=rubato)
+
+    def calibration(self, rate: float, progress: Progress | None = None) -> Calibration:
+        """The calibration of the instrument, bowed so; see `calibration_for`."""
+        return calibration_for(
+            rate, self.quantities, a4=self.a4, bowing=self.bowing, progress=progress
+        )
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """All files that it was read from."""
-        named = [path for path in (self.preset, self.practice) if path is not None]
-        return (*self.mapping.files, *named, *self.tuning.files)
+        """All files that it was read from, and where a practice was looked for."""
+        named = [path for path in (self.preset, self.practice, self.instrument) if path is not None]
+        beside = practices_beside(self.instrument)
+        return (*self.mapping.files, *named, *beside, *self.tuning.files)
 
     def spec(
         self,
         rate: float,
         calibration: Calibration,
-        quantities: Quantities | None = None,
         *,
         start_values: Values[str, float] | None = None,
         body: int = 0,
         person: int = 0,
     ) -> InstrumentSpec:
-        """An instrument at a rate (Hz), calibrated, with a player with these options.
+        """The instrument at a rate (Hz), calibrated, with a player with these options.
 
-        `quantities`: the instrument as it is before it is tuned.
         `start_values`, `body`, `person`: see `InstrumentSpec`.
         """
         return InstrumentSpec(
             rate,
-            calibration.tuned(quantities or Quantities()),
+            calibration.tuned(self.quantities),
             calibration=calibration,
             open_strings=self.open_strings,
             bowing=shipped_practice(rate) if self.bowing is None else self.bowing,
@@ -117,7 +151,8 @@ class PlayingOptions:
             programs=self.presets.programs() if self.programs else None,
         )
 
-    def midi(self, wishes: WishPoster, channels: set[int] | None = None) -> MidiPoster:
-        """A MIDI player with these options; `channels` as in `MidiPoster`."""
+    def midi(self, wishes: WishPoster) -> MidiPoster:
+        """A MIDI player with these options."""
+        channels = None if self.channels is None else set(self.channels)
         programs = self.presets.programs() if self.programs else None
         return MidiPoster(wishes, self.mapping, channels, start=self.start, programs=programs)

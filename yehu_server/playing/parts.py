@@ -10,7 +10,6 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.errors import ParameterError
 from yehu_server.playing.live_player import LivePlayer
@@ -63,7 +62,7 @@ def seated(per_part: Sequence[PlayingOptions]) -> list[PlayingOptions]:
 def assemble(
     per_part: Sequence[PlayingOptions],
     rate: float,
-    tuned: Sequence[tuple[Calibration, Quantities]],
+    tuned: Sequence[Calibration],
     *,
     memory: Any,
     has_room: bool,
@@ -71,13 +70,13 @@ def assemble(
     """Make the instruments of all parts, on a stage; return them by part, too.
 
     `per_part`: those of `seated`, one for each part.
-    `tuned`: the calibration of each part's instrument, and what it was before it was tuned.
+    `tuned`: the calibration of each part's instrument.
     `memory`: see `Ensemble`.
     """
     specs: list[InstrumentSpec] = []
     ends = []
-    for playing, own in zip(per_part, tuned, strict=True):
-        specs += part_specs(playing, rate, *own, number=len(specs))
+    for playing, calibration in zip(per_part, tuned, strict=True):
+        specs += part_specs(playing, rate, calibration, number=len(specs))
         ends.append(len(specs))
     ensemble = Ensemble(specs, has_room=has_room, memory=memory, is_live=True)
     begins = [0, *ends]

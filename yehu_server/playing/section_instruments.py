@@ -43,7 +43,6 @@ def part_specs(
     playing: PlayingOptions,
     rate: float,
     calibration: Calibration,
-    quantities: Quantities | None = None,
     *,
     number: int,
 ) -> list[InstrumentSpec]:
@@ -53,25 +52,23 @@ def part_specs(
     """
     people = section_size(playing)
     if people > 1:
-        return section_specs(playing, rate, calibration, quantities, people=people)
-    return [playing.spec(rate, calibration, quantities, body=number)]
+        return section_specs(playing, rate, calibration, people=people)
+    return [playing.spec(rate, calibration, body=number)]
 
 
 def section_specs(
     playing: PlayingOptions,
     rate: float,
     calibration: Calibration,
-    quantities: Quantities | None = None,
     *,
     people: int,
 ) -> list[InstrumentSpec]:
     """The instruments of a section; the first has that of ``PlayingOptions.spec``.
 
     `rate` (Hz).
-    `quantities`: the first player's instrument as it is before it is tuned.
     `people`: number of players.
     """
-    base = quantities or Quantities()
+    base = playing.quantities
 
     def spec(number: int) -> InstrumentSpec:
         seed = round(own_value(ROW[OWN_SEED], float(playing.seed), number, people))
@@ -80,8 +77,8 @@ def section_specs(
             address: own_value(ROW[address], find(address).default, number, people)
             for address in (GAIN, PAN, DISTANCE)
         }
-        player, body = replace(playing, seed=seed), seed if number else 0
-        return player.spec(rate, tuned, own, start_values=values, body=body, person=number)
+        player, body = replace(playing, seed=seed, quantities=own), seed if number else 0
+        return player.spec(rate, tuned, start_values=values, body=body, person=number)
 
     return [spec(number) for number in range(people)]
 

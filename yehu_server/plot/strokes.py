@@ -16,11 +16,12 @@ import numpy as np
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.quantities import Quantities
+from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.section_instruments import part_specs
 from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import PartPlayer
-from yehu_server.scores.phrasing import PHRASING, is_fingered, phrased
+from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.score import Score, notes_of
 from yehu_server.scores.written.mark_settings import actives_of, is_plucked
 from yehu_server.scores.written.notated import Written
@@ -57,12 +58,10 @@ def strokes_of(
     part = written.parts[number]
     actives = actives_of(part)
     played = bowed(part, actives, WrittenClock(written))
-    options = Options(quantities=quantities)
-    within = range_of(quantities)
-    score = phrased(performed(written, [number], within), phrasing, options.playing, within)
-    options = replace(options, phrasing=0.0 if is_fingered(score) else phrasing)
-    directions = list(_directions(options.solo(score), options.rate, played))
-    slurred = _slurred(score, played)
+    playing = PlayingOptions(quantities=quantities, phrasing=phrasing)
+    whole = Part.shaped([performed(written, [number], range_of(quantities))], playing)
+    directions = list(_directions(whole, Options.rate, played))
+    slurred = _slurred(whole.score, played)
     found: list[Stroke] = []
     for at, each in enumerate(played):
         first, *turns = directions[at]
@@ -91,8 +90,8 @@ def _slurred(score: Score, played: Sequence[Played]) -> list[bool]:
 
 def _directions(part: Part, rate: int, played: Sequence[Played]) -> Iterator[list[float]]:
     """Play a part, and yield in which directions the bow goes at each note, in turn."""
-    calibration = part.playing.calibration(float(rate), part.quantities)
-    specs = part_specs(part.playing, float(rate), calibration, part.quantities, number=0)
+    calibration = part.playing.calibration(float(rate))
+    specs = part_specs(part.playing, float(rate), calibration, number=0)
     instruments = [Instrument(spec) for spec in specs]
     player, first = PartPlayer(part, instruments), instruments[0]
     rig = np.frombuffer(first.memory, RIG, count=1)[0]

@@ -109,11 +109,10 @@ def make_folder_for(target: Path) -> None:
 def keep(
     target: Path, key: str, read: Iterable[Path], results: Iterable[Path], line: Record
 ) -> None:
-    """Write the record of results that are in their places, or that there can be none.
+    """Write the record of results that are in their places.
 
     The key is of all that they depend on beside the files they were made from, `read`. The results
-    are the target, and what was made beside it. The line is what may be told of them again; it has
-    an `error` where there can be no result, which holds as long as the key is the same.
+    are the target, and what was made beside it. The line is what may be told of them again.
     """
     made = {}
     for path in results:
@@ -128,15 +127,15 @@ def keep(
 def up_to_date(
     target: Path, key: str, results: Iterable[Path], hashing: Callable[[Path], str] = hash_of
 ) -> Record | None:
-    """Return the manifest line of a result or failure that is up to date; None if there is none.
+    """Return the manifest line of a result that is up to date; None if there is none.
 
     `results` are the target, and what is wanted beside it.
     """
     try:
-        record = _read(target)
+        record = json.loads(read_text(record_of(target), MOST_RECORD_BYTES))
         line: Record = record["line"]
         made = record["results"]
-        wanted = {} if "error" in line else {_beside(target, path): path for path in results}
+        wanted = {_beside(target, path): path for path in results}
         is_current = (
             record["key"] == key
             and made.keys() == wanted.keys()
@@ -146,19 +145,6 @@ def up_to_date(
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
     return line if is_current and isinstance(line, dict) else None
-
-
-def _read(target: Path) -> Any:
-    return json.loads(read_text(record_of(target), MOST_RECORD_BYTES))
-
-
-def previous_line(target: Path) -> Record:
-    """The manifest line of a result, up to date or not; empty if there is none."""
-    try:
-        line = _read(target)["line"]
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return {}
-    return line if isinstance(line, dict) else {}
 
 
 def _is_whole(path: Path, made: Record) -> bool:

@@ -1,15 +1,16 @@
-"""How to render: what each instrument plays, and the pitch it is asked for."""
+"""How to render: what each player plays, and the sound that is made of all."""
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
-from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.stage.image_sources import EARS
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.scores.score import Score
+from yehu_server.playing.stringing import notes_of
+from yehu_server.scores.phrasing import is_fingered, phrased
+from yehu_server.scores.score import Score, concatenate
 
 BLOCK = 1 << 14  # frames; the sound does not depend on it
 
@@ -18,35 +19,29 @@ BLOCK = 1 << 14  # frames; the sound does not depend on it
 class Part:
     """A player on the stage, or a section of them: what they play, and how."""
 
-    score: Score
-    name: str = ""
+    score: Score  # shaped already (``scores.phrasing``)
     playing: PlayingOptions = field(default_factory=PlayingOptions)
-    # Those that it plays, counted from 0; by default all but percussion.
-    channels: frozenset[int] | None = None
-    phrasing: float = 0.0  # of the player; the score is shaped before (``scores.phrasing``)
-    quantities: Quantities = field(default_factory=Quantities)
-    calibration: Calibration | None = None  # by default looked up or measured
-    gain_db: float | None = None  # by default that of the preset
+    name: str = ""
+
+    @classmethod
+    def shaped(cls, scores: Sequence[Score], playing: PlayingOptions, name: str = "") -> Part:
+        """The part of a player who plays scores one after another, and shapes them."""
+        amount, within = playing.phrasing or 0.0, notes_of(playing.quantities)
+        own = [phrased(each, amount, playing, within, playing.rubato) for each in scores]
+        score = concatenate(own)
+        heard = 0.0 if is_fingered(score) else amount
+        return cls(score, replace(playing, phrasing=heard), name or score.name)
 
 
 @dataclass(frozen=True)
 class Options:
-    """How to render; see ``yehu-server render --help``.
-
-    What describes an instrument holds where one plays a score alone; an ensemble has it in parts.
-    """
+    """The sound to render; see ``yehu-server render --help``."""
 
     rate: int = 44100
     format_name: str = "wav"
     subtype: str = "24"
-    channels: frozenset[int] | None = None
     tail_s: float | None = None  # None: until it is quiet
-    gain_db: float | None = None
     normalize: bool = False
-    phrasing: float = 0.0
-    playing: PlayingOptions = field(default_factory=PlayingOptions)
-    quantities: Quantities = field(default_factory=Quantities)
-    calibration: Calibration | None = None
     block: int = BLOCK
     is_dry: bool = False  # without a room, and with a body that sounds alike to both sides
     is_mono: bool = False
@@ -61,8 +56,3 @@ class Options:
     def cores(self) -> int:
         """Number of cores to use."""
         return self.jobs or os.cpu_count() or 1
-
-    def solo(self, score: Score) -> Part:
-        """The part of one instrument that plays a score alone."""
-        own = {each.name for each in fields(Part)} & {each.name for each in fields(self)}
-        return Part(score, score.name, **{name: getattr(self, name) for name in own})

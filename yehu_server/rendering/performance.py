@@ -19,7 +19,7 @@ from yehu_server.playing.parts import number_of_instruments
 from yehu_server.playing.section_instruments import part_specs
 from yehu_server.rendering.cores import Cores, Sounded, computed_ahead, shared
 from yehu_server.rendering.options import Options, Part
-from yehu_server.scores.score import Score, ScoreEvent, Setting, notes_of
+from yehu_server.scores.score import ScoreEvent, Setting, notes_of
 
 END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
 Samples = np.ndarray[Any, np.dtype[np.float32]]
@@ -36,11 +36,11 @@ class PartPlayer:
         self.part, self.instruments = part, instruments
         playing = part.playing
         self.wishes = playing.wishes(instruments)
-        self.midi = playing.midi(self.wishes, None if part.channels is None else set(part.channels))
-        self.wishes.write("/playing/phrasing", part.phrasing)
+        self.midi = playing.midi(self.wishes)
+        self.wishes.write("/playing/phrasing", playing.phrasing or 0.0)
         for address, value in playing.start:
             self.wishes.jump(address, value)
-        gain = () if part.gain_db is None else (("/output/gain", part.gain_db),)
+        gain = () if playing.gain_db is None else (("/output/gain", playing.gain_db),)
         for address, value in (*gain, *playing.settings):
             self.wishes.start_with(address, value)
         self._sound = self.midi.sound()  # what settings of the score are put back to
@@ -95,7 +95,7 @@ class PartPlayer:
 
 
 class Performance:
-    """Plays a score on one instrument, or each part on one of its own; a section has several.
+    """Plays each part on an instrument of its own; a section has several.
 
     With `has_stems`, `stems` has what each part gives; with `reports` the instruments report the
     wishes that they fulfil, for a capture. Raises ParameterError where the players are more than a
@@ -104,21 +104,19 @@ class Performance:
 
     def __init__(
         self,
-        played: Score | Sequence[Part],
+        parts: Sequence[Part],
         options: Options,
         *,
         has_stems: bool = False,
         reports: bool = False,
     ) -> None:
-        parts = [options.solo(played)] if isinstance(played, Score) else list(played)
         self._options, self._has_stems = options, has_stems
         number_of_instruments([part.playing for part in parts])
         specs: list[InstrumentSpec] = []
         self._places: list[slice] = []  # of the instruments of each part
         for part in parts:
-            playing, quantities, rate = part.playing, part.quantities, float(options.rate)
-            calibration = part.calibration or playing.calibration(rate, quantities)
-            own = part_specs(playing, rate, calibration, quantities, number=len(specs))
+            playing, rate = part.playing, float(options.rate)
+            own = part_specs(playing, rate, playing.calibration(rate), number=len(specs))
             self._places.append(slice(len(specs), len(specs) + len(own)))
             specs += own
         self.ensemble = Ensemble(

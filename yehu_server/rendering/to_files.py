@@ -1,4 +1,4 @@
-"""Render a score, or the parts of an ensemble: to sound files and stems, or to a capture."""
+"""Render parts: to sound files and stems, or to a capture."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
 from yehu_server.rendering.true_peak import TruePeak
 from yehu_server.scores.capture_writer import LiveCapture
-from yehu_server.scores.score import Score
 from yehu_server.util.files import anything, why
 from yehu_server.util.sound_file import SoundWriter, check_format, sound_file
 
@@ -71,7 +70,7 @@ def write_normalized(
 
 
 def render(
-    played: Score | Sequence[Part],
+    parts: Sequence[Part],
     target: Path,
     options: Options,
     progress: Callable[[float, float], None] | None = None,
@@ -79,7 +78,7 @@ def render(
     stems: Sequence[Path] = (),
     watch: PlotData | None = None,
 ) -> Summary:
-    """Render a score on one instrument, or parts on one each, to a sound file.
+    """Render parts, each on an instrument of its own, to a sound file.
 
     `progress` is called with the seconds done and those of the score; `may_replace` tells whether
     an older file may be replaced. The target is `PIPE` for standard output. Stems are a file for
@@ -89,7 +88,7 @@ def render(
     channels = options.sound_channels
     if target is not PIPE:
         check_format(options.format_name, options.subtype, channels)
-    performance = Performance(played, options, has_stems=bool(stems))
+    performance = Performance(parts, options, has_stems=bool(stems))
     start = time.perf_counter()
     form = (options.rate, options.format_name, options.subtype)
 
@@ -133,19 +132,19 @@ def _takes(
 
 
 def render_capture(
-    played: Score | Sequence[Part],
+    parts: Sequence[Part],
     target: Path,
     options: Options,
     progress: Callable[[float, float], None] | None = None,
     *,
     overwrite: bool = False,
 ) -> Performance:
-    """Play a score, and write its capture: replayed, it gives the same samples as a rendering.
+    """Play parts, and write their capture: replayed, it gives the same samples as a rendering.
 
     Returns the performance, which has been played. Raises YehuError where it fails; no partial file
     is left.
     """
-    performance = Performance(played, replace(options, jobs=1, is_mono=False), reports=True)
+    performance = Performance(parts, replace(options, jobs=1, is_mono=False), reports=True)
     wrong: list[str] = []
     capture = LiveCapture(
         performance.ensemble, target, wrong.append, has_room=not options.is_dry, overwrite=overwrite

@@ -36,8 +36,6 @@ class Event:
 
     job: int  # the number of its task, from 0
     share: float = 0.0  # of the job; 1 when it is over
-    # What the job does in all, such as seconds of sound; 0 if it is not known yet.
-    total: float = 0.0
     result: Any = None  # what was returned
     died: str = ""  # how its process ended, such as "killed by signal 9"
 
@@ -101,7 +99,7 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
             for worker in [each for each in crew if each.connection in ready]:
                 job = worker.job
                 try:
-                    share, total, result = worker.connection.recv()
+                    share, result = worker.connection.recv()
                 except (EOFError, OSError):
                     crew.remove(worker)
                     worker.connection.close()
@@ -115,7 +113,7 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
                     continue
                 if share >= 1.0:
                     worker.job = -1
-                yield Event(job, share, total, result)
+                yield Event(job, share, result)
     finally:
         for worker in crew:
             worker.connection.close()
@@ -135,11 +133,11 @@ def _serve(connection: Connection, perform: Perform) -> None:
         now = time.monotonic()
         if now - told[0] >= TOLD_EVERY_S and total > 0.0:
             told[0] = now
-            connection.send((min(done / total, 0.99), total, None))
+            connection.send((min(done / total, 0.99), None))
 
     try:
         while (task := tasks.get()) is not None:
-            connection.send((1.0, 0.0, perform(task[0], tell)))
+            connection.send((1.0, perform(task[0], tell)))
     except (KeyboardInterrupt, OSError):  # what was being made has been put away
         os._exit(0)
 

@@ -10,6 +10,9 @@ from pathlib import Path
 from yehu_server.core.midi.channels import PERCUSSION
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, one_line
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.stringing import notes_of
+from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
 from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, naming
@@ -113,6 +116,17 @@ class How:
     in_range: bool = True  # whether parts are moved by octaves as a whole, to fit the instrument
     is_mpe: bool = False  # whether the channels of a MIDI file are notes, and not parts
     within: NoteRange = YEHU  # the notes of the instrument
+
+    @classmethod
+    def by(cls, playing: PlayingOptions, parts: Sequence[str] = (), *, all_parts: bool) -> How:
+        """How a player with some options plays it."""
+        return cls(
+            parts,
+            all_parts=all_parts,
+            in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
+            is_mpe=playing.mapping.mpe,
+            within=notes_of(playing.quantities),
+        )
 
 
 USUAL = How()

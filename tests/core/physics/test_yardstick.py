@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from parts import Kernel
+from kernel_loop import Kernel
 from pitch import cents, pitch_of
 from yardstick import FORCE, RATE, Yardstick
 

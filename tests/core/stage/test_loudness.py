@@ -9,7 +9,7 @@ from acoustics import clarity_db
 from stages import Stage, response, told
 
 from yehu_server.playing.preset_folders import Presets
-from yehu_server.rendering.options import Options
+from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.util.loudness import a_weighting
@@ -33,7 +33,7 @@ def air() -> np.ndarray:
     score = read_score(ROOT / "examples" / "slow_air.mid")
     events = tuple(event for event in score.events if event.time_s < 12.0)
     score = dataclasses.replace(score, events=events, duration_s=12.0)
-    blocks = Performance(score, Options(rate=RATE, is_dry=True)).blocks()
+    blocks = Performance([Part(score)], Options(rate=RATE, is_dry=True)).blocks()
     return np.concatenate(list(blocks))[:, 0]
 
 

@@ -14,7 +14,6 @@ from functools import partial
 from yehu_server.live.osc.packets import pack
 
 HOST = "127.0.0.1"
-ANOTHER = "127.0.0.2"  # only Linux has the whole 127.0.0.0/8
 HOSTILE = 40.0  # the note that they play
 DATAGRAM, LONG = 65_000, 1 << 20
 NOTHING, FORCE = b"/\0\0\0", pack("/yehu/bow/force", 0.5)
@@ -44,12 +43,10 @@ def prefixed(packet: bytes) -> bytes:
     return struct.pack(">I", len(packet)) + packet
 
 
-def senders(port: int, count: int, host: str = HOST) -> list[socket.socket]:
+def senders(port: int, count: int) -> list[socket.socket]:
     """Non-blocking UDP sockets, each with its own port."""
     made = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(count)]
     for each in made:
-        with contextlib.suppress(OSError):
-            each.bind((host, 0))
         each.connect((HOST, port))
         each.setblocking(False)
     return made
@@ -69,10 +66,9 @@ def flood(
     ports: int = 1,
     a_second: float | None = None,
     most: int | None = None,
-    host: str = HOST,
 ) -> None:
     """Send a datagram from many ports in turn, as often as goes or so many times in all."""
-    sockets, due = senders(port, ports, host), time.monotonic()
+    sockets, due = senders(port, ports), time.monotonic()
     at_once = ports if a_second is None else round(a_second * EVERY_S)
     number, end = 0, time.monotonic() + seconds
     while time.monotonic() < end and (most is None or number < most):
@@ -156,23 +152,18 @@ KINDS: dict[str, Attack] = {
     "many_long": partial(streams, data=prefixed(full_of(NOTHING, LONG)), count=60, times=2),
     "many_streams": partial(streams, data=prefixed(full_of(FORCE, DATAGRAM)), count=60),
     "slip_without_end": partial(streams, data=END + b"/" + b"x" * (LONG - 2), count=8),
-    "empty_packets": partial(streams, data=bytes(1 << 16), count=8),
     "idle": partial(streams, data=b"", count=64, times=0),
-    # Datagrams that are too long, and as long as is allowed.
-    "datagrams_of_many": partial(flood, packet=full_of(NOTHING, DATAGRAM), ports=500, most=2000),
-    "shorter_of_many": partial(flood, packet=full_of(NOTHING, 16_000), ports=500, most=8000),
     # What takes long to answer or to match, and patterns that match nothing.
     "questions": partial(flood, packet=full_of(pack("/yehu/get", "/*/*"), DATAGRAM)),
     "tables": partial(flood, packet=pack("/yehu/params"), ports=16, a_second=9600),
-    "patterns": partial(flood, packet=pack("/yehu/" + "{*,?*,?*}*[!x]*" * 15, 1.0), ports=8),
     "subscriptions": subscriptions,
     "due_together": due_together,
     "due_never": partial(
         flood, packet=bundle([pack("/yehu/ping", "x" * 16_000)], 1e6), a_second=2000
     ),
-    # Small datagrams.
-    "small_of_many": partial(flood, packet=FORCE, ports=200, a_second=20_000),
-    "small_of_another_host": partial(flood, packet=FORCE, ports=200, a_second=20_000, host=ANOTHER),
-    "small_of_the_players_host": partial(flood, packet=FORCE, a_second=20_000),
-    "small_of_one": partial(flood, packet=FORCE),
+    # Small datagrams: what a busy program may send, and more than Python handles.
+    "two_thousand": partial(flood, packet=FORCE, a_second=2000),
+    "twenty_thousand": partial(flood, packet=FORCE, a_second=20_000),
+    "of_two_hundred_ports": partial(flood, packet=FORCE, ports=200, a_second=20_000),
+    "as_fast_as_it_goes": partial(flood, packet=FORCE),
 }

@@ -10,6 +10,7 @@ import pytest
 import soundfile
 
 from yehu_server.errors import OutputError
+from yehu_server.live import limits
 from yehu_server.live.audio import recordings
 from yehu_server.scores.capture import read_capture
 
@@ -44,7 +45,7 @@ def test_recordings_are_bounded_in_rate_and_number_and_empty_ones_leave_no_file(
 ):
     clock = SimpleNamespace(now=1.0, monotonic=lambda: clock.now)
     monkeypatch.setattr(recordings, "time", clock)
-    monkeypatch.setattr(recordings, "MOST_TAKES", 12)
+    monkeypatch.setattr(limits, "RECORDINGS", 12)
     tape = SimpleNamespace(rate=44100.0, frame=0, taped=lambda at: (at, np.zeros((0, 2), "f4")))
     takes = recordings.Recordings(tape, tmp_path, lambda _line: None)
     for ending in (".wav", ".flac"):

@@ -9,7 +9,8 @@ from collections import Counter
 import pytest
 from wire import errors
 
-from yehu_server.live.osc.fair_queue import OVERHEAD_BYTES, MemoryQuota
+from yehu_server.live import limits
+from yehu_server.live.osc.work_queue import Shares
 
 
 @pytest.mark.parametrize("block", [128, 2048])
@@ -135,7 +136,8 @@ def test_messages_of_a_bundle_are_heard_at_one_frame_and_in_order(still, wire):
 
 
 def test_when_too_much_waits_it_is_told_and_the_rest_plays(still, wire, monkeypatch):
-    monkeypatch.setattr(still.handler._schedule, "_quota", MemoryQuota(13 * (OVERHEAD_BYTES + 28)))
+    shares = Shares(20 * (limits.OVERHEAD + 28))
+    monkeypatch.setattr(still.handler._schedule, "_shares", shares)
     later = still.clock.time() + 0.1
     for number in range(12):
         packet = wire.message("/yehu/bow/position", 0.1 + 0.01 * number)

@@ -8,11 +8,8 @@ from types import SimpleNamespace
 import pytest
 from wire import FakePeer
 
-from yehu_server.live.osc.change_publisher import MOST_SENT
+from yehu_server.live import limits
 from yehu_server.live.osc.clients import (
-    MOST_KNOWN,
-    MOST_OF_A_HOST,
-    MOST_SUBSCRIBERS,
     SLICE_S,
     Clients,
 )
@@ -85,18 +82,21 @@ def test_who_sets_something_is_told_its_value_once(clients, values, play, peer):
 
 
 def test_many_who_set_something_at_once_are_all_told(clients, play):
-    peers = [FakePeer(port) for port in range(MOST_KNOWN + 100)]
+    peers = [FakePeer(port) for port in range(limits.PEERS + 100)]
     for peer in peers:
         clients.echo(peer, ["/a"])
     play(17)
-    assert sum(len(peer.packets) for peer in peers) in (MOST_SENT, 2 * MOST_SENT)
+    assert sum(len(peer.packets) for peer in peers) in (
+        limits.CHANGES_AT_ONCE,
+        2 * limits.CHANGES_AT_ONCE,
+    )
     play(60)
     assert {len(peer.packets) for peer in peers} == {1}
 
 
 def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(clients, values, play):
     peers = [FakePeer(port) for port in range(40)]
-    values.now = {f"/{number}": 0.0 for number in range(MOST_SENT // 10)}
+    values.now = {f"/{number}": 0.0 for number in range(limits.CHANGES_AT_ONCE // 10)}
     for peer in peers:
         assert clients.subscribe(peer, 60.0)
     play(1000)
@@ -108,7 +108,7 @@ def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(clients, val
 
     play(1000, turn)
     counts = [len(peer.packets) for peer in peers]
-    assert sum(counts) <= 61 * MOST_SENT
+    assert sum(counts) <= 61 * limits.CHANGES_AT_ONCE
     assert min(counts) > 0.8 * max(counts)
 
 
@@ -194,7 +194,7 @@ def test_subscribers_of_no_time_get_all_values_once(clients, values, play, peer)
 
 
 def test_there_is_room_for_so_many_subscribers_and_for_more_when_some_are_gone(clients, play):
-    peers = [FakePeer(port) for port in range(MOST_SUBSCRIBERS + 1)]
+    peers = [FakePeer(port) for port in range(limits.SUBSCRIBERS + 1)]
     assert all(clients.subscribe(peer, 1.0) for peer in peers[:-1])
     assert not clients.subscribe(peers[-1], 1.0)
     assert clients.subscribe(peers[0], 1.0)  # a subscriber keeps its place
@@ -202,8 +202,10 @@ def test_there_is_room_for_so_many_subscribers_and_for_more_when_some_are_gone(c
     assert clients.subscribe(peers[-1], 1.0)
     play(1100)
     assert clients.subscribers == 0
-    tenants = [FakePeer(port, "192.0.2.1") for port in range(MOST_OF_A_HOST + 1)]
-    assert [clients.subscribe(peer, 60.0) for peer in tenants].count(True) == MOST_OF_A_HOST
+    tenants = [FakePeer(port, "192.0.2.1") for port in range(limits.SUBSCRIBERS_A_HOST + 1)]
+    assert [clients.subscribe(peer, 60.0) for peer in tenants].count(
+        True
+    ) == limits.SUBSCRIBERS_A_HOST
     assert clients.subscribe(FakePeer(7), 60.0)  # one host leaves places for others
     clients.unsubscribe(tenants[0])
     assert clients.subscribe(tenants[-1], 60.0)
@@ -215,9 +217,9 @@ def test_only_so_many_are_remembered_and_subscribers_not_forgotten_for_them(
     clients.subscribe(peer, 10.0)
     play(20)
     peer.received()
-    for port in range(2, 3 * MOST_KNOWN):
+    for port in range(2, 3 * limits.PEERS):
         clients.send_error(FakePeer(port), "/x", "no")
-        assert len(clients._clients) <= MOST_KNOWN
+        assert len(clients._clients) <= limits.PEERS
     values.now["/a"] = 1.0
     play(20)
     assert told(peer) == [("/yehu/a", [1.0])]

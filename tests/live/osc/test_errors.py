@@ -8,7 +8,7 @@ from typing import Any
 
 from wire import FakePeer, errors
 
-from yehu_server.live.osc import clients
+from yehu_server.live import limits
 
 NAN, INF = math.nan, math.inf
 NOTHING: tuple[Any, ...] = ()
@@ -54,7 +54,13 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/preset/morph", [("ordinary", "tremolo", NAN)], "not finite"),
     ("/preset/morph", [("ordinary", "../x", 0.5)], "is not a plain name"),
     ("/bow", [(1.0,)], "expected 2 arguments"),
-    ("/bow/forc", [(0.5,)], "/bow/force"),  # a near name is suggested
+    # A similar address is suggested, of parameters and of calls.
+    ("/bow/forc", [(0.5,)], "did you mean /yehu/bow/force?"),
+    ("/bow/forc/unit", [(0.5,)], "did you mean /yehu/bow/force/unit?"),
+    ("/force", [(0.5,)], "did you mean /yehu/bow/force?"),
+    ("/preset/lod", [("ordinary",)], "did you mean /yehu/preset/load?"),
+    ("/load", [("ordinary",)], "did you mean /yehu/preset/load?"),
+    ("/recrod/start", [("take",)], "did you mean /yehu/record/start?"),
     *(
         (address, [(0.123,)], "")
         for address in (
@@ -124,5 +130,5 @@ def test_near_names_are_looked_for_only_where_they_are_told(still, monkeypatch):
     )
     for number in range(500):
         still.tell(f"/bow/forc{number}", 1.0)
-    assert len(errors(still.peer.received())) == clients.ERRORS_AT_ONCE
-    assert len(looked) <= 2 * clients.ERRORS_AT_ONCE
+    assert len(errors(still.peer.received())) == limits.ERRORS_AT_ONCE
+    assert len(looked) <= 2 * limits.ERRORS_AT_ONCE

@@ -6,8 +6,8 @@ import mido
 import pytest
 from midi_input import receive
 
+from yehu_server.live import limits
 from yehu_server.live.osc import context, learn_calls
-from yehu_server.live.osc.context import SAVES_A_SECOND, SAVES_AT_ONCE
 from yehu_server.playing.mapping import load
 
 
@@ -63,11 +63,11 @@ def test_the_file_is_written_aside_so_that_a_slow_disk_holds_up_nothing(still, m
 
 def test_files_are_written_so_many_at_once_and_one_more_each_second(still, monkeypatch):
     monkeypatch.setattr(context, "time", still.clock)
-    for _ in range(round(SAVES_AT_ONCE)):
+    for _ in range(round(limits.SAVES_AT_ONCE)):
         assert told(still.ask("/unlearn", "/playing/vibrato"), "/unlearned")
     assert told(still.ask("/unlearn", "/playing/vibrato"), "/error")
     assert told(still.ask("/learn", "/playing/vibrato"), "/error")
-    still.clock.now += 1.0 / SAVES_A_SECOND
+    still.clock.now += 1.0 / limits.SAVES_A_SECOND
     assert told(still.ask("/learn", "/playing/vibrato"), "/learning")
 
 

@@ -11,10 +11,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from yehu_server.live.osc.answering import MOST_BYTES
+from yehu_server.live import limits
 from yehu_server.live.osc.packets import (
-    DEEPEST,
-    MOST_ARGUMENTS,
     Message,
     PacketError,
     pack,
@@ -94,7 +92,7 @@ def test_a_bundle_may_be_empty(wire):
 
 def test_bundles_go_as_deep_in_bundles_as_is_allowed_and_no_deeper(wire):
     packet = wire.message("/a")
-    for _ in range(DEEPEST):
+    for _ in range(limits.NESTING):
         packet = wire.bundle(None, packet)
     assert [m.address for m in unpack(packet)] == ["/a"]
     with pytest.raises(PacketError, match="deep"):
@@ -166,16 +164,16 @@ def test_bundles_much_too_deep_are_refused_at_once():
 
 
 def test_a_message_of_as_many_arguments_as_is_allowed_is_read_and_no_longer_one(wire):
-    (got,) = unpack(wire.message("/a", *[1] * MOST_ARGUMENTS))
-    assert len(got.arguments) == MOST_ARGUMENTS
-    for tags in ("i" * (MOST_ARGUMENTS + 1), "T" * (MOST_BYTES - 100), "[" * 40_000):
+    (got,) = unpack(wire.message("/a", *[1] * limits.ARGUMENTS))
+    assert len(got.arguments) == limits.ARGUMENTS
+    for tags in ("i" * (limits.ARGUMENTS + 1), "T" * (limits.PACKET - 100), "[" * 40_000):
         with pytest.raises(PacketError, match="arguments"):
             unpack(wire.message("/a", *[1] * len(tags), tags=tags))
 
 
 def test_a_bundle_is_read_a_step_at_a_time_and_none_of_it_is_kept(wire):
     inner = wire.bundle(None, *[b"/\0\0\0"] * 10)
-    packet = wire.bundle(None, *[inner] * (MOST_BYTES // 140))
+    packet = wire.bundle(None, *[inner] * (limits.PACKET // 140))
     taken = steps(packet)
     tracemalloc.start()
     try:
@@ -183,7 +181,7 @@ def test_a_bundle_is_read_a_step_at_a_time_and_none_of_it_is_kept(wire):
         _, most = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    assert count == 10 * (MOST_BYTES // 140)
+    assert count == 10 * (limits.PACKET // 140)
     assert most < 50_000
     assert all(message is None for message in itertools.islice(steps(packet), count))
     assert list(steps(wire.bundle(None, *[wire.bundle(None)] * 1000))) == [None] * 2002

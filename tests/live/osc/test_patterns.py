@@ -11,8 +11,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from yehu_server.errors import RefusedError
+from yehu_server.live import limits
 from yehu_server.live.osc.osc_addresses import (
-    LONGEST_PATTERN,
     _pieces,
     is_pattern,
     matches,
@@ -96,7 +96,7 @@ def test_whatever_a_pattern_is_it_fits_does_not_fit_or_is_refused(pattern, addre
 
 def test_a_twisted_pattern_takes_no_longer_than_a_plain_one_should(subtests):
     for pattern in [
-        "*" * LONGEST_PATTERN,
+        "*" * limits.PATTERN,
         "/yehu" + "/*" * 100,
         "/yehu/" + "*?" * 120,
         "/yehu/bow/" + "*o*r" * 60,
@@ -109,7 +109,7 @@ def test_a_twisted_pattern_takes_no_longer_than_a_plain_one_should(subtests):
         with subtests.test(pattern=pattern):
             started = time.thread_time()
             for param in TABLE:
-                matches(pattern[:LONGEST_PATTERN], "/yehu" + param.address)
+                matches(pattern[: limits.PATTERN], "/yehu" + param.address)
             assert time.thread_time() - started < 0.5
 
 

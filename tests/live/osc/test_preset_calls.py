@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from yehu_server.live import limits
 from yehu_server.live.osc import context
-from yehu_server.live.osc.context import SAVES_A_SECOND, SAVES_AT_ONCE
 from yehu_server.params.preset_file import POSSIBLE
 from yehu_server.playing.preset_folders import Presets
 
@@ -115,16 +115,16 @@ def test_presets_are_saved_so_many_at_once_and_one_more_each_second(still, own, 
     monkeypatch.setattr(context, "time", still.clock)
     for number in range(20):
         still.tell("/preset/save", f"mine {number}")
-    assert len(list(own.iterdir())) == SAVES_AT_ONCE
+    assert len(list(own.iterdir())) == limits.SAVES_AT_ONCE
     address, reason = still.ask("/preset/save", "another")[-1].arguments
     assert (address, reason) == (
         "/yehu/preset/save",
         "files are written too often; try again in a second",
     )
-    still.clock.now += 1.0 / SAVES_A_SECOND
+    still.clock.now += 1.0 / limits.SAVES_A_SECOND
     for name in ("another", "and another"):
         still.tell("/preset/save", name)
-    assert len(list(own.iterdir())) == SAVES_AT_ONCE + 1
+    assert len(list(own.iterdir())) == limits.SAVES_AT_ONCE + 1
 
 
 def test_files_are_written_aside_and_read_in_order(still, own, monkeypatch):

@@ -16,13 +16,13 @@ from collections.abc import Iterator
 import pytest
 
 from yehu_server.errors import DeviceError
+from yehu_server.live import limits
 from yehu_server.live.network import Allowed
-from yehu_server.live.osc import open_sockets, receiving
-from yehu_server.live.osc.answering import ANSWERED_BYTES, TO_ALL_HOSTS
-from yehu_server.live.osc.fair_queue import OVERHEAD_BYTES, FairQueue
+from yehu_server.live.osc import receiving
 from yehu_server.live.osc.packets import pack
-from yehu_server.live.osc.receiving import MUTED_FROM_BOTH_BYTES, OscPorts
+from yehu_server.live.osc.receiving import AT_ONCE, OscPorts
 from yehu_server.live.osc.schedule import AHEAD_S
+from yehu_server.live.osc.work_queue import SLICE_NS, WorkQueue
 
 HOST = "127.0.0.1"
 BURST = 20_000
@@ -41,6 +41,7 @@ class Collector:
         self.gone_peers: list[object] = []
         self.go_on = threading.Event()
         self.go_on.set()
+        self.is_idle = True  # whether it is not held up
         self.is_slow = False  # then it yields to others while it is held up
         self.hearing: list[object] = []
         self.ticks = 0
@@ -51,7 +52,9 @@ class Collector:
     def handle(self, packet: bytes, peer, arrived_ns: int) -> Iterator[None]:
         while self.is_slow and not self.go_on.is_set():
             yield
+        self.is_idle = False
         self.go_on.wait()
+        self.is_idle = True
         yield
         self.packets.append((packet, peer, arrived_ns))
         self.since_tick[-1] += 1
@@ -67,8 +70,8 @@ class Collector:
         self.since_tick.append(0)
         self.ticked_s.append(time.thread_time())
 
-    def wait_s(self) -> float | None:
-        return None
+    def wait_s(self) -> float:
+        return 0.5
 
     def is_subscribed(self, peer) -> bool:
         return peer in self.hearing
@@ -138,7 +141,7 @@ def test_a_burst_that_buffer_and_queue_hold_arrives_whole(
     listen, client, keeper, until, busy, hindrance
 ):
     ports = listen(start=hindrance != "not started")
-    holds = MUTED_FROM_BOTH_BYTES // 2 // (len(numbered(1)[0]) + OVERHEAD_BYTES)
+    holds = limits.WAITING // 2 // (len(numbered(1)[0]) + limits.OVERHEAD)
     packets = numbered(min(holds, ports.traffic.buffer_bytes // (2 * PACKET_BYTES)))
     if hindrance == "held up":
         keeper.go_on.clear()
@@ -168,27 +171,37 @@ def test_what_the_kernel_drops_is_counted(listen, client, keeper, until):
     assert ports.traffic.packets + ports.traffic.kernel_drops == 1001
 
 
-@pytest.fixture(params=[True, False])
-def kernel_filters(request, monkeypatch) -> bool:
-    """Whether the kernel drops what nobody wants, or the server has to."""
-    if not request.param:
-        for module in (open_sockets, receiving):
-            monkeypatch.setattr(module, "mute", lambda _udp, _senders: None)
-    elif sys.platform != "linux":
-        pytest.skip("only Linux filters")
-    return request.param
-
-
-def test_longer_datagrams_are_dropped_and_counted(listen, client, keeper, until, kernel_filters):
+def test_longer_datagrams_are_dropped_and_counted(listen, client, keeper, until):
     ports = listen()
     sender = client(ports)
-    for size in (open_sockets.DATAGRAM_BYTES + 1, 65507):
+    for size in (limits.DATAGRAM + 1, 65507):
         sender.take(b"x" * size)
-    sender.take(b"/a\0\0")
-    until(lambda: keeper.packets, "the short one")
-    assert keeper.bodies == [b"/a\0\0"]
-    assert ports.traffic.kernel_drops == (2 if kernel_filters else 0)
-    assert ports.traffic.excess == (0 if kernel_filters else 2)
+    for size in (4, limits.DATAGRAM):
+        sender.take(b"/" * size)
+    until(lambda: len(keeper.packets) == 2, "the short ones")
+    assert keeper.bodies == [b"/" * 4, b"/" * limits.DATAGRAM]
+    assert ports.traffic.excess == 2
+
+
+@on_linux
+def test_a_packet_has_the_time_of_its_arrival_and_not_of_reading(listen, client, keeper, until):
+    ports = listen()
+    sender = client(ports)
+    for _ in range(100):  # the kernel begins to stamp some time after it was asked to
+        keeper.packets.clear()
+        keeper.go_on.clear()
+        sender.take(b"holds")  # the thread
+        until(lambda: not keeper.is_idle, "it to be handled")
+        before = time.monotonic_ns()
+        sender.take(b"late")
+        after = time.monotonic_ns()
+        time.sleep(0.02)
+        keeper.go_on.set()
+        until(lambda: len(keeper.packets) == 2, "both")
+        arrived_ns = keeper.packets[1][2]
+        if arrived_ns < after + 5_000_000:
+            break
+    assert before - 1_000_000 < arrived_ns < after + 1_000_000  # the clocks' common error
 
 
 def test_answers_nobody_takes_are_no_trouble(listen, client, keeper, until):
@@ -202,45 +215,41 @@ def test_answers_nobody_takes_are_no_trouble(listen, client, keeper, until):
     until(lambda: ports.traffic.unsent == 2, "both to be counted")
 
 
-def test_a_sender_with_much_waiting_is_muted_until_it_is_handled(
-    listen, client, keeper, until, kernel_filters
-):
-    ports = listen()
-    one, other = client(ports), client(ports)
-    keeper.is_slow = True
-    keeper.go_on.clear()
-    fit = MUTED_FROM_BOTH_BYTES // 2 // (16_000 + OVERHEAD_BYTES) + 1
-    for number in range(fit + 1):
-        one.take(b"x" * 16_000)
-        until(lambda count=number + 1: ports.traffic.packets == count, "it to be read")
-    until(lambda: ports._muted, "it to be muted")
-    for _ in range(10):
-        one.take(b"x" * 16_000)
-    other.take(b"y" * 16_000)
-    until(lambda: ports._queue.bytes > (fit + 1) * 16_000, "the other to be heard")
-    keeper.go_on.set()
-    until(lambda: not ports._muted, "it to be handled")
-    one.take(b"again")
-    until(lambda: b"again" in keeper.bodies, "it to be heard again")
-    assert sorted(keeper.bodies) == [b"again", *[b"x" * 16_000] * fit, b"y" * 16_000]
-    dropped = ports.traffic.kernel_drops, ports.traffic.excess
-    assert dropped == ((10, 1) if kernel_filters else (0, 11))
-
-
-def test_who_has_little_waiting_is_not_muted_where_its_host_has_no_more_room(
+def test_who_has_too_much_waiting_loses_what_comes_and_others_lose_nothing(
     listen, client, keeper, until
 ):
     ports = listen(start=False)
-    ports._queue = FairQueue(ports._handle, 64_000)
+    ports._queue = WorkQueue(8 * (limits.OVERHEAD + 16_000))
     ports.start()
+    one, other = client(ports), client(ports)
     keeper.is_slow = True
     keeper.go_on.clear()
-    one = client(ports)
-    for number in range(4):
+    for number in range(10):
         one.take(b"x" * 16_000)
         until(lambda count=number + 1: ports.traffic.packets == count, "it to be read")
-    assert ports.traffic.excess == 3
-    assert not ports._muted
+    other.take(b"y" * 16_000)
+    until(lambda: ports.traffic.packets == 11, "the other to be read")
+    keeper.go_on.set()
+    until(lambda: not ports._queue, "all to be handled")
+    one.take(b"again")
+    until(lambda: b"again" in keeper.bodies, "it to be heard again")
+    assert sorted(keeper.bodies) == [b"again", *[b"x" * 16_000] * 4, b"y" * 16_000]
+    assert ports.traffic.excess == 6
+
+
+@pytest.mark.parametrize("others", [1, 5])
+def test_what_others_send_without_end_delays_a_packet_by_a_slice_of_each_only(
+    listen, client, keeper, until, others
+):
+    ports = listen(start=False)
+    flooding, quiet = [client(ports) for _ in range(others)], client(ports)
+    for each in flooding:
+        send_all(each, [b"flood"] * 100)
+    quiet.take(b"/note\0\0\0")
+    keeper.takes_s = SLICE_NS * 1e-9
+    ports.start()
+    until(lambda: b"/note\0\0\0" in keeper.bodies, "the note")
+    assert keeper.bodies.index(b"/note\0\0\0") <= 100 * others // AT_ONCE * 8 + 4 * others
 
 
 def test_there_is_osc_over_ipv6(listen, client, keeper):
@@ -280,7 +289,8 @@ def test_a_stream_is_not_read_further_before_it_is_handled(listen, client, keepe
     for sender in senders:
         sender.start()
     time.sleep(SETTLE_S)
-    assert ports._queue.bytes <= len(streams) * 2 * receiving.STREAM_BYTES
+    held = sum(ports._queue.held(peer) for peer in list(ports._streams))
+    assert held <= len(streams) * (limits.STREAM_READ + limits.OVERHEAD)
     keeper.go_on.set()
     until(lambda: len(keeper.packets) == 80, "all packets")
     for sender in senders:
@@ -324,7 +334,8 @@ class Net:
 
 
 @pytest.mark.parametrize(
-    ("is_here", "hosts", "most"), [(False, 1, 2), (False, 100, TO_ALL_HOSTS), (True, 1, 100)]
+    ("is_here", "hosts", "most"),
+    [(False, 1, 2), (False, 100, limits.ANSWERED_TO_ALL_HOSTS), (True, 1, 100)],
 )
 def test_answers_to_other_hosts_are_bounded_for_each_and_for_all(
     listen, monkeypatch, is_here, hosts, most
@@ -337,7 +348,7 @@ def test_answers_to_other_hosts_are_bounded_for_each_and_for_all(
         peer = ports._peer((f"203.0.113.{number % hosts}", 1 + number))
         while peer.takes_more:
             peer.send(b"x" * 10_000)
-    assert most <= net.sent_bytes / ANSWERED_BYTES < 1.2 * most + 0.2
+    assert most <= net.sent_bytes / limits.ANSWERED < 1.2 * most + 0.2
 
 
 def test_who_never_reads_misses_answers_and_others_play_on(listen, client, keeper, until):
@@ -369,9 +380,9 @@ def test_connections_that_come_and_go_leave_nothing(listen, client, until):
     until(lambda: len(ports._selector.get_map()) == kept, "no socket to be left")
 
 
-@pytest.mark.parametrize("many", [receiving.MOST_OF_A_HOST, receiving.MOST_CONNECTIONS])
+@pytest.mark.parametrize("many", [limits.CONNECTIONS_A_HOST, limits.CONNECTIONS])
 def test_there_is_room_for_so_many_connections(listen, client, keeper, until, monkeypatch, many):
-    monkeypatch.setattr(receiving, "MOST_OF_A_HOST", many)
+    monkeypatch.setattr(limits, "CONNECTIONS_A_HOST", many)
     ports = listen()
     streams = [client(ports, "slip") for _ in range(many)]
     for stream in streams:
@@ -389,14 +400,14 @@ def test_there_is_room_for_so_many_connections(listen, client, keeper, until, mo
 def test_connections_that_never_say_a_thing_shut_nobody_out(
     listen, client, keeper, until, monkeypatch
 ):
-    monkeypatch.setattr(receiving, "MOST_CONNECTIONS", 3)
+    monkeypatch.setattr(limits, "CONNECTIONS", 3)
     ports = listen()
     half, silent, speaks = (client(ports, "prefixed") for _ in range(3))
     half.socket.sendall(struct.pack(">I", 100) + b"/half")
     speaks.take(b"/a\0\0")
     until(lambda: len(keeper.packets) == 1, "it to be heard")
     assert client(ports, "slip").has_ended()  # they still have time
-    monkeypatch.setattr(receiving, "SPEAKS_WITHIN_S", 0.0)
+    monkeypatch.setattr(limits, "FIRST_PACKET_S", 0.0)
     for body in (b"/b\0\0", b"/c\0\0"):
         client(ports, "slip").take(body)
         until(lambda body=body: body in keeper.bodies, "who comes")
@@ -409,8 +420,8 @@ def test_connections_that_never_say_a_thing_shut_nobody_out(
 def test_who_is_silent_for_long_gives_its_place_to_who_comes_unless_it_listens(
     listen, client, keeper, until, monkeypatch
 ):
-    monkeypatch.setattr(receiving, "MOST_CONNECTIONS", 3)
-    monkeypatch.setattr(receiving, "QUIET_S", 0.5)
+    monkeypatch.setattr(limits, "CONNECTIONS", 3)
+    monkeypatch.setattr(limits, "QUIET_S", 0.5)
     ports = listen()
     listens, silent, speaks = (client(ports, "prefixed") for _ in range(3))
     for number, stream in enumerate((listens, silent, speaks)):

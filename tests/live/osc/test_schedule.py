@@ -11,12 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from wire import FakePeer
 
+from yehu_server.live import limits
 from yehu_server.live.osc import schedule
-from yehu_server.live.osc.fair_queue import LITTLE_BYTES, OVERHEAD_BYTES
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
 
 RATE = 48000
-MANY = 1 << 20
 MS = RATE // 1000
 ME, OTHER = FakePeer(1), FakePeer(2)
 
@@ -24,45 +23,49 @@ ME, OTHER = FakePeer(1), FakePeer(2)
 # ---------------------------------------------------------------- waiting
 
 
+def due(waiting: Schedule) -> list[tuple[float, bytes]]:
+    """All that is due now."""
+    return [(due_s, packet) for due_s, packet, _ in iter(waiting.due, None)]
+
+
 @given(st.lists(st.floats(0.0, 100.0)))
-def test_things_are_handed_out_once_in_order_of_their_times(due):
-    waiting: Schedule[int] = Schedule()
-    for number, moment in enumerate(due):
-        assert waiting.add(moment, number, ME)
-    assert len(waiting) == len(due)
-    in_order = sorted((moment, number, ME) for number, moment in enumerate(due))
-    assert waiting.due(3) == in_order[:3]  # and no more at once
-    assert waiting.due(MANY) == in_order[3:]
+def test_messages_are_handed_out_once_in_order_of_their_times(moments):
+    waiting = Schedule()
+    for number, moment in enumerate(moments):
+        assert waiting.add(moment, b"%4d" % number, ME)
+    assert len(waiting) == len(moments)
+    in_order = sorted((moment, b"%4d" % number) for number, moment in enumerate(moments))
+    assert due(waiting) == in_order
     assert not waiting
-    assert waiting.due(MANY) == []
 
 
 def test_nothing_is_handed_out_before_its_time(still_time):
-    waiting: Schedule[str] = Schedule()
+    waiting = Schedule()
     now = still_time.time()
     assert waiting.wait_s() is None
-    waiting.add(now + 2.0, "second", ME)
-    waiting.add(now + 1.0, "first", ME)
+    waiting.add(now + 2.0, b"second", ME)
+    waiting.add(now + 1.0, b"first", ME)
     assert waiting.wait_s() == pytest.approx(1.0 - AHEAD_S)
-    assert waiting.due(MANY) == []
+    assert due(waiting) == []
     still_time.now += 1.0 - AHEAD_S + 1e-4
-    assert waiting.due(MANY) == [(now + 1.0, "first", ME)]
+    assert due(waiting) == [(now + 1.0, b"first")]
     assert waiting.wait_s() == pytest.approx(1.0, abs=0.01)
     still_time.now += 5.0
     assert waiting.wait_s() == 0.0
-    assert waiting.due(MANY) == [(now + 2.0, "second", ME)]
+    assert due(waiting) == [(now + 2.0, b"second")]
 
 
 def test_there_is_room_for_so_much_half_of_it_for_one_and_again_when_it_is_gone():
-    waiting: Schedule[int] = Schedule(most_bytes=8 * LITTLE_BYTES)
-    size = LITTLE_BYTES - OVERHEAD_BYTES + 1
-    said = [waiting.add(0.0, number, peer, size) for peer in (ME, OTHER) for number in range(4)]
-    assert said == [True, True, True, False, True, True, False, False]
-    waiting.due(2)
-    assert waiting.add(0.0, 5, OTHER, size)
-    waiting.clear()
-    assert waiting.add(0.0, 6, ME, size)
-    assert waiting.due(MANY) == [(0.0, 6, ME)]
+    size = 4096
+    waiting, message = Schedule(most_bytes=8 * size), bytes(size - limits.OVERHEAD)
+    said = [waiting.add(0.0, message, peer) for peer in (ME, OTHER) for _ in range(5)]
+    assert said == [True] * 4 + [False] + [True] * 2 + [False] * 3
+    waiting.due()
+    waiting.due()
+    assert waiting.add(0.0, message, OTHER)
+    waiting.drop(lambda _packet: True)
+    assert waiting.add(0.0, b"last", ME)
+    assert due(waiting) == [(0.0, b"last")]
 
 
 # ---------------------------------------------------------------- frames of moments

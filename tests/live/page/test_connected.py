@@ -25,11 +25,11 @@ from web_client import Refused, WebSocket, ask
 from yehu_server.ahead.interpreter import look_layout, look_length
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
+from yehu_server.live import limits
 from yehu_server.live.options import PartOptions
 from yehu_server.live.page.players import CHANNELS, LOWEST
 from yehu_server.live.page.sockets import LOOK, NO_PART, NOW, WISHES, WRONG
 from yehu_server.live.server import Server
-from yehu_server.live.web.access import MOST_OF_A_HOST, MOST_SOCKETS_OF_A_HOST
 from yehu_server.params.table import TABLE
 from yehu_server.playing.options import PlayingOptions
 
@@ -198,13 +198,15 @@ def test_pages_get_the_module_and_what_captures_begin_with_once_they_are_there(s
 
 def test_the_connections_of_a_host_shut_no_other_out(server) -> None:
     port = server.pages.port
-    crowd = [socket.create_connection((HOST, port)) for _ in range(MOST_OF_A_HOST + 50)]
+    crowd = [
+        socket.create_connection((HOST, port)) for _ in range(limits.WEB_CONNECTIONS_A_HOST + 50)
+    ]
     try:
         for connection in crowd:
             with contextlib.suppress(OSError):  # the oldest were closed
                 connection.sendall(b"GET / HTTP/1.1\r\nHo")  # half a request
         sockets = [
-            WebSocket(port, "/sound", source="127.0.0.7") for _ in range(MOST_SOCKETS_OF_A_HOST)
+            WebSocket(port, "/sound", source="127.0.0.7") for _ in range(limits.WEB_SOCKETS_A_HOST)
         ]
         with pytest.raises(Refused):
             WebSocket(port, "/sound", source="127.0.0.7")

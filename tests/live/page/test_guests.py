@@ -14,9 +14,10 @@ from wire import StillTime
 from yehu_server.core.midi.events import LEAVE, RELEASE_ALL
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, STOP, WRITE
+from yehu_server.live import limits
 from yehu_server.live.page import guests as admitting
 from yehu_server.live.page import sockets as serving
-from yehu_server.live.page.guests import DIGITS, TRIES, Admission, Guests, new_pin
+from yehu_server.live.page.guests import DIGITS, Admission, Guests, new_pin
 from yehu_server.live.page.players import permitted
 from yehu_server.live.page.sockets import NO_PIN, PageSockets
 
@@ -40,20 +41,20 @@ def test_another_machine_needs_the_pin_and_has_to_wait_if_it_guesses(monkeypatch
     wrong = ("", "123457", "\u0661" * 6)
     assert [admission.role_of(ELSEWHERE, pin) for pin in wrong] == [None] * 3
     assert admission.role_of(ELSEWHERE, "123456") == "play"
-    for _ in range(TRIES):
+    for _ in range(limits.PINS_AT_ONCE):
         assert admission.role_of(ELSEWHERE, "000000") is None
     assert admission.role_of(ELSEWHERE, "123456") is None
     assert admission.role_of("192.0.2.8", "123456") == "play"
-    clock.now += admitting.ANOTHER_AFTER_S + 0.1
+    clock.now += limits.PIN_AGAIN_S + 0.1
     assert admission.role_of(ELSEWHERE, "123456") == "play"
     assert Admission(None).role_of(ELSEWHERE, "") == "own"  # without guests all may do all
 
 
 def test_however_many_machines_guess_few_are_remembered() -> None:
     admission = Admission(Guests("play", "123456"))
-    for number in range(2 * admitting.MOST_HOSTS):
+    for number in range(2 * limits.PEERS):
         assert admission.role_of(f"198.51.{number // 256}.{number % 256}", "000000") is None
-    assert len(admission._tries) <= admitting.MOST_HOSTS + 1
+    assert len(admission._tries) <= limits.PEERS + 1
 
 
 # ---------------------------------------------------------------- roles
@@ -157,8 +158,8 @@ def test_a_page_that_wishes_too_much_has_to_wait(monkeypatch):
     async def wait(seconds: float) -> None:
         waited.append(seconds)
 
-    monkeypatch.setattr(serving, "WISHES_PER_S", 0.001)
-    monkeypatch.setattr(serving, "WISHES_AT_ONCE", 3.0)
+    monkeypatch.setattr(limits, "PAGE_EVENTS_A_SECOND", 0.001)
+    monkeypatch.setattr(limits, "PAGE_EVENTS_AT_ONCE", 3.0)
     monkeypatch.setattr(serving, "asyncio", SimpleNamespace(**vars(asyncio) | {"sleep": wait}))
     assert visit("own", *[WISHES["a note"]] * 6, at_once=2)[0] == [BEGIN] * 6
     assert waited == pytest.approx([1000.0, 3000.0], rel=0.01)

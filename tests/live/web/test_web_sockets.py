@@ -12,15 +12,10 @@ import pytest
 from web_client import BINARY, CLOSE, TEXT, Refused, WebSocket, ask
 from wire import Message, Wire
 
-from yehu_server.live.osc.answering import MOST_UNSENT_BYTES, WebTraffic
-from yehu_server.live.web.access import (
-    MOST_CONNECTIONS,
-    MOST_OF_A_HOST,
-    MOST_SOCKETS_OF_A_HOST,
-    MOST_WEB_SOCKETS,
-)
+from yehu_server.live import limits
+from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.web.server import WebOptions
-from yehu_server.live.web.web_sockets import FRAME_BYTES, WebPeer
+from yehu_server.live.web.web_sockets import WebPeer
 from yehu_server.params.table import TABLE
 
 HOST = "127.0.0.1"
@@ -142,7 +137,10 @@ def test_text_that_is_none_or_a_frame_that_is_too_long_ends_the_one_who_sent_it(
     longest = connect()
     longest.send(BINARY, Wire.message("/yehu/ping", "x" * 60_000))  # as long as a datagram
     assert len(longest.wait_for("/yehu/pong")[0]) == 60_000
-    for kind, data, code in (TEXT, b"\xff\xfe", "1007"), (BINARY, bytes(FRAME_BYTES + 1), "1009"):
+    for kind, data, code in (
+        (TEXT, b"\xff\xfe", "1007"),
+        (BINARY, bytes(limits.WEB_FRAME + 1), "1009"),
+    ):
         web = connect()
         web.send(kind, data)
         with pytest.raises(ConnectionError, match=code):
@@ -175,9 +173,9 @@ def test_a_page_from_elsewhere_or_a_handshake_that_is_none_gets_no_web_socket(co
 
 
 def test_there_is_room_for_so_many_of_a_host_and_no_more(connect):
-    hosts = [f"127.0.0.{2 + i}" for i in range(MOST_WEB_SOCKETS // MOST_SOCKETS_OF_A_HOST)]
+    hosts = [f"127.0.0.{2 + i}" for i in range(limits.WEB_SOCKETS // limits.WEB_SOCKETS_A_HOST)]
     for host in hosts:
-        for _ in range(MOST_SOCKETS_OF_A_HOST):
+        for _ in range(limits.WEB_SOCKETS_A_HOST):
             connect(source=host)
         with pytest.raises(Refused) as refused:
             connect(source=host)
@@ -188,14 +186,14 @@ def test_there_is_room_for_so_many_of_a_host_and_no_more(connect):
 
 def test_the_connections_of_a_host_shut_no_other_out(port, connect):
     first = socket.create_connection((HOST, port), source_address=("127.0.0.9", 0))
-    crowd = [socket.create_connection((HOST, port)) for _ in range(MOST_CONNECTIONS + 50)]
+    crowd = [socket.create_connection((HOST, port)) for _ in range(limits.WEB_CONNECTIONS + 50)]
     try:
         connect(source="127.0.0.8").sync()
         first.sendall(b"GET /yehu/bow/force?TYPE HTTP/1.1\r\nHost: localhost\r\n\r\n")
         first.settimeout(20.0)
         assert first.recv(1 << 16).startswith(b"HTTP/1.1 200")
         held = sum(is_open(one) for one in crowd)
-        assert held <= MOST_OF_A_HOST
+        assert held <= limits.WEB_CONNECTIONS_A_HOST
     finally:
         for connection in (first, *crowd):
             connection.close()
@@ -231,14 +229,14 @@ def test_what_a_peer_does_not_take_is_dropped_and_counted():
     asked = []
     loop = SimpleNamespace(call_soon_threadsafe=asked.append)
     peer = WebPeer("deaf", loop, traffic)
-    for _ in range(3 * MOST_UNSENT_BYTES // 1000):
+    for _ in range(3 * limits.UNSENT // 1000):
         peer.send(bytes(1000))
     assert len(asked) == 1  # its thread is woken once
     kept = 0
     while peer._next() is not None:
         kept += 1
-    assert kept == MOST_UNSENT_BYTES // 1000
-    assert traffic.unsent == 3 * MOST_UNSENT_BYTES // 1000 - kept
+    assert kept == limits.UNSENT // 1000
+    assert traffic.unsent == 3 * limits.UNSENT // 1000 - kept
     peer.send(b"again")
     assert len(asked) == 2
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
+from yehu_server.live import limits
 from yehu_server.util.files import create, discard, inside, why
 from yehu_server.util.sound_file import DEFAULT_SUBTYPES, SoundWriter, format_of
 from yehu_server.util.token_bucket import TokenBucket
@@ -146,8 +147,6 @@ class Recorder:
 
 
 ENDINGS = (".wav", ".flac")
-# What clients may begin together, and what the folder may have in it.
-BEGINS_A_SECOND, BEGINS_AT_ONCE, MOST_TAKES = 1.0, 10.0, 1000
 
 
 class Recordings:
@@ -163,7 +162,7 @@ class Recordings:
         self._on_message = on_message
         self._everything: Recorder | None = None
         self._requested: Recorder | None = None
-        self._begins = TokenBucket(BEGINS_A_SECOND, BEGINS_AT_ONCE)
+        self._begins = TokenBucket(limits.RECORDINGS_A_SECOND, limits.RECORDINGS_AT_ONCE)
 
     def record_everything(
         self, target: Path, *, overwrite: bool = False, waits: bool = False
@@ -191,8 +190,10 @@ class Recordings:
             self._folder.mkdir(parents=True, exist_ok=True)
             if target.exists():
                 raise OutputError(f"{target.name} exists")
-            if len(os.listdir(self._folder)) >= MOST_TAKES:  # noqa: PTH208 - names are enough
-                raise OutputError(f"{self._folder} has {MOST_TAKES} files; remove some first")
+            if len(os.listdir(self._folder)) >= limits.RECORDINGS:  # noqa: PTH208
+                raise OutputError(
+                    f"{self._folder} has {limits.RECORDINGS} files; remove some first"
+                )
         except OSError as error:
             raise OutputError(f"{self._folder}: {why(error)}") from error
         self._requested = Recorder(self._tape, target, self._tape.frame, self._on_message)

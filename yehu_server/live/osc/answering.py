@@ -24,11 +24,10 @@ from typing import Protocol
 
 from pythonosc import slip
 
+from yehu_server.live import limits
 from yehu_server.live.network import Address
 from yehu_server.util.token_bucket import TokenBucket
 
-# Of a packet: as in a datagram, and less than the beginning of a STUN message says as a length.
-MOST_BYTES = (1 << 16) - 1
 LENGTH_BYTES = 4
 STARTS = b"/#"  # first bytes that a packet may have
 ENDS = re.compile(b"\xc0+")
@@ -66,7 +65,7 @@ class Framing:
         received = self._received
         while len(received) >= LENGTH_BYTES:
             length = int.from_bytes(received[:LENGTH_BYTES], "big")
-            if length > MOST_BYTES:
+            if length > limits.PACKET:
                 raise FramingError(f"a packet of {length} bytes is too long")
             end = LENGTH_BYTES + length
             if length:
@@ -89,8 +88,8 @@ class Framing:
             end = received.find(slip.END, self._sought)
             if end < 0:
                 self._sought = len(received)
-            if max(end, self._sought) > 2 * MOST_BYTES:  # SLIP may send a byte as two
-                raise FramingError(f"a packet of more than {MOST_BYTES} bytes is too long")
+            if max(end, self._sought) > 2 * limits.PACKET:  # SLIP may send a byte as two
+                raise FramingError(f"a packet of more than {limits.PACKET} bytes is too long")
             if end < 0:
                 return
             frame = bytes(received[:end])
@@ -111,14 +110,9 @@ def _decoded(frame: bytes) -> bytes:
         packet = slip.decode(frame)
     except slip.ProtocolError:
         return b""  # damaged: counted as a malformed packet
-    if len(packet) > MOST_BYTES:
+    if len(packet) > limits.PACKET:
         raise FramingError(f"a packet of {len(packet)} bytes is too long")
     return packet
-
-
-MOST_UNSENT_BYTES = 1 << 18  # waiting for one peer
-ANSWERED_BYTES = 1 << 17  # to a port, at once and a second
-TO_A_HOST, TO_ALL_HOSTS = 2, 16  # times as much
 
 
 class Peer(Protocol):
@@ -145,7 +139,7 @@ class Traffic:
 
     packets: int = 0
     refused: int = 0  # packets from senders that are not allowed, and refused connections
-    excess: int = 0  # packets dropped because too many wait
+    excess: int = 0  # packets dropped: too long, or their sender has too much waiting
     kernel_drops: int = 0  # packets dropped by the kernel, its buffer being full
     unsent: int = 0
     failures: int = 0  # messages that met a defect of the server
@@ -166,7 +160,7 @@ class WebTraffic:
 
 def answer_bucket(times: int = 1) -> TokenBucket:
     """The bytes of answers to a port, or to several together."""
-    return TokenBucket(times * ANSWERED_BYTES, times * ANSWERED_BYTES)
+    return TokenBucket(times * limits.ANSWERED, times * limits.ANSWERED)
 
 
 @dataclass(frozen=True)
@@ -236,7 +230,6 @@ class TcpPeer:
         self.framing = Framing()
         self.has_sent_packet = False  # sent a whole packet
         self.last_packet_s = time.monotonic()  # time of its last packet, or of its connecting
-        self.has_pending_packets = False  # packets of it wait or are handled; no more are read
         self.reads = True  # until its end of the connection is closed
         self._unsent = bytearray()
         self._finished = False
@@ -252,7 +245,7 @@ class TcpPeer:
     @property
     def takes_more(self) -> bool:
         """See `Peer`."""
-        return len(self._unsent) < MOST_UNSENT_BYTES // 2
+        return len(self._unsent) < limits.UNSENT // 2
 
     @property
     def events(self) -> int:
@@ -262,7 +255,7 @@ class TcpPeer:
 
     def send(self, packet: bytes) -> None:
         """See `Peer`; packets are dropped while the peer does not read."""
-        if len(self._unsent) > MOST_UNSENT_BYTES:
+        if len(self._unsent) > limits.UNSENT:
             self._traffic.unsent += 1
         elif not self._finished:
             self._unsent += self.framing.wrap(packet)

@@ -11,14 +11,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from yehu_server.live import limits
 from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import split_group
 from yehu_server.params.table import UNIT, read
 from yehu_server.util.token_bucket import TokenBucket
-
-ERRORS_A_SECOND, ERRORS_AT_ONCE = 10.0, 20.0
 
 
 def topic_of(address: str) -> str:
@@ -42,7 +41,7 @@ class Subscriber:
     to_send: dict[str, str] = field(default_factory=dict)
     sending: dict[str, str] = field(default_factory=dict)
     errors: TokenBucket = field(
-        default_factory=lambda: TokenBucket(ERRORS_A_SECOND, ERRORS_AT_ONCE)
+        default_factory=lambda: TokenBucket(limits.ERRORS_A_SECOND, limits.ERRORS_AT_ONCE)
     )
     last_error: float = field(default_factory=time.monotonic)
 
@@ -92,7 +91,6 @@ Values = Callable[[str], Mapping[str, float]]
 Status = Callable[[str], Mapping[str, float | str]]
 
 STATUS_S = 0.25  # between readings of the status
-MOST_SENT = 512  # messages of one round
 
 
 class ChangePublisher:
@@ -116,7 +114,7 @@ class ChangePublisher:
         return {STATUS_PREFIX + name: as_argument(value) for name, value in status.items()}
 
     def round(self, subscribers: dict[Peer, Subscriber], now: float) -> Iterator[None]:
-        """Find what is to be sent, and send up to MOST_SENT messages, each as a step.
+        """Find what is to be sent, and send up to CHANGES_AT_ONCE messages, each as a step.
 
         Subscribers that were sent some are moved behind those that were left out. Others may come
         and go between two steps.
@@ -160,7 +158,7 @@ class ChangePublisher:
 
     def _send(self, subscribers: dict[Peer, Subscriber]) -> Iterator[None]:
         packets: dict[str, bytes] = {}
-        left = MOST_SENT
+        left = limits.CHANGES_AT_ONCE
         for peer, subscriber in list(subscribers.items()):
             if not subscriber.sending:
                 continue

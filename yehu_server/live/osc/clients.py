@@ -9,10 +9,9 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 
 from yehu_server.errors import shortened
+from yehu_server.live import limits
 from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.change_publisher import (
-    ERRORS_A_SECOND,
-    ERRORS_AT_ONCE,
     ChangePublisher,
     Status,
     Subscriber,
@@ -26,9 +25,7 @@ from yehu_server.live.part_addresses import FIRST
 FLUSH_S = 1.0 / 60.0  # between rounds of sending
 SLICE_S = 0.0005  # of a round, after which other messages are handled
 SWEEP_S = 1.0
-MOST_SUBSCRIBERS, MOST_OF_A_HOST = 64, 32
-MOST_KNOWN, MOST_CROWDED = 1024, 8192
-FORGIVEN_S = ERRORS_AT_ONCE / ERRORS_A_SECOND
+FORGIVEN_S = limits.ERRORS_AT_ONCE / limits.ERRORS_A_SECOND
 
 
 class Clients:
@@ -51,7 +48,7 @@ class Clients:
         self._flushed = 0.0  # when it began
         self._swept = 0.0
         self._is_waiting = False
-        self._crowded = MOST_KNOWN  # number of clients at which idle ones are dropped
+        self._crowded = limits.PEERS  # number of clients at which idle ones are dropped
 
     @property
     def subscribers(self) -> int:
@@ -64,7 +61,7 @@ class Clients:
         if client is None:
             if len(self._clients) >= self._crowded:
                 self._forget_idle()
-                self._crowded = max(MOST_KNOWN, 2 * len(self._clients))
+                self._crowded = max(limits.PEERS, 2 * len(self._clients))
             client = self._clients[peer] = Subscriber(peer)
         return client
 
@@ -80,7 +77,7 @@ class Clients:
 
     def echo(self, peer: Peer, addresses: Iterable[str]) -> None:
         """Send a peer the values that it has set, with the next flush."""
-        if len(self._clients) >= MOST_CROWDED and peer not in self._clients:
+        if len(self._clients) >= limits.CLIENTS_ECHOED and peer not in self._clients:
             return
         client = self._client(peer)
         if client.muted_until <= time.monotonic():
@@ -103,7 +100,10 @@ class Clients:
         client, now = self._client(peer), time.monotonic()
         if not client.subscribes(now):
             hosts = [one.peer.host for one in self._clients.values() if one.subscribes(now)]
-            if len(hosts) >= MOST_SUBSCRIBERS or hosts.count(peer.host) >= MOST_OF_A_HOST:
+            if (
+                len(hosts) >= limits.SUBSCRIBERS
+                or hosts.count(peer.host) >= limits.SUBSCRIBERS_A_HOST
+            ):
                 return False
         self._is_waiting = True
         topic = addressed

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from yehu_server.errors import OutputError, YehuError
+from yehu_server.live import limits
 from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.clients import Clients
@@ -18,8 +19,6 @@ from yehu_server.params.table import PREFIX
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.util.token_bucket import TokenBucket
-
-SAVES_A_SECOND, SAVES_AT_ONCE = 1.0, 10.0  # of all clients together: each writes a file
 
 Act = Callable[[Request], None]
 
@@ -51,7 +50,9 @@ class CallContext:
     drop_scheduled: Callable[[str], None] = lambda _addressed: None
     counts: Counts = field(default_factory=Counts)
     writes: set[object] = field(default_factory=set)  # a mark for each file that is being written
-    saves: TokenBucket = field(default_factory=lambda: TokenBucket(SAVES_A_SECOND, SAVES_AT_ONCE))
+    saves: TokenBucket = field(
+        default_factory=lambda: TokenBucket(limits.SAVES_A_SECOND, limits.SAVES_AT_ONCE)
+    )
 
     def __post_init__(self) -> None:
         """Make what is sent to clients."""

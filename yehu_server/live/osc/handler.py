@@ -15,9 +15,8 @@ from yehu_server.live.osc.all_calls import acts, own_calls
 from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.context import Act, CallContext
-from yehu_server.live.osc.fair_queue import FairQueue
 from yehu_server.live.osc.osc_addresses import fitting, is_pattern, near
-from yehu_server.live.osc.packets import Message, PacketError, answer, steps, unpack
+from yehu_server.live.osc.packets import Message, PacketError, answer, steps
 from yehu_server.live.osc.part_calls import PartCalls, within_an_hour
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
 from yehu_server.live.part_addresses import PART, part_of, split_group
@@ -28,7 +27,8 @@ from yehu_server.playing.sources import is_own
 
 log = logging.getLogger(__name__)
 
-DUE_AT_ONCE = 1024  # scheduled messages taken up at a time
+DUE_AT_ONCE = 32  # scheduled messages, between others
+LONGEST_WAIT_S = 0.5
 
 
 class OscHandler:
@@ -42,8 +42,7 @@ class OscHandler:
         self.counts, self.clients = context.counts, context.clients
         self._players, self._groups = context.players, context.groups
         context.drop_scheduled = self._drop_scheduled
-        self._schedule: Schedule[bytes] = Schedule()
-        self._due: FairQueue[bytes] = FairQueue(self._act_on_due)
+        self._schedule = Schedule()
         self._tags = TagClock(self._players[0])
         self._arrivals = Arrivals(self._players[0].frame_of, self._players[0].instrument.rate)
         self._acts: dict[str, Act] = {}
@@ -62,76 +61,84 @@ class OscHandler:
     @property
     def waiting(self) -> int:
         """Number of messages that wait for their time."""
-        return len(self._schedule) + len(self._due)
+        return len(self._schedule)
 
     # -- packets -----------------------------------------------------------------------------
 
-    def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
-        """Handle a packet in steps, between which others may be handled: a message is a step."""
-        now, frame = time.time(), self._arrivals.frame_of(arrived_ns)
-        is_late = False
+    def handle(
+        self, packet: bytes, peer: Peer, arrived_ns: int = 0, *, frame: int | None = None
+    ) -> Iterator[None]:
+        """Handle a packet in steps, between which others may be handled: a message is a step.
+
+        `frame`: of one message that waited for its time; without it, the packet is heard as it
+        arrived, and its bundles at their times.
+        """
+        now, is_late, is_due = time.time(), False, frame is not None
+        frame = self._arrivals.frame_of(arrived_ns) if frame is None else frame
         try:
             for message in steps(packet):
-                if message is not None:
-                    is_past = message.due_s is not None and message.due_s <= now
-                    self.counts.late_bundles += is_past and not is_late
-                    is_late |= is_past
-                    yield from self._take(message, peer, now, frame)
-                yield
+                if message is None:
+                    yield
+                    continue
+                self.counts.messages += not is_due
+                if message.due_s is not None and message.due_s > now:
+                    self._keep(message, peer)
+                    yield
+                    continue
+                self.counts.late_bundles += message.due_s is not None and not is_late
+                is_late |= message.due_s is not None
+                call = Request(message.arguments, message.payload, peer, frame)
+                for action in self._actions(message.address, peer):
+                    try:  # one refusal does not stop the others that match a pattern
+                        action(call)
+                    except YehuError as error:
+                        self.context.send_error(peer, message.address, str(error))
+                    yield
         except PacketError as error:
             self.counts.malformed += 1
             self.clients.send_error(peer, "", f"malformed packet: {error}")
 
-    def _take(self, message: Message, peer: Peer, now: float, frame: int) -> Iterator[None]:
-        """Carry out a message, or schedule it."""
-        self.counts.messages += 1
-        if message.due_s is None or message.due_s <= now:
-            yield from self._act(message, peer, frame)
-            return
+    def _keep(self, message: Message, peer: Peer) -> None:
+        """Keep a message until its time."""
         packet = answer(message.address, message.payload)  # smaller than the message unpacked
-        if self._schedule.add(message.due_s, packet, peer, len(packet)):
+        if self._schedule.add(message.due_s or 0.0, packet, peer):
             self.counts.scheduled += 1
         else:
             self.context.send_error(peer, message.address, "too many messages wait for their time")
-
-    def _act_on_due(self, packet: bytes, peer: Peer, frame: int) -> Iterator[None]:
-        (message,) = unpack(packet)
-        yield from self._act(message, peer, frame)
 
     def tick(self) -> None:
         """Do what is due."""
         # Early enough to be there when the device asks for their frames.
         self._schedule.ahead_s = AHEAD_S + self._players[0].delay / self._players[0].instrument.rate
-        for due_s, packet, peer in self._schedule.due(DUE_AT_ONCE):
-            self._due.add(packet, peer, self._tags.frame_at(due_s), len(packet), always=True)
-        self._due.work()
+        for _ in range(DUE_AT_ONCE):
+            due = self._schedule.due()
+            if due is None:
+                break
+            due_s, packet, peer = due
+            for _ in self.handle(packet, peer, frame=self._tags.frame_at(due_s)):
+                pass
         self.clients.flush()
 
-    def wait_s(self) -> float | None:
-        """Seconds until `tick` has something to do; None where it has nothing."""
-        if self._due:
-            return 0.0
-        waits = self._schedule.wait_s(), self.clients.wait_s()
-        return min((wait for wait in waits if wait is not None), default=None)
+    def wait_s(self) -> float:
+        """Seconds until `tick` has something to do, or to look for it again."""
+        waits = self._schedule.wait_s(), self.clients.wait_s(), LONGEST_WAIT_S
+        return min(wait for wait in waits if wait is not None)
 
-    def _act(self, message: Message, peer: Peer, frame: int) -> Iterator[None]:
-        call = Request(message.arguments, message.payload, peer, frame)
+    def _actions(self, address: str, peer: Peer) -> list[Act]:
+        """What carries out the calls at an address; tells the peer where there is none."""
         try:
-            actions = self._actions(message.address)
+            actions = self._found(address)
         except YehuError as error:
-            self.context.send_error(peer, message.address, str(error))
-            return
+            self.context.send_error(peer, address, str(error))
+            return []
         if not actions:  # a near address is looked for only where the error is sent
-            unknown = partial(near, message.address, len(self._players))
-            self.context.send_error(peer, message.address, unknown)
-        for action in actions:  # one refusal does not stop the others that match a pattern
-            try:
-                action(call)
-            except YehuError as error:
-                self.context.send_error(peer, message.address, str(error))
-            yield
+            self.context.send_error(peer, address, partial(self._unknown, address))
+        return actions
 
-    def _actions(self, address: str) -> list[Act]:
+    def _unknown(self, address: str) -> str:
+        return near(address, len(self._players), self._acts)
+
+    def _found(self, address: str) -> list[Act]:
         """What carries out the calls at an address; none where it is unknown."""
         known = address.removeprefix(PREFIX)
         if address in self._answers:
@@ -180,15 +187,11 @@ class OscHandler:
 
     def _drop_scheduled(self, addressed: str) -> None:
         """Drop the messages of a part that wait for their time; without a part, all."""
-        if not addressed:
-            self._schedule.clear()
-            self._due.clear()
-            return
         own, parts = f"{PREFIX}{addressed}/".encode(), f"{PREFIX}{PART}".encode()
 
         def is_of_part(packet: bytes) -> bool:
             is_plain = not packet.startswith(parts)
-            return packet.startswith(own) or (is_plain and part_of(addressed) == 0)
+            is_of_first = is_plain and part_of(addressed) == 0
+            return not addressed or packet.startswith(own) or is_of_first
 
         self._schedule.drop(is_of_part)
-        self._due.drop(is_of_part)

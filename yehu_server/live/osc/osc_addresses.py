@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 
 from yehu_server.errors import ParameterError, RefusedError, YehuError, did_you_mean
+from yehu_server.live import limits
 from yehu_server.live.osc.status import PART_STATUS, STATUS, STATUS_PREFIX
 from yehu_server.live.part_addresses import PART_PARAMS, check_own, check_part, split_group
 from yehu_server.params.table import PREFIX, TABLE, UNIT, find
@@ -84,7 +85,6 @@ def _either(words: list[str]) -> Piece:
 
 NAMES = [row.name for row in STATUS]
 PART_NAMES = [row.name for row in PART_STATUS]
-LONGEST_PATTERN = 256
 
 
 def readable(groups: Iterable[str]) -> Iterator[str]:
@@ -110,23 +110,30 @@ def parameter_of(address: str) -> str:
     return find(address).address
 
 
-def near(address: str, parts: int) -> str:
-    """The reason for an unknown address, with a similar one if there is one."""
+def near(address: str, parts: int, known: Iterable[str]) -> str:
+    """The reason for an unknown address, with a similar one if there is one.
+
+    `known`: the addresses of all parameters and calls, without the prefix.
+    """
     if not address.startswith(PREFIX + "/"):
         return f"unknown address (all begin with {PREFIX}/)"
+    addressed, own = split_group(address.removeprefix(PREFIX)[: limits.PATTERN])
     try:
-        addressed, own = split_group(address.removeprefix(PREFIX)[:LONGEST_PATTERN])
         check_part(addressed, parts)
         check_own(addressed, own)
-        parameter_of(own.removesuffix(UNIT))
+        if own.startswith(STATUS_PREFIX):
+            parameter_of(own)
     except YehuError as error:
         return str(error)
-    return "unknown address"
+    of_group = [PREFIX + one for one in known if split_group(one)[0] == addressed]
+    # One that ends in this name comes before one that is merely similar.
+    ending = [one for one in of_group if one.endswith(f"/{own.lstrip('/')}")]
+    return f"unknown address{did_you_mean(ending[0] if ending else address, of_group, 0.75)}"
 
 
 def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[str]:
     """The addresses that a pattern matches; raises RefusedError if it is wrong or matches none."""
-    if len(pattern) > LONGEST_PATTERN:
+    if len(pattern) > limits.PATTERN:
         raise RefusedError("the pattern is too long")
     literal = re.split(r"[*?\[{]", pattern, maxsplit=1)[0]  # by which most are told apart
     matches(pattern, "")  # raises where it is wrong, whatever there is

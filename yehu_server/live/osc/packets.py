@@ -10,11 +10,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-DEEPEST = 32  # bundles within bundles, arrays within arrays
+from yehu_server.live import limits
+
 BUNDLE = b"#bundle\0"
 IMMEDIATELY = (0, 1)  # as a time tag
 SECONDS_1900_TO_1970 = 2_208_988_800
-MOST_ARGUMENTS = 256  # of a message; it is read in one step
 
 
 class PacketError(ValueError):
@@ -50,9 +50,9 @@ def steps(packet: bytes) -> Iterator[Message | None]:
     data = memoryview(packet)
     try:
         if packet.startswith(BUNDLE):
-            for _ in _content(data, None, DEEPEST):
+            for _ in _content(data, None, limits.NESTING):
                 yield None
-        yield from _content(data, None, DEEPEST)
+        yield from _content(data, None, limits.NESTING)
     except (struct.error, UnicodeDecodeError) as error:
         raise PacketError("cut short, or not text") from error
 
@@ -91,13 +91,13 @@ def _message(data: memoryview, due_s: float | None) -> Message:
     tags = reader.text()
     if not tags.startswith(","):
         raise PacketError("no type tags")
-    if len(tags) - 1 > MOST_ARGUMENTS:
+    if len(tags) - 1 > limits.ARGUMENTS:
         raise PacketError("too many arguments")
     arguments: list[Any] = []
     lists = [arguments]
     for tag in tags[1:]:
         if tag == "[":
-            if len(lists) > DEEPEST:
+            if len(lists) > limits.NESTING:
                 raise PacketError("arrays are nested too deep")
             lists.append([])
             lists[-2].append(lists[-1])

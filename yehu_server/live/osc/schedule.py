@@ -12,18 +12,15 @@ import heapq
 import itertools
 import time
 from collections.abc import Callable
-from typing import Generic, TypeVar
 
+from yehu_server.live import limits
 from yehu_server.live.osc.answering import Peer
-from yehu_server.live.osc.fair_queue import OVERHEAD_BYTES, MemoryQuota
+from yehu_server.live.osc.work_queue import Shares
 from yehu_server.playing.live_player import LivePlayer
 
 AHEAD_S = 0.01  # scheduled messages are posted so long before they are due
 TOGETHER_NS, TRIES = 100_000, 10
 STRAY_S = 0.001
-MOST_BYTES = 20 << 20  # some 65,000 notes, half as many of one sender
-
-T = TypeVar("T")
 
 
 def both_clocks() -> tuple[float, int]:
@@ -57,61 +54,51 @@ class TagClock:
         return self._anchor[1]
 
 
-class Schedule(Generic[T]):
-    """Things that wait for their time.
+class Schedule:
+    """Messages that wait for their time.
 
-    `ahead_s`: how long before its time a thing is due.
-    `most_bytes`: limit on the size of all of them; see `MemoryQuota` for what one peer gets.
+    `ahead_s`: how long before its time a message is due.
+    `most_bytes`: limit on the size of all of them; see `Shares` for what one peer gets.
     """
 
-    def __init__(self, ahead_s: float = AHEAD_S, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(self, ahead_s: float = AHEAD_S, most_bytes: int = limits.SCHEDULED) -> None:
         self.ahead_s = ahead_s
-        self._quota = MemoryQuota(most_bytes)
+        self._shares = Shares(most_bytes)
         self._order = itertools.count()
-        self._waiting: list[tuple[float, int, T, Peer, int]] = []
+        self._waiting: list[tuple[float, int, bytes, Peer, int]] = []
 
     def __len__(self) -> int:
         return len(self._waiting)
 
-    def add(self, due_s: float, thing: T, peer: Peer, size: int = 0) -> bool:
-        """Keep a thing of some size (bytes) until its time (s since 1970).
-
-        Returns whether there was room.
-        """
-        size += OVERHEAD_BYTES
-        if not self._quota.take(peer, size):
+    def add(self, due_s: float, packet: bytes, peer: Peer) -> bool:
+        """Keep a message until its time (s since 1970); return whether there was room."""
+        size = len(packet) + limits.OVERHEAD
+        if not self._shares.take(peer, size):
             return False
-        heapq.heappush(self._waiting, (due_s, next(self._order), thing, peer, size))
+        heapq.heappush(self._waiting, (due_s, next(self._order), packet, peer, size))
         return True
 
-    def due(self, most: int) -> list[tuple[float, T, Peer]]:
-        """Remove and return what is due now, at most so many, each with its time and peer."""
-        ready: list[tuple[float, T, Peer]] = []
-        horizon = time.time() + self.ahead_s
-        while self._waiting and self._waiting[0][0] <= horizon and len(ready) < most:
-            due_s, _, thing, peer, size = heapq.heappop(self._waiting)
-            self._quota.give_back(peer, size)
-            ready.append((due_s, thing, peer))
-        return ready
+    def due(self) -> tuple[float, bytes, Peer] | None:
+        """Remove and return the next message that is due now, with its time and peer."""
+        if not self._waiting or self._waiting[0][0] > time.time() + self.ahead_s:
+            return None
+        due_s, _, packet, peer, size = heapq.heappop(self._waiting)
+        self._shares.give_back(peer, size)
+        return due_s, packet, peer
 
     def wait_s(self) -> float | None:
-        """Seconds until the next thing is due; None where there is none."""
+        """Seconds until the next message is due; None where there is none."""
         if not self._waiting:
             return None
         return max(0.0, self._waiting[0][0] - self.ahead_s - time.time())
 
-    def drop(self, which: Callable[[T], bool]) -> None:
-        """Drop some things."""
+    def drop(self, which: Callable[[bytes], bool]) -> None:
+        """Drop some messages."""
         remaining = []
         for entry in self._waiting:
-            _, _, thing, peer, size = entry
-            if which(thing):
-                self._quota.give_back(peer, size)
+            if which(entry[2]):
+                self._shares.give_back(entry[3], entry[4])
             else:
                 remaining.append(entry)
         self._waiting = remaining
         heapq.heapify(self._waiting)
-
-    def clear(self) -> None:
-        """Drop everything."""
-        self.drop(lambda _thing: True)

@@ -7,14 +7,12 @@ import secrets
 import time
 from dataclasses import dataclass, field
 
+from yehu_server.live import limits
 from yehu_server.live.network import is_here, plain
 from yehu_server.util.token_bucket import TokenBucket
 
 LISTEN, PLAY, OWN = ROLES = ("listen", "play", "own")
 DIGITS = 6
-# Wrong PINs that a host may send at once, and one more in this time.
-TRIES, ANOTHER_AFTER_S = 10, 10.0
-MOST_HOSTS = 1024
 
 
 def new_pin() -> str:
@@ -46,9 +44,11 @@ class Admission:
             return OWN
         if not pin:
             return None
-        if len(self._tries) > MOST_HOSTS:
+        if len(self._tries) > limits.PEERS:
             self._tries.clear()
-        tries = self._tries.setdefault(plain(host), TokenBucket(1.0 / ANOTHER_AFTER_S, TRIES))
+        tries = self._tries.setdefault(
+            plain(host), TokenBucket(1.0 / limits.PIN_AGAIN_S, limits.PINS_AT_ONCE)
+        )
         now = time.monotonic()
         if tries.left(now) < 1.0:
             return None

@@ -10,10 +10,10 @@ from typing import Any
 from yehu_server.core.midi.section_players import OWN
 from yehu_server.core.player.rows import ROW
 from yehu_server.errors import DeviceError
+from yehu_server.live import limits
 from yehu_server.live.network import Address
 from yehu_server.live.page.guests import Guests
 from yehu_server.live.page.players import CHANNELS, FIRST
-from yehu_server.live.page.sockets import MOST_PAGES
 from yehu_server.live.web.server import listen
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.section_instruments import SECTION
@@ -109,6 +109,6 @@ class Pages(Supervisor):
     def on_exit(self, *, by_itself: bool) -> None:
         """End what the pages held, whose process is gone."""
         for player in self._players:
-            player.end_channel_notes(FIRST, MOST_PAGES * CHANNELS, frame=player.frame_of())
+            player.end_channel_notes(FIRST, limits.WEB_SOCKETS * CHANNELS, frame=player.frame_of())
         if by_itself:
             self._on_message("pages: their process ended; it is started again")

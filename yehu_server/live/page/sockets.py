@@ -21,9 +21,9 @@ import numpy as np
 from aiohttp import WSMsgType, web
 
 from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
+from yehu_server.live import limits
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitted
 from yehu_server.live.page.shared_view import SharedView
-from yehu_server.live.web.access import MOST_WEB_SOCKETS
 from yehu_server.params.table import TABLE
 from yehu_server.util.token_bucket import TokenBucket
 
@@ -58,11 +58,7 @@ WISH = 5  # numbers: frame or NOW, kind, index, value, other
 NOW = -1.0
 SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is the row of a parameter
 LOOK_S, SOUND_S, STATUS_S = 1 / 60, 0.001, 1.0
-MOST_PAGES = MOST_WEB_SOCKETS
-MOST_UNSENT = 1 << 16  # bytes
-MOST_WISHES = 1024  # of a message
-MESSAGE_BYTES = 8 * WISH * MOST_WISHES
-WISHES_PER_S, WISHES_AT_ONCE = 2000.0, 4000.0
+MESSAGE_BYTES = 8 * WISH * limits.PAGE_EVENTS
 HEARTBEAT_S, CLOSING_S = 10.0, 0.3
 # Close codes: against the rules; the PIN is missing or wrong; there is no such part.
 WRONG, NO_PIN, NO_PART = 1008, 4401, 4404
@@ -79,7 +75,7 @@ class Page:
         self.role = role  # of ``page.guests``
         self.transport = transport
         self.looks = self.sounds = False  # whether it wants looks; whether it sounds itself
-        self.bucket = TokenBucket(WISHES_PER_S, WISHES_AT_ONCE)
+        self.bucket = TokenBucket(limits.PAGE_EVENTS_A_SECOND, limits.PAGE_EVENTS_AT_ONCE)
 
 
 class PageSockets:
@@ -119,7 +115,7 @@ class PageSockets:
             await socket.close(code=NO_PART, message=f"there are {len(self._rigs)} parts".encode())
             return socket
         taken = {page.number for page in self._pages.values()}
-        number = next(number for number in range(MOST_PAGES + 1) if number not in taken)
+        number = next(number for number in range(limits.WEB_SOCKETS + 1) if number not in taken)
         page = Page(number, part, role, request.transport)
         self._pages[socket] = page
         self._has_pages.set()
@@ -143,7 +139,7 @@ class PageSockets:
             self._players.leave(page.number, time.monotonic_ns())
             text = frame_of(json.dumps({"left": page.number}).encode(), TEXT)
             for other in self._pages.values():
-                write(other.transport, text, MOST_UNSENT)
+                write(other.transport, text, limits.PAGE_UNSENT)
         return socket
 
     async def serve_listener(self, request: web.Request, role: str | None) -> web.WebSocketResponse:
@@ -192,10 +188,10 @@ class PageSockets:
         frame = frame_of(struct.pack("<2d", WISHES, page.number) + wishes.tobytes())
         for other in self._pages.values():
             if len(wishes) and other is not page and other.sounds and other.part == page.part:
-                write(other.transport, frame, MOST_UNSENT)
+                write(other.transport, frame, limits.PAGE_UNSENT)
         page.bucket.spend(count)
         if (left := page.bucket.left(time.monotonic())) < 0.0:
-            await asyncio.sleep(-left / WISHES_PER_S)
+            await asyncio.sleep(-left / limits.PAGE_EVENTS_A_SECOND)
 
     # -- telling all -------------------------------------------------------------------------
 
@@ -215,7 +211,7 @@ class PageSockets:
                 frame = frame_of(struct.pack("<d", LOOK) + look)
                 for page in viewers:
                     if page.part == part:
-                        write(page.transport, frame, MOST_UNSENT)
+                        write(page.transport, frame, limits.PAGE_UNSENT)
 
     async def send_sound(self) -> None:
         """Send the sound, for ever."""
@@ -229,7 +225,7 @@ class PageSockets:
                 begin, samples = self._view.sound(max(sent, 0), end)
                 frame = frame_of(struct.pack("<d", begin) + samples)
                 for transport in self._listeners.values():
-                    write(transport, frame, MOST_UNSENT)
+                    write(transport, frame, limits.PAGE_UNSENT)
             sent = end
             await asyncio.sleep(SOUND_S)
 
@@ -254,7 +250,7 @@ class PageSockets:
             **self._status(),
         }
         text = json.dumps({"status": status}, allow_nan=False)
-        write(page.transport, frame_of(text.encode(), TEXT), MOST_UNSENT)
+        write(page.transport, frame_of(text.encode(), TEXT), limits.PAGE_UNSENT)
 
 
 def read_wishes(data: bytes) -> Any:

@@ -19,9 +19,9 @@ from urllib.parse import urlsplit
 
 from aiohttp import web
 
+from yehu_server.live import limits
 from yehu_server.live.network import Allowed, is_here, plain
 
-IDLE_S = 15.0  # before an idle connection is closed
 ENDING_S = 0.2  # to finish answers at the end
 LONGEST_NAME = 300
 PORTS = {"http": 80, "https": 443}  # by scheme, where an origin names none
@@ -42,7 +42,7 @@ async def serve_http(
         app,
         access_log=None,
         logger=quiet,
-        keepalive_timeout=IDLE_S,
+        keepalive_timeout=limits.WEB_IDLE_S,
         lingering_time=0.0,
         shutdown_timeout=ENDING_S,
     )
@@ -116,10 +116,6 @@ def _is_address(host: str) -> bool:
     return True
 
 
-MOST_CONNECTIONS, MOST_OF_A_HOST = 256, 128  # with those that have sent no request
-MOST_WEB_SOCKETS, MOST_SOCKETS_OF_A_HOST = 64, 32
-
-
 class Connections:
     """The connections of a server. One too many closes the oldest of the host that has most.
 
@@ -147,7 +143,7 @@ class Connections:
 
     def _make_room(self) -> None:
         [(host, count)] = Counter(self._hosts.values()).most_common(1)
-        if count > MOST_OF_A_HOST or len(self._hosts) > MOST_CONNECTIONS:
+        if count > limits.WEB_CONNECTIONS_A_HOST or len(self._hosts) > limits.WEB_CONNECTIONS:
             of_host = [one for one, its in self._hosts.items() if its == host]
             oldest = next(one for one in of_host if one not in self._talking)  # or the new one
             del self._hosts[oldest]
@@ -161,7 +157,7 @@ class Connections:
         """
         host = plain(request.remote or "::")
         others = list(self._talking.values())
-        if len(others) >= MOST_WEB_SOCKETS or others.count(host) >= MOST_SOCKETS_OF_A_HOST:
+        if len(others) >= limits.WEB_SOCKETS or others.count(host) >= limits.WEB_SOCKETS_A_HOST:
             raise web.HTTPServiceUnavailable(text="there are too many WebSockets\n")
         self._talking[request.protocol] = host
         try:

@@ -19,6 +19,7 @@ from urllib.parse import urlsplit
 from aiohttp import web
 
 from yehu_server.errors import DeviceError, one_line
+from yehu_server.live import limits
 from yehu_server.live.network import Address, Allowed, format_address, plain
 from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.call import Call
@@ -35,7 +36,6 @@ from yehu_server.util.files import why
 
 log = logging.getLogger(__name__)
 
-BODY_BYTES = 1 << 16
 HEADERS = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-store"}
 PARAMETERS = "parameters.html"
 PANEL = """
@@ -131,8 +131,8 @@ class WebServer:
 
     async def _respond(self, request: web.Request) -> web.StreamResponse:
         check(request, self._allowed, self._names)
-        if (request.content_length or 0) > BODY_BYTES:
-            raise web.HTTPRequestEntityTooLarge(BODY_BYTES, request.content_length or 0)
+        if (request.content_length or 0) > limits.WEB_BODY:
+            raise web.HTTPRequestEntityTooLarge(limits.WEB_BODY, request.content_length or 0)
         if request.headers.get("Upgrade", "").lower() == "websocket":
             with self._connections.talking(request):
                 return await self._sockets.serve(request)

@@ -12,13 +12,13 @@ from typing import Any
 from aiohttp import WSMsgType, web
 
 from yehu_server.errors import RefusedError, shortened
-from yehu_server.live.osc.answering import MOST_UNSENT_BYTES, WebTraffic
+from yehu_server.live import limits
+from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web.query import is_listenable
 from yehu_server.params.table import PREFIX
 
-FRAME_BYTES = 1 << 16  # longest frame that is read
 HEARTBEAT_S = 20.0  # a socket that does not answer within half of this is closed
 CLOSING_S = 0.3
 BEHIND_S = 0.005
@@ -44,12 +44,12 @@ class WebPeer:
     @property
     def takes_more(self) -> bool:
         """See `Peer`."""
-        return self._unsent_bytes < MOST_UNSENT_BYTES // 2
+        return self._unsent_bytes < limits.UNSENT // 2
 
     def send(self, packet: bytes | str) -> None:
         """See `Peer`; text goes out as text."""
         with self._turn:
-            if self._unsent_bytes + len(packet) > MOST_UNSENT_BYTES:
+            if self._unsent_bytes + len(packet) > limits.UNSENT:
                 self._traffic.unsent += 1
                 return
             self._queue.append(packet)
@@ -100,7 +100,7 @@ class WebSockets:
     async def serve(self, request: web.Request) -> web.WebSocketResponse:
         """Serve one client until either end closes the connection."""
         socket = web.WebSocketResponse(
-            timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=FRAME_BYTES, compress=False
+            timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=limits.WEB_FRAME, compress=False
         )
         await socket.prepare(request)
         peer = WebPeer(str(request.remote), asyncio.get_running_loop(), self._traffic)

@@ -1,0 +1,96 @@
+"""A bounded queue of all senders' work, with a share for each.
+
+A sender's own work is done in order; senders take turns, each for a slice of time. So one that
+sends little is served within a few slices, however much others have waiting.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict, deque
+from collections.abc import Iterator
+
+from yehu_server.live import limits
+from yehu_server.live.osc.answering import Peer
+
+TURN_NS, SLICE_NS = 2_000_000, 500_000  # of one call of `work`, and of one sender's turn in it
+DONE = object()
+
+
+class Shares:
+    """Bytes for all senders together, of which each may hold as many as it leaves free.
+
+    So one alone may hold half of them, and there are always some for the next.
+    """
+
+    def __init__(self, most: int) -> None:
+        self._free = most
+        self._held: dict[Peer, int] = {}
+
+    def held(self, peer: Peer) -> int:
+        """Bytes that a sender holds; any thread may call."""
+        return self._held.get(peer, 0)
+
+    def take(self, peer: Peer, size: int, *, always: bool = False) -> bool:
+        """Take bytes for a sender; return whether there were enough (with `always` there are)."""
+        held = self._held.get(peer, 0) + size
+        if held > self._free - size and not always:
+            return False
+        self._held[peer] = held
+        self._free -= size
+        return True
+
+    def give_back(self, peer: Peer, size: int) -> None:
+        """Give back bytes of a sender."""
+        self._free += size
+        self._held[peer] -= size
+        if not self._held[peer]:
+            del self._held[peer]
+
+
+class WorkQueue:
+    """The work of all senders that waits to be done.
+
+    A piece of work is an iterator, whose steps are short.
+    """
+
+    def __init__(self, most_bytes: int = limits.WAITING) -> None:
+        self._shares = Shares(most_bytes)
+        self._works: OrderedDict[Peer, deque[tuple[Iterator[None], int]]] = OrderedDict()
+        self.held = self._shares.held
+
+    def __bool__(self) -> bool:
+        return bool(self._works)
+
+    def add(
+        self, steps: Iterator[None], peer: Peer, size: int = 0, *, always: bool = False
+    ) -> bool:
+        """Add work of a size in bytes; return whether there was room.
+
+        With `always` there is: for a sender that waits by itself.
+        """
+        size += limits.OVERHEAD
+        if not self._shares.take(peer, size, always=always):
+            return False
+        self._works.setdefault(peer, deque()).append((steps, size))
+        return True
+
+    def work(self) -> None:
+        """Do what waits, for up to TURN_NS; work that fails is gone."""
+        now = time.monotonic_ns()
+        until = now + TURN_NS
+        while self._works and now < until:
+            peer, works = next(iter(self._works.items()))
+            self._works.move_to_end(peer)
+            slice_ends = now + SLICE_NS
+            while works and now < slice_ends:
+                (steps, size), rest = works[0], DONE
+                try:
+                    rest = next(steps, DONE)
+                finally:
+                    if rest is DONE:
+                        works.popleft()
+                        self._shares.give_back(peer, size)
+                        if not works:
+                            del self._works[peer]
+                now = time.monotonic_ns()

@@ -43,7 +43,7 @@ def test_every_parameter_is_read_at_its_ends_and_its_default():
 
 def test_a_preset_may_have_all_the_players_and_nothing_that_the_player_moves():
     assert {p.address for p in TABLE if p.place is Place.PLAYER} <= set(POSSIBLE)
-    assert not any(POSSIBLE[address].owned for address in POSSIBLE)
+    assert not any(POSSIBLE[address].player_controlled for address in POSSIBLE)
     assert set(SAVED) == set(POSSIBLE) - NOT_SAVED
     assert set(POSSIBLE) >= NOT_SAVED
 

@@ -71,7 +71,7 @@ def test_a_curve_is_undone_also_where_it_falls(curve: Curve):
 
 def test_the_engine_holds_its_rows_in_the_order_of_the_table():
     assert tuple(param for param in TABLE if param.place is Place.ENGINE) == ENGINE
-    assert all(param.place is Place.ENGINE for param in TABLE if param.owned)
+    assert all(param.place is Place.ENGINE for param in TABLE if param.player_controlled)
 
 
 # ---------------------------------------------------------------- finding and setting

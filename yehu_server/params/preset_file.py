@@ -19,7 +19,7 @@ VERSION = 1
 PROGRAMS = 128  # of MIDI, counted from 1
 MOST_REMARKS = 10
 # A preset may have all parameters except those that the player moves as notes sound.
-POSSIBLE = {param.address: param for param in TABLE if not param.owned}
+POSSIBLE = {param.address: param for param in TABLE if not param.player_controlled}
 # The present state of controllers, the seed, and who sits where are no part of a sound and are not
 # saved; a file may have them all the same, as those of rooms have the distance.
 NOT_SAVED = {

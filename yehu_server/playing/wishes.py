@@ -123,7 +123,7 @@ class WishPoster:
         pending = self._waiting(param)
         if pending is not None:
             return pending.value
-        if param.owned:
+        if param.player_controlled:
             return self._instrument.target(param.address)
         return float(self.record["value"][ROW[param.address]])
 
@@ -136,7 +136,7 @@ class WishPoster:
         is_done = meters["drained"] > pending.number and meters["next_frame"] > pending.frame
         # An instrument that is not live interprets due events whenever its record is read.
         is_read = not self._instrument.is_live and pending.frame <= self._instrument.frame
-        if is_done or (is_read and not param.owned):
+        if is_done or (is_read and not param.player_controlled):
             del self.pending[param.address]
             return None
         return pending
@@ -163,7 +163,7 @@ class WishPoster:
         row = ROW[param.address]
         if row == SECTION:
             accepted = min(float(round(accepted)), float(self.people))
-        if not param.owned and not hold and self.keeps(address):
+        if not param.player_controlled and not hold and self.keeps(address):
             accepted = self.value(address)
         self._note(param.address, accepted, frame, is_held=hold)
         if param.address == "/bow/force":  # raw newtons are heard only without assist

@@ -72,7 +72,7 @@ class Param:
     is_choice: bool = False
     is_shared: bool = False
 
-    def accept(self, value: float) -> float:
+    def clamped(self, value: float) -> float:
         """Clamp a value to the range.
 
         Raises ParameterError where the value is no finite number.

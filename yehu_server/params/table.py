@@ -247,6 +247,6 @@ def assignment(text: str) -> tuple[str, float]:
         number = float(value)
     except ValueError:
         raise ParameterError(f"{param.address}: {value!r} is not a number") from None
-    if param.accept(number) != number:
+    if param.clamped(number) != number:
         raise ParameterError(f"{param.address}: {number:g} is not within {param.range_text}")
     return param.address, number

@@ -48,7 +48,7 @@ def play(instrument: Instrument, blocks: int) -> np.ndarray:
         if block % EVERY == 0:
             for address in chance.sample(sorted(HARD), 4):
                 lo, hi = HARD[address]
-                value = known[address].accept(chance.uniform(lo, hi))
+                value = known[address].clamped(chance.uniform(lo, hi))
                 if address == "/bow/side":
                     value = 1.0 if value > 0.0 else -1.0
                 instrument.write(address, value)

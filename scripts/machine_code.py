@@ -17,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 from yehu_server.compile import levels, machine_code
-from yehu_server.util.sealed import read_sealed, write_sealed
+from yehu_server.util.checksummed import read_checksummed, write_checksummed
 
 COMPILE = """
 from yehu_server.compile import machine_code
@@ -51,11 +51,11 @@ def write(level: str, folder: Path, cache: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for made in map(Path, told.splitlines()):
-        payload = read_sealed(made)
+        payload = read_checksummed(made)
         if payload is None:
             raise SystemExit(f"{level}: nothing was compiled")
         paths.append(folder / made.name)
-        write_sealed(paths[-1], payload)
+        write_checksummed(paths[-1], payload)
     return paths
 
 

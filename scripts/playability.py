@@ -48,7 +48,7 @@ MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
 def variation(text: str) -> float:
     """Read the value of `/playing/variation`, or `default`."""
     param = find("/playing/variation")
-    return param.default if text == "default" else param.accept(float(text))
+    return param.default if text == "default" else param.clamped(float(text))
 
 
 def append(
@@ -98,7 +98,7 @@ def main() -> None:
         parser.error(str(error))
     asked = arguments.rate, arguments.variation, arguments.seed, arguments.way
     setup = Setup(
-        *asked, own, bowing, phrasing=find("/playing/phrasing").accept(arguments.phrasing)
+        *asked, own, bowing, phrasing=find("/playing/phrasing").clamped(arguments.phrasing)
     )
     parts = MEASURES[arguments.measure](setup)
     found = whole(arguments.measure, parts)

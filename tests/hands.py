@@ -201,6 +201,6 @@ class Checked(WishPoster):
 
     def value(self, address: str) -> float:
         told = super().value(address)
-        if not find(address).owned:
+        if not find(address).player_controlled:
             assert told == self._instrument.wished(address)
         return told

@@ -15,8 +15,8 @@ import pytest
 from yehu_server.compile import function_cache as cache
 from yehu_server.compile import jit, levels, numba_compiler
 from yehu_server.compile.libraries import BITCODE_OF_PART
-from yehu_server.util import sealed
-from yehu_server.util.sealed import SealError, read_sealed, write_sealed
+from yehu_server.util import checksummed
+from yehu_server.util.checksummed import ChecksumError, read_checksummed, write_checksummed
 
 
 def third_of(number: int) -> int:
@@ -112,8 +112,8 @@ def test_no_flipped_bit_passes_unseen(kept):
         flipped = bytearray(whole)
         flipped[bit // 8] ^= 1 << bit % 8
         kept.file.write_bytes(flipped)
-        with pytest.raises(SealError):
-            read_sealed(kept.file)
+        with pytest.raises(ChecksumError):
+            read_checksummed(kept.file)
 
 
 def test_one_functions_code_does_not_pass_for_anothers(kept):
@@ -121,14 +121,14 @@ def test_one_functions_code_does_not_pass_for_anothers(kept):
     file = kept.file
     other = file.with_name("native.other-cpython-311-0123456789abcdef.code")
     other.write_bytes(file.read_bytes())
-    with pytest.raises(SealError):
-        read_sealed(other)
+    with pytest.raises(ChecksumError):
+        read_checksummed(other)
 
 
 def test_sound_bytes_that_are_no_code_are_compiled_anew(kept, caplog):
     kept.start()
     for file in (kept.source, kept.file):
-        write_sealed(file, b"not of numba")
+        write_checksummed(file, b"not of numba")
     assert kept.start() == (4, False)
     assert len(caplog.messages) == 1
 
@@ -198,9 +198,9 @@ def test_without_a_part_that_it_was_made_of_it_is_compiled_anew(kept, caplog, mo
         monkeypatch.setattr(cache, "_parts", {})
         part.unlink()
     else:  # LLVM would end the process, were it to look for it
-        read = io.BytesIO(read_sealed(caller))
+        read = io.BytesIO(read_checksummed(caller))
         name, kind, (modules, _links) = pickle.load(read)  # noqa: S301 - our own
-        write_sealed(caller, cache.payload_of((name, kind, (modules, [])), read.read()))
+        write_checksummed(caller, cache.payload_of((name, kind, (modules, [])), read.read()))
     assert kept.start(twice) == (8, False)
     (line,) = caplog.messages
     assert "compiling anew" in line
@@ -253,7 +253,7 @@ def test_a_full_disk_is_told_once_and_it_plays(kept, caplog, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(sealed.Path, "write_bytes", full)
+    monkeypatch.setattr(checksummed.Path, "write_bytes", full)
     assert kept.start() == (4, False)
     assert kept.start() == (4, False)
     (line,) = caplog.messages
@@ -275,9 +275,9 @@ def test_who_writes_at_once_leaves_a_file_that_is_whole(tmp_path):
     payloads = [bytes([which]) * 100_000 for which in range(4)]
     with ThreadPoolExecutor() as workers:
         for _ in range(10):
-            writing = [workers.submit(write_sealed, file, payload) for payload in payloads]
+            writing = [workers.submit(write_checksummed, file, payload) for payload in payloads]
             while not all(job.done() for job in writing):
-                assert read_sealed(file) in (None, *payloads)
+                assert read_checksummed(file) in (None, *payloads)
     assert list(tmp_path.iterdir()) == [file]
 
 
@@ -301,6 +301,6 @@ def test_a_part_of_other_functions_is_kept_without_machine_code(kept, monkeypatc
         assert kept.start(function) == (result, False)
         assert sum(third.value.stats.cache_hits.values()) == hits
     (part,) = kept.folder.glob("*third_of*.code")
-    _, kind, bitcode = pickle.loads(read_sealed(part))  # noqa: S301 - our own
+    _, kind, bitcode = pickle.loads(read_checksummed(part))  # noqa: S301 - our own
     assert kind == BITCODE_OF_PART
     assert bitcode.startswith(b"BC")

@@ -133,7 +133,7 @@ export async function readCapture(file) {
   const wishes = own.map(([frame, ...wish]) => wishOf([frame, ...wish.slice(isOld ? 0 : 1)]));
   return checked({
     rate,
-    values: Object.fromEntries(Object.entries(values).filter(([address]) => !find(address).owned)),
+    values: Object.fromEntries(Object.entries(values).filter(([address]) => !find(address).playerControlled)),
     wishes: wishes.sort((one, other) => one.frame - other.frame),
     players: players.length,
   });

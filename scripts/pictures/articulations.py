@@ -25,7 +25,7 @@ def kinds() -> dict[str, list[str]]:
     """The names of the strokes, of what slides, and of what beats or rocks."""
     found: dict[str, list[str]] = {"strokes": [], "slides": [], "beats": []}
     for row in ARTICULATIONS:
-        slides = any(step.glide_ms for step in row.fingers) and not row.again_ms
+        slides = any(step.glide_ms for step in row.fingers) and not row.repeat_ms
         kind = "slides" if slides else "beats" if row.fingers or row.vibrato else "strokes"
         found[kind].append(row.name)
     return found

@@ -209,7 +209,7 @@ class Maker:
     def _by_hand(self, name: str, given: list[Any]) -> None:
         if name == "write":
             address, value = given
-            self._post(events.SET, ROW[address], find(address).accept(value), 0.0)
+            self._post(events.SET, ROW[address], find(address).clamped(value), 0.0)
         elif name == "fingerOn":
             self._key = given[1]
             self._post(events.FINGER_ON, -1, given[1], given[2])

@@ -21,7 +21,7 @@ from yehu_server.compile.cache_folder import source_hash
 from yehu_server.compile.jit import Native
 from yehu_server.core.engine.warming import all_functions, warm_up
 from yehu_server.core.physics.time_loop import advance
-from yehu_server.util.sealed import read_sealed, write_sealed
+from yehu_server.util.checksummed import read_checksummed, write_checksummed
 
 ROOT = Path(__file__).parents[2]
 PLAY = """
@@ -65,7 +65,7 @@ print("numba" in sys.modules)
 def kept() -> bytes:
     """The file of this level."""
     warm_up()
-    payload = read_sealed(machine_code.file_in(cache_folder.cache_folder()))
+    payload = read_checksummed(machine_code.file_in(cache_folder.cache_folder()))
     assert payload is not None
     return payload
 
@@ -77,7 +77,7 @@ def changed(payload: bytes, **fields: object) -> bytes:
 
 def written(folder: Path, payload: bytes) -> dict[str, int]:
     """What is loaded of a file with a payload in an otherwise empty cache."""
-    write_sealed(machine_code.file_in(folder), payload)
+    write_checksummed(machine_code.file_in(folder), payload)
     machine_code.loaded.cache_clear()
     return machine_code.loaded(folder, source_hash())
 
@@ -146,7 +146,7 @@ def test_no_mathematics_of_a_c_library_is_called():
     strange = {}
     for what in (machine_code.PLAYING, *compile_all.CALLED):
         file = machine_code.file_in(cache_folder.cache_folder(), what)
-        head, _, body = (read_sealed(file) or b"").partition(b"\n")
+        head, _, body = (read_checksummed(file) or b"").partition(b"\n")
         code, at = zlib.decompress(body), 0
         for name, _, size in json.loads(head)["functions"]:
             symbols = undefined_symbols(code[at : at + size])
@@ -187,7 +187,7 @@ def test_a_damaged_file_is_told_and_left_alone(kept, tmp_path, caplog):
 def test_what_is_shipped_for_this_level_is_taken_where_nothing_is_kept(kept, tmp_path, monkeypatch):
     shipped = tmp_path / "shipped"
     shipped.mkdir()
-    write_sealed(machine_code.file_in(shipped), kept)
+    write_checksummed(machine_code.file_in(shipped), kept)
     machine_code.loaded.cache_clear()
     assert machine_code.loaded(tmp_path / "empty", source_hash())
     machine_code.loaded.cache_clear()

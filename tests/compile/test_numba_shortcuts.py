@@ -10,7 +10,7 @@ from pathlib import Path
 
 from llvmlite import binding
 
-from yehu_server.util.sealed import read_sealed
+from yehu_server.util.checksummed import read_checksummed
 
 COMPILE = """
 import sys, types
@@ -31,9 +31,9 @@ def texts(folder: Path) -> dict[str, list[str]]:
     """What LLVM was given of each function, without what is of the process."""
     found = {}
     for file in sorted(folder.rglob("*.ir")):
-        payload = read_sealed(file)
+        payload = read_checksummed(file)
         assert payload is not None
-        _, _, (modules, _) = pickle.load(io.BytesIO(payload))  # noqa: S301 - sealed
+        _, _, (modules, _) = pickle.load(io.BytesIO(payload))  # noqa: S301 - with a checksum
         text = "".join(str(binding.parse_bitcode(module)) for module in modules)
         found[file.name.partition("-")[0]] = re.sub(r"(globals\.|i64 )[0-9a-f]{9,}", "", text)
     return found

@@ -43,7 +43,7 @@ def test_every_parameter_is_read_at_its_ends_and_its_default():
 
 def test_a_preset_may_have_all_the_players_and_nothing_that_the_player_moves():
     assert {p.address for p in TABLE if p.place is Place.PLAYER} <= set(POSSIBLE)
-    assert not any(POSSIBLE[address].owned for address in POSSIBLE)
+    assert not any(POSSIBLE[address].player_controlled for address in POSSIBLE)
     assert set(SAVED) == set(POSSIBLE) - NOT_SAVED
     assert set(POSSIBLE) >= NOT_SAVED
 
@@ -54,7 +54,7 @@ def test_what_a_file_says_of_itself_is_kept():
     assert parse(HEAD, "mine").program is None
 
 
-def test_an_unknown_address_is_left_out_and_told_and_the_rest_is_read():
+def test_an_unknown_address_is_left_out_with_a_remark_and_the_rest_is_read():
     preset = parse(HEAD + '[values]\n"/playing/sped" = 9\n"/playing/speed" = 0.2\n', "mine")
     assert preset.values == {"/playing/speed": 0.2}
     (remark,) = preset.remarks()
@@ -63,7 +63,7 @@ def test_an_unknown_address_is_left_out_and_told_and_the_rest_is_read():
     assert "/playing/speed?" in remark
 
 
-def test_of_very_many_unknown_addresses_some_are_told_and_the_rest_counted():
+def test_of_very_many_unknown_addresses_some_are_named_and_the_rest_counted():
     lines = "".join(f'"/a/{number}" = 1\n' for number in range(1000))
     remarks = parse(f"{HEAD}[values]\n{lines}", "mine").remarks()
     assert len(remarks) == 11

@@ -1,4 +1,4 @@
-"""The parameter table, walked row by row."""
+"""The parameter table, row by row."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ def test_each_row_is_complete_and_found_by_its_address():
 def test_each_row_takes_its_range_and_clamps_what_is_beyond():
     for param in TABLE:
         for value in (param.default, param.lo, param.hi):
-            assert param.accept(value) == value, param.address
+            assert param.clamped(value) == value, param.address
             assert assignment(f"{param.address}={value!r}") == (param.address, value)
-        assert param.accept(param.hi * 2.0 + 1.0) == param.hi, param.address
-        assert param.accept(param.lo - 1e300) == param.lo, param.address
-        assert isinstance(param.accept(1), float), param.address
+        assert param.clamped(param.hi * 2.0 + 1.0) == param.hi, param.address
+        assert param.clamped(param.lo - 1e300) == param.lo, param.address
+        assert isinstance(param.clamped(1), float), param.address
 
 
 def test_what_is_no_finite_number_is_refused_by_address():
     for param in TABLE:
         for value in (math.nan, math.inf, -math.inf, True, False, "1", None, [1.0]):
             with pytest.raises(ParameterError, match=param.address):
-                param.accept(value)
+                param.clamped(value)
     with pytest.raises(ParameterError, match="not finite"):
-        find("/bow/force").accept(10**400)
+        find("/bow/force").clamped(10**400)
 
 
 def test_zero_to_one_is_the_whole_range_and_comes_back_from_each_value():
@@ -71,7 +71,7 @@ def test_a_curve_is_undone_also_where_it_falls(curve: Curve):
 
 def test_the_engine_holds_its_rows_in_the_order_of_the_table():
     assert tuple(param for param in TABLE if param.place is Place.ENGINE) == ENGINE
-    assert all(param.place is Place.ENGINE for param in TABLE if param.owned)
+    assert all(param.place is Place.ENGINE for param in TABLE if param.player_controlled)
 
 
 # ---------------------------------------------------------------- finding and setting
@@ -88,12 +88,12 @@ def test_the_engine_holds_its_rows_in_the_order_of_the_table():
         ("/bow_position", "/playing/bow_position"),
     ],
 )
-def test_a_near_miss_is_told_what_was_meant(wrong, meant):
+def test_a_near_miss_is_answered_with_what_was_meant(wrong, meant):
     with pytest.raises(ParameterError, match=rf"'{wrong}'.*did you mean {meant}\?"):
         find(wrong)
 
 
-def test_what_is_like_nothing_is_told_no_more_than_that():
+def test_what_is_like_nothing_gets_no_hint():
     with pytest.raises(ParameterError) as caught:
         find("zzzzz")
     assert str(caught.value) == "unknown parameter 'zzzzz'"

@@ -17,8 +17,8 @@ from yehu_server.playing import calibration_store
 from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
 from yehu_server.playing.practice_files import shipped_practice
-from yehu_server.util import sealed
-from yehu_server.util.sealed import write_sealed
+from yehu_server.util import checksummed
+from yehu_server.util.checksummed import write_checksummed
 
 MEASURED = Calibration(
     441.0,
@@ -81,7 +81,7 @@ def test_a_damaged_calibration_is_measured_anew_and_told_in_one_line(kept, caplo
     ):
         caplog.clear()
         if data is None:
-            write_sealed(kept.file, absurd)
+            write_checksummed(kept.file, absurd)
         else:
             kept.file.write_bytes(data)
         assert kept.ask() == kept.ask() == MEASURED  # healed
@@ -94,7 +94,7 @@ def test_on_a_full_disk_it_is_measured_and_told_in_one_line(kept, caplog, monkey
     def full(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(sealed.Path, "write_bytes", full)
+    monkeypatch.setattr(checksummed.Path, "write_bytes", full)
     assert kept.ask() == MEASURED
     (line,) = caplog.messages
     assert "No space left on device" in line

@@ -47,7 +47,7 @@ def test_what_is_learned_for_a_shipped_mapping_is_there_at_the_next_start(settin
 
 
 def test_every_parameter_that_the_player_does_not_move_can_be_learned(everything):
-    keyboard, free = load("keyboard"), [each for each in TABLE if not each.owned]
+    keyboard, free = load("keyboard"), [each for each in TABLE if not each.player_controlled]
     for param in free if everything else {each.curve: each for each in free}.values():
         mapping, _ = learn(keyboard, param.address, KNOB, soft=True)
         (bind,) = mapping.of("cc 20")

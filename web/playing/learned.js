@@ -45,8 +45,8 @@ const EXPONENTIAL = "exp";
  * @returns {LearnedBind}
  */
 export function bindOf(target, source, isSoft) {
-  const { address, owned } = find(target);
-  if (owned) throw new ParameterError(`${address} is moved by the player`);
+  const { address, playerControlled } = find(target);
+  if (playerControlled) throw new ParameterError(`${address} is moved by the player`);
   const isByRange = source === BEND && address === "/playing/bend";
   return {
     source,

@@ -162,9 +162,9 @@ export class Part {
    */
   value(address) {
     const param = find(address);
-    const { row, owned } = param;
-    const known = owned ? this.#written.get(row)?.value : this.interpreter?.values[row];
-    const reported = owned
+    const { row, playerControlled } = param;
+    const known = playerControlled ? this.#written.get(row)?.value : this.interpreter?.values[row];
+    const reported = playerControlled
       ? this.#sink.target?.(address)
       : (this.#sink.reported?.(address) ?? this.#news(address, row));
     return (this.#isRecent(row) ? known : (reported ?? known)) ?? param.default;

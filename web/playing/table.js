@@ -10,7 +10,7 @@ const OCTAVE = 12;
 /** @type {readonly Param[]} */
 export const TABLE = facts.parameters;
 /** The parameters that may be set by anybody: the player moves the others itself. */
-export const FREE = TABLE.filter(({ owned }) => !owned);
+export const FREE = TABLE.filter(({ playerControlled }) => !playerControlled);
 /** Their groups, in the order of their use. */
 export const GROUPS = [
   ...new Set([

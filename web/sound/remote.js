@@ -57,8 +57,8 @@ export class Remote extends EventTarget {
 
   /** The value of any other parameter, whoever set it. @param {string} address */
   reported(address) {
-    const { row, owned } = find(address);
-    return owned || !this.isSeen ? undefined : this.seen[facts.lookLength + row];
+    const { row, playerControlled } = find(address);
+    return playerControlled || !this.isSeen ? undefined : this.seen[facts.lookLength + row];
   }
 
   /** @returns {Status} */

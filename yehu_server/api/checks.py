@@ -79,7 +79,7 @@ def setting(address: Any, value: Any) -> tuple[str, float]:
         raise ParameterError(f"{address!r}: expected an address, such as '/playing/vibrato'")
     param = find(address)
     found = number(value, address)
-    if param.accept(found) != found:
+    if param.clamped(found) != found:
         raise ParameterError(f"{address}: {found:g} is not within {param.range_text}")
     return address, found
 

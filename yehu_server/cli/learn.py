@@ -114,7 +114,7 @@ def _complete() -> None:
     except ImportError:  # not on every system
         return
 
-    addresses = [param.address for param in TABLE if not param.owned]
+    addresses = [param.address for param in TABLE if not param.player_controlled]
 
     def complete(text: str, state: int) -> str | None:
         fitting = [address for address in addresses if address.startswith(text)]

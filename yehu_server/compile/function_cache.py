@@ -1,9 +1,9 @@
 """Compiled code on disk, with a checksum; replaces numba's cache, which does not check its files.
 
-One file for each function, signature, level of processors and Python, sealed: so no index can name
+One file for each function, signature, level of processors and Python: so no index can name
 the wrong one, and processes that compile at once leave each other's files whole. Another one, for
 all levels, has what the function was made of, from which a process for another level makes it in a
-third of the time. What fails is told in one line and compiled anew; what cannot be kept is
+third of the time. What fails is reported in one line and compiled anew; what cannot be kept is
 played all the same.
 """
 
@@ -32,7 +32,7 @@ from yehu_server.compile.libraries import (
     PartLibrary,
     SourceLibrary,
 )
-from yehu_server.util.sealed import SealError, read_sealed, write_sealed
+from yehu_server.util.checksummed import ChecksumError, read_checksummed, write_checksummed
 
 log = logging.getLogger(__name__)
 
@@ -97,7 +97,7 @@ def _library(codegen: Any, source: Path, kept: tuple[str, str, Any]) -> Any:
         if file not in _parts:
             payload = _read(_for_this_level(file)) or _read(file)
             if payload is None:
-                raise SealError(f"{name} is gone")
+                raise ChecksumError(f"{name} is gone")
             _library(codegen, file, _unpickled(payload))
         return _parts[file]
 
@@ -132,12 +132,12 @@ def payload_of(code: Any, rest: bytes) -> bytes:
 
 
 def _read(path: Path) -> io.BytesIO | None:
-    payload = read_sealed(path)
+    payload = read_checksummed(path)
     return None if payload is None else io.BytesIO(payload)
 
 
 def _unpickled(parts: io.BytesIO) -> Any:
-    return pickle.load(parts)  # noqa: S301 - it is sealed
+    return pickle.load(parts)  # noqa: S301 - with a checksum
 
 
 def code_of(function: Any) -> tuple[Any, ...]:
@@ -188,7 +188,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
                     self._tell_ready()
                     return made
             except Exception as error:  # noqa: BLE001 - nothing in a cache is worth not playing
-                reason = error if isinstance(error, SealError) else repr(error)
+                reason = error if isinstance(error, ChecksumError) else repr(error)
                 _tell(DAMAGED, f"{path}: {reason}; compiling anew")
         return None
 
@@ -201,10 +201,10 @@ class CodeCache(NullCache):  # type: ignore[misc]
         try:
             code, rest = parts_of(data)
             if isinstance(library, SourceLibrary) and (source := library.source()) is not None:
-                write_sealed(self.source_path(sig), payload_of(source, rest))
+                write_checksummed(self.source_path(sig), payload_of(source, rest))
                 if isinstance(library, PartLibrary):
                     _remember(self.source_path(sig), library)
-            write_sealed(self.path(sig), payload_of(code, rest))
+            write_checksummed(self.path(sig), payload_of(code, rest))
         except Exception as error:  # noqa: BLE001 - neither a full disk nor a numba unlike ours
             reason = getattr(error, "strerror", None) or repr(error)
             _tell(FULL, f"{self._folder}: {reason}; compiled code is not kept for the next start")
@@ -216,8 +216,8 @@ class CodeCache(NullCache):  # type: ignore[misc]
     def holds(self, sig: Any) -> bool:
         """Whether the code for a signature is there and sound."""
         try:
-            return read_sealed(self.path(sig)) is not None
-        except SealError:
+            return read_checksummed(self.path(sig)) is not None
+        except ChecksumError:
             return False
 
     def path(self, sig: Any) -> Path:

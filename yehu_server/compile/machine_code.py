@@ -5,8 +5,8 @@ package compiles in one more.
 A file is for one level of processors. Releases bring one for each, used where there is none
 in the cache, so that a first start compiles nothing.
 
-The file is sealed. Inside are a line of JSON, which tells what it was made for and all sizes, and
-the functions' object files, compressed; each comes after those that it calls.
+The file has a checksum. Inside are a line of JSON, which says what it was made for and all sizes,
+and the functions' object files, compressed; each comes after those that it calls.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.compile import cache_folder, levels
-from yehu_server.util.sealed import SealError, read_sealed, write_sealed
+from yehu_server.util.checksummed import ChecksumError, read_checksummed, write_checksummed
 
 log = logging.getLogger(__name__)
 
@@ -66,15 +66,15 @@ def keep(folder: Path, sources: str, functions: Iterable[Any], what: str = PLAYI
 
     `functions` (iterable of jit.Native): each after those that it calls.
 
-    Raises OSError where it cannot be written; SealError where the cache is damaged.
+    Raises OSError where it cannot be written; ChecksumError where the cache is damaged.
     """
     sizes, objects = [], []
     for function in functions:
-        payload = read_sealed(function.file)
+        payload = read_checksummed(function.file)
         if payload is None:
             return
         read = io.BytesIO(payload)  # `function_cache.payload_of`
-        (_, kind, parts), (described, *_) = pickle.load(read), pickle.load(read)  # noqa: S301 - sealed
+        (_, kind, parts), (described, *_) = pickle.load(read), pickle.load(read)  # noqa: S301 - with a checksum
         if kind != "object":
             return
         # Not as it is called in this process: another one may have put its own in the cache.
@@ -83,7 +83,7 @@ def keep(folder: Path, sources: str, functions: Iterable[Any], what: str = PLAYI
         objects.append(parts[0])
     head = {"format": FORMAT, "made for": made_for(sources), "functions": sizes}
     body = zlib.compress(b"".join(objects), 1)
-    write_sealed(file_in(folder, what), json.dumps(head).encode() + b"\n" + body)
+    write_checksummed(file_in(folder, what), json.dumps(head).encode() + b"\n" + body)
 
 
 SHIPPED = Path(__file__).parent / "shipped"
@@ -114,14 +114,14 @@ def loaded(folder: Path, sources: str, what: str = PLAYING) -> dict[str, int]:
     """
     for path in (file_in(folder, what), file_in(SHIPPED, what)):
         try:
-            payload = read_sealed(path)
+            payload = read_checksummed(path)
             if payload is None:
                 continue
             head, _, body = payload.partition(b"\n")
             about = json.loads(head)
             if about["format"] == FORMAT and about["made for"] == made_for(sources):
                 return _load(about["functions"], zlib.decompress(body))
-        except (SealError, ValueError, LookupError, TypeError, zlib.error) as error:
+        except (ChecksumError, ValueError, LookupError, TypeError, zlib.error) as error:
             log.warning("%s: %s; compiling anew", path, error)
     return {}
 

@@ -1,7 +1,7 @@
-"""The articulations: what both hands do in a note, as a table. Docs, mappings and pages derive.
+"""The articulations: what both hands do in a note, as a table, for docs, mappings and pages too.
 
 An articulation is a value of `/playing/articulation`: its place in `ARTICULATIONS`. The numbers
-stay for ever; new ones come last. What a step means in sound, `core.player.gestures` does.
+stay for ever; new ones come last. `core.player.gestures` plays them.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class FingerStep:
 class Vibrato:
     """A vibrato of an articulation's own.
 
-    `cents`: to either side, or where it goes `upward` from the pitch to twice as much.
+    `cents`: depth to either side; where it goes `upward`, from the pitch to twice as much.
     `press`: share of the finger's force that varies with it.
     `delay_ms`: as `/playing/vibrato_delay`.
     """
@@ -64,16 +64,17 @@ class Vibrato:
 class Articulation:
     """One articulation.
 
-    `name`, `chinese`, `about`: as players call it, and what the hands do.
+    `name`, `chinese`, `about`: what players call it, and what the hands do.
     `source`: where its figures are from.
     `attack`: factor on the time of the bow's attack.
     `length_s`: the length assumed of a note whose length is not known.
-    `again_ms`, `sooner`: the finger's steps, or the bow's where the fingers have none, come again
-    so long after they began, and each time sooner by this share of it; at 0 ms they do not.
-    `times`: how often they come; 0: while the note sounds.
+    `repeat_ms`, `speed_up`: the steps of the fingers, or of the bow where the fingers have none,
+    are repeated at this interval, each time shorter by this share of it; 0 ms: they are not.
+    `times`: number of repetitions; 0: while the note sounds.
     `tremolo`, `tremolo_depth`: strokes a second; as `/playing/tremolo_depth`.
-    `plucked_at`, `plucked_by`: where from the bridge a plucked string is pulled, as a share of its
-    sounding length, and a factor on the force; at 0 as `/pluck/position` says.
+    `pluck_position`, `pluck_force`: the distance from the bridge at which a plucked string is
+    pulled, as a share of its sounding length, and a factor on the force; at 0 as `/pluck/position`
+    says.
     `touches`: whether a finger touches an open string at a node, where the note is one
     (`core.player.harmonics`).
     """
@@ -87,14 +88,14 @@ class Articulation:
     vibrato: Vibrato | None = None
     attack: float = 1.0
     length_s: float = 0.5
-    again_ms: float = 0.0
-    sooner: float = 0.0
+    repeat_ms: float = 0.0
+    speed_up: float = 0.0
     times: int = 0
     tremolo: float = 0.0
     tremolo_depth: float = 0.0
     is_plucked: bool = False
-    plucked_at: float = 0.0
-    plucked_by: float = 1.0
+    pluck_position: float = 0.0
+    pluck_force: float = 1.0
     touches: bool = False
 
 
@@ -124,7 +125,7 @@ ARTICULATIONS: tuple[Articulation, ...] = (
             BowStep(speed=1.15, weight=1.1),
             BowStep(at_ms=50.0, ramp_ms=25.0, is_on=False),
         ),
-        attack=0.3, again_ms=125.0, sooner=0.1, times=5,
+        attack=0.3, repeat_ms=125.0, speed_up=0.1, times=5,
     ),
     Articulation(
         "tremolo", "颤弓", "many short strokes, growing",
@@ -204,12 +205,12 @@ ARTICULATIONS: tuple[Articulation, ...] = (
     Articulation(
         "trill", "颤音", "another finger beats a second above, ever sooner",
         fingers=(FingerStep(2.0, at_ms=90.0), FingerStep(0.0, at_ms=160.0)),
-        again_ms=150.0, sooner=0.03,
+        repeat_ms=150.0, speed_up=0.03,
     ),
     Articulation(
         "wide-trill", "大颤音", "another finger beats a minor third above, ever sooner",
         fingers=(FingerStep(3.0, at_ms=90.0), FingerStep(0.0, at_ms=160.0)),
-        again_ms=150.0, sooner=0.03,
+        repeat_ms=150.0, speed_up=0.03,
     ),
     Articulation(
         "passed-slide", "垫指滑音",
@@ -229,7 +230,7 @@ ARTICULATIONS: tuple[Articulation, ...] = (
             FingerStep(0.6, at_ms=60.0, glide_ms=150.0),
             FingerStep(-0.2, at_ms=230.0, glide_ms=170.0),
         ),
-        again_ms=380.0,
+        repeat_ms=380.0,
     ),
     Articulation(
         "flageolet", "泛音",
@@ -241,12 +242,12 @@ ARTICULATIONS: tuple[Articulation, ...] = (
         "left-hand-pizzicato", "左手拨弦",
         "another finger of the left hand plucks, a fourth above the one that stops the string",
         source="one of the left hand in descriptions of the erhu; place and force by ear",
-        is_plucked=True, plucked_at=0.75, plucked_by=0.7,
+        is_plucked=True, pluck_position=0.75, pluck_force=0.7,
     ),
 )  # fmt: skip
 
 NUMBER = {articulation.name: number for number, articulation in enumerate(ARTICULATIONS)}
-LAST = 127  # the range has room for what is yet to come, and is a controller's
+LAST = 127  # highest value: a controller's, with numbers left for new ones
 
 
 def number_of(name: str) -> int:

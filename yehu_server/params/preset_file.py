@@ -1,4 +1,4 @@
-"""Presets: values of parameters by address, read from a text, and morphed.
+"""Read presets, values of parameters by address, from text, and interpolate between two.
 
 The format is described in presets/README.md.
 """
@@ -19,9 +19,9 @@ VERSION = 1
 PROGRAMS = 128  # of MIDI, counted from 1
 MOST_REMARKS = 10
 # A preset may have all parameters except those that the player moves as notes sound.
-POSSIBLE = {param.address: param for param in TABLE if not param.owned}
-# The present state of controllers, the seed, and who sits where are no part of a sound and are not
-# saved; a file may have them all the same, as those of rooms have the distance.
+POSSIBLE = {param.address: param for param in TABLE if not param.player_controlled}
+# Not saved, since they are no part of a sound: the state of controllers, the seed, and places on
+# the stage. A file may have them all the same, as those of rooms have the distance.
 NOT_SAVED = {
     *("/playing/bend", "/playing/dynamics", "/playing/expression", "/engine/seed"),
     *("/playing/section", "/room/pan", "/room/distance"),
@@ -55,15 +55,15 @@ class Preset:
 
 
 def document_of(name: Path | str, text: str = "") -> Document:
-    """A preset file, whose text is known or will be read."""
+    """A preset file as a document; its text may be read later."""
     return Document(name, "a preset file", PresetError, text=text, most_errors=MOST_ERRORS)
 
 
 def preset_from(document: Document, name: str) -> Preset:
     """Check and convert the entries of a preset file.
 
-    Raises PresetError where it is no preset, is of a newer version, or has wrong values; it names
-    all of them.
+    Raises PresetError where it is no preset, is of a newer version, or has wrong values: all of
+    them are named.
     """
     table = document.toml()
     version = table.data.get("version")
@@ -120,4 +120,4 @@ def _between(address: str, start: float, end: float, amount: float) -> float:
     if param.is_choice:
         return end if amount >= 0.5 else start
     low, high = param.to_unit(start), param.to_unit(end)
-    return param.accept(param.from_unit(low + (high - low) * amount))
+    return param.clamped(param.from_unit(low + (high - low) * amount))

@@ -1,4 +1,4 @@
-"""The metadata of a parameter: address, range, default, unit, curve. Values live elsewhere."""
+"""The metadata of a parameter: address, range, default, unit, curve; no values."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Param:
     """One row of the parameter table.
 
     `lo`, `hi` and `default` are in `unit`; `smooth_ms` is the ramp of a write that names none.
-    `owned` marks parameters that the player moves while notes sound (decisions/0006);
+    `player_controlled` marks parameters that the player moves while notes sound (decisions/0006);
     `is_choice` marks discrete ones, such as switches (on from `TURNED_ON` up); `is_shared` those
     that are one for all players on the stage.
     """
@@ -68,11 +68,11 @@ class Param:
     place: Place = Place.PLAYER
     curve: Curve = Curve.LIN
     smooth_ms: float = 5.0
-    owned: bool = False
+    player_controlled: bool = False
     is_choice: bool = False
     is_shared: bool = False
 
-    def accept(self, value: float) -> float:
+    def clamped(self, value: float) -> float:
         """Clamp a value to the range.
 
         Raises ParameterError where the value is no finite number.
@@ -91,7 +91,7 @@ class Param:
 
     @property
     def range_text(self) -> str:
-        """The range and its unit, for reading."""
+        """The range and its unit, as text."""
         unit = "" if self.unit == "1" else f" {self.unit}"
         return f"{self.lo:g} to {self.hi:g}{unit}"
 

@@ -1,4 +1,4 @@
-"""The parameter table, the only source of their names, ranges, defaults and descriptions."""
+"""The parameter table, the only source of names, ranges, defaults and descriptions."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ LOWEST_A4, HIGHEST_A4 = 390.0, 480.0  # Hz; of the reference pitch, an option of
 
 
 _engine = partial(Param, place=Place.ENGINE)
-_owned = partial(_engine, owned=True)  # by the player, as notes sound
+_controlled = partial(_engine, player_controlled=True)  # while notes sound
 
 
 def _finger(number: int) -> tuple[Param, Param]:
     return (
-        _owned(f"/finger/{number}/position", "x_f", "m", 0.008, 0.28, 0.05,
+        _controlled(f"/finger/{number}/position", "x_f", "m", 0.008, 0.28, 0.05,
             f"Position of finger {number} on the strings, measured from the restraining loop."),
-        _owned(f"/finger/{number}/press", "-f_ext", "N", 0.0, 10.0, 0.0,
+        _controlled(f"/finger/{number}/press", "-f_ext", "N", 0.0, 10.0, 0.0,
             f"Force of finger {number} on the strings; 0 lifts it.", smooth_ms=10.0),
     )  # fmt: skip
 
@@ -39,55 +39,55 @@ def _string(name: str, which: str) -> tuple[Param, Param]:
 
 
 TABLE: tuple[Param, ...] = (
-    _owned("/bow/speed", "v_b", "m/s", -2.0, 2.0, 0.0,
+    _controlled("/bow/speed", "v_b", "m/s", -2.0, 2.0, 0.0,
         "Speed of the bow; the sign is its direction.", smooth_ms=20.0),
-    _owned("/bow/side", "sign F_N", "1", -1.0, 1.0, 0.0,
+    _controlled("/bow/side", "sign F_N", "1", -1.0, 1.0, 0.0,
         "Which string the hair lies on: 1 the inner (F4), -1 the outer (C5), 0 lifted.",
         smooth_ms=10.0),
-    _owned("/bow/force", "|F_N|", "N", 0.0, 5.0, 0.5,
+    _controlled("/bow/force", "|F_N|", "N", 0.0, 5.0, 0.5,
         "Bow force in newtons; effective where /bow/assist is below 1."),
-    _owned("/bow/pressure", "F_N / F_max", "1", 0.0, 12.0, 0.4,
+    _controlled("/bow/pressure", "F_N / F_max", "1", 0.0, 12.0, 0.4,
         "Bow force relative to bow speed, as a fraction of Schelleng's upper limit; fast strokes "
         "get up to 0.6 more.", smooth_ms=10.0),
-    _owned("/bow/assist", "", "1", 0.0, 1.0, 1.0,
+    _controlled("/bow/assist", "", "1", 0.0, 1.0, 1.0,
         "1: /bow/pressure sets the bow force, so that the string speaks; 0: /bow/force does."),
-    _owned("/bow/position", "beta", "1", 0.04, 0.5, 0.13,
+    _controlled("/bow/position", "beta", "1", 0.04, 0.5, 0.13,
         "Distance of the bow from the bridge as a fraction of the sounding length.",
         smooth_ms=20.0),
-    _owned("/bow/tremolo", "", "1/s", 0.0, 20.0, 0.0,
+    _controlled("/bow/tremolo", "", "1/s", 0.0, 20.0, 0.0,
         "Tremolo: strokes a second, back and forth; 0: the sign of /bow/speed is the direction."),
-    _owned("/bow/tremolo_depth", "", "1", 0.0, 1.0, 0.0,
+    _controlled("/bow/tremolo_depth", "", "1", 0.0, 1.0, 0.0,
         "How slowly the bow turns in a tremolo: 0 almost at once, 1 like a pendulum that lingers.",
         smooth_ms=20.0),
     _engine("/bow/noise", "", "1", 0.0, 1.0, 0.025,
         "How much friction varies along the bow, by the rosin on its hair, as a fraction of it: "
         "0.1 is breathy, from 0.2 the tone breaks.", smooth_ms=20.0),
     *(row for number in FINGERS for row in _finger(number)),
-    _owned("/vibrato/depth", "", "cents", 0.0, 200.0, 0.0,
+    _controlled("/vibrato/depth", "", "cents", 0.0, 200.0, 0.0,
         "Depth of the vibrato to either side, of all fingers that are down.", smooth_ms=20.0),
-    _owned("/vibrato/press", "", "1", 0.0, 1.0, 0.0,
+    _controlled("/vibrato/press", "", "1", 0.0, 1.0, 0.0,
         "Variation of the finger force with the vibrato, as a fraction of it.", smooth_ms=20.0),
-    _owned("/vibrato/upward", "", "1", -1.0, 1.0, 0.0,
+    _controlled("/vibrato/upward", "", "1", -1.0, 1.0, 0.0,
         "Middle of the vibrato above the pitch, as a share of its depth: at 0 it goes to both "
         "sides, at 1 only up, twice as far, at -1 only down.",
         smooth_ms=20.0),
-    _owned("/vibrato/rate", "", "Hz", 0.5, 12.0, 6.0,
+    _controlled("/vibrato/rate", "", "Hz", 0.5, 12.0, 6.0,
         "Rate of the vibrato.", smooth_ms=20.0),
-    _owned("/vibrato/onset", "", "1", 0.0, 1.0, 1.0,
+    _controlled("/vibrato/onset", "", "1", 0.0, 1.0, 1.0,
         "Fade-in of the vibrato: none up to 0.4, then gradually to its full depth at 1."),
-    _owned("/pluck/force", "F_p", "N", -5.0, 5.0, 0.0,
+    _controlled("/pluck/force", "F_p", "N", -5.0, 5.0, 0.0,
         "Plucks: pulls a string aside with this force and releases it; above 0 the inner (F4).",
         smooth_ms=12.0),
-    _owned("/pluck/position", "", "1", 0.05, 0.9, 0.3,
+    _controlled("/pluck/position", "", "1", 0.05, 0.9, 0.3,
         "Distance of the pluck from the bridge as a fraction of the sounding length."),
     *(row for name, note in zip(STRING_NAMES, ("F4", "C5"), strict=True)
       for row in _string(name, f"{name} ({note})")),
     _engine("/output/gain", "", "dB", -60.0, 24.0, 0.0,
         "Gain of the output, before the limiter.", smooth_ms=20.0),
-    _owned("/output/level", "", "1", 0.0, 1.0, 1.0,
+    _controlled("/output/level", "", "1", 0.0, 1.0, 1.0,
         "Amplitude factor of the output, from the player's volume and expression.",
         smooth_ms=20.0),
-    _owned("/output/balance", "", "dB", -36.0, 36.0, 0.0,
+    _controlled("/output/balance", "", "dB", -36.0, 36.0, 0.0,
         "Gain that makes this note as loud as the others of its velocity.", smooth_ms=20.0),
     _engine("/output/limiter", "", "dB", -24.0, 0.0, -3.0,
         "Level above which peaks of the mix are bent, so that none exceeds -1 dB.",
@@ -100,10 +100,10 @@ TABLE: tuple[Param, ...] = (
     _engine("/body/width", "", "1", 0.0, 1.0, 0.3,
         "How much the sound of the body differs to both sides, above some 1.5 kHz; 0: not at all.",
         smooth_ms=20.0),
-    _owned("/body/brilliance", "", "dB", -24.0, 24.0, 0.0,
+    _controlled("/body/brilliance", "", "dB", -24.0, 24.0, 0.0,
         "Gain of what lies above /body/brilliance_frequency, from the player's bow: harder and "
         "nearer to the bridge is brighter.", smooth_ms=20.0),
-    _owned("/body/brilliance_frequency", "", "Hz", 200.0, 8000.0, 1300.0,
+    _controlled("/body/brilliance_frequency", "", "Hz", 200.0, 8000.0, 1300.0,
         "Frequency above which /body/brilliance acts, from the note: there it has half of its "
         "decibels.", curve=Curve.EXP, smooth_ms=20.0),
     _engine("/room/size", "", "m", 2.0, 40.0, 5.0,
@@ -187,7 +187,7 @@ TABLE: tuple[Param, ...] = (
         "How much the player shapes plain notes by itself: vibrato that comes late on long notes, "
         "slides on leaps. Files get phrases, accents and slurs too (render --phrasing)."),
     Param("/playing/section", "", "1", 1.0, 16.0, 1.0,
-        "How many people play this part, each on an instrument of their own; at most as many as "
+        "Number of players of this part, each on an instrument of their own; at most as many as "
         "it began with.", is_choice=True),
     Param("/playing/attack", "", "ms", 5.0, 500.0, 40.0,
         "Time in which the bow reaches the speed and force of a new note."),
@@ -213,7 +213,7 @@ SLOT = {param.address: slot for slot, param in enumerate(ENGINE)}
 
 
 def find(address: str) -> Param:
-    """Find the row of an address.
+    """Find the parameter of an address.
 
     Raises ParameterError where there is none; with a similar address if there is one.
     """
@@ -227,7 +227,7 @@ def find(address: str) -> Param:
 
 
 def read(values: Mapping[str, float], address: str) -> float:
-    """Look up the value of a parameter; at ADDRESS/unit, as 0 to 1."""
+    """The value of a parameter; at ADDRESS/unit, as 0 to 1."""
     plain = address.removesuffix(UNIT)
     value = values[plain]
     return value if plain == address else BY_ADDRESS[plain].to_unit(value)
@@ -247,6 +247,6 @@ def assignment(text: str) -> tuple[str, float]:
         number = float(value)
     except ValueError:
         raise ParameterError(f"{param.address}: {value!r} is not a number") from None
-    if param.accept(number) != number:
+    if param.clamped(number) != number:
         raise ParameterError(f"{param.address}: {number:g} is not within {param.range_text}")
     return param.address, number

@@ -1,7 +1,7 @@
 """Find the calibration of an instrument: shipped, cached on disk, or measured now.
 
 The package ships those of the usual sample rates; others are measured once and cached in
-sealed files.
+files with a checksum.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ from yehu_server.playing.calibration import (
     starting_tension,
 )
 from yehu_server.playing.pitch_and_level import cents
+from yehu_server.util.checksummed import ChecksumError, read_checksummed, write_checksummed
 from yehu_server.util.files import read_text, why
-from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 from yehu_server.util.values import whole
 
 log = logging.getLogger(__name__)
@@ -83,7 +83,7 @@ def calibration_for(
     if found is None:
         found = calibrate(rate, quantities, a4=a4, bowing=bowing, progress=progress)
         try:
-            write_sealed(path, json.dumps(asdict(found)).encode())
+            write_checksummed(path, json.dumps(asdict(found)).encode())
         except OSError as error:
             log.warning("%s: %s; the calibration is not kept for the next start", path, why(error))
             _unkept[key] = found
@@ -161,8 +161,8 @@ def _shipped() -> dict[str, Any]:
 def _kept(path: Path, quantities: Quantities, a4: float) -> Calibration | None:
     """The calibration in a file; None where there is none, or it is damaged."""
     try:
-        payload = read_sealed(path)
+        payload = read_checksummed(path)
         return None if payload is None else read_calibration(json.loads(payload), quantities, a4)
-    except (SealError, ParameterError, ValueError, RecursionError) as error:
+    except (ChecksumError, ParameterError, ValueError, RecursionError) as error:
         log.warning("%s: %s; measuring anew", path, error)
         return None

@@ -91,7 +91,7 @@ MOST_POINTS = 1024
 def settable_param(address: str, instead: str) -> Param:
     """Find a parameter that the player does not move; `instead` begins the advice in the error."""
     param = find(address)
-    if param.owned:
+    if param.player_controlled:
         raise ParameterError(f"{address} is moved by the player; {instead} under /playing")
     return param
 

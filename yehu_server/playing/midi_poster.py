@@ -195,7 +195,7 @@ class MidiPoster:
 
     def sound(self) -> dict[str, float]:
         """All parameters that the player does not move, without the velocity of one note."""
-        free = [param.address for param in TABLE if not param.owned]
+        free = [param.address for param in TABLE if not param.player_controlled]
         values = {address: self._wishes.value(address) for address in free}
         record = self._wishes.record
         for bind in self.mapping.of(VELOCITY):

@@ -36,7 +36,7 @@ MOST_HAIRS = 65536
 def section_size(playing: PlayingOptions) -> int:
     """How many players are asked for."""
     asked = dict(playing.mapping.start) | dict(playing.start) | dict(playing.settings)
-    return round(find(SECTION).accept(asked.get(SECTION, 1.0)))
+    return round(find(SECTION).clamped(asked.get(SECTION, 1.0)))
 
 
 def part_specs(

@@ -76,7 +76,7 @@ def make_tables(
     starts = dict(mapping.start) | dict(start)
     t["starts"] = len(starts)
     for place, (address, value) in enumerate(starts.items()):
-        t["start_row"][place], t["start_value"][place] = ROW[address], find(address).accept(value)
+        t["start_row"][place], t["start_value"][place] = ROW[address], find(address).clamped(value)
     t["is_equal"] = float(tuning.keys is None)
     pitches = (tuning.pitch(float(key), a4) for key in KEYS)
     t["pitch"] = [math.nan if pitch is None else pitch for pitch in pitches]
@@ -138,4 +138,4 @@ def _write_programs(t: Array, programs: Mapping[int, Preset] | None) -> None:
         t["has_program"][program - 1] = 1.0
         for place, (address, value) in enumerate(preset.values.items()):
             t["program_row"][program - 1, place] = ROW[address]
-            t["program_value"][program - 1, place] = find(address).accept(value)
+            t["program_value"][program - 1, place] = find(address).clamped(value)

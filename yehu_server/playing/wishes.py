@@ -123,7 +123,7 @@ class WishPoster:
         pending = self._waiting(param)
         if pending is not None:
             return pending.value
-        if param.owned:
+        if param.player_controlled:
             return self._instrument.target(param.address)
         return float(self.record["value"][ROW[param.address]])
 
@@ -136,7 +136,7 @@ class WishPoster:
         is_done = meters["drained"] > pending.number and meters["next_frame"] > pending.frame
         # An instrument that is not live interprets due events whenever its record is read.
         is_read = not self._instrument.is_live and pending.frame <= self._instrument.frame
-        if is_done or (is_read and not param.owned):
+        if is_done or (is_read and not param.player_controlled):
             del self.pending[param.address]
             return None
         return pending
@@ -159,11 +159,11 @@ class WishPoster:
         `kind`: of the event: a plain write, or one that counts as a move of a controller.
         """
         param = find(address)
-        accepted = param.accept(value)
+        accepted = param.clamped(value)
         row = ROW[param.address]
         if row == SECTION:
             accepted = min(float(round(accepted)), float(self.people))
-        if not param.owned and not hold and self.keeps(address):
+        if not param.player_controlled and not hold and self.keeps(address):
             accepted = self.value(address)
         self._note(param.address, accepted, frame, is_held=hold)
         if param.address == "/bow/force":  # raw newtons are heard only without assist
@@ -186,7 +186,7 @@ class WishPoster:
     def jump(self, address: str, value: float) -> None:
         """Have the engine begin with a value that a parameter was given, and not move there."""
         if address in SLOT:
-            self.post(wishes.RAMP, None, SLOT[address], find(address).accept(value))
+            self.post(wishes.RAMP, None, SLOT[address], find(address).clamped(value))
 
     def expect(self, values: Mapping[str, float], frame: int | None) -> None:
         """Answer with these values, but for held ones, until the audio side has what sets them."""
@@ -261,7 +261,7 @@ class WishPoster:
         """
         has_note = tuned is not None or self.has(key)
         for address, value in (values or {}).items() if has_note else ():
-            self.post(wishes.EXPRESS, frame, ROW[address], find(address).accept(value))
+            self.post(wishes.EXPRESS, frame, ROW[address], find(address).clamped(value))
         if tuned is None:
             self.post(NOTE_ON, frame, key.channel, key.note, OWN_VALUES)
         else:
@@ -306,7 +306,7 @@ class WishPoster:
 
         Takes the bow over as direct writes do; 0 and 0 lift it. Returns both as accepted.
         """
-        speed, force = find("/bow/speed").accept(speed), find("/bow/force").accept(force)
+        speed, force = find("/bow/speed").clamped(speed), find("/bow/force").clamped(force)
         for address, value in (("/bow/speed", speed), ("/bow/force", force), ("/bow/assist", 0.0)):
             self._note(address, value, frame)
         self.post(wishes.DRAW, frame, value=speed, other=force)

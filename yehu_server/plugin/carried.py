@@ -54,7 +54,7 @@ def carried() -> Carried:
         {NO_PRESET: {}} | {preset.name: dict(preset.values) for preset in presets},
         {name: _runs(PlayingOptions(mapping=mapping)) for name, mapping in loaded.items()},
         {
-            name: {address: find(address).accept(value) for address, value in mapping.start}
+            name: {address: find(address).clamped(value) for address, value in mapping.start}
             for name, mapping in loaded.items()
         },
         {name: -1 if m.key_switches is None else m.key_switches for name, m in loaded.items()},

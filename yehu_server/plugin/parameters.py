@@ -98,7 +98,7 @@ def _of_table(param: Param) -> HostParameter:
     words = " ".join(rest).replace("_", " ")
     name = words if group == "playing" else f"{group} {words}"
     # What the player moves; whoever moves it takes it over until the next note.
-    name += " by hand" if param.owned and group in HANDS else ""
+    name += " by hand" if param.player_controlled and group in HANDS else ""
     return HostParameter(
         param.address,
         name[0].upper() + name[1:],

@@ -33,7 +33,7 @@ def test_a_number_that_is_not_finite_changes_nothing():
 @pytest.mark.parametrize("beyond", [-1e308, 1e308])
 def test_a_value_beyond_its_range_becomes_the_ranges_end(kind, beyond):
     for row, param in enumerate(TABLE):
-        if param.owned or param.address.startswith("/engine"):
+        if param.player_controlled or param.address.startswith("/engine"):
             continue
         player, _ = after((kind, row, beyond, 0.0))
         assert player["value"][row] == (param.lo if beyond < 0.0 else param.hi), param.address

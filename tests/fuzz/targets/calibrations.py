@@ -70,7 +70,7 @@ def calibration_data(data: bytes) -> None:
     """A file with a right checksum holds a whole calibration, or it is measured again."""
     file, _ = kept()
     file.write_bytes(data)
-    with patch.object(HOME, "read_sealed", lambda _path: data, create=True):
+    with patch.object(HOME, "read_checksummed", lambda _path: data, create=True):
         found = asked()
     assert found.a4 == CALIBRATION.a4
     assert all(0.0 < tension < math.inf for tension in found.tensions)

@@ -33,7 +33,7 @@ def check_beginning(beginning: SessionStart) -> None:
     check_rate(beginning.rate)
     assert 1 <= len(beginning.players) <= MOST_PARTS
     for start in beginning.players:
-        assert all(find(address).accept(value) == value for address, value in start.values.items())
+        assert all(find(address).clamped(value) == value for address, value in start.values.items())
         assert np.isfinite(start.bowing).all()
         if start.calibration is not None:
             measured = start.calibration

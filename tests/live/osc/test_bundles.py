@@ -96,7 +96,7 @@ def test_a_note_of_now_waits_for_no_note_that_a_bundle_has_sent_ahead(still, wir
     ("address", "moved"),
     [
         ("/playing/volume", "/output/level"),  # the player's
-        ("/bow/position", "/bow/position"),  # owned
+        ("/bow/position", "/bow/position"),  # player-controlled
         ("/body/blend", "/body/blend"),  # the engine's
     ],
 )

@@ -79,7 +79,7 @@ export default async function (browser, url) {
   };
   await sendMidi(page, TOUCH, 90);
   found.told = await told.textContent();
-  found.owned = await page.evaluate(() => {
+  found.knobs = await page.evaluate(() => {
     const rows = [...document.querySelectorAll("#panel-all .parameter")];
     const row = rows.find((one) => one.querySelector("code").textContent === "/bow/speed");
     return row.querySelectorAll(".knob").length;

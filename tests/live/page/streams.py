@@ -15,7 +15,7 @@ from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.mapping_file import MappingFile
 
 Call = list[Any]
-FREE = [param for param in TABLE if not param.owned]
+FREE = [param for param in TABLE if not param.player_controlled]
 ADDRESSES = ("/tilt", "/touch/1")
 PRESETS = ("flautando", "ordinary", "pizzicato", "scratch", "sul-tasto", "tremolo", "vibrato")
 TUNINGS = ("equal", "chaozhou-seven-equal", "chaozhou-seven-equal, chaozhou-keys")

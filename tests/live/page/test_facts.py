@@ -62,7 +62,7 @@ def test_each_parameter_is_there_with_its_numbers(known):
         param = find(row["address"])
         assert row["row"] == ROW[param.address]
         assert row["slot"] == SLOT.get(param.address)
-        assert row["owned"] == IS_OWNED[row["row"]]
+        assert row["playerControlled"] == IS_OWNED[row["row"]]
         assert (row["slot"] is not None) == IS_ENGINES[row["row"]]
         assert Curve(row["curve"]) is param.curve
         assert (row["lo"], row["hi"], row["default"]) == (param.lo, param.hi, param.default)

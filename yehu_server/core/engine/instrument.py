@@ -145,7 +145,7 @@ class Instrument:
             Number of instruments; 0 where another one is the first of this one's part.
         """
         defaults = {param.address: param.default for param in TABLE}
-        defaults["/engine/seed"] = find("/engine/seed").accept(self.seed)
+        defaults["/engine/seed"] = find("/engine/seed").clamped(self.seed)
         is_mpe = bool(tables["mpe"][0])
         prepare_midi(self._rig["midi"], self.rate, defaults, people=people, mpe=is_mpe)
         self._rig["tables"][0, 0] = tables[0]
@@ -238,7 +238,7 @@ class Instrument:
             Where the address is none of the engine's, or the value is not finite.
         """
         param = find(address)
-        accepted = param.accept(value)
+        accepted = param.clamped(value)
         slot = SLOT.get(address)
         if slot is None:
             raise ParameterError(f"{address} is not held by the engine")

@@ -60,5 +60,5 @@ class InstrumentSpec:
     @property
     def values(self) -> dict[str, float]:
         """The value of every parameter at the start, by address."""
-        seeded = {SEED: find(SEED).accept(self.seed)}
+        seeded = {SEED: find(SEED).clamped(self.seed)}
         return {param.address: param.default for param in TABLE} | seeded | dict(self.start_values)

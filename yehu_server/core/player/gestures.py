@@ -89,8 +89,8 @@ FINGER_STEPS = _padded(
     4,
 )
 SHAPES = np.array([
-    (row.attack, row.length_s, row.again_ms, row.sooner, row.times or math.inf, row.tremolo,
-     row.tremolo_depth, row.is_plucked, row.plucked_at, row.plucked_by)
+    (row.attack, row.length_s, row.repeat_ms, row.speed_up, row.times or math.inf, row.tremolo,
+     row.tremolo_depth, row.is_plucked, row.pluck_position, row.pluck_force)
     for row in _ROWS
 ])  # fmt: skip
 

@@ -174,7 +174,7 @@ def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = 
         values |= {ARTICULATION: float(NUMBER["flageolet"]), STRING: node.string}
     elif note.marked("harmonic"):
         values |= PLACES["flautando"]
-    return {address: find(address).accept(value) for address, value in values.items()}
+    return {address: find(address).clamped(value) for address, value in values.items()}
 
 
 def _held(active: Active) -> Values:

@@ -1,4 +1,4 @@
-"""Files with a checksum, so that damaged and incomplete ones are refused.
+"""Read and write files with a checksum, so that damaged and incomplete ones are refused.
 
 They hold what can be computed again, such as compiled code and calibrations.
 """
@@ -16,8 +16,8 @@ MOST_BYTES = 64 * 2**20
 DIGEST_BYTES = 16
 
 
-class SealError(Exception):
-    """A sealed file that is damaged."""
+class ChecksumError(Exception):
+    """A file whose checksum is wrong, or that cannot be read."""
 
 
 def _digest(path: Path, payload: bytes) -> bytes:
@@ -27,22 +27,22 @@ def _digest(path: Path, payload: bytes) -> bytes:
     return digest.digest()
 
 
-def read_sealed(path: Path) -> bytes | None:
-    """Read a sealed file's payload; None where there is no file. SealError: it is damaged."""
+def read_checksummed(path: Path) -> bytes | None:
+    """Read a file's payload; None where there is no file. Raises ChecksumError."""
     try:
         data = read_bytes(path, MOST_BYTES)
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise SealError(why(error)) from error
-    seal, payload = data[:DIGEST_BYTES], data[DIGEST_BYTES:]
-    if seal != _digest(path, payload):
-        raise SealError("it is damaged")
+        raise ChecksumError(why(error)) from error
+    checksum, payload = data[:DIGEST_BYTES], data[DIGEST_BYTES:]
+    if checksum != _digest(path, payload):
+        raise ChecksumError("it is damaged")
     return payload
 
 
-def write_sealed(path: Path, payload: bytes) -> None:
-    """Write or replace a sealed file atomically.
+def write_checksummed(path: Path, payload: bytes) -> None:
+    """Write or replace a file with its checksum, atomically.
 
     A power cut may leave it incomplete, which its checksum shows. Raises OSError where it cannot be
     written.

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import time
-
 import mido
 import numpy as np
 import pytest
+from waiting import LONG_S, until
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
@@ -81,11 +80,9 @@ def test_live_and_offline_give_the_same_samples(offline, block, jackd, recorder)
         assert instrument.frame < FIRST
         assert output.state.device == "system, JACK Audio Connection Kit"
         before = instrument.meters()["callbacks"]
-        start = time.monotonic()
         listener.forget()
         listener.freewheel(on=True)
-        while instrument.frame < FIRST + FRAMES and time.monotonic() < start + 20.0:
-            time.sleep(0.01)
+        until(lambda: instrument.frame >= FIRST + FRAMES, "all frames", LONG_S)
         listener.freewheel(on=False)
         begin, tape = stage.taped(FIRST)
         meters = instrument.meters()

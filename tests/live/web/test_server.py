@@ -6,6 +6,7 @@ import dataclasses
 import socket
 
 import pytest
+from waiting import until
 from web_client import ask, walk
 
 from yehu_server.live.network import Allowed
@@ -164,6 +165,7 @@ def test_the_page_of_parameters_is_served_where_there_is_one(
 
 
 def test_every_number_of_the_status_is_a_metric(port):
+    until(lambda: int(ask(port, "/yehu/status/frame").json["VALUE"][0]), "a block that is played")
     answer = ask(port, "/metrics")
     assert answer.headers["Content-Type"].startswith("text/plain; version=0.0.4")
     lines = answer.body.decode().splitlines()

@@ -156,6 +156,8 @@ def sources() -> dict[Path, set[str]]:
     found = {}
     for folder in (*PACKAGES, *(ROOT / each for each in ("scripts", "bench", "tests", "web"))):
         for path in folder.rglob("*"):
+            if "node_modules" in path.parts:
+                continue
             if path.suffix in {".py", ".js", ".mjs", ".sh", ""} and path.is_file():
                 text = re.sub(r"\s# .*", "", path.read_text(encoding="utf-8", errors="replace"))
                 found[path] = set(re.findall(r"(?<![\w-])--[a-z][\w-]*|\w+", text))

@@ -15,8 +15,9 @@ def checkout(tmp_path) -> Path:
     """A checkout in a folder with a space; programs in its .venv tell how they are called."""
     root = tmp_path / "check out"
     shutil.copytree(ROOT / "scripts" / "lib", root / "scripts" / "lib")
-    for name in ("scripts/yehu", "pyproject.toml", *map(str, ROOT.glob("requirements*.lock"))):
-        shutil.copy(ROOT / name, root / "scripts" if name == "scripts/yehu" else root)
+    shutil.copytree(ROOT / "requirements", root / "requirements")
+    for name in ("scripts/yehu", "pyproject.toml"):
+        shutil.copy(ROOT / name, root / name)
     programs = root / ".venv" / "bin"
     programs.mkdir(parents=True)
     write(programs / "yehu-server", 'echo "bytecode: ${PYTHONDONTWRITEBYTECODE-kept}" "$@"')

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import sysconfig
@@ -115,10 +116,18 @@ def test_all_public_names_work_from_a_wheel_with_extras(python, tmp_path):
 
 @pytest.mark.slow
 def test_a_wheel_has_a_command_types_notebooks_and_pages(wheel, python, tmp_path):
-    code = "import sys; from yehu_server.cli import main; sys.exit(main(['--version']))"
-    assert tried(python, code, tmp_path)
-    assert set(zipfile.ZipFile(wheel).namelist()) >= {
+    code = "import sys; from yehu_server.cli import main; sys.exit(main({}))"
+    assert tried(python, code.format(["--version"]), tmp_path)
+    assert any("sweep" in line for line in tried(python, code.format(["--help"]), tmp_path))
+    assert tried(python, code.format(["sweep", "--help"]), tmp_path)
+    names = set(zipfile.ZipFile(wheel).namelist())
+    assert names >= {
+        "yehu_lab/plot/study_page.html",
+        "yehu_lab/py.typed",
         "yehu_server/py.typed",
         "yehu_server/docs/python.md",
         "yehu_server/examples/notebooks/1_first_sound.ipynb",
+        "yehu_server/web/main.js",
     }
+    checkers = r"yehu_server/web/(node_modules|\.|[^/]*\.json$)"
+    assert [name for name in names if re.match(checkers, name)] == []

@@ -1,9 +1,9 @@
 # shellcheck shell=bash
 # Sets up the checkout's own environment, .venv; sourced by the scripts beside this folder.
 #
-#   setup run          what yehu-server needs: requirements.lock
-#   setup dev          that and what the checks need: requirements-dev.lock
-#   setup all          that and what the long checks and the site need: requirements-all.lock
+#   setup run          what yehu-server needs: requirements/run.lock
+#   setup dev          that and what the checks need: requirements/dev.lock
+#   setup all          that and what the long checks and the site need: requirements/all.lock
 #   system_packages [NAMES...]
 #                      the system's own libraries and the ones named, where they are missing
 #
@@ -81,19 +81,12 @@ setup() {
 
 # --- is it set up? -----------------------------------------------------------------------
 
-lock_of() {
-    case $1 in
-        run) echo requirements.lock ;;
-        *) echo "requirements-$1.lock" ;;
-    esac
-}
-
 # Prints the hash of all that the set-up of that kind is made from. The absolute paths in it
 # make a checkout that was moved set up again, as a virtual environment cannot be moved.
 fingerprint() {
     local hash=cksum
     if command -v sha256sum >/dev/null; then hash=sha256sum; fi
-    "$hash" "$root"/requirements*.lock "$root/pyproject.toml" "$root/scripts/lib/setup.sh"
+    "$hash" "$root"/requirements/*.lock "$root/pyproject.toml" "$root/scripts/lib/setup.sh"
 }
 
 is_set_up() {
@@ -161,7 +154,7 @@ install() (
     trap 'exit 130' INT
     unset PYTHONDONTWRITEBYTECODE
     PATH=$venv/bin:$PATH
-    lock=$(lock_of "$1")
+    lock=requirements/$1.lock
     made_from=$(fingerprint)
     cd "$root" || exit
     bring_uv
@@ -186,7 +179,7 @@ install() (
 # Brings the locked uv, which installs in a fifth of pip's time, unless there is one.
 bring_uv() {
     command -v uv >/dev/null && return
-    locked uv requirements-dev.lock >"$venv/uv.lock"
+    locked uv requirements/dev.lock >"$venv/uv.lock"
     pip_install --require-hashes -r "$venv/uv.lock" >"$log" 2>&1 </dev/null
 }
 
@@ -273,15 +266,15 @@ if not os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h")):
     fi
 }
 
-# Installs what checks the page, from package-lock.json; without it those tests skip.
+# Installs what checks the page, from web/package-lock.json; without it those tests skip.
 node_packages() {
     local made_from
     command -v npm >/dev/null || return 0
-    made_from=$(cksum <"$root/package-lock.json")
-    [ "$(cat "$root/node_modules/.stamp" 2>/dev/null)" = "$made_from" ] && return
+    made_from=$(cksum <"$root/web/package-lock.json")
+    [ "$(cat "$root/web/node_modules/.stamp" 2>/dev/null)" = "$made_from" ] && return
     say "installing what checks the page"
-    if (cd "$root" && npm ci --ignore-scripts --no-audit --no-fund) >"$log" 2>&1 </dev/null; then
-        printf '%s\n' "$made_from" >"$root/node_modules/.stamp"
+    if (cd "$root/web" && npm ci --ignore-scripts --no-audit --no-fund) >"$log" 2>&1 </dev/null; then
+        printf '%s\n' "$made_from" >"$root/web/node_modules/.stamp"
     else
         say "npm ci failed: the page is not tested in a browser"
         tail -n 30 "$log" >&2

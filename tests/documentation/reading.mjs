@@ -1,10 +1,9 @@
 /** Reads the documentation site: on a phone, by search and by ear; prints what it finds. */
 
 import { readFileSync } from "node:fs";
-import { createRequire } from "node:module";
-import { SIZES } from "../live/page/browser.mjs";
+import { SIZES, fromWeb } from "../live/page/browser.mjs";
 
-const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core"), "utf8");
+const AXE = readFileSync(fromWeb.resolve("axe-core"), "utf8");
 // The theme gives the place of each copy button the same name.
 const THEMES = { rules: { "landmark-unique": { enabled: false } } };
 

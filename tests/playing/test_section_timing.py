@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from together import Together
+from measures.together import Together
 
 from yehu_server.core.midi.section_players import ERROR_MS, GAIN_HI, GAIN_LO, SHARE
 

@@ -2,7 +2,7 @@
 
 A package adds its own by an entry point of GROUP, which names its table of them. It is read from
 the distribution's file beside the packages, or from a checkout's pyproject.toml: importlib.metadata
-finds more, but to load it takes a sixth of what ``--help`` does.
+finds more, but to load it takes a fifth of what ``--help`` does.
 """
 
 from __future__ import annotations

@@ -1,6 +1,10 @@
 /** Opens the page in a Chromium, and does with it what a person would. */
 
-import { chromium } from "playwright-core";
+import { createRequire } from "node:module";
+
+/** Finds what checks the page, which `npm ci` in web/ installs. */
+export const fromWeb = createRequire(new URL("../../../web/package.json", import.meta.url));
+const { chromium } = fromWeb("playwright-core");
 
 /** A name of this machine that makes no secure context. */
 export const UNTRUSTED = "page.example";

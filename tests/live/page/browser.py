@@ -25,7 +25,7 @@ WEB = ROOT / "web"
 NODE, CHROMIUM = shutil.which("node"), shutil.which("chromium")
 # Chromium without its own interface, which is a page as well: it opens a page with half the work.
 SHELL = shutil.which("chromium-headless-shell") or CHROMIUM
-PLAYWRIGHT = ROOT / "node_modules" / "playwright-core"
+PLAYWRIGHT = WEB / "node_modules" / "playwright-core"
 LIMIT_S = 120.0
 
 
@@ -35,7 +35,7 @@ def missing() -> str | None:
         return "needs node and chromium"
     if page_linker() is None:
         return "needs wasm-ld"
-    return None if PLAYWRIGHT.is_dir() else "needs playwright-core: npm ci"
+    return None if PLAYWRIGHT.is_dir() else "needs playwright-core: npm ci in web/"
 
 
 in_browser = pytest.mark.skipif(missing() is not None, reason=str(missing()))

@@ -2,10 +2,9 @@
  * With the word "all" on a phone and a desk both dark and light, otherwise on a light phone. */
 
 import { readFileSync } from "node:fs";
-import { createRequire } from "node:module";
-import { SIZES, open } from "./browser.mjs";
+import { SIZES, fromWeb, open } from "./browser.mjs";
 
-const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core"), "utf8");
+const AXE = readFileSync(fromWeb.resolve("axe-core"), "utf8");
 const VIEWS = ["see", "sound", "tunes", "keep", "connect", "all"];
 
 /** Lets the page remember something that was taught; runs in the page. */

@@ -44,7 +44,7 @@ def test_the_tab_key_goes_from_the_header_over_the_hands_to_the_rest_and_is_seen
     assert {each["ring"] for each in found["focus"]} == {"solid"}
 
 
-@pytest.mark.skipif(not (ROOT / "node_modules/axe-core").is_dir(), reason="needs axe-core")
+@pytest.mark.skipif(not (ROOT / "web/node_modules/axe-core").is_dir(), reason="needs axe-core")
 def test_axe_finds_nothing_that_keeps_people_out(imitated, everything):
     assert drive("page_axe.mjs", imitated, "all" if everything else "some") == []
 

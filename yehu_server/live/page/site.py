@@ -122,6 +122,7 @@ log = logging.getLogger(__name__)
 MODULE, CAPTURES = "yehu.wasm", "captures"
 SERVED = {".css", ".html", ".js", ".png", ".svg", ".webmanifest"}
 FACTS, TEXTS = "facts.js", "texts"
+CHECKERS = "node_modules"  # of a checkout
 GENERATED = {FACTS, "examples.js"}
 
 
@@ -129,7 +130,7 @@ def page_files() -> Iterator[Path]:
     """The files of the page that are written by hand, relative to `page_folder`."""
     for file in _files_of(page_folder()):
         is_served = file.suffix in SERVED or file.parent.name == TEXTS
-        if is_served and file.name not in GENERATED:
+        if is_served and file.name not in GENERATED and file.parts[0] != CHECKERS:
             yield file
 
 

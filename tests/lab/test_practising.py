@@ -1,0 +1,177 @@
+"""Practising tells a good manner from a bad one, and goes on from what was practised before."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from fiddles import SLACK_TOML
+from midi_files import midi_file, notes
+
+from yehu_lab.practising import practice as practising
+from yehu_lab.practising.passages import Passage, Search
+from yehu_lab.practising.practice import (
+    BEFORE_S,
+    EACH_S,
+    EARLY_S,
+    LATE_S,
+    LISTEN_S,
+    Practice,
+    has_pitch,
+)
+from yehu_lab.practising.recipes import slower
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.bowing import (
+    AT_FIRM,
+    AT_FLAUTANDO,
+    FIRST,
+    PLACES,
+    default_recipes,
+)
+from yehu_server.core.player.note_range import LOWEST_NOTE
+from yehu_server.params.table import find
+from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.practice_files import (
+    read_practice,
+    shipped_practice,
+    write_practice,
+)
+
+RATE = 44100.0
+PLACE = PLACES.index(0.1)
+DEFAULT = PLACES.index(find("/playing/bow_position").default)
+
+PASSAGES = [
+    Passage(before, speed, 0.42, is_slurred, 0.12)
+    for before, speed, is_slurred in ((71, 0.16, True), (78, 0.2, False), (76, 0.2, True))
+]
+
+
+@pytest.fixture(scope="module")
+def practice() -> Practice:
+    return Practice(RATE, Quantities(), calibration_for(RATE))
+
+
+@pytest.mark.parametrize(("note", "factor"), [(70, 0.02), (70, 30.0), (74, 0.02), (80, 30.0)])
+def test_a_manner_that_speaks_is_told_from_one_that_cannot(practice, note, factor):
+    string = int(note > 71)
+    good = shipped_practice(RATE)[string, DEFAULT, note - FIRST]
+    bad = good.copy()  # too light, or too heavy
+    bad[AT_FLAUTANDO : AT_FIRM + 1] *= factor
+    search = Search(string, note, DEFAULT, good)
+    assert 0.7 < practice.score(search, good, PASSAGES) <= 1.0
+    assert practice.score(search, bad, PASSAGES) < 0.6
+
+
+def test_a_mode_that_drowns_a_note_is_not_taken_for_it():
+    time = np.arange(round(LISTEN_S * RATE)) / RATE
+    note, mode = (np.sin(2.0 * np.pi * hz * time) for hz in (1318.51, 566.0))
+    for loudness, has in ((0.0, True), (0.1, True), (0.8, False), (3.0, False)):
+        assert has_pitch(note + loudness * mode, RATE, 88.0) == has, loudness
+    assert not has_pitch(0.0 * note, RATE, 88.0)
+
+
+def test_the_score_of_a_manner_is_always_the_same(practice):
+    manner = default_recipes()[0, PLACE, 70 - FIRST]
+    search = Search(0, 70, PLACE, manner)
+    scores = {practice.score(search, manner, PASSAGES) for _ in range(3)}
+    assert len(scores) == 1
+
+
+def test_a_tuning_moves_each_note_to_its_nearest_pitch():
+    tuned = practising.pitches_near_notes({66.0: 66.3, 67.0: 66.9, 68.0: 68.6}.get)
+    assert [tuned[note] for note in (65, 66, 67, 68, 69)] == [65.0, 66.3, 66.9, 68.0, 68.6]
+
+
+def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late(monkeypatch):
+    played, heard_s = [], []
+
+    def speaks(instrument, _near):
+        player = instrument._rig["player"][0]
+        played.append(float(player["held_pitch"][player["sounding"]]))
+        heard_s.append(instrument.frame / RATE)
+        return True, 0.0
+
+    monkeypatch.setattr(practising, "_speaks", speaks)
+    monkeypatch.setattr(practising, "has_pitch", lambda *_: True)
+    practice = Practice(RATE, Quantities(), calibration_for(RATE), tuning=lambda key: key + 0.35)
+    manner = default_recipes()[0, PLACE, 70 - FIRST]
+    assert practice.score(Search(0, 70, PLACE, manner), manner, PASSAGES) == 1.0
+    assert set(played) == {70.35}
+    each_s = BEFORE_S + EACH_S
+    told = [BEFORE_S + at for at in (EARLY_S, LATE_S)]
+    expected = [each_s * number + at for number in range(len(PASSAGES)) for at in told]
+    assert heard_s == pytest.approx(expected, abs=0.001)
+
+
+@pytest.fixture
+def one_note(monkeypatch) -> None:
+    """Practise a single note, with a single passage at each trial, and one short round of them.
+
+    It speaks in any manner but that which ships: whether a note does hangs on a chaotic run.
+    """
+    shipped = shipped_practice(RATE)
+
+    def score(_practice, search, manner, _passages):
+        return float(
+            not np.isclose(manner, shipped[search.string, :, search.note - FIRST])
+            .all(axis=-1)
+            .any()
+        )
+
+    monkeypatch.setattr(Practice, "score", score)
+    monkeypatch.setattr(practising, "ROUNDS", [slower])
+    monkeypatch.setattr(practising, "stops_of", lambda _notes: [(0, 70)])
+    monkeypatch.setattr(practising, "TRIES", 1)
+    monkeypatch.setattr(practising, "QUICK_TRIES", 1)
+
+
+@pytest.mark.usefixtures("one_note")
+def test_what_practise_writes_render_takes(command, tmp_path):
+    """It is for its preset and tuning, and leaves other places alone."""
+    path, instrument = tmp_path / "mine.json", tmp_path / "slack.toml"
+    instrument.write_text(SLACK_TOML)
+    tune = midi_file(tmp_path / "tune.mid", notes((0.0, 0.3, 70, 80)))
+    rendered = (tune, "-o", tmp_path / "out.wav", "--instrument", instrument, "--json")
+    near = ("--preset", "sul-ponticello", "--tuning", "chaozhou-seven-equal")
+    for words in ((), near):
+        code, out, error = command("practise", "-o", path, *words, "--json")
+        assert code == 0, error
+        summary = json.loads(out)
+        assert summary["rate"] == RATE
+        changed = ~np.isclose(read_practice(path), shipped_practice(RATE), atol=1e-4).all(axis=-1)
+        assert changed.sum() == summary["improved"] > 0 or words
+        assert set(zip(*np.nonzero(changed.any(axis=1)), strict=True)) <= {(0, 70 - FIRST)}
+        assert not (words and changed[:, np.array(PLACES) > 0.1].any())
+        _, summary, _ = command("render", *rendered, "--practice", path, "--overwrite")
+        assert json.loads(summary)["practice"] == str(path)
+        path.unlink()
+
+
+@pytest.mark.usefixtures("one_note")
+def test_practising_goes_on_from_what_lies_beside_the_instrument(command, tmp_path):
+    instrument, beside = tmp_path / "mine.toml", tmp_path / "mine.practice.json"
+    instrument.write_text("[string_1]\nreach = 6.0\n[string_2]\nreach = 3.0\n")  # tuned sooner
+    table = default_recipes()
+    write_practice(beside, table, RATE)
+    code, _, error = command("practise", "--instrument", instrument, "-o", beside, "--quiet")
+    assert code == 0, error
+    same = np.isclose(read_practice(beside), table, atol=1e-4).all(axis=-1)
+    same[0, :, 70 - FIRST] = True
+    same[0, :, : LOWEST_NOTE - FIRST] = True  # as the open string
+    assert same.all()
+
+
+def test_practising_what_is_not_there_is_refused_in_one_line(refused, tmp_path):
+    for words in [
+        ("--rate", "100"),
+        ("--rate", "nan"),
+        ("--preset", "no-such"),
+        ("--instrument", "no.toml"),
+    ]:
+        refused("practise", "-o", tmp_path / "mine.json", *words)
+    a_map = ("--keyboard-map", "chaozhou")
+    assert "needs a scale" in refused("practise", "-o", tmp_path / "mine.json", *a_map)
+    assert "does not exist" in refused("practise", "-o", tmp_path / "none" / "mine.json")
+    assert list(tmp_path.iterdir()) == []

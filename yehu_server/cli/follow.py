@@ -40,6 +40,7 @@ from yehu_server.cli.terminal import compile_all, print_report, progress_bar, wa
 from yehu_server.errors import OutputError
 from yehu_server.scores.score import MAX_DURATION_H
 from yehu_server.util.files import check_distinct, check_target, write_bytes
+from yehu_server.util.subtypes import SUBTYPES
 
 if TYPE_CHECKING:
     from yehu_server.following.heard import Heard
@@ -81,7 +82,7 @@ def add_to(commands: Any) -> None:
         style={"choices": STYLES, "default": STYLES[0]},
         max_duration={"type": hours, "default": MAX_DURATION_H},
         plot=target,
-        subtype={"choices": ("16", "24", "float"), "default": "24"},
+        subtype={"choices": tuple(SUBTYPES), "default": "24"},
     )
     add_sound(parser)
     add_room(parser)

@@ -52,6 +52,7 @@ from yehu_server.cli.render_pipe import (
 from yehu_server.cli.sound_options import add_sound, add_stage
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.scores.score import MAX_DURATION_H
+from yehu_server.util.subtypes import FORMATS, SUBTYPES
 
 
 def add_to(commands: Any) -> None:
@@ -88,8 +89,8 @@ def add_to(commands: Any) -> None:
             {MAX_DURATION_H:g})
         --plot PNG: also draw level, pitch asked and played, and spectrogram
         """,
-        format={"choices": ("wav", "flac", "raw")},
-        subtype={"choices": ("16", "24", "float")},
+        format={"choices": (*FORMATS, "raw")},
+        subtype={"choices": tuple(SUBTYPES)},
         channel={"type": channel, "action": "append"},
         phrasing=number_within(0.0, 1.0, ""),
         rubato=number_within(0.0, 1.0, ""),

@@ -82,7 +82,7 @@ def add_to(commands: Any) -> None:
         style={"choices": STYLES, "default": STYLES[0]},
         max_duration={"type": hours, "default": MAX_DURATION_H},
         plot=target,
-        subtype={"choices": tuple(SUBTYPES), "default": "24"},
+        subtype={"choices": tuple(SUBTYPES)},
     )
     add_sound(parser)
     add_room(parser)
@@ -137,7 +137,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _options(arguments: argparse.Namespace) -> tuple[PlayingOptions, Options]:
     """How to play and to render; raises YehuError where something is wrong, before listening."""
-    from yehu_server.util.sound_file import check_format, format_of
+    from yehu_server.util.sound_file import format_of
 
     ending = arguments.output.suffix.lower()
     check_sound(arguments)
@@ -151,9 +151,8 @@ def _options(arguments: argparse.Namespace) -> tuple[PlayingOptions, Options]:
         check_target(arguments.output)
     else:
         form = format_of(arguments.output)
-        check_format(form, arguments.subtype)
         check_output(arguments)
-    return playing, sound_options_of(arguments, form, arguments.subtype)
+    return playing, sound_options_of(arguments, form)
 
 
 def _write(

@@ -159,8 +159,7 @@ def _tell_one(arguments: argparse.Namespace, line: Line, number: int, total: int
 
 def _check(arguments: argparse.Namespace) -> str:
     """Check the options before any file is looked at; return the format to write."""
-    from yehu_server.cli.sound_options import check_stage
-    from yehu_server.util.sound_file import check_format
+    from yehu_server.cli.sound_options import check_stage, sound_options_of
 
     form = arguments.format or "wav"
     if is_piped(arguments.output):
@@ -184,7 +183,7 @@ def _check(arguments: argparse.Namespace) -> str:
     if arguments.dask is not None and arguments.jobs is not None:
         raise ParameterError("--jobs is for this machine: a cluster uses all of its workers")
     check_stage(arguments)
-    check_format(form, arguments.subtype or "24", 1 if arguments.mono else 2)
+    sound_options_of(arguments, form)
     playing_options_of(arguments)
     return str(form)
 

@@ -63,8 +63,7 @@ def rendered(
     form = _format(arguments)
     may_replace = anything if is_piped(arguments.output) else check_output(arguments)
     _warn_of_own(arguments, playing)
-    subtype = arguments.subtype or ("float" if form == "raw" else "24")
-    options = sound_options_of(arguments, form, subtype)
+    options = sound_options_of(arguments, form)
     scores = cache(partial(_scores, arguments, playing))
     if arguments.ensemble is None:
         players = Players((Part.shaped(scores(playing.quantities), playing),))

@@ -54,12 +54,7 @@ MIDI, CAPTURE = (".mid", ".midi"), (".jsonl",)
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "follow",
-        __doc__,
-        run,
-    )
+    parser = add_command(commands, "follow", __doc__, run)
     add_options(
         parser, "recording IN: a sound file of one voice, such as WAV or FLAC", recording=Path
     )

@@ -17,10 +17,9 @@ from typing import TYPE_CHECKING
 from yehu_server.cli.arguments import cluster_of
 from yehu_server.cli.folder_tasks import Line, Task, perform
 from yehu_server.cli.playing_options import playing_options_of
-from yehu_server.cli.render_pipe import is_piped
 from yehu_server.cli.terminal import compile_all, print_result, progress_bar, warn
 from yehu_server.errors import OutputError, ParameterError, ScoreError, one_line
-from yehu_server.rendering import build_records
+from yehu_server.rendering import PIPE, build_records
 from yehu_server.rendering.build_records import HIDDEN, checked_line, hash_of, up_to_date
 from yehu_server.util.source_key import key_of
 
@@ -162,7 +161,7 @@ def _check(arguments: argparse.Namespace) -> str:
     from yehu_server.cli.sound_options import check_stage, sound_options_of
 
     form = arguments.format or "wav"
-    if is_piped(arguments.output):
+    if arguments.output is PIPE:
         raise OutputError("a folder is rendered to a folder, not to standard output")
     if not arguments.output.is_dir() and arguments.output.suffix.lower() in SOUNDS:
         raise OutputError(

@@ -12,9 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from yehu_server.errors import OutputError
+from yehu_server.rendering import PIPE
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance, Samples
-from yehu_server.rendering.pipe import PIPE, sound_pipe
+from yehu_server.rendering.pipe import sound_pipe
 from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
 from yehu_server.rendering.true_peak import TruePeak

@@ -147,9 +147,9 @@ def test_what_a_stranger_has_workers_and_scheduler_send_runs_nothing_here(own, t
         for topic in ("warn", "print"):
             told = {"message": pickle.dumps(some_jobs.Touching(touched)), "args": ("STRANGE",)}
             connected.log_event(topic, told)
-        [found] = cluster.ask(some_jobs.Touching, touched).values()
+        [found] = connected.run(some_jobs.Touching, touched).values()
         assert type(found).__name__ != "Touching"
-        cluster.ask(some_jobs.poison, touched)
+        connected.run(some_jobs.poison, touched)
         [event] = cluster.perform_all(some_jobs.double, [1])
     assert event.died == "ended by an answer that is none", event
     assert not touched.exists()

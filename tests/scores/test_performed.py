@@ -7,11 +7,11 @@ from fractions import Fraction
 from itertools import pairwise
 
 import pytest
+from shaping import phrased
 
 from yehu_server.errors import ScoreError
 from yehu_server.params.articulations import NUMBER
 from yehu_server.params.table import find
-from yehu_server.scores.phrasing import phrased
 from yehu_server.scores.score import Setting, notes_of
 from yehu_server.scores.written import performed as performing
 from yehu_server.scores.written.mark_settings import PLACES, QUICK_TREMOLO

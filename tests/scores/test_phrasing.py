@@ -7,9 +7,10 @@ from itertools import pairwise
 import mido
 import numpy as np
 import pytest
+from shaping import phrased
 
 from yehu_server.scores.phrases import phrases_of
-from yehu_server.scores.phrasing import LEAST_FOR_BOWS, accent, is_fingered, phrased
+from yehu_server.scores.phrasing import LEAST_FOR_BOWS, accent, is_fingered
 from yehu_server.scores.score import COMMON_TIME, Metre, Score, ScoreEvent, notes_of
 
 BEAT_S = 0.5

@@ -8,8 +8,8 @@ from itertools import pairwise
 import mido
 import numpy as np
 import pytest
+from shaping import phrased
 
-from yehu_server.scores.phrasing import phrased
 from yehu_server.scores.reading import How, performed_part, read_any
 from yehu_server.scores.score import Score, notes_of
 from yehu_server.scores.written.notated import Note, Part, Span, Tempo, Written

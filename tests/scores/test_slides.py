@@ -8,16 +8,15 @@ from dataclasses import replace
 import mido
 import numpy as np
 import pytest
+from shaping import phrased
 
 import yehu_server as yehu
 from yehu_server.api.notes import score_of as score_of_notes
-from yehu_server.core.player.note_range import YEHU
 from yehu_server.core.player.rows import ROW
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
-from yehu_server.scores.phrasing import phrased
 from yehu_server.scores.score import Score, ScoreEvent, Setting, notes_of
 from yehu_server.scores.slides import logistic
 
@@ -55,7 +54,7 @@ def heard_about(sound: np.ndarray, at_s: float, low: int, high: int) -> float:
 
 
 def slid(score: Score, amount: float = 0.5) -> Score:
-    return phrased(score, amount, PlayingOptions(), YEHU)
+    return phrased(score, amount)
 
 
 def test_a_slide_is_a_bend_of_the_note_before_that_ends_on_the_beat():

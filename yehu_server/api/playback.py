@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from yehu_server.errors import DeviceError, OutputError, ParameterError
 from yehu_server.live.audio.devices import load_portaudio
 from yehu_server.plot.sounds import is_pressure, sound_of
-from yehu_server.util.sound_file import SUBTYPES, check_format, format_of, sound_file
+from yehu_server.util.sound_file import check_format, format_of, sound_file
+from yehu_server.util.subtypes import SUBTYPES
 
 Sound = NDArray[Any]
 

@@ -28,12 +28,7 @@ from yehu_server.util.files import write_bytes
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "build",
-        __doc__,
-        run,
-    )
+    parser = add_command(commands, "build", __doc__, run)
     parser.add_argument(
         "what",
         choices=("wasm", "library"),

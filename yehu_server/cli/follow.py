@@ -40,6 +40,7 @@ from yehu_server.cli.terminal import compile_all, print_report, progress_bar, wa
 from yehu_server.errors import OutputError
 from yehu_server.scores.score import MAX_DURATION_H
 from yehu_server.util.files import check_distinct, check_target, write_bytes
+from yehu_server.util.subtypes import SUBTYPES
 
 if TYPE_CHECKING:
     from yehu_server.following.heard import Heard
@@ -53,12 +54,7 @@ MIDI, CAPTURE = (".mid", ".midi"), (".jsonl",)
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "follow",
-        __doc__,
-        run,
-    )
+    parser = add_command(commands, "follow", __doc__, run)
     add_options(
         parser, "recording IN: a sound file of one voice, such as WAV or FLAC", recording=Path
     )
@@ -81,7 +77,7 @@ def add_to(commands: Any) -> None:
         style={"choices": STYLES, "default": STYLES[0]},
         max_duration={"type": hours, "default": MAX_DURATION_H},
         plot=target,
-        subtype={"choices": ("16", "24", "float"), "default": "24"},
+        subtype={"choices": tuple(SUBTYPES)},
     )
     add_sound(parser)
     add_room(parser)
@@ -136,7 +132,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _options(arguments: argparse.Namespace) -> tuple[PlayingOptions, Options]:
     """How to play and to render; raises YehuError where something is wrong, before listening."""
-    from yehu_server.util.sound_file import check_format, format_of
+    from yehu_server.util.sound_file import format_of
 
     ending = arguments.output.suffix.lower()
     check_sound(arguments)
@@ -150,9 +146,8 @@ def _options(arguments: argparse.Namespace) -> tuple[PlayingOptions, Options]:
         check_target(arguments.output)
     else:
         form = format_of(arguments.output)
-        check_format(form, arguments.subtype)
         check_output(arguments)
-    return playing, sound_options_of(arguments, form, arguments.subtype)
+    return playing, sound_options_of(arguments, form)
 
 
 def _write(

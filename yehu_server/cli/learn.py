@@ -31,12 +31,7 @@ LONGEST_S = 60.0
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "learn",
-        __doc__,
-        run,
-    )
+    parser = add_command(commands, "learn", __doc__, run)
     add_options(
         parser,
         """

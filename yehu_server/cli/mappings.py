@@ -28,7 +28,7 @@ from yehu_server.cli.arguments import (
     server_of,
 )
 from yehu_server.cli.converters import target
-from yehu_server.cli.terminal import print_result, warn
+from yehu_server.cli.terminal import check_files, print_result
 from yehu_server.errors import MappingError, ParameterError
 from yehu_server.util.files import write_bytes
 
@@ -154,18 +154,12 @@ def _bindings(client: OscClient) -> list[list[Any]]:
 def _check(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.mapping import load
 
-    code = 0
-    for file in arguments.files:
+    def read(file: Path) -> tuple[str, tuple[str, ...]]:
         # Always a path: without an ending, `load` would take it as the name of a mapping.
-        try:
-            mapping = load(str(file if file.suffix else Path() / file.absolute()))
-        except MappingError as error:
-            code = 2
-            for line in (str(error), *error.more):
-                warn(line)
-        else:
-            print_result(f"{file}: right, {len(mapping.binds)} binds")
-    return code
+        mapping = load(str(file if file.suffix else Path() / file.absolute()))
+        return f"{len(mapping.binds)} binds", ()
+
+    return check_files(arguments.files, read)
 
 
 def _convert(arguments: argparse.Namespace) -> int:

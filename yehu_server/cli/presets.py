@@ -17,8 +17,7 @@ from typing import Any
 
 from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
 from yehu_server.cli.playing_options import add_presets_folder
-from yehu_server.cli.terminal import print_result, warn
-from yehu_server.errors import PresetError
+from yehu_server.cli.terminal import check_files, print_result, warn
 from yehu_server.params.table import find
 
 
@@ -56,7 +55,8 @@ def _list(arguments: argparse.Namespace) -> int:
         for preset in found:
             mark = "your own: " if presets.is_own(preset.name) else ""
             print_result(f"{preset.name:{width}}  {preset.program or '-':>3}  {mark}{preset.about}")
-    _warn(str(error) for error in errors)
+    for error in errors:
+        warn(str(error))
     return 0
 
 
@@ -75,26 +75,16 @@ def _show(arguments: argparse.Namespace) -> int:
     for address, value in preset.values.items():
         unit = find(address).unit
         print_result(f"{address:{width}}  {value:g}" + ("" if unit == "1" else f" {unit}"))
-    _warn(preset.remarks())
+    for remark in preset.remarks():
+        warn(remark)
     return 0
 
 
 def _check(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.preset_folders import read_preset
 
-    code = 0
-    for file in arguments.files:
-        try:
-            preset = read_preset(file)
-        except PresetError as error:
-            code = 2
-            _warn([str(error), *error.more])
-        else:
-            _warn(preset.remarks())
-            print_result(f"{file}: right, {len(preset.values)} values")
-    return code
+    def read(file: Path) -> tuple[str, Iterable[str]]:
+        preset = read_preset(file)
+        return f"{len(preset.values)} values", preset.remarks()
 
-
-def _warn(lines: Iterable[str]) -> None:
-    for line in lines:
-        warn(line)
+    return check_files(arguments.files, read)

@@ -20,6 +20,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from pathlib import Path
 from typing import Any
 
 from yehu_server.cli import render_folder
@@ -40,28 +41,17 @@ from yehu_server.cli.converters import (
 )
 from yehu_server.cli.playing_options import add_playing
 from yehu_server.cli.render_one import rendered
-from yehu_server.cli.render_pipe import (
-    is_piped,
-    piped_in,
-    quiet_pipe,
-    score_source,
-    shown_target,
-    sound_target,
-    tell_beside,
-)
+from yehu_server.cli.render_pipe import piped_in, quiet_pipe, score_source, sound_target
 from yehu_server.cli.sound_options import add_sound, add_stage
 from yehu_server.cli.terminal import print_result, warn
+from yehu_server.rendering import PIPE
 from yehu_server.scores.score import MAX_DURATION_H
+from yehu_server.util.subtypes import FORMATS, SUBTYPES
 
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "render",
-        __doc__,
-        run,
-    )
+    parser = add_command(commands, "render", __doc__, run)
     add_options(
         parser,
         "midi IN.mid: the MIDI files, or a folder of them; - reads standard input",
@@ -88,8 +78,8 @@ def add_to(commands: Any) -> None:
             {MAX_DURATION_H:g})
         --plot PNG: also draw level, pitch asked and played, and spectrogram
         """,
-        format={"choices": ("wav", "flac", "raw")},
-        subtype={"choices": ("16", "24", "float")},
+        format={"choices": (*FORMATS, "raw")},
+        subtype={"choices": tuple(SUBTYPES)},
         channel={"type": channel, "action": "append"},
         phrasing=number_within(0.0, 1.0, ""),
         rubato=number_within(0.0, 1.0, ""),
@@ -117,12 +107,13 @@ def run(arguments: argparse.Namespace) -> int:
     except DamagedError as error:
         warn(str(error))
         return 1
-    report = tell_beside if is_piped(arguments.output) else print_result
+    is_piped = arguments.output is PIPE  # the sound is on standard output
     if arguments.json:
-        file = sys.stderr if is_piped(arguments.output) else sys.stdout
-        print(json.dumps(done.fields), file=file)
+        print(json.dumps(done.fields), file=sys.stderr if is_piped else sys.stdout)
     elif not arguments.quiet:
         from yehu_server.cli.report import render_report
 
-        report(render_report(shown_target(arguments.output), done.summary))
+        told = Path("standard output") if is_piped else arguments.output
+        for line in render_report(told, done.summary).split("\n"):
+            (warn if is_piped else print_result)(line)
     return 0

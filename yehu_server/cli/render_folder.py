@@ -17,10 +17,9 @@ from typing import TYPE_CHECKING
 from yehu_server.cli.arguments import cluster_of
 from yehu_server.cli.folder_tasks import Line, Task, perform
 from yehu_server.cli.playing_options import playing_options_of
-from yehu_server.cli.render_pipe import is_piped
 from yehu_server.cli.terminal import compile_all, print_result, progress_bar, warn
 from yehu_server.errors import OutputError, ParameterError, ScoreError, one_line
-from yehu_server.rendering import build_records
+from yehu_server.rendering import PIPE, build_records
 from yehu_server.rendering.build_records import HIDDEN, checked_line, hash_of, up_to_date
 from yehu_server.util.source_key import key_of
 
@@ -159,11 +158,10 @@ def _tell_one(arguments: argparse.Namespace, line: Line, number: int, total: int
 
 def _check(arguments: argparse.Namespace) -> str:
     """Check the options before any file is looked at; return the format to write."""
-    from yehu_server.cli.sound_options import check_stage
-    from yehu_server.util.sound_file import check_format
+    from yehu_server.cli.sound_options import check_stage, sound_options_of
 
     form = arguments.format or "wav"
-    if is_piped(arguments.output):
+    if arguments.output is PIPE:
         raise OutputError("a folder is rendered to a folder, not to standard output")
     if not arguments.output.is_dir() and arguments.output.suffix.lower() in SOUNDS:
         raise OutputError(
@@ -184,7 +182,7 @@ def _check(arguments: argparse.Namespace) -> str:
     if arguments.dask is not None and arguments.jobs is not None:
         raise ParameterError("--jobs is for this machine: a cluster uses all of its workers")
     check_stage(arguments)
-    check_format(form, arguments.subtype or "24", 1 if arguments.mono else 2)
+    sound_options_of(arguments, form)
     playing_options_of(arguments)
     return str(form)
 

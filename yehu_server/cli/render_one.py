@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import check_output, picture_output
 from yehu_server.cli.ensemble_parts import Players, players_of
-from yehu_server.cli.render_pipe import is_piped
 from yehu_server.cli.sound_options import (
     PLOTTED_BLOCK,
     check_stage,
@@ -20,6 +19,7 @@ from yehu_server.cli.sound_options import (
 )
 from yehu_server.cli.terminal import compile_all, progress_bar, warn
 from yehu_server.errors import OutputError
+from yehu_server.rendering import PIPE
 from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.score import Score, check_duration
 from yehu_server.util.files import anything, check_distinct, make_folder
@@ -57,14 +57,13 @@ def rendered(
 
     check_stage(arguments)
     playing = playing_in_room(arguments).shaping(PHRASING)
-    outputs = {} if is_piped(arguments.output) else {"-o": arguments.output}
+    outputs = {} if arguments.output is PIPE else {"-o": arguments.output}
     outputs |= picture_output(arguments)
     check_distinct(outputs, [*arguments.midi, *playing.files])
     form = _format(arguments)
-    may_replace = anything if is_piped(arguments.output) else check_output(arguments)
+    may_replace = anything if arguments.output is PIPE else check_output(arguments)
     _warn_of_own(arguments, playing)
-    subtype = arguments.subtype or ("float" if form == "raw" else "24")
-    options = sound_options_of(arguments, form, subtype)
+    options = sound_options_of(arguments, form)
     scores = cache(partial(_scores, arguments, playing))
     if arguments.ensemble is None:
         players = Players((Part.shaped(scores(playing.quantities), playing),))
@@ -112,7 +111,7 @@ def _format(arguments: argparse.Namespace) -> str:
     from yehu_server.util.sound_file import format_of
 
     form = str(arguments.format or "")
-    if is_piped(arguments.output):
+    if arguments.output is PIPE:
         check_pipe(form or "wav")
         return form or "wav"
     if form == "raw":

@@ -10,8 +10,8 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError, ScoreError, YehuError
+from yehu_server.rendering import PIPE
 from yehu_server.util.files import why
 
 STDIN = "standard input"  # also the name of its file
@@ -21,26 +21,12 @@ CHUNK = 1 << 20
 
 def sound_target(text: str) -> Path:
     """Convert the argument of -o, which may be ``-``."""
-    from yehu_server.rendering.pipe import PIPE
-
     return PIPE if text == "-" else Path(text)
 
 
 def score_source(text: str) -> Path | str:
     """Convert a score to read: a path, or ``-``, which no path is (``./-`` is)."""
     return text if text == "-" else Path(text)
-
-
-def is_piped(target: Path) -> bool:
-    """Whether sound goes to standard output."""
-    from yehu_server.rendering.pipe import PIPE
-
-    return target is PIPE
-
-
-def shown_target(target: Path) -> Path:
-    """The output as it is told."""
-    return Path("standard output") if is_piped(target) else target
 
 
 @contextlib.contextmanager
@@ -85,12 +71,6 @@ def quiet_pipe(target: Path) -> Iterator[None]:
     try:
         yield
     except BrokenPipeError:
-        if not is_piped(target):
+        if target is not PIPE:
             raise
         raise SystemExit(BROKEN_PIPE) from None
-
-
-def tell_beside(text: str) -> None:
-    """Print what would be a result, where standard output has the sound."""
-    for line in text.split("\n"):
-        warn(line)

@@ -22,6 +22,7 @@ from yehu_server.cli.arguments import (
 from yehu_server.cli.converters import hours
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn
 from yehu_server.util.files import check_distinct
+from yehu_server.util.subtypes import DEFAULT_SUBTYPES, FORMATS, SUBTYPES
 
 MAX_DURATION_H = 12.0
 
@@ -38,8 +39,8 @@ def add_to(commands: Any) -> None:
         --subtype: sample format (default: float in WAV, as recorded; 24 in FLAC)
         --max-duration HOURS: refuse a capture that lasts longer (default: {MAX_DURATION_H:g})
         """,
-        format={"choices": ("wav", "flac")},
-        subtype={"choices": ("16", "24", "float")},
+        format={"choices": FORMATS},
+        subtype={"choices": tuple(SUBTYPES)},
         max_duration={"type": hours, "default": MAX_DURATION_H},
     )
     add_reporting(parser)
@@ -50,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.cli.report import replay_report
     from yehu_server.rendering.replay import replay
     from yehu_server.scores.capture import read_capture
-    from yehu_server.util.sound_file import DEFAULT_SUBTYPES, format_of
+    from yehu_server.util.sound_file import format_of
 
     check_distinct({"-o": arguments.output}, [arguments.capture])
     may_replace = check_output(arguments)

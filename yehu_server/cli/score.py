@@ -42,11 +42,7 @@ LOWEST_TEMPO, HIGHEST_TEMPO = 5.0, 1000.0
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "score",
-        __doc__,
-    )
+    parser = add_command(commands, "score", __doc__)
     actions = add_actions(parser)
     show = add_action(actions, "show", _show, "show the notes of a score, and its marks")
     add_options(

@@ -109,10 +109,14 @@ def playing_in_room(arguments: argparse.Namespace) -> PlayingOptions:
     return replace(playing, start=(*playing.start, *room))
 
 
-def sound_options_of(arguments: argparse.Namespace, form: str, subtype: str) -> Options:
-    """The sound that these options ask for."""
+def sound_options_of(arguments: argparse.Namespace, form: str) -> Options:
+    """The sound that these options ask for; raises OutputError where a file cannot hold it."""
     from yehu_server.rendering.options import Options
+    from yehu_server.util.sound_file import check_format
 
+    subtype = arguments.subtype or ("float" if form == "raw" else "24")
+    if form != "raw":
+        check_format(form, subtype)
     return Options(
         rate=arguments.rate,
         format_name=form,

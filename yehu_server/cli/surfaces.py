@@ -23,12 +23,7 @@ from yehu_server.util.files import make_folder
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "surfaces",
-        __doc__,
-        run,
-    )
+    parser = add_command(commands, "surfaces", __doc__, run)
     add_folder(parser)
     add_options(
         parser,

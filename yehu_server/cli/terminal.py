@@ -11,11 +11,11 @@ import signal
 import socket
 import sys
 import threading
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from yehu_server.errors import one_line
+from yehu_server.errors import YehuError, one_line
 
 if TYPE_CHECKING:
     from yehu_server.compile.jit import Native
@@ -41,6 +41,23 @@ def print_report(arguments: argparse.Namespace, fields: dict[str, Any], text: st
 def warn(text: str) -> None:
     """Print a warning or an error on one line."""
     print(f"yehu-server: {one_line(text)}", file=sys.stderr)
+
+
+def check_files(files: Iterable[Path], read: Callable[[Path], tuple[str, Iterable[str]]]) -> int:
+    """Tell of each file what is in it, and remarks, or all that is wrong; return the exit code."""
+    code = 0
+    for file in files:
+        try:
+            found, remarks = read(file)
+        except YehuError as error:
+            code = 2
+            for line in (str(error), *getattr(error, "more", ())):
+                warn(line)
+        else:
+            for line in remarks:
+                warn(line)
+            print_result(f"{file}: right, {found}")
+    return code
 
 
 def warn_of_lost(output: Path, lost: Mapping[str, int]) -> None:

@@ -106,19 +106,6 @@ class Cluster:
     def __exit__(self, *_: object) -> None:
         self._open.close()
 
-    @property
-    def threads(self) -> int:
-        """Number of jobs that all workers do at a time now."""
-        return max(1, len(self._reached(self._client.nthreads)))
-
-    def ask(self, question: Callable[..., Any], *arguments: Any) -> dict[str, Any]:
-        """Ask each worker something that it answers at once; its answers by their addresses.
-
-        They are plain values, whatever they hold: others may have made them.
-        """
-        answers: dict[str, Any] = self._reached(self._client.run, question, *arguments)
-        return answers
-
     def perform_all(self, perform: Perform, tasks: Iterable[Any]) -> Generator[Event]:
         """Do all tasks; yield what becomes of them, in the order in which they end.
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 from yehu_server.core.stage.image_sources import EARS
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.stringing import notes_of
 from yehu_server.scores.phrasing import is_fingered, phrased
 from yehu_server.scores.score import Score, concatenate
 
@@ -26,11 +25,10 @@ class Part:
     @classmethod
     def shaped(cls, scores: Sequence[Score], playing: PlayingOptions, name: str = "") -> Part:
         """The part of a player who plays scores one after another, and shapes them."""
-        amount, within = playing.phrasing or 0.0, notes_of(playing.quantities)
-        own = [phrased(each, amount, playing, within, playing.rubato) for each in scores]
-        score = concatenate(own)
-        heard = 0.0 if is_fingered(score) else amount
-        return cls(score, replace(playing, phrasing=heard), name or score.name)
+        score = concatenate([phrased(each, playing) for each in scores])
+        if is_fingered(score):
+            playing = replace(playing, phrasing=0.0)
+        return cls(score, playing, name or score.name)
 
 
 @dataclass(frozen=True)

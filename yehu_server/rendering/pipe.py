@@ -22,7 +22,6 @@ from yehu_server.util.files import write_all
 from yehu_server.util.sound_file import RENDERED, SoundWriter, check_format
 from yehu_server.util.wav_stream import WavStream, check_shape, encoded
 
-PIPE = Path("-")  # known by its identity: a file may have that name too
 FORMATS = ("wav", "raw")
 UNKNOWN = struct.pack("<I", 0xFFFFFFFF)
 

@@ -12,15 +12,16 @@ from pathlib import Path
 import numpy as np
 
 from yehu_server.errors import OutputError
+from yehu_server.rendering import PIPE
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance, Samples
-from yehu_server.rendering.pipe import PIPE, sound_pipe
+from yehu_server.rendering.pipe import sound_pipe
 from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
 from yehu_server.rendering.true_peak import TruePeak
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.files import anything, why
-from yehu_server.util.sound_file import SoundWriter, check_format, sound_file
+from yehu_server.util.sound_file import SoundWriter, sound_file
 
 NORMALIZED_PEAK = 0.8912509381337456  # a true peak of -1 dB
 CHUNK = 1 << 18  # bytes that are read again at a time: whole frames
@@ -86,8 +87,6 @@ def render(
     picture shows. Raises YehuError where it fails; no partial file is left.
     """
     channels = options.sound_channels
-    if target is not PIPE:
-        check_format(options.format_name, options.subtype, channels)
     performance = Performance(parts, options, has_stems=bool(stems))
     start = time.perf_counter()
     form = (options.rate, options.format_name, options.subtype)

@@ -14,7 +14,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
 
-from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.scores.phrases import phrases_of
 from yehu_server.scores.rubato import delayed
@@ -44,23 +43,14 @@ BREATH_S, BREATH_SHARE, LONG_S = 0.1, 0.2, 0.3
 SAME_BEAT = 1e-3
 
 
-def phrased(
-    score: Score,
-    amount: float,
-    playing: PlayingOptions | None = None,
-    within: NoteRange = YEHU,
-    rubato: float | None = None,
-) -> Score:
-    """Return a score as shaped by phrasing, 0 to 1; at 0 as it is.
-
-    `playing`, `within`: of the instrument that plays it.
-    `rubato`: how far the tempo gives way, 0 to 1; by default as far as phrasing says.
-    """
-    score = _phrased(score, amount, playing or PlayingOptions(), within) if amount else score
-    return delayed(score, amount if rubato is None else rubato)
+def phrased(score: Score, playing: PlayingOptions) -> Score:
+    """Return a score as a player's phrasing and rubato, 0 to 1, shape it; at 0 as it is."""
+    amount = playing.phrasing or 0.0
+    score = _phrased(score, amount, playing) if amount else score
+    return delayed(score, amount if playing.rubato is None else playing.rubato)
 
 
-def _phrased(score: Score, amount: float, playing: PlayingOptions, within: NoteRange) -> Score:
+def _phrased(score: Score, amount: float, playing: PlayingOptions) -> Score:
     by_channel: dict[int, list[ScoreNote]] = defaultdict(list)
     for note in notes_of(score):
         by_channel[note.channel].append(note)
@@ -88,7 +78,7 @@ def _phrased(score: Score, amount: float, playing: PlayingOptions, within: NoteR
     changed = _changed(score, velocities, ends_s)
     if is_fingered(score):
         return changed
-    return with_slides(changed, amount, playing, within)
+    return with_slides(changed, amount, playing)
 
 
 def is_shaped(notes: Sequence[ScoreNote], controllers: Iterable[int]) -> bool:

@@ -31,6 +31,7 @@ from yehu_server.core.player.phrasing import (
 from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.scores.score import BEND, Score, ScoreEvent, ScoreNote, Setting, notes_of
 
 ARTICULATION, STRING = "/playing/articulation", "/playing/string"
@@ -68,11 +69,9 @@ class _State(NamedTuple):
     bends: int
 
 
-def with_slides(score: Score, amount: float, playing: PlayingOptions, within: NoteRange) -> Score:
-    """Return a score with slides over its leaps, as far as phrasing (0 to 1) says.
-
-    `playing`, `within`: of the instrument that plays it.
-    """
+def with_slides(score: Score, amount: float, playing: PlayingOptions) -> Score:
+    """Return a score with slides over its leaps, as far as phrasing (0 to 1) says."""
+    within = range_of(playing.quantities)
     slide_s = 1e-3 * (SHORTEST_SLIDE_MS + (SLIDE_MS - SHORTEST_SLIDE_MS) * amount)
     slides = list(_slides(score, amount, playing, within))
     on_strings = {slide.note.begins for slide in slides if slide.string}

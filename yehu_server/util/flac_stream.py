@@ -14,9 +14,9 @@ import numpy as np
 import soundfile
 
 from yehu_server.util.files import write_all
+from yehu_server.util.subtypes import SUBTYPES
 from yehu_server.util.wav_stream import check_shape
 
-SUBTYPES = {"16": "PCM_16", "24": "PCM_24"}
 MOST_CHANNELS = 8
 SYNC = b"\xff\xf8"  # first bytes of a block of fixed size
 HEADER_BYTES = 42  # of the file up to the end of STREAMINFO
@@ -45,7 +45,7 @@ class FlacStream:
             samplerate=rate,
             channels=channels,
             format="FLAC",
-            subtype=SUBTYPES[subtype],
+            subtype=SUBTYPES[subtype].name,
         )
         if software:
             self._encoder.software = software

@@ -15,12 +15,10 @@ from yehu_server.errors import OutputError
 from yehu_server.util import flac_stream, wav_stream
 from yehu_server.util.files import anything, open_regular, replacing, why
 from yehu_server.util.flac_stream import FlacStream
+from yehu_server.util.subtypes import FORMATS, SUBTYPES
 from yehu_server.util.wav_stream import WavStream
 
-FORMATS = ("wav", "flac")
 MOST_CHANNELS = {"wav": wav_stream.MOST_CHANNELS, "flac": flac_stream.MOST_CHANNELS}
-SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}
-DEFAULT_SUBTYPES = {"wav": "float", "flac": "24"}  # of recordings and replays
 RENDERED = "yehu-server render"  # software named in a rendered file, which may be replaced
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
@@ -32,7 +30,7 @@ class SoundWriter:
     `file`: a new one, unbuffered; it stays open.
     `target`: its name in errors.
     `format_name` ("wav" or "flac").
-    `subtype` ("16", "24" or "float").
+    `subtype`: one of `SUBTYPES`.
     `software`: named in the file as its maker.
     `channels`: 1 to `MOST_CHANNELS` of the format.
 
@@ -54,7 +52,7 @@ class SoundWriter:
         is_wav = format_name == "wav"
         self._target = target
         self._channels = channels
-        most = wav_stream.WAV_LIMIT // (channels * wav_stream.BYTES[subtype])
+        most = wav_stream.WAV_LIMIT // (channels * SUBTYPES[subtype].size)
         self._limit = most if is_wav else None
         self.frames = 0
         self.peak = 0.0
@@ -113,7 +111,7 @@ def format_of(target: Path) -> str:
 
 def check_format(format_name: str, subtype: str, channels: int = 1) -> None:
     """Refuse (OutputError) a subtype of samples, or number of channels, that a format has not."""
-    if not soundfile.check_format(format_name.upper(), SUBTYPES[subtype]):
+    if format_name not in SUBTYPES[subtype].files:
         raise OutputError(f"a {format_name} file cannot hold {subtype} samples; use 16 or 24")
     most = MOST_CHANNELS[format_name]
     if not 1 <= channels <= most:
@@ -135,7 +133,7 @@ def sound_file(
     Raises OutputError where it cannot be written, or not replaced.
 
     `format_name` ("wav" or "flac").
-    `subtype` ("16", "24" or "float").
+    `subtype`: one of `SUBTYPES`.
     `may_replace`: called with the target where a file is there; returns whether to replace it.
     `channels`: 1 to `MOST_CHANNELS` of the format.
     """

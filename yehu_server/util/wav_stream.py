@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.util.files import write_all
+from yehu_server.util.subtypes import SUBTYPES
 
-BYTES = {"16": 2, "24": 3, "float": 4}  # of a sample
 MOST_CHANNELS = 64
 PCM, IEEE_FLOAT, EXTENSIBLE = 1, 3, 0xFFFE
 SUBFORMAT = bytes.fromhex("000000001000800000aa00389b71")  # of a format's number: the GUID's rest
@@ -31,7 +31,7 @@ class WavStream:
     """Writes a WAV file.
 
     `file`: a new one, unbuffered.
-    `subtype` ("16", "24" or "float").
+    `subtype`: one of `SUBTYPES`.
     `software`: named in the file as its maker; nothing by default.
     `channels`: 1 to `MOST_CHANNELS`.
 
@@ -46,7 +46,7 @@ class WavStream:
         self._rate = rate
         self._subtype = subtype
         self._channels = channels
-        self._frame_bytes = channels * BYTES[subtype]
+        self._frame_bytes = channels * SUBTYPES[subtype].size
         self._about = _about(software)
         self._header_bytes = len(self._header())
         write_all(file, self._header())
@@ -94,7 +94,7 @@ class WavStream:
 
     def _fmt(self, form: int) -> bytes:
         """The chunk that tells the form of the samples: PCM or IEEE_FLOAT."""
-        each, bits = self._frame_bytes, 8 * BYTES[self._subtype]
+        each, bits = self._frame_bytes, 8 * SUBTYPES[self._subtype].size
         tag = form if self._channels <= 2 else EXTENSIBLE
         fmt = struct.pack("<HHIIHH", tag, self._channels, self._rate, self._rate * each, each, bits)
         if tag == PCM:
@@ -118,9 +118,10 @@ def encoded(samples: Samples, subtype: str) -> bytes:
     scaled = np.multiply(samples, 2.0**31, dtype=np.float64)
     np.rint(scaled, out=scaled)
     np.clip(scaled, -(2.0**31), 2.0**31 - 1.0, out=scaled)
-    highest = scaled.astype("<i4").reshape(-1, 1).view(np.uint8)[:, -BYTES[subtype] :]
+    size = SUBTYPES[subtype].size
+    highest = scaled.astype("<i4").reshape(-1, 1).view(np.uint8)[:, -size:]
     packed = np.empty(highest.shape, np.uint8)
-    for place in range(BYTES[subtype]):  # four times as fast as all bytes in their order
+    for place in range(size):  # four times as fast as all bytes in their order
         packed[:, place] = highest[:, place]
     return packed.tobytes()
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import io
 import struct
+from typing import get_args
 
 import numpy as np
 import pytest
 import soundfile
 
-from yehu_server.util.sound_file import SUBTYPES
+from yehu_server.api.playback import Subtype
+from yehu_server.util.subtypes import FORMATS, SUBTYPES
 from yehu_server.util.wav_stream import WavStream, encoded
 
 EDGES = [1.0, -1.0, 0.0, -0.0, 1.5, -1.5, 2**-24, -(2**-24), 2**-31, -(2**-31), 3 * 2**-32]
@@ -53,7 +55,7 @@ def test_samples_are_the_bytes_that_libsndfile_makes_of_them(tmp_path, subtype, 
     reference = tmp_path / "reference.wav"
     form = "WAV" if channels <= 2 else "WAVEX"
     sound = samples(channels)
-    soundfile.write(reference, sound, 48000, subtype=SUBTYPES[subtype], format=form)
+    soundfile.write(reference, sound, 48000, subtype=SUBTYPES[subtype].name, format=form)
     theirs = chunks(reference.read_bytes())
     assert encoded(sound, subtype) == theirs[b"data"]
     ours = chunks(written(tmp_path / "ours.wav", subtype, channels=channels))
@@ -80,3 +82,15 @@ def test_the_same_samples_are_the_same_bytes(tmp_path, monkeypatch, subtype):
     monkeypatch.setattr("time.time", lambda: 0.0)
     assert written(tmp_path / "second.wav", subtype, "someone") == first
     assert chunks(first)[b"LIST"] == b"INFOISFT\x08\x00\x00\x00someone\0"
+
+
+def test_formats_of_samples_are_those_of_libsndfile_and_of_python_programs():
+    for form in FORMATS:
+        held = [name for name, each in SUBTYPES.items() if form in each.files]
+        known = [
+            name
+            for name, each in SUBTYPES.items()
+            if soundfile.check_format(form.upper(), each.name)
+        ]
+        assert held == known
+    assert get_args(Subtype) == tuple(SUBTYPES)

@@ -11,8 +11,8 @@ import soundfile
 from sound_files import STEP, few_and_many, matrix, noise
 
 from yehu_server.errors import OutputError
-from yehu_server.util import wav_stream
 from yehu_server.util.sound_file import SoundWriter
+from yehu_server.util.subtypes import SUBTYPES
 
 
 @matrix
@@ -62,7 +62,7 @@ def test_a_wav_file_cut_anywhere_keeps_its_channels_apart(tmp_path, subtype, cha
         older = target.read_bytes()[:header]
         writer.write(samples[500:])
         data = target.read_bytes()
-    each = channels * wav_stream.BYTES[subtype]
+    each = channels * SUBTYPES[subtype].size
     for missing in range(2 * each):
         cut.write_bytes(data[: len(data) - missing])
         read, _ = soundfile.read(cut)
@@ -80,7 +80,7 @@ def test_a_disk_that_fills_amid_a_frame_leaves_whole_frames(
 ):
     target = tmp_path / "sound"
     samples = noise(20_000, channels)
-    each = channels * wav_stream.BYTES[subtype]
+    each = channels * SUBTYPES[subtype].size
     with io.FileIO(target, "w") as file:
         writer = SoundWriter(file, target, 44100, kind, subtype, channels=channels)
         header = target.stat().st_size

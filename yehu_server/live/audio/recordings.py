@@ -15,9 +15,9 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
 from yehu_server.live import limits
 from yehu_server.util.files import create, discard, inside, why
-from yehu_server.util.sound_file import DEFAULT_SUBTYPES, SoundWriter, format_of
+from yehu_server.util.sound_file import SoundWriter, format_of
+from yehu_server.util.subtypes import DEFAULT_SUBTYPES, SUBTYPES
 from yehu_server.util.token_bucket import TokenBucket
-from yehu_server.util.wav_stream import BYTES
 
 EVERY_S = 0.05
 CHANNELS = 2  # left and right
@@ -50,7 +50,7 @@ class Recorder:
     ) -> None:
         format_name, rate = format_of(target), round(tape.rate)
         subtype = DEFAULT_SUBTYPES[format_name]
-        room_bytes = round(ROOM_S * rate) * CHANNELS * BYTES[subtype]
+        room_bytes = round(ROOM_S * rate) * CHANNELS * SUBTYPES[subtype].size
         self.target = target
         self.missed_frames = 0
         self.failure = ""  # why it ended by itself

@@ -11,7 +11,7 @@ import pytest
 
 from yehu_server.util import retry
 from yehu_server.util.files import why
-from yehu_server.util.retry import LONGEST_TURN_S, AwakeTime, Backoff, run_forever
+from yehu_server.util.retry import LONGEST_GAP_S, AwakeTime, Backoff, run_forever
 
 TOO_MANY = OSError(errno.EMFILE, os.strerror(errno.EMFILE), "/somewhere")
 
@@ -95,4 +95,4 @@ def test_what_is_longer_between_two_questions_was_sleep(monkeypatch):
         awake()
     assert awake() - before == pytest.approx(0.5)
     now += 3600.0
-    assert awake() - before == pytest.approx(0.5 + LONGEST_TURN_S)
+    assert awake() - before == pytest.approx(0.5 + LONGEST_GAP_S)

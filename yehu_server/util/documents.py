@@ -1,7 +1,7 @@
-"""Read TOML and JSON of users, and refuse what is wrong in one form of error.
+"""Read TOML and JSON of users, with all errors in one form: ``FILE:LINE: PLACE: REASON``.
 
-That is ``FILE:LINE: PLACE: REASON``, such as ``mine.toml:7: bind 1: span: expected ...``. The line
-is that of an entry in TOML; what a program gives has no file.
+For example ``mine.toml:7: bind 1: span: expected ...``. The line is that of an entry in TOML; data
+from a program have no file.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, why
 from yehu_server.util.parsing import KeyPath, line_at, lines_of, parse_json, parse_toml
 from yehu_server.util.values import brief
 
-MOST_ERRORS = 50  # a hint at a similar name takes milliseconds each
+MOST_ERRORS = 50  # searching for a similar name takes milliseconds each
 MANY = sys.maxsize
 _LINE = re.compile(r"\bline ([0-9]+)")
 _DOTTED = re.compile(r"[\w.-]+")
@@ -31,7 +31,7 @@ P = ParamSpec("P")
 
 @dataclass(eq=False)
 class Document:
-    """A text of a user, and the errors found in it."""
+    """The text of a file, and the errors found in it."""
 
     name: Path | str = ""  # what errors begin with
     what: str = "a document"  # what it should be, such as "a mapping file"
@@ -91,14 +91,14 @@ class Document:
         return str(self.name) if line is None else f"{self.name}:{line}"
 
     def add(self, key: KeyPath, reason: str) -> None:
-        """Add an error in an entry; raises all of them where they are as many as may be."""
+        """Add an error in an entry; raises all of them once there are `most_errors`."""
         where = self.where(key)
         self._found.append((self._line(key) or 0, f"{where}: {reason}" if where else reason))
         if len(self._found) >= self.most_errors:
             self.finish()
 
     def finish(self) -> None:
-        """Raise what was added, by line, as one error; return if nothing was."""
+        """Raise the errors that were added, by line, as one; return where there are none."""
         if self._found:
             lines = [what for _, what in sorted(self._found, key=lambda one: one[0])]
             self._found = []
@@ -109,8 +109,8 @@ class Document:
 class Fields:
     """A table of a document.
 
-    What is wrong is an error of the document. So a reader goes on with its default, unless the
-    document raises its errors at once.
+    Wrong entries become errors of the document. So a reader goes on with its default, unless the
+    document raises errors at once.
 
     `data`: its entries.
     `document`: by default one without a name, that raises ParameterError.
@@ -154,7 +154,7 @@ class Fields:
 
     @contextmanager
     def at(self, name: str = "") -> Iterator[None]:
-        """Make a ParameterError that has no place yet one in an entry; see `wrong`."""
+        """Give a ParameterError without a place the place of an entry; see `wrong`."""
         try:
             yield
         except ParameterError as error:
@@ -180,7 +180,7 @@ class Fields:
     def need(
         self, name: str, reader: Callable[Concatenate[Any, P], T], *args: P.args, **kwargs: P.kwargs
     ) -> T:
-        """`read` what has to be there, of a document that raises its errors at once."""
+        """`read` an entry that has to be there, of a document that raises errors at once."""
         if name not in self.data:
             self.wrong(name, "missing")
         return cast("T", self.read(name, reader, None, *args, **kwargs))
@@ -199,7 +199,7 @@ class Fields:
         return Fields(self.data.get(name, {}), self.document, self._place(name), (*self.key, name))
 
     def tables(self, name: str, least: int = 0, most: int = MANY) -> list[Fields]:
-        """The tables of an array of so many, each written as ``[[name]]``."""
+        """The tables of an array, `least` to `most`, each written as ``[[name]]``."""
         self._known[name] = None
         found = self.data.get(name, [])
         place, key = self._place(name), (*self.key, name)
@@ -218,7 +218,7 @@ class Fields:
         return []
 
     def only(self, *others: str) -> None:
-        """Refuse entries that neither were read nor are others of a name."""
+        """Refuse all entries but those that were read, and `others`."""
         for name in self.data:
             if name not in self._known and name not in others:
                 known = (*self._known, *others)

@@ -93,7 +93,7 @@ class WavStream:
         return b"RIFF" + struct.pack("<I", 4 + len(chunks) + size + size % 2) + b"WAVE" + chunks
 
     def _fmt(self, form: int) -> bytes:
-        """The chunk that tells the form of the samples: PCM or IEEE_FLOAT."""
+        """The chunk with the format of the samples, `form`: PCM or IEEE_FLOAT."""
         each, bits = self._frame_bytes, 8 * BYTES[self._subtype]
         tag = form if self._channels <= 2 else EXTENSIBLE
         fmt = struct.pack("<HHIIHH", tag, self._channels, self._rate, self._rate * each, each, bits)
@@ -120,7 +120,7 @@ def encoded(samples: Samples, subtype: str) -> bytes:
     np.clip(scaled, -(2.0**31), 2.0**31 - 1.0, out=scaled)
     highest = scaled.astype("<i4").reshape(-1, 1).view(np.uint8)[:, -BYTES[subtype] :]
     packed = np.empty(highest.shape, np.uint8)
-    for place in range(BYTES[subtype]):  # four times as fast as all bytes in their order
+    for place in range(BYTES[subtype]):  # four times as fast as copying all bytes in order
         packed[:, place] = highest[:, place]
     return packed.tobytes()
 

@@ -1,1 +1,1 @@
-"""Follows a voice or a recording: what is heard of it, and the performance that this becomes."""
+"""Analyse a recording of one voice, and make a performance of it."""

@@ -1,1 +1,1 @@
-"""Analyse a recording of one voice, and make a performance of it."""
+"""The analysis of recordings of one voice, and the performances made of them."""

@@ -136,8 +136,8 @@ def test_each_kind_of_wish_is_read_to_the_bit(tmp_path, write):
         capture = read_capture(path)
         assert capture.wishes.dtype == WISH
         assert capture.wishes.tolist() == wishes, kind
-        told = (capture.version, capture.rate, capture.frames, capture.warnings)
-        assert told == (3, RATE, 9, [])
+        header = (capture.version, capture.rate, capture.frames, capture.warnings)
+        assert header == (3, RATE, 9, [])
 
 
 def test_the_first_line_tells_the_whole_beginning(tmp_path, write):
@@ -304,7 +304,7 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
         frames += block
         if seed % 2 and frames > RATE and not stage.gaps:
             first = stage.first._rig
-            first["meters"]["running"] = 1  # the process died before it had told of the block
+            first["meters"]["running"] = 1  # the process died before it had reported the block
             first["taped"] -= block
             stage.recover()
             assert stage.gaps == [(frames - block, frames)]
@@ -571,7 +571,7 @@ def with_header(path, **changes):
     return path
 
 
-REMOVED = "removed"  # told by its identity
+REMOVED = "removed"  # compared by identity
 NAN, INFINITY = float("nan"), float("inf")
 CALIBRATION = {
     "a4": 440.0,

@@ -112,11 +112,11 @@ def test_notes_are_played_as_their_signs_say():
 
 def test_what_is_doubtful_is_told_and_nothing_else():
     for text, warning in TOLD.items():
-        told = written(text).warnings
-        assert bool(told) == bool(warning), text
-        assert warning in "".join(told), text
+        found = written(text).warnings
+        assert bool(found) == bool(warning), text
+        assert warning in "".join(found), text
     for text in ("1,3,", ",1,3", ",135'"):
-        assert not any("octave marks" in told for told in written(text).warnings), text
+        assert not any("octave marks" in line for line in written(text).warnings), text
 
 
 def test_notes_last_as_is_written():

@@ -271,9 +271,9 @@ def test_bars_in_parts_and_parts_in_bars_are_the_same_score(read):
 
 def test_any_usual_encoding_is_read_whatever_it_calls_itself(read):
     names = {"utf-8": "utf-8", "utf-16": "utf-16", "iso-8859-1": "iso-8859-1", "UTF-16": "utf-8"}
-    for told, encoding in names.items():
-        data = f'<?xml version="1.0" encoding="{told}"?>{score(FOUR, title="Fauré", before="")}'
-        assert read(data.encode(encoding)).title == "Fauré", told
+    for declared, encoding in names.items():
+        data = f'<?xml version="1.0" encoding="{declared}"?>{score(FOUR, title="Fauré", before="")}'
+        assert read(data.encode(encoding)).title == "Fauré", declared
 
 
 def test_of_hidden_notes_those_without_a_place_on_the_page_are_silent(read):

@@ -32,7 +32,7 @@ from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
 from yehu_server.rendering.to_files import NORMALIZED_PEAK
 from yehu_server.rendering.true_peak import TruePeak
 from yehu_server.scores.phrasing import PHRASING, is_fingered, phrased
-from yehu_server.scores.reading import How, read_any
+from yehu_server.scores.reading import ReadOptions, read_any
 from yehu_server.scores.score import Score
 
 Sound = NDArray[np.float32]
@@ -220,7 +220,7 @@ def render(
     )
     number_of_song = None if song is None else whole(song, "song", 1, 1 << 16)
     playing = make.playing
-    how = How(
+    how = ReadOptions(
         () if part is None else (str(part),),
         all_parts=channels is not None,
         in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,

@@ -197,10 +197,10 @@ def _scores(
     last too long together.
     """
     from yehu_server.playing.tuning import RangePolicy
-    from yehu_server.scores.reading import How, read_any
+    from yehu_server.scores.reading import ReadOptions, read_any
 
     longest = arguments.max_duration
-    how = How(
+    how = ReadOptions(
         arguments.part,
         all_parts=arguments.ensemble is not None or arguments.channel is not None,
         in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,

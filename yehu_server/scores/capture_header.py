@@ -1,4 +1,4 @@
-"""What a captured session starts from: the first line of its file; docs/capture.md describes it."""
+"""The first line of a capture: what the session starts from; docs/capture.md describes it."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Read an ensemble file: who plays which part of a score, on what, and where on the stage.
+"""Read an ensemble file: the players of a score's parts, their instruments and places on the stage.
 
-The format is described in docs/ensemble.md.
+docs/ensemble.md describes the format.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class PartEntry:
     preset: str | None = None
     mapping: str | None = None
     instrument: Path | None = None
-    section: int | None = None  # number of people who play it
+    section: int | None = None  # number of its players
     seed: int | None = None
     pan: float | None = None
     distance: float | None = None
@@ -43,7 +43,7 @@ class PartEntry:
 
 @dataclass(frozen=True)
 class EnsembleFile:
-    """What an ensemble file says: its parts, and its room, by values or the name of a preset."""
+    """An ensemble file: its parts, and its room, by values or the name of a preset."""
 
     path: Path
     parts: tuple[PartEntry, ...]

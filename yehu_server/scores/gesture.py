@@ -140,7 +140,7 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
     for name in ("bow_position", "finger_position"):
         with controls.at(name):
             curve = curves.get(name, ((0.0, CONTROLS[name].default),))
-            _stays_within(curve, quantities.bridge_x)
+            _check_within(curve, quantities.bridge_x)
     has_pluck, has_hammer = (table.data.get(name) is not None for name in ("pluck", "hammer"))
     pluck = _pluck(table.table("pluck"), quantities.bridge_x, shortest) if has_pluck else None
     hammer: Curve = ()
@@ -194,7 +194,7 @@ def _curve(value: Any, lo: float, hi: float, unit: str) -> Curve:
     return tuple(points)
 
 
-def _stays_within(curve: Curve, bridge: float) -> None:
+def _check_within(curve: Curve, bridge: float) -> None:
     for _, position in curve:
         if not 0.0 < position < bridge:
             raise ParameterError(

@@ -1,4 +1,4 @@
-"""Where the phrases of a voice begin and end, from its notes alone."""
+"""Divide a voice into phrases, by its notes alone."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
-"""Chinese characters as notes: the 二四谱 of Chaozhou, and 工尺谱.
+"""The notes of Chinese characters: 二四谱 of Chaozhou, and 工尺谱.
 
 Both are read with the rhythm, octaves and marks of jianpu; their characters are degrees of a scale
 on do. In 二四谱 the characters 三 and 六 are light or heavy, by the mode of the piece or by a sign
 before the character; 五 is living (活五) in one of the modes: raised and slid, a gesture.
 
-Pitches of heavy and living notes differ between players and pieces. Those here are one account
-each; docs/jianpu.md tells which.
+Pitches of heavy and living notes differ between players and pieces. docs/jianpu.md names the
+sources of those here.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ _KEY = re.compile(r"([1-7])=(?:([A-Ga-g])([#b]?)|([#b])([A-Ga-g]))")
 
 
 class Scale:
-    """What figures sound like at a place of the text, which begins in the key of the part before.
+    """The pitches of figures at a place of the text, which begins in the key of the part before.
 
     Keys are in semitones above middle C.
     """
@@ -51,7 +51,7 @@ class Scale:
     def pitch(self, figure: Figure, word: Word, *, shifted: bool = False) -> float:
         """The MIDI note of a figure.
 
-        `shifted` tells whether the base octave counts: it does not in chords and grace notes.
+        `shifted`: whether the base octave counts; it does not in chords and grace notes.
         Raises ScoreError beyond MIDI's range, or where the notation has no such character.
         """
         key = MIDDLE_C if figure.sign.isascii() else USUAL_CHARACTER_KEY

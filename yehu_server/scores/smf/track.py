@@ -1,4 +1,4 @@
-"""One track of a MIDI file: bytes to messages at ticks, and ticks to seconds."""
+"""Decode one track of a MIDI file to messages at ticks, and convert ticks to seconds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How loud the notes of a written part are: dynamics, hairpins, accents, as MIDI velocities."""
+"""The loudness of a written part: dynamics, hairpins and accents, as MIDI velocities."""
 
 from __future__ import annotations
 

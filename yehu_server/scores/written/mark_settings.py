@@ -1,4 +1,4 @@
-"""What the marks of a note ask of bow and fingers, as values of parameters.
+"""Translate the marks of a note for bow and fingers to values of parameters.
 
 docs/scores.md has the table. Values are by ear, where nothing else is said.
 """

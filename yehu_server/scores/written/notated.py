@@ -118,7 +118,7 @@ SIGNS: Mapping[str, str] = {
 
 
 def times(text: str, count: int) -> str:
-    """A warning, and how often it is meant."""
+    """A warning, and the number of its occurrences."""
     return f"{text} ({count} times)" if count > 1 else text
 
 
@@ -249,11 +249,11 @@ class Written:
     metres: tuple[Metre, ...] = (COMMON_TIME,)
     bars: tuple[Bar, ...] = ()
     title: str = ""
-    # Marks that were not understood: each as written (one printable line), and how often.
+    # Marks that were not understood, as written (one printable line), and their numbers.
     unknown: Mapping[str, int] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()  # one line each, about anything else that is not as it should be
     keys: tuple[KeySignature, ...] = ()  # in order of beats; empty where none is written
-    # One line each, of what a player should know and nothing is wrong with.
+    # One line each, which a player should know and which are no fault of the score.
     remarks: tuple[str, ...] = ()
 
     @property

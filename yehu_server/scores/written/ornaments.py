@@ -1,4 +1,4 @@
-"""Ornaments and grace notes as touches of the fingers on one bow; slides away, as a bent pitch.
+"""Play ornaments and grace notes as touches of the fingers on one bow, slides away as a bent pitch.
 
 docs/scores.md has the table. Times are by ear, for the tempo of hands and not of the music.
 """

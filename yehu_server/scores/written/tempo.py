@@ -1,4 +1,4 @@
-"""When the beats of a written score come: tempi, changes of tempo, fermatas, caesuras.
+"""Convert beats of a written score to seconds: tempi, changes of tempo, fermatas, caesuras.
 
 A fermata or caesura slows the beats under it, so that all parts wait together.
 """
@@ -77,7 +77,7 @@ class WrittenClock:
         return self._beats[at] + (seconds - self._seconds[at]) / self._rates[at]
 
     def quarter_s(self, beat: Fraction | float) -> float:
-        """How long a quarter note lasts (s) at a beat."""
+        """The length of a quarter note (s) at a beat."""
         return self._rates[self._at(float(beat))]
 
     def _at(self, beat: float) -> int:

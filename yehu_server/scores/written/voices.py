@@ -102,7 +102,7 @@ class Voice:
     def _note(self, raw: RawNote, begin: Fraction) -> None:
         beat = begin + raw.at
         self._ends(raw, beat)
-        at = self._tied.pop(raw.pitch, None)  # some writers tell only where a tie begins
+        at = self._tied.pop(raw.pitch, None)  # some writers write only the beginning of a tie
         if at is not None and self.notes[at].end == beat:
             note = self.notes[at]
             more = tuple(mark for mark in raw.marks if mark not in note.marks)

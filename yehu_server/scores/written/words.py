@@ -1,4 +1,4 @@
-"""What words over the staff mean: pizz., sul pont., rit., Allegro."""
+"""Interpret words over the staff, such as pizz., sul pont., rit. and Allegro."""
 
 from __future__ import annotations
 

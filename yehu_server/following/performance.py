@@ -22,13 +22,12 @@ from yehu_server.following.heard import Heard
 from yehu_server.following.notes import A4_HZ, AT_NOTE, SLIDE_S, HeardNote, Stroke
 from yehu_server.playing.options import STILL_HANDS
 from yehu_server.playing.tuning import EQUAL, KEYS, STANDARD_A4, Tuning
-from yehu_server.scores.score import Score, ScoreEvent, Setting
+from yehu_server.scores.score import BEND, Score, ScoreEvent, Setting
+from yehu_server.scores.written.mark_settings import ATTACK, INNER, STRING
 
 Array = Any
 
-BEND, DYNAMICS = "/playing/bend", "/playing/dynamics"
-ATTACK, STRING = "/playing/attack", "/playing/string"
-INNER = 1.0
+DYNAMICS = "/playing/dynamics"
 # A note about the open outer string that is not within so many semitones for this share of its time
 # is not played on it.
 STILL, MOSTLY = 0.12, 0.8
@@ -37,7 +36,7 @@ VELOCITY = 80  # neutral: loudness is in the dynamics
 LOUD_SHARE = 0.98  # of the voiced frames: the level of full dynamics
 STEP_FRAMES = 2  # between two bends
 NEAR_CENTS, NEAR_DB = 1.5, 0.4  # smaller changes are not sent
-SHORTEST_ATTACK_MS, LONGEST_ATTACK_MS, USUAL_ATTACK_MS = 12.0, 200.0, 40.0
+SHORTEST_ATTACK_MS, LONGEST_ATTACK_MS, DEFAULT_ATTACK_MS = 12.0, 200.0, 40.0
 # Events come so much earlier, since the finger slides for 8 ms and the string follows. Measured by
 # round trips (bench/following.py).
 DELAY_MS = 10.0
@@ -212,7 +211,7 @@ class _Builder:
     def _attack_ms(self, stroke: Stroke) -> float:
         share = self._options.style.attacks
         heard = min(max(1e3 * stroke.attack_s, SHORTEST_ATTACK_MS), LONGEST_ATTACK_MS)
-        return float(USUAL_ATTACK_MS * (heard / USUAL_ATTACK_MS) ** share)
+        return float(DEFAULT_ATTACK_MS * (heard / DEFAULT_ATTACK_MS) ** share)
 
     def set(self, frame: int, address: str, value: float | None) -> None:
         """Set a parameter at a frame."""

@@ -42,7 +42,7 @@ class Recording:
 
 @dataclass(frozen=True)
 class Downmix:
-    """How one channel is made of a recording, and warnings about it."""
+    """The weights that make one channel of a recording, and warnings about it."""
 
     weights: Array  # [shape=(channels,)] of the channels, with the scale to WORKING_PEAK
     offset: float  # subtracted then: the mean

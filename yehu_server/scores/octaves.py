@@ -69,11 +69,11 @@ def octaves_of(notes: Sequence[NoteSpan], rest: float, within: NoteRange = YEHU)
     return Octaves(tuple(of_notes), whole, len(phrases), others, outside)
 
 
-def _best(notes: Sequence[NoteSpan], usual: int, within: NoteRange) -> int:
-    """The octaves that leave the fewest notes outside, and of these the nearest to the usual."""
+def _best(notes: Sequence[NoteSpan], preferred: int, within: NoteRange) -> int:
+    """The octaves that leave the fewest notes outside, and of these the nearest to `preferred`."""
 
     def cost(octaves: int) -> tuple[int, int, int]:
-        return _outside(notes, octaves, within), abs(octaves - usual), -octaves
+        return _outside(notes, octaves, within), abs(octaves - preferred), -octaves
 
     return min(range(-FARTHEST, FARTHEST + 1), key=cost)
 

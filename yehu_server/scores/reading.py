@@ -35,14 +35,14 @@ def tracks_with_notes(scores: Iterable[Score]) -> list[int]:
 def part_name(scores: Sequence[Score], channel: int | None = None, track: int | None = None) -> str:
     """The name of what a channel or a track plays; its number where it has none of its own."""
     found = {(part.channel, part.track): part.name for score in scores[:1] for part in score.parts}
-    usual = f"channel {channel + 1}" if channel is not None else f"track {track}"
+    numbered = f"channel {channel + 1}" if channel is not None else f"track {track}"
     for (its_channel, its_track), name in found.items():
         if its_channel == channel is not None or its_track == track is not None:
             return name
     if channel is None:
-        return usual
+        return numbered
     tracks = {event.track for event in _notes(scores[:1]) if event.message.channel == channel}
-    return found.get((None, min(tracks)), usual) if len(tracks) == 1 else usual
+    return found.get((None, min(tracks)), numbered) if len(tracks) == 1 else numbered
 
 
 def percussion_notes(scores: Iterable[Score]) -> int:

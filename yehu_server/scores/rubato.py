@@ -72,7 +72,7 @@ def delays_of(notes: Sequence[ScoreNote]) -> Delays:
 
 
 def _with_end(notes: Sequence[ScoreNote], points: list[tuple[float, float]]) -> Delays:
-    """The same with the last beats slower, where their tempo is steady."""
+    """The delays with those of the last beats added, where their tempo is steady."""
     close = [note for note in notes if note.beat > notes[-1].beat - 2.0 * LAST_BEATS - NEAR]
     tempi = _tempi(close)
     is_steady = bool(tempi) and 0.0 < max(tempi) <= (1.0 + SAME_TEMPO) * min(tempi)

@@ -43,7 +43,7 @@ GAP_S = 0.03  # between two notes that a slide may join
 
 
 def logistic(part: float) -> float:
-    """How far a slide has come, 0 to 1, at a share of its time, 0 to 1; as `gestures.slid`."""
+    """The share of a slide, 0 to 1, that is done at a share of its time; as `gestures.slid`."""
 
     def curve(at: float) -> float:
         return 1.0 / (1.0 + exp(-STEEP * (2.0 * at - 1.0)))
@@ -142,14 +142,14 @@ def _states(score: Score, playing: PlayingOptions, amount: float) -> dict[int, _
     """The values of parameters as notes begin, by the numbers of the notes' events."""
     start = {**dict(playing.mapping.start), PHRASING: amount}
     start |= {**dict(playing.start), **dict(playing.settings)}
-    usual = {address: start.get(address, find(address).default) for address in SEEN}
-    by_channel: dict[int, _State] = defaultdict(lambda: _State(usual, 0))
+    defaults = {address: start.get(address, find(address).default) for address in SEEN}
+    by_channel: dict[int, _State] = defaultdict(lambda: _State(defaults, 0))
     found = {}
     for number, event in enumerate(score.events):
         message = event.message
         if isinstance(message, Setting) and message.address in SEEN:
             values, bends = by_channel[message.channel]
-            value = usual[message.address] if message.value is None else message.value
+            value = defaults[message.address] if message.value is None else message.value
             own = _State({**values, message.address: value}, bends + (message.address == BEND))
             by_channel[message.channel] = own
         elif message.type == "note_on":

@@ -182,7 +182,8 @@ def written_of_seconds(
 def _tempo_of(begins: Sequence[float]) -> float:
     """The tempo at which onsets lie nearest to semiquavers.
 
-    Of those alike, that at which more of them are beats and quavers, and the most usual.
+    Of those alike, that at which more of them are beats and quavers, and the nearest to
+    DEFAULT_TEMPO.
     """
 
     def cost(tempo: int) -> float:
@@ -190,8 +191,8 @@ def _tempo_of(begins: Sequence[float]) -> float:
         near = [round(place) for place in places]
         off = sum(abs(place - at) for place, at in zip(places, near, strict=True))
         odd = sum((at % 2 > 0) + (at % 4 > 0) for at in near)
-        usual = abs(log2(tempo / notated.USUAL_TEMPO))
-        return (off + OFF_BEAT * odd) / len(places) + UNUSUAL * usual
+        distance = abs(log2(tempo / notated.DEFAULT_TEMPO))
+        return (off + OFF_BEAT * odd) / len(places) + UNUSUAL * distance
 
     return float(min(TEMPI, key=cost))
 
@@ -231,7 +232,7 @@ def _written(
 
 
 class _Grid:
-    """How each beat is divided."""
+    """The division of each beat."""
 
     def __init__(self, begins: Sequence[float]) -> None:
         exact = sum(

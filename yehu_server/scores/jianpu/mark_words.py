@@ -84,7 +84,7 @@ TEXTS: Mapping[str, Meaning] = {
 
 @lru_cache(maxsize=1024)
 def action_of(word: str) -> Meaning | None:
-    """What a word does at the note before it; None where it is not understood."""
+    """The meaning of a word for the note before it; None where it is not understood."""
     bare = word.lstrip("_^") if word[:2] in ("_\\", "^\\") else word
     if bare.startswith("\\"):
         return COMMANDS.get(bare[1:])

@@ -20,7 +20,7 @@ _GRACE = re.compile(r"g\[([^\]]+)\]|\[([^\]]+)\]g")
 
 
 class Kind(Enum):
-    """What a word of figures is."""
+    """The kinds of words of figures."""
 
     NOTE = auto()
     REST = auto()

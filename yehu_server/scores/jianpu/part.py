@@ -56,7 +56,7 @@ class PartBuilder:
         self._hairpin = OpenSpan(self.spans)
         self._change = OpenSpan(self.spans, notated.LONGEST_CHANGE)  # of tempo
         self._glissando: Fraction | None = None
-        self._tempo = notated.USUAL_TEMPO
+        self._tempo = notated.DEFAULT_TEMPO
 
     def build(self, elements: Sequence[object]) -> None:
         """Take all elements, in the order of playing."""

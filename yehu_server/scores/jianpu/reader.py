@@ -155,7 +155,7 @@ class _Reader:
         return replace(whole, keys=(KeySignature(Fraction(0), fifths),))
 
     def _tempi(self) -> tuple[Tempo, ...]:
-        """Of all parts; where several change it at once, the first of them."""
+        """The tempi of all parts; where several change it at once, that of the first."""
         found: dict[Fraction, Tempo] = {}
         for movements in self._parts.values():
             of_part = {tempo.beat: tempo for each in movements for tempo in each.tempi}

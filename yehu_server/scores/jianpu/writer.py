@@ -21,7 +21,13 @@ from yehu_server.scores.written.words import WRITTEN_CHANGES, words_of_sign
 BARS_A_LINE = 4
 GRACES = {Fraction(1, 2): "q", Fraction(1, 4): "s", Fraction(1, 8): "d", Fraction(1, 16): "h"}
 # The values (semitones) of these words, where none is written.
-USUAL = {"trill": 2.0, "mordent": 1.0, "inverted-mordent": 2.0, "turn": 2.0, "inverted-turn": 2.0}
+DEFAULTS = {
+    "trill": 2.0,
+    "mordent": 1.0,
+    "inverted-mordent": 2.0,
+    "turn": 2.0,
+    "inverted-turn": 2.0,
+}
 HAIRPINS = {"crescendo": "\\<", "diminuendo": "\\>"}
 TEMPO_UNITS = (("4", Fraction(1)), ("8", Fraction(1, 2)), ("4.", Fraction(3, 2)),
                ("16", Fraction(1, 4)), ("2", Fraction(2)))  # fmt: skip
@@ -251,9 +257,9 @@ class _PartWriter:
             self._lost["pitches that move within a note"] += 1
         for mark in note.marks:
             word = MARK_WORDS.get(mark)
-            if word is None and mark.value is not None:  # the usual one says nearly the same
+            if word is None and mark.value is not None:  # without it is nearly the same
                 word = MARK_WORDS.get(Mark(mark.name))
-                self._lost[f"{mark.name} {mark.value:g}"] += mark.value != USUAL.get(mark.name)
+                self._lost[f"{mark.name} {mark.value:g}"] += mark.value != DEFAULTS.get(mark.name)
             if mark.name == "tremolo" and word is None:  # three strokes are written at the figure
                 self._lost[f"tremolo {mark.value or 0:g}"] += mark.value != 3.0
                 continue

@@ -75,7 +75,7 @@ def written_of(root: Element) -> Written:
 
 
 def _partwise(root: Element) -> Element:
-    """The same score with its bars in parts, and not its parts in bars."""
+    """Change a score of bars with parts to one of parts with bars."""
     changed = Element("score-partwise")
     changed.extend(child for child in root if child.tag != "measure")
     parts: dict[str, Element] = {}

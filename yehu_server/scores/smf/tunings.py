@@ -36,7 +36,7 @@ def is_tuning(body: bytes) -> bool:
 
 @dataclass
 class _Tuned:
-    """How notes are tuned (semitones)."""
+    """The tuning of notes (semitones)."""
 
     coarse: float = 0.0
     fine: float = 0.0

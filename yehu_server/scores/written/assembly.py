@@ -107,7 +107,7 @@ def _check_amount(parts_bars: list[list[RawBar]], order: list[int]) -> None:
 
 
 def _lines(parts_bars: list[list[RawBar]], number: int) -> BarLines:
-    """What the bar lines of all parts say; many writers give repeats to the first part alone."""
+    """The bar lines of all parts as one; many writers give repeats to the first part alone."""
     found = BarLines()
     for bars in parts_bars:
         if number < len(bars):
@@ -142,7 +142,7 @@ def _timed(
 
 
 def _length(bars: Sequence[RawBar], metre: Fraction | None) -> Fraction:
-    """How long a bar is, of all parts: a rest that one part has too much does not count."""
+    """The length of a bar in all parts; a rest that is too long in one part does not count."""
     lengths = {bar.length for bar in bars if bar.notes} or {bar.length for bar in bars}
     if metre is None or len(lengths) == 1 or max(lengths) <= metre:
         return max(lengths)
@@ -151,7 +151,7 @@ def _length(bars: Sequence[RawBar], metre: Fraction | None) -> Fraction:
 
 
 def _holding(written: Iterable[T | None]) -> list[T | None]:
-    """What holds at each bar, such as the metre, of what is written there; None before it."""
+    """The value that holds at each bar, such as the metre: the last written one, or None."""
     held: T | None = None
     return [held := held if own is None else own for own in written]
 

@@ -17,14 +17,14 @@ REST = 0.5  # quarters of silence between phrases
 
 def default_parts(written: Written, within: NoteRange = YEHU) -> list[int]:
     """The number, from 0, of the part that plays where none is asked for, if any has notes."""
-    parts = [[sounding(note, within) for note in part.notes] for part in written.parts]
+    parts = [[span_of(note, within) for note in part.notes] for part in written.parts]
     tune = melodic_part(written.names, parts, within)
     return [] if tune is None else [tune]
 
 
 def moved_part(part: Part, within: NoteRange = YEHU) -> tuple[Part, Octaves]:
     """Return a part in the range of an instrument, and by how many octaves its notes were moved."""
-    octaves = octaves_of([sounding(note, within) for note in part.notes], REST, within)
+    octaves = octaves_of([span_of(note, within) for note in part.notes], REST, within)
     if not any(octaves.of_notes):
         return part, octaves
     notes = tuple(
@@ -52,8 +52,8 @@ def line_of(moves: Sequence[tuple[str, str]], within: NoteRange = YEHU) -> str:
     return f"moved to fit {range_text(within)}: {text}"
 
 
-def sounding(note: Note, within: NoteRange = YEHU) -> NoteSpan:
-    """When a note sounds (quarters), and its pitches."""
+def span_of(note: Note, within: NoteRange = YEHU) -> NoteSpan:
+    """The time of a note (quarters), and its pitches."""
     # A harmonic is as high as it is written: its finger touches an open string.
     graces = [grace.pitch for grace in (*note.before, *note.after)]
     own = [] if harmonic_of(note, within) is not None else [note.pitch]

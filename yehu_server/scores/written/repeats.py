@@ -58,7 +58,7 @@ class _Passage:
 
 @dataclass
 class _Level:
-    """Where repeats begin: the last sign for it, or the bar that stands in for one."""
+    """The beginning of repeats: the bar of the last sign, or the one that replaces it."""
 
     base: int
     sign: int | None = None

@@ -47,7 +47,7 @@ class WrittenClock:
         rates = []  # seconds a quarter
         for beat in self._beats:
             at = bisect_right(starts, beat) - 1
-            quarters = tempi[at].quarters_per_minute if at >= 0 else notated.USUAL_TEMPO
+            quarters = tempi[at].quarters_per_minute if at >= 0 else notated.DEFAULT_TEMPO
             rates.append(60.0 / min(max(quarters, notated.LOWEST_TEMPO), notated.HIGHEST_TEMPO))
         self._rates = self._stretched(rates, stretches)
         self._seconds = [0.0]
@@ -121,7 +121,7 @@ def _with_changes(written: Written) -> list[Tempo]:
     steps: dict[Fraction, float] = {}
     for span in sorted(spans.values(), key=lambda span: span.begin):
         at = bisect_right(starts, span.begin) - 1
-        before = tempi[at].quarters_per_minute if at >= 0 else notated.USUAL_TEMPO
+        before = tempi[at].quarters_per_minute if at >= 0 else notated.DEFAULT_TEMPO
         steps |= _steps(span, before)
     # At the end of the change the next tempo holds, where one is written there.
     steps |= {tempo.beat: tempo.quarters_per_minute for tempo in tempi}

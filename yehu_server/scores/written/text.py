@@ -95,7 +95,7 @@ def _notes(written: Written, part: Part) -> Iterator[str]:
 
 
 def _around(part: Part) -> dict[Fraction, list[str]]:
-    """What signs and spans say, by the beat of the note that they stand at."""
+    """Signs and spans as text, by the beats of the notes that they stand at."""
     beats = [note.beat for note in part.notes]
     around: dict[Fraction, list[str]] = defaultdict(list)
 

@@ -40,7 +40,7 @@ class RawNote:
 
 @dataclass(frozen=True)
 class RawDirection:
-    """What a direction says, at a beat of its bar."""
+    """A direction at a beat of its bar."""
 
     at: Fraction
     # Sign, wedge, hairpin (words, until the next dynamic), dashes, change (of tempo), back (to

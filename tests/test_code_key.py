@@ -1,4 +1,4 @@
-"""Keys of source: a change of code changes the key, a change of prose does not."""
+"""Keys of source: a change of code changes the key, a change of comments does not."""
 
 import ast
 import gc
@@ -65,7 +65,7 @@ def test_comments_and_docstrings_are_left_out_and_nothing_else(subtests, everyth
             assert words(without_comments(source)) == words(source, docstrings(source))
 
 
-def test_prose_leaves_the_key_and_code_changes_it(tmp_path):
+def test_comments_leave_the_key_and_code_changes_it(tmp_path):
     plain = edited(tmp_path, "", "")
     for old, new in (
         ("  # of something", ""),

@@ -62,7 +62,7 @@ class Work:
         if error is not None:
             raise error
 
-    def tell(self, line: str) -> None:
+    def report(self, line: str) -> None:
         self.said.append(line)
 
 
@@ -71,12 +71,12 @@ class Work:
 )
 def test_work_outlasts_errors_and_says_so_once_until_all_was_well(monkeypatch, error):
     work = Work(monkeypatch, None, error, error, error, None, error)
-    run_forever(work.turn, work.ending, 0.0, "work", work.tell)
+    run_forever(work.turn, work.ending, 0.0, "work", work.report)
     assert work.turns == 7
     assert work.said == [f"work: {why(error)}; trying again"] * 2
 
 
-def test_work_outlasts_that_nobody_can_be_told(monkeypatch):
+def test_work_outlasts_that_no_error_can_be_reported(monkeypatch):
     def fail(_line: str) -> None:
         raise MemoryError
 

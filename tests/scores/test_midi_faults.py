@@ -70,7 +70,7 @@ def test_a_fault_has_the_outcome_that_is_written_of_it(case: Case, written):
     assert re.fullmatch(words, str(refusal.value))
 
 
-def test_the_page_tells_what_is_said_of_each_fault():
+def test_the_page_has_what_is_said_of_each_fault():
     rows = dict(ROW.findall(page(PAGE).text))
     assert rows == {case.name: f"`{case.says}`" if case.says else "nothing" for case in CASES}
 

@@ -177,7 +177,7 @@ def test_a_tune_fits_the_instrument_that_plays_it():
     assert found == [1, 0]
 
 
-def test_parts_that_take_turns_are_told_from_parts_that_sound_together():
+def test_parts_that_take_turns_are_distinguished_from_parts_that_sound_together():
     assert take_turns([TUNE, sounding(60, 62, begin=8.0), sounding(64, begin=20.0)])
     assert take_turns([TUNE, []])
     assert not take_turns([TUNE, sounding(60, 62, begin=7.0)])

@@ -24,7 +24,7 @@ def read(tmp_path: Path) -> Callable[[bytes], Score]:
 # ---------------------------------------------------------------- time
 
 
-def test_a_quarter_note_lasts_half_a_second_unless_told(read):
+def test_a_quarter_note_lasts_half_a_second_by_default(read):
     score = read(midi(on(0, 60) + off(100, 60) + END))
     assert timed(score) == [(0.0, [0x90, 60, 80]), (0.5, [0x80, 60, 0])]
     assert (score.duration_s, score.name, score.warnings) == (0.5, "tune", ())

@@ -158,7 +158,7 @@ def test_examples_are_the_same_in_both_notations(everything):
     assert not different
 
 
-def test_each_mark_is_written_or_told():
+def test_each_mark_is_written_or_counted_as_lost():
     """Of MusicXML all marks are read again; of jianpu those that are not are named."""
     for write in (as_musicxml, as_jianpu):
         missing = []
@@ -178,7 +178,7 @@ def test_each_mark_is_written_or_told():
         assert not missing
 
 
-def test_what_a_notation_has_no_sign_for_is_told_and_the_rest_written():
+def test_what_a_notation_has_no_sign_for_is_counted_and_the_rest_written():
     note = Note(Fraction(0), Fraction(4), 67.25, (), contour=((0.0, 0.0), (1.0, 1.0)))
     other = Note(Fraction(4), Fraction(1, 3), 69.0)
     last = Note(Fraction(13, 3), Fraction(5, 8), 71.0)

@@ -29,11 +29,11 @@ def read(table: Fields) -> list[object]:
         room.read("size", number, 8.0),
         room.read("decay", number, 2.0, 0.1, 9.0, "s"),
     ]
-    room.only()
+    room.refuse_others()
     for bind in table.tables("bind"):
         found += [bind.need("channel", whole, 1, 16), bind.read("soft", flag, False)]
-    table.only()
-    table.document.finish()
+    table.refuse_others()
+    table.document.raise_errors()
     return found
 
 

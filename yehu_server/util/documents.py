@@ -95,9 +95,9 @@ class Document:
         where = self.where(key)
         self._found.append((self._line(key) or 0, f"{where}: {reason}" if where else reason))
         if len(self._found) >= self.most_errors:
-            self.finish()
+            self.raise_errors()
 
-    def finish(self) -> None:
+    def raise_errors(self) -> None:
         """Raise the errors that were added, by line, as one; return where there are none."""
         if self._found:
             lines = [what for _, what in sorted(self._found, key=lambda one: one[0])]
@@ -128,14 +128,14 @@ class Fields:
         self.is_table = isinstance(data, Mapping)
         self.data: Mapping[str, Any] = data if self.is_table else {}
         if not self.is_table:
-            self.wrong("", f"expected a table of names and values, got {brief(data)}")
+            self.add_error("", f"expected a table of names and values, got {brief(data)}")
 
     @staticmethod
     def of(data: Any, place: str = "") -> Fields:
         """A table that is one already, or of data that come from no file."""
         return data if isinstance(data, Fields) else Fields(data, place=place)
 
-    def wrong(self, name: str, reason: str) -> None:
+    def add_error(self, name: str, reason: str) -> None:
         """Add an error in an entry, or in all of the table where the name is empty."""
         place = self._place(name)
         key = (*self.key, name) if name else self.key
@@ -154,13 +154,13 @@ class Fields:
 
     @contextmanager
     def at(self, name: str = "") -> Iterator[None]:
-        """Give a ParameterError without a place the place of an entry; see `wrong`."""
+        """Give a ParameterError without a place the place of an entry; see `add_error`."""
         try:
             yield
         except ParameterError as error:
             if error is self.document.raised:
                 raise
-            self.wrong(name, str(error))
+            self.add_error(name, str(error))
 
     def read(
         self,
@@ -182,7 +182,7 @@ class Fields:
     ) -> T:
         """`read` an entry that has to be there, of a document that raises errors at once."""
         if name not in self.data:
-            self.wrong(name, "missing")
+            self.add_error(name, "missing")
         return cast("T", self.read(name, reader, None, *args, **kwargs))
 
     def each(self, reader: Callable[[str, Any], T]) -> dict[str, T]:
@@ -204,7 +204,7 @@ class Fields:
         found = self.data.get(name, [])
         place, key = self._place(name), (*self.key, name)
         if not isinstance(found, list):
-            self.wrong(name, f"write each as [[{name}]]")
+            self.add_error(name, f"write each as [[{name}]]")
         elif not least <= len(found) <= most:
             upto = "or more" if most == MANY else f"to {most}"
             reason = f"{place}: expected {least} {upto} of [[{name}]], got {len(found)}"
@@ -217,10 +217,10 @@ class Fields:
             return [table for table in tables if table.is_table]
         return []
 
-    def only(self, *others: str) -> None:
+    def refuse_others(self, *others: str) -> None:
         """Refuse all entries but those that were read, and `others`."""
         for name in self.data:
             if name not in self._known and name not in others:
                 known = (*self._known, *others)
                 hint = did_you_mean(name, known)
-                self.wrong(name, f"unknown entry{hint} (known: {', '.join(known)})")
+                self.add_error(name, f"unknown entry{hint} (known: {', '.join(known)})")

@@ -1,4 +1,4 @@
-"""Files of bytes as the reader of MIDI files has them, for tests."""
+"""Files of bytes as the reader of MIDI files reads them, for tests."""
 
 from __future__ import annotations
 
@@ -15,6 +15,6 @@ def read_file(folder: Path, data: bytes) -> Score:
     return read_score(path)
 
 
-def told(score: Score) -> list[tuple[float, list[int]]]:
+def timed(score: Score) -> list[tuple[float, list[int]]]:
     """Its messages with their times."""
     return [(event.time_s, event.message.bytes()) for event in score.events]

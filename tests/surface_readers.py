@@ -8,7 +8,7 @@ from boxes import Rect
 
 from yehu_server.params.spec import Curve
 from yehu_server.surfaces import common_layout
-from yehu_server.surfaces.catalogue import SURFACES, made
+from yehu_server.surfaces.catalogue import SURFACES, bytes_of
 
 SERVER = ("192.168.1.5", 9001)
 
@@ -37,7 +37,7 @@ def params():
 
 def text_of(name, part=0):
     (surface,) = (surface for surface in SURFACES if surface.name == name)
-    return surface.content(made(surface, SERVER, part)).decode()
+    return surface.content(bytes_of(surface, SERVER, part)).decode()
 
 
 def start(control, key="x"):
@@ -55,7 +55,7 @@ def sent(message):
 
 
 def touchosc():
-    document = py2tosc.loads(made(SURFACES[0], SERVER, 0))
+    document = py2tosc.loads(bytes_of(SURFACES[0], SERVER, 0))
     controls = []
     for fader in document.find_all(type="FADER"):
         param = params()[fader.get("tag")]

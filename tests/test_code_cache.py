@@ -92,7 +92,7 @@ DAMAGE = {
 
 
 @pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
-def test_damaged_code_is_compiled_anew_and_told_in_one_line(kept, caplog, damage):
+def test_damaged_code_is_compiled_anew_and_reported_in_one_line(kept, caplog, damage):
     kept.start()
     for file in (kept.source, kept.file):
         file.write_bytes(damage(file.read_bytes()))
@@ -249,7 +249,7 @@ def test_code_is_found_whatever_order_a_process_has_its_options_in():
     assert len(files) == 1
 
 
-def test_a_full_disk_is_told_once_and_it_plays(kept, caplog, monkeypatch):
+def test_a_full_disk_is_reported_once_and_it_plays(kept, caplog, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 

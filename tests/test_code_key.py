@@ -1,4 +1,4 @@
-"""Keys of source: a change of code changes the key, a change of prose does not."""
+"""Keys of source: a change of code changes the key, a change of comments does not."""
 
 import ast
 import gc
@@ -12,7 +12,7 @@ from yehu_server.compile import function_cache as cache
 from yehu_server.compile import jit, numba_compiler
 from yehu_server.compile.cache_folder import SOURCE_FOLDERS
 from yehu_server.util import PACKAGE
-from yehu_server.util.source_key import key_of, without_prose
+from yehu_server.util.source_key import key_of, without_comments
 
 KEYED = [
     path
@@ -62,10 +62,10 @@ def test_comments_and_docstrings_are_left_out_and_nothing_else(subtests, everyth
     for path in KEYED if everything else KEYED[::5]:
         with subtests.test(path.stem):
             source = path.read_text(encoding="utf-8")
-            assert words(without_prose(source)) == words(source, docstrings(source))
+            assert words(without_comments(source)) == words(source, docstrings(source))
 
 
-def test_prose_leaves_the_key_and_code_changes_it(tmp_path):
+def test_comments_leave_the_key_and_code_changes_it(tmp_path):
     plain = edited(tmp_path, "", "")
     for old, new in (
         ("  # of something", ""),

@@ -1,4 +1,4 @@
-"""The one reader of TOML and JSON: what is wrong is told with line, place and a near word."""
+"""The one reader of TOML and JSON: errors have line, place and a near word."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ def read(table: Fields) -> list[object]:
         room.read("size", number, 8.0),
         room.read("decay", number, 2.0, 0.1, 9.0, "s"),
     ]
-    room.only()
+    room.refuse_others()
     for bind in table.tables("bind"):
         found += [bind.need("channel", whole, 1, 16), bind.read("soft", flag, False)]
-    table.only()
-    table.document.finish()
+    table.refuse_others()
+    table.document.raise_errors()
     return found
 
 
@@ -41,7 +41,7 @@ def document(text: str, most_errors: int = 1) -> Document:
     return Document("mine.toml", "a file", MappingError, text=text, most_errors=most_errors)
 
 
-def test_all_errors_are_told_by_line_with_place_and_a_near_word():
+def test_all_errors_are_sorted_by_line_with_place_and_a_near_word():
     with pytest.raises(MappingError) as error:
         read(document(TEXT, 50).toml())
     assert [str(error.value), *error.value.more] == [
@@ -126,6 +126,6 @@ def test_a_key_of_very_many_parts_is_refused_before_it_takes_time(part, around):
 
 
 @pytest.mark.parametrize("text", ["a" * 60_000, '"' * 60_000, "'a" * 30_000, "a.b " * 15_000])
-def test_looking_for_such_keys_takes_no_time_itself(text):
+def test_searching_for_such_keys_takes_no_time_itself(text):
     with pytest.raises(ValueError, match=r"at (line|end)"):
         parse_toml(text)

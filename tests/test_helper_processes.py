@@ -74,9 +74,9 @@ def test_the_end_of_a_helper_is_acted_on_however_it_came(monkeypatch):
 
     monkeypatch.setattr(processes, "Child", Child)
     monkeypatch.setattr(processes, "Backoff", lambda: Backoff(0.0, 0.0))
-    for way, told in {"it ends": "by itself", "it is stopped": "as asked"}.items():
+    for way, reason in {"it ends": "by itself", "it is stopped": "as asked"}.items():
         Helped("some.module", "help", print, ())._serve()
-        assert done == ["stopped", told], way
+        assert done == ["stopped", reason], way
         done.clear()
     way = "it fails"
     with pytest.raises(RuntimeError, match=way):

@@ -11,7 +11,7 @@ import pytest
 
 from yehu_server.util import retry
 from yehu_server.util.files import why
-from yehu_server.util.retry import LONGEST_TURN_S, AwakeTime, Backoff, run_forever
+from yehu_server.util.retry import LONGEST_GAP_S, AwakeTime, Backoff, run_forever
 
 TOO_MANY = OSError(errno.EMFILE, os.strerror(errno.EMFILE), "/somewhere")
 
@@ -62,7 +62,7 @@ class Work:
         if error is not None:
             raise error
 
-    def tell(self, line: str) -> None:
+    def report(self, line: str) -> None:
         self.said.append(line)
 
 
@@ -71,12 +71,12 @@ class Work:
 )
 def test_work_outlasts_errors_and_says_so_once_until_all_was_well(monkeypatch, error):
     work = Work(monkeypatch, None, error, error, error, None, error)
-    run_forever(work.turn, work.ending, 0.0, "work", work.tell)
+    run_forever(work.turn, work.ending, 0.0, "work", work.report)
     assert work.turns == 7
     assert work.said == [f"work: {why(error)}; trying again"] * 2
 
 
-def test_work_outlasts_that_nobody_can_be_told(monkeypatch):
+def test_work_outlasts_that_no_error_can_be_reported(monkeypatch):
     def fail(_line: str) -> None:
         raise MemoryError
 
@@ -95,4 +95,4 @@ def test_what_is_longer_between_two_questions_was_sleep(monkeypatch):
         awake()
     assert awake() - before == pytest.approx(0.5)
     now += 3600.0
-    assert awake() - before == pytest.approx(0.5 + LONGEST_TURN_S)
+    assert awake() - before == pytest.approx(0.5 + LONGEST_GAP_S)

@@ -21,7 +21,7 @@ from yehu_server.playing.stringing import notes_of
 from yehu_server.rendering import cores
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
-from yehu_server.scores.reading import How, part_of, read_any
+from yehu_server.scores.reading import part_of, read_any
 from yehu_server.scores.score import Score
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.util.files import shipped_folder
@@ -249,7 +249,7 @@ def test_each_part_is_moved_into_the_range_of_its_own_instrument(tmp_path):
     arguments = _parser().parse_args([*map(str, words)])
 
     def scores_for(quantities: Quantities) -> list[Score]:
-        return [read_any(tune, How(all_parts=True, within=notes_of(quantities)))]
+        return [read_any(tune, ReadOptions(all_parts=True, within=notes_of(quantities)))]
 
     players = players_of(arguments, scores_for, PlayingOptions())
     keys = [

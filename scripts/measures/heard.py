@@ -16,7 +16,7 @@ import numpy as np
 from scipy.ndimage import binary_opening
 from scipy.signal import find_peaks, resample_poly
 
-from yehu_server.following.frames import HIGHEST_HZ, likeness, most_alike, refined
+from yehu_server.following.frames import HIGHEST_HZ, first_peaks_hz, nsdf, refined
 from yehu_server.util.loudness import a_weighting
 
 Array = Any
@@ -24,7 +24,7 @@ Array = Any
 RATE, HOP, HOP_S = 16000, 80, 0.005
 SIZE, LEVEL_SIZE = 512, 256  # samples of a window for the pitch, and for the level
 HARMONICS, FEW = 12, 0.03  # share of the power that the others must have
-CLEAR = 0.75  # likeness from which there is a pitch
+CLEAR = 0.75  # clarity from which there is a pitch
 LOUD_DB, SOUNDING_DB = 15.0, 20.0  # below the loudest moment of a note
 STROKE_DB, BEAT_SEMITONES = 3.0, 0.12  # least height of a peak of the level, and of the pitch
 ON_PITCH = 0.4  # semitones
@@ -64,8 +64,8 @@ def _frames(sound: Array) -> Array:
 
 def _pitches(frames: Array) -> Array:
     """The pitch (MIDI note) of each frame; NaN where it has none."""
-    curves = likeness(frames)
-    rough = most_alike(curves)
+    curves = nsdf(frames)
+    rough = first_peaks_hz(curves)
     found, like = refined(curves, np.arange(len(curves)), np.maximum(rough, 160.0))
     pitch = np.where((rough > 0.0) & (like > CLEAR), _not_too_low(frames, found), np.nan)
     return 69.0 + 12.0 * np.log2(pitch / 440.0)

@@ -24,7 +24,7 @@ from scipy.signal import resample_poly
 from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Sound, Take, in_parallel
 from yehu_server.core.player.calibration import frequency_hz
-from yehu_server.following.frames import likeness
+from yehu_server.following.frames import nsdf
 
 Array = Any
 
@@ -33,9 +33,9 @@ PIECES = 4  # performances that the circuit is cut into
 RATE, SIZE, HOP = 16000, 384, 40
 HEARD_S, LATEST_S = 0.28, 0.05
 NEAR_CENTS, SEARCHED_CENTS = 50.0, 250.0
-CLEAR = 0.5  # likeness from which there is a pitch
-AS_GOOD = 0.85  # of the likeness after two periods, that after one has to have
-OCTAVE_ABOVE = 0.94  # likeness after half a period: all but 3 % of the power is of even harmonics
+CLEAR = 0.5  # clarity from which there is a pitch
+AS_GOOD = 0.85  # of the clarity after two periods, that after one has to have
+OCTAVE_ABOVE = 0.94  # clarity after half a period: all but 3 % of the power is of even harmonics
 RIGHT, OLD, BELOW, ABOVE, NO_PITCH = range(5)
 FAULTS = ("right", "old note", "octave below", "octave above", "no pitch")
 
@@ -72,7 +72,7 @@ def circuit(seed: int) -> list[int]:
 
 
 def _most(curves: Array, period: float, cents: float) -> tuple[Array, Array]:
-    """The highest likeness within some cents of a period (s), and how far it is from it (cents)."""
+    """The highest clarity within some cents of a period (s), and how far it is from it (cents)."""
     steps = np.arange(-cents, cents + 1.0, 5.0)
     lags = 2.0 * RATE * period * 2.0 ** (steps / 1200.0)
     low = np.floor(lags).astype(int)
@@ -86,7 +86,7 @@ def _most(curves: Array, period: float, cents: float) -> tuple[Array, Array]:
 
 def faults_of(sound: Array, old: int, new: int) -> Array:
     """What each window of a note's sound (at RATE) has, from RIGHT to NO_PITCH."""
-    curves = likeness(np.lib.stride_tricks.sliding_window_view(sound, SIZE)[::HOP])
+    curves = nsdf(np.lib.stride_tricks.sliding_window_view(sound, SIZE)[::HOP])
     period, before = 1.0 / frequency_hz(new, 440.0), 1.0 / frequency_hz(old, 440.0)
     own, cents = _most(curves, period, SEARCHED_CENTS)
     twice, _ = _most(curves, 2.0 * period, NEAR_CENTS)

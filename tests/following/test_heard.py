@@ -10,7 +10,7 @@ from voices import tune, vibrato, voice
 
 from yehu_server.errors import YehuError
 from yehu_server.following.heard import hear
-from yehu_server.following.notes import STEP, _cheapest, midi_of, strokes_of
+from yehu_server.following.notes import STEP, _cheapest_path, midi_of, strokes_of
 from yehu_server.following.recording import Recording, recording_of_file, recording_of_samples
 
 RATE = 22050
@@ -62,7 +62,7 @@ def test_levels_are_those_of_the_sound():
     assert rise == pytest.approx(30.0 * 1.6 / 2.0, abs=0.5)
 
 
-def test_strokes_and_slurs_are_told_apart():
+def test_strokes_and_slurs_are_distinguished():
     gap = (REST, 0.1)
     notes = [gap, (57.0, 0.4), gap, (57.0, 0.4), gap, (59.0, 0.4), (62.0, 0.4), gap]
     strokes = strokes_of(heard(voice(tune(notes, RATE), RATE)))
@@ -105,11 +105,11 @@ def test_notes_are_the_cheapest_path_of_all():
             path: cost[range(5), path].sum() + STEP * np.count_nonzero(np.diff(path))
             for path in itertools.product(range(3), repeat=5)
         }
-        assert price[tuple(_cheapest(cost))] == pytest.approx(min(price.values()))
+        assert price[tuple(_cheapest_path(cost))] == pytest.approx(min(price.values()))
 
 
 def test_what_has_no_voice_is_refused():
-    for sound, told in (
+    for sound, reason in (
         (np.zeros(RATE), "is silent"),
         (np.full(RATE, 0.3), "is silent"),
         (np.zeros(10), "too short"),
@@ -117,7 +117,7 @@ def test_what_has_no_voice_is_refused():
         (np.random.default_rng(1).normal(0.0, 0.1, RATE), "voice"),
         (np.zeros((3, 4, 5)), "expected frames"),
     ):
-        with pytest.raises(YehuError, match=told) as error:
+        with pytest.raises(YehuError, match=reason) as error:
             heard(sound)
         assert "\n" not in str(error.value)
 

@@ -7,7 +7,7 @@ from yehu_server.errors import ScoreError
 from yehu_server.following.frames import HOP_S
 from yehu_server.following.heard import Heard
 from yehu_server.following.notes import strokes_of
-from yehu_server.following.performance import STYLES, Wanted, dynamics_of, performed
+from yehu_server.following.performance import STYLES, FollowOptions, dynamics_of, performed
 from yehu_server.scores.midi_export import midi_of_performance
 from yehu_server.scores.score import Setting, notes_of
 from yehu_server.scores.smf.reader import read_score
@@ -28,7 +28,7 @@ def held(*notes):
 
 def played(pitches, **wanted):
     found = heard(pitches, **({"level": wanted.pop("level")} if "level" in wanted else {}))
-    return performed(found, strokes_of(found), Wanted(**wanted))
+    return performed(found, strokes_of(found), FollowOptions(**wanted))
 
 
 def settings(found, address):
@@ -57,7 +57,7 @@ def test_low_voices_are_moved_by_octaves_as_little_as_can_be():
         assert asked(found, 60) == pytest.approx(pitch + semitones, abs=0.02)
 
 
-def test_a_note_beyond_the_range_is_moved_alone_and_told():
+def test_a_note_beyond_the_range_is_moved_alone_and_counted():
     found = played(held((np.nan, 9), (66.0, 200), (np.nan, 20), (92.0, 60), (np.nan, 9)))
     assert (found.semitones, found.notes_moved) == (0.0, 1)
     assert asked(found, 250) == pytest.approx(80.0, abs=0.02)

@@ -24,7 +24,7 @@ from yehu_server.playing.practice_files import practice_beside, read_practice
 from yehu_server.playing.stringing import notes_of, range_text
 from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.scores.capture_header import SessionStart, header_of, read_header
-from yehu_server.scores.octaves import Sounding, octaves_of
+from yehu_server.scores.octaves import NoteSpan, octaves_of
 from yehu_server.util.documents import Fields
 from yehu_server.util.files import shipped_folder
 
@@ -185,6 +185,6 @@ def test_the_page_of_a_server_has_the_notes_of_its_instrument():
 
 
 def test_parts_are_moved_into_the_range_of_the_fiddle():
-    notes = [Sounding(0.0, 1.0, (62.0,)), Sounding(1.0, 2.0, (74.0,))]
+    notes = [NoteSpan(0.0, 1.0, (62.0,)), NoteSpan(1.0, 2.0, (74.0,))]
     assert octaves_of(notes, 0.5, NoteRange((D4, A4))).of_notes == (0, 0)
     assert octaves_of(notes, 0.5).of_notes == (1, 1)

@@ -136,11 +136,11 @@ def test_each_kind_of_wish_is_read_to_the_bit(tmp_path, write):
         capture = read_capture(path)
         assert capture.wishes.dtype == WISH
         assert capture.wishes.tolist() == wishes, kind
-        told = (capture.version, capture.rate, capture.frames, capture.warnings)
-        assert told == (3, RATE, 9, [])
+        header = (capture.version, capture.rate, capture.frames, capture.warnings)
+        assert header == (3, RATE, 9, [])
 
 
-def test_the_first_line_tells_the_whole_beginning(tmp_path, write):
+def test_the_first_line_has_the_whole_beginning(tmp_path, write):
     header = json.loads(write(tmp_path / "c").read_text().splitlines()[0])
     (player,) = header["players"]
     assert (header["rate"], header["room"], player["seed"]) == (RATE, False, 3)
@@ -193,7 +193,7 @@ def test_an_instrument_is_read_as_it_began(tmp_path):
     assert (again.spec.calibration, again.spec.quantities) == (calibration, spec.quantities)
 
 
-def test_a_session_that_crashed_can_be_read_and_what_it_lost_is_told(tmp_path, write):
+def test_a_session_that_crashed_can_be_read_with_a_warning_of_what_it_lost(tmp_path, write):
     path = write(tmp_path / "c", RAMPS)
     path.write_text(path.read_text()[:-9])  # in the middle of the last line
     capture = read_capture(path)
@@ -221,7 +221,7 @@ def test_what_is_no_capture_is_refused(tmp_path):
             read_capture(path)
 
 
-def test_what_cannot_be_read_or_written_is_told(tmp_path, plain, write):
+def test_what_cannot_be_read_or_written_is_an_error_in_one_line(tmp_path, plain, write):
     out_of_order = write(tmp_path / "c", [(5, LIFT, 0, 0, 0), (4, LIFT, 0, 0, 0)], end=10)
     rests = write(tmp_path / "d", RAMPS, gaps=range(9000, 11000))
     for path, reason in (
@@ -304,7 +304,7 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
         frames += block
         if seed % 2 and frames > RATE and not stage.gaps:
             first = stage.first._rig
-            first["meters"]["running"] = 1  # the process died before it had told of the block
+            first["meters"]["running"] = 1  # the process died before it had reported the block
             first["taped"] -= block
             stage.recover()
             assert stage.gaps == [(frames - block, frames)]
@@ -571,7 +571,7 @@ def with_header(path, **changes):
     return path
 
 
-REMOVED = "removed"  # told by its identity
+REMOVED = "removed"  # compared by identity
 NAN, INFINITY = float("nan"), float("inf")
 CALIBRATION = {
     "a4": 440.0,

@@ -48,7 +48,7 @@ def test_the_example_of_the_documentation_is_one(read):
     assert ensemble.room[0] == ("/room/size", 9.0)
 
 
-def test_what_is_wrong_is_told_with_its_line(subtests, read):
+def test_errors_have_their_line(subtests, read):
     for text, line, error in [
         ("[[part]]\nchannel = 17\n", 2, "part 1: channel: expected a whole number from 1 to"),
         (f"{PART}track = 1.5\n", 3, "track: expected a whole number from 1 to"),

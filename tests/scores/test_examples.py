@@ -1,6 +1,6 @@
 """The scores in examples/: made again byte for byte, for a yehu, and as their makers say.
 
-What `scripts/make_examples.py` tells of each score is tested of it.
+What `scripts/make_examples.py` says of each score is tested.
 """
 
 from __future__ import annotations

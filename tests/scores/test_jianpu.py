@@ -92,7 +92,7 @@ PLAYED = {
     "> 13": [64],  # the base octave moves no chord
     "1\uff1dF \uff11 \uff12\uff0c \uff13\u2019 \u266f\uff11": [65, 55, 81, 66],  # of full width
 }
-TOLD = {
+WARNINGS = {
     "4/4 1 - - - DC 2 - - - DC": "DC",
     "OctavesAfter 135 1'35 5,": "chords, of which the highest note is played",
     "1'3": "octave marks between",
@@ -110,13 +110,13 @@ def test_notes_are_played_as_their_signs_say():
     assert {text: pitches(text) for text in PLAYED} == PLAYED
 
 
-def test_what_is_doubtful_is_told_and_nothing_else():
-    for text, warning in TOLD.items():
-        told = written(text).warnings
-        assert bool(told) == bool(warning), text
-        assert warning in "".join(told), text
+def test_only_what_is_doubtful_is_warned_of():
+    for text, warning in WARNINGS.items():
+        found = written(text).warnings
+        assert bool(found) == bool(warning), text
+        assert warning in "".join(found), text
     for text in ("1,3,", ",1,3", ",135'"):
-        assert not any("octave marks" in told for told in written(text).warnings), text
+        assert not any("octave marks" in line for line in written(text).warnings), text
 
 
 def test_notes_last_as_is_written():

@@ -146,7 +146,7 @@ def test_a_ritardando_ends_at_the_next_tempo():
     assert span.end - span.begin == 8  # without an end, two bars
 
 
-def test_slurs_may_lie_within_each_other_and_those_without_an_end_are_told():
+def test_slurs_may_lie_within_each_other_and_those_without_an_end_are_warned_of():
     spans = part("1( 2( 3) 4)").spans
     assert {(span.begin, span.end) for span in spans} == {(0, 3), (1, 2)}
     assert parse_jianpu(b"1 ( 2").warnings == ("slurs without an end left out",)

@@ -70,7 +70,7 @@ def test_a_fault_has_the_outcome_that_is_written_of_it(case: Case, written):
     assert re.fullmatch(words, str(refusal.value))
 
 
-def test_the_page_tells_what_is_said_of_each_fault():
+def test_the_page_has_what_is_said_of_each_fault():
     rows = dict(ROW.findall(page(PAGE).text))
     assert rows == {case.name: f"`{case.says}`" if case.says else "nothing" for case in CASES}
 
@@ -82,15 +82,15 @@ def by_mido(path: Path) -> list[list[tuple[float, list[int]]]]:
     """The channel messages of each song with their times, by mido."""
     file = mido.MidiFile(path)
     songs = [[track] for track in file.tracks] if file.type == 2 else [file.tracks]
-    told = []
+    theirs = []
     for tracks in songs:
         now, messages = 0.0, []
         for message in mido.MidiFile(type=1, ticks_per_beat=file.ticks_per_beat, tracks=tracks):
             now += message.time
             if hasattr(message, "channel"):
                 messages.append((now, message.bytes()))
-        told.append(messages)
-    return told
+        theirs.append(messages)
+    return theirs
 
 
 def by_us(path: Path, songs: int) -> list[list[tuple[float, list[int]]]]:
@@ -103,16 +103,16 @@ def by_us(path: Path, songs: int) -> list[list[tuple[float, list[int]]]]:
 
 def made_by_mido(case: Case, path: Path) -> str:
     try:
-        told = by_mido(path)
+        theirs = by_mido(path)
     except Exception:  # noqa: BLE001 - of any kind: mido has no errors of its own
         return REFUSES
     try:
-        ours = by_us(path, len(told))
+        ours = by_us(path, len(theirs))
     except ScoreError:
-        return AGREES if not any(told) else DIFFERS
+        return AGREES if not any(theirs) else DIFFERS
     if case.hears is not None and len(case.hears) > sum(map(begun, ours)):
         return DIFFERS  # the rest is in songs that mido has not found
-    return AGREES if told == ours else DIFFERS
+    return AGREES if theirs == ours else DIFFERS
 
 
 def begun(messages: list[tuple[float, list[int]]]) -> int:

@@ -198,7 +198,7 @@ def test_a_metronome_mark_counts_in_its_unit_and_figures_go_over_words(read):
         assert [(each.beat, each.quarters_per_minute) for each in tempi] == [(0, expected)]
 
 
-def test_a_direction_stands_where_its_offset_says_and_sounds_there_if_told(read):
+def test_a_direction_stands_where_its_offset_says_and_sounds_there_if_that_says_so(read):
     for how, beat in (("", 0.0), (' sound="yes"', 1.0)):
         direction = (
             "<direction><direction-type><dynamics><f/></dynamics></direction-type>"
@@ -271,9 +271,9 @@ def test_bars_in_parts_and_parts_in_bars_are_the_same_score(read):
 
 def test_any_usual_encoding_is_read_whatever_it_calls_itself(read):
     names = {"utf-8": "utf-8", "utf-16": "utf-16", "iso-8859-1": "iso-8859-1", "UTF-16": "utf-8"}
-    for told, encoding in names.items():
-        data = f'<?xml version="1.0" encoding="{told}"?>{score(FOUR, title="Fauré", before="")}'
-        assert read(data.encode(encoding)).title == "Fauré", told
+    for declared, encoding in names.items():
+        data = f'<?xml version="1.0" encoding="{declared}"?>{score(FOUR, title="Fauré", before="")}'
+        assert read(data.encode(encoding)).title == "Fauré", declared
 
 
 def test_of_hidden_notes_those_without_a_place_on_the_page_are_silent(read):
@@ -312,14 +312,14 @@ def test_a_rest_that_one_part_has_too_much_makes_no_bar_longer(read):
     assert [float(bar.beat) for bar in read(longer).bars] == [0.0, 6.0]
 
 
-def test_divisions_may_be_told_after_the_first_notes(read):
+def test_divisions_may_stand_after_the_first_notes(read):
     late = "<attributes><divisions>12</divisions></attributes>"
     first = "<attributes><key><fifths>1</fifths></key></attributes>"
     written = read(score(first + note("G4", 1) + note("A4", 1) + late + note("B4", 2)))
     assert [float(each.beat) for each in written.parts[0].notes] == [0.0, 1.0, 2.0]
 
 
-def test_endings_without_numbers_and_bars_that_nobody_plays_are_told(read):
+def test_endings_without_numbers_are_read_and_bars_that_nobody_plays_are_listed(read):
     first = barline(location="left", ending="0 start").replace('number="0"', 'number=""')
     stop = barline(repeat="backward", ending="0 stop").replace('number="0"', 'number=""')
     for begin in (first, ""):

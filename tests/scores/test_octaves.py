@@ -8,18 +8,18 @@ from musicxml_text import note, score
 
 from yehu_server.core.player.note_range import NoteRange
 from yehu_server.errors import ScoreError
-from yehu_server.scores.octaves import Sounding, octaves_of
-from yehu_server.scores.reading import How, read_any
+from yehu_server.scores.octaves import NoteSpan, octaves_of
+from yehu_server.scores.reading import ReadOptions, read_any
 from yehu_server.scores.score import notes_of
 from yehu_server.scores.tune_part import melodic_part, take_turns
 
 LOW = [60, 62, 64, 65, 67]
 
 
-def sounding(*pitches: float | None, length: float = 1.0, begin: float = 0.0) -> list[Sounding]:
+def sounding(*pitches: float | None, length: float = 1.0, begin: float = 0.0) -> list[NoteSpan]:
     """Notes one after another, None for a rest."""
     return [
-        Sounding(begin + length * at, begin + length * (at + 1), (pitch,))
+        NoteSpan(begin + length * at, begin + length * (at + 1), (pitch,))
         for at, pitch in enumerate(pitches)
         if pitch is not None
     ]
@@ -39,10 +39,10 @@ def test_a_tune_is_moved_as_a_whole_then_by_phrases_then_left_to_the_player():
         ([], [], ""),
     ]
     wrong = []
-    for pitches, expected, told in cases:
+    for pitches, expected, summary in cases:
         found = octaves_of(sounding(*pitches), 0.5)
-        if [*found.of_notes] != expected or found.told != told:
-            wrong.append((pitches, found, found.told))
+        if [*found.of_notes] != expected or found.summary != summary:
+            wrong.append((pitches, found, found.summary))
     assert not wrong
 
 
@@ -64,16 +64,17 @@ def test_a_written_score_plays_its_first_part_in_one_piece(duet):
     assert played.remarks[0].startswith("plays P1; also there: Viola (--part NAME")
     assert played.remarks[1] == "moved to fit F4 to F6: P1 an octave up"
     assert not played.warnings
-    assert keys(read_any(duet, How(in_range=False))) == [60, 62, 64, 67]
+    assert keys(read_any(duet, ReadOptions(in_range=False))) == [60, 62, 64, 67]
 
 
 def test_parts_are_asked_for_by_name_beginning_or_number(duet):
     for asked in ("Viola", "viola", "vio", "2"):
-        assert keys(read_any(duet, How((asked,)))) == [72]
-    assert sorted(keys(read_any(duet, How(all_parts=True)))) == [72, 72, 74, 76, 79]
-    assert [part.name for part in read_any(duet, How(all_parts=True)).parts] == ["P1", "Viola"]
+        assert keys(read_any(duet, ReadOptions((asked,)))) == [72]
+    assert sorted(keys(read_any(duet, ReadOptions(all_parts=True)))) == [72, 72, 74, 76, 79]
+    both = read_any(duet, ReadOptions(all_parts=True))
+    assert [part.name for part in both.parts] == ["P1", "Viola"]
     with pytest.raises(ScoreError, match=r"duet\.musicxml: has no part Cello; it has P1, Viola"):
-        read_any(duet, How(("Cello",)))
+        read_any(duet, ReadOptions(("Cello",)))
 
 
 def controls(*values: tuple[int, int]) -> list[mido.Message]:
@@ -105,22 +106,22 @@ def file(tmp_path):
 def test_tracks_of_a_midi_file_are_moved_each_as_a_whole(file):
     bass, other = notes(40, 43, channel=1), notes(70, channel=2)
     tracks = file(Flute=notes(*LOW), Cello=bass, _=other)
-    played = read_any(tracks, How(all_parts=True))
+    played = read_any(tracks, ReadOptions(all_parts=True))
     by_channel = [[each.key for each in notes_of(played) if each.channel == n] for n in range(3)]
     assert by_channel == [[72, 74, 76, 77, 79], [76, 79], [70]]
     expected = "moved to fit F4 to F6: Flute an octave up; Cello three octaves up"
     assert played.remarks == (expected,)
     assert keys(read_any(tracks)) == [72, 74, 76, 77, 79]
-    told = "plays Flute; also there: Cello, channel 3 (--part"
-    assert read_any(tracks).remarks[0].startswith(told)
-    assert keys(read_any(tracks, How(("Cello",)))) == [76, 79]
+    line = "plays Flute; also there: Cello, channel 3 (--part"
+    assert read_any(tracks).remarks[0].startswith(line)
+    assert keys(read_any(tracks, ReadOptions(("Cello",)))) == [76, 79]
 
 
 def test_channels_of_mpe_are_one_part_whether_the_file_says_it_or_the_player(file):
     tune = [each for n, key in enumerate(LOW) for each in notes(key, channel=n + 1)]
     moved = [key + 12 for key in LOW]
     assert keys(read_any(file(_=[*controls((101, 0), (100, 6), (6, 15)), *tune]))) == moved
-    assert keys(read_any(file(_=tune), How(is_mpe=True))) == moved
+    assert keys(read_any(file(_=tune), ReadOptions(is_mpe=True))) == moved
 
 
 def test_a_file_with_controllers_alone_says_that_it_is_silent(file):
@@ -138,7 +139,7 @@ def test_coarse_tuning_counts_for_the_range(file):
 TUNE = sounding(67, 69, 71, 72, 74, 71, 69, 67)
 BASS = sounding(36, 43, 36, 43, 41, 36, 43, 36)
 DRONE = sounding(*[67] * 8)
-CHORDS = [Sounding(at, at + 1.0, (60.0 + step,)) for at in range(8) for step in (0, 4, 7)]
+CHORDS = [NoteSpan(at, at + 1.0, (60.0 + step,)) for at in range(8) for step in (0, 4, 7)]
 DOUBLE_STOP = [TUNE[0], *TUNE]
 WIDE = sounding(40, 60, 80, 100, 40, 60, 80, 100)
 BRIEF = sounding(79, 81)
@@ -176,7 +177,7 @@ def test_a_tune_fits_the_instrument_that_plays_it():
     assert found == [1, 0]
 
 
-def test_parts_that_take_turns_are_told_from_parts_that_sound_together():
+def test_parts_that_take_turns_are_distinguished_from_parts_that_sound_together():
     assert take_turns([TUNE, sounding(60, 62, begin=8.0), sounding(64, begin=20.0)])
     assert take_turns([TUNE, []])
     assert not take_turns([TUNE, sounding(60, 62, begin=7.0)])

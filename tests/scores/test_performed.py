@@ -422,7 +422,7 @@ def test_a_portamento_is_there_on_the_beat_and_a_glissando_takes_most_of_its_not
         assert settings(score, "/playing/portamento")[0] == (pytest.approx(begin), 1.0)
 
 
-def test_a_harmonic_touches_the_node_of_an_open_string_or_is_told_not_to_speak():
+def test_a_harmonic_touches_the_node_of_an_open_string_or_is_warned_of():
     score = play(note(0, 1, 91, "harmonic"), note(1, 1, 67))
     assert [each.key for each in notes_of(score)] == [79, 67]  # a fifth above the open string
     flageolet = NUMBER["flageolet"]
@@ -463,7 +463,7 @@ def test_each_part_has_a_channel_and_none_is_percussion():
     assert "20 parts" in score.warnings[0]
 
 
-def test_marks_that_were_not_understood_are_told_and_a_score_without_notes_is_refused():
+def test_marks_that_were_not_understood_are_listed_and_a_score_without_notes_is_refused():
     score = performed(Written((Part("", tuple(FOUR)),), unknown={"squiggle": 2, "blob": 1}))
     assert score.warnings == ("not understood: squiggle (2 times), blob",)
     with pytest.raises(ScoreError, match="no note"):

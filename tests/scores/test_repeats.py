@@ -137,7 +137,7 @@ def written(form: Form) -> list[BarLines]:
 
 
 def unrolled(form: Form) -> list[int]:
-    """The bars of a form in the order in which it was made, without a look at its signs."""
+    """The bars of a form in the order in which it was made, without its signs."""
     pieces: list[tuple[list[int], list[int]]] = []  # of each block: with repeats, and without
     at = 0
     for block in form.blocks:

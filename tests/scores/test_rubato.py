@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from shaping import phrased
 
-from yehu_server.scores.reading import How, performed_part, read_any
+from yehu_server.scores.reading import ReadOptions, performed_part, read_any
 from yehu_server.scores.score import Score, notes_of
 from yehu_server.scores.written.notated import Note, Part, Span, Tempo, Written
 
@@ -83,11 +83,11 @@ def test_rubato_goes_with_phrasing_or_as_far_as_is_asked_and_notes_keep_their_or
 def test_all_parts_move_together_whichever_is_read(tmp_path):
     slow = [(2.0, 67 + number % 3) for number in range(15)]
     path = midi(tmp_path, tune(), slow)
-    times = [each.start_s for each in notes_of(read_any(path, How(all_parts=True)))]
-    every = dict(zip(times, later(read_any(path, How(all_parts=True))), strict=True))
+    times = [each.start_s for each in notes_of(read_any(path, ReadOptions(all_parts=True)))]
+    every = dict(zip(times, later(read_any(path, ReadOptions(all_parts=True))), strict=True))
     assert len({*every.values()}) > 10
     for name in ("part 1", "part 2"):
-        score = read_any(path, How((name,)))
+        score = read_any(path, ReadOptions((name,)))
         for note, delay in zip(notes_of(score), later(score), strict=True):
             assert delay == pytest.approx(every[note.start_s], abs=1e-9)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import mido
 import pytest
 from midi_bytes import END, chunk, head, midi, off, on, tempo
-from midi_reading import read_file, told
+from midi_reading import read_file, timed
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import Score
@@ -24,9 +24,9 @@ def read(tmp_path: Path) -> Callable[[bytes], Score]:
 # ---------------------------------------------------------------- time
 
 
-def test_a_quarter_note_lasts_half_a_second_unless_told(read):
+def test_a_quarter_note_lasts_half_a_second_by_default(read):
     score = read(midi(on(0, 60) + off(100, 60) + END))
-    assert told(score) == [(0.0, [0x90, 60, 80]), (0.5, [0x80, 60, 0])]
+    assert timed(score) == [(0.0, [0x90, 60, 80]), (0.5, [0x80, 60, 0])]
     assert (score.duration_s, score.name, score.warnings) == (0.5, "tune", ())
 
 
@@ -112,7 +112,7 @@ def test_ordinary_files_have_the_times_mido_gives_them(tmp_path):
             if not message.is_meta and message.type != "sysex":
                 expected.append((now, message.bytes()))
         score = read_score(path)
-        assert [sound for _, sound in told(score)] == [sound for _, sound in expected]
+        assert [sound for _, sound in timed(score)] == [sound for _, sound in expected]
         times = [time for time, _ in expected]
         assert [event.time_s for event in score.events] == pytest.approx(times, rel=1e-12)
         assert score.duration_s == pytest.approx(now, rel=1e-12)
@@ -131,13 +131,13 @@ def test_running_status_goes_on_after_anything(read):
         b"\x00\xff\x59\x02\x03\x00",  # a key signature
     ):
         score = read(midi(on(0, 60) + between + b"\x64\x3c\0" + END))
-        assert told(score) == [(0.0, [0x90, 60, 80]), (0.5, [0x90, 60, 0])], between
+        assert timed(score) == [(0.0, [0x90, 60, 80]), (0.5, [0x90, 60, 0])], between
         assert score.warnings == ()
 
 
 def test_system_messages_are_stepped_over(read):
     score = read(midi(b"\x00\xf2\x01\x02\x00\xf3\x01\x00\xfe\x00\xf8" + on(100, 60) + END))
-    assert told(score) == [(0.5, [0x90, 60, 80])]
+    assert timed(score) == [(0.5, [0x90, 60, 80])]
     assert score.warnings == (
         "a system message, which no file should hold, skipped, 4 times, first at byte 22",
     )
@@ -155,11 +155,11 @@ def test_a_long_header_and_unknown_chunks_are_fine(read):
 
 def test_a_track_of_any_length_whatever_hides_no_other(read):
     first, second = on(0, 60) + off(9, 60) + END, on(0, 62) + off(9, 62) + END
-    expected, last = told(read(midi(first, second))), chunk(b"MTrk", second)
+    expected, last = timed(read(midi(first, second))), chunk(b"MTrk", second)
     for junk in (b"", b"\0", b"\0MTr", b"    \xff\xff\xff\xff"):
         for length in (*range(24), 1000, 2**24, 2**32 - 1):
             score = read(head(1, 2, 100) + chunk(b"MTrk", first, length) + junk + last)
-            assert told(score) == expected, (junk, length)
+            assert timed(score) == expected, (junk, length)
             assert score.warnings or (length == len(first) and not junk), (junk, length)
 
 
@@ -179,7 +179,7 @@ def test_a_type_2_file_plays_its_tracks_in_turn_each_with_its_own_tempo(read):
     slow = tempo(0, 1_000_000) + on(0, 60) + off(100, 60) + END
     plain = on(0, 62) + b"\x64\xff\x2f\x00"  # left sounding
     score = read(midi(slow, plain, plain, kind=2))
-    assert told(score) == [
+    assert timed(score) == [
         (0.0, [0x90, 60, 80]),
         (1.0, [0x80, 60, 0]),
         (1.0, [0xFF]),  # a system reset: notes left sounding end with it
@@ -199,8 +199,8 @@ def songs(tmp_path) -> Path:
 
 
 def test_one_song_of_several_is_chosen(songs):
-    assert told(read_score(songs, song=1)) == [(0.0, [0x90, 60, 80]), (1.0, [0x80, 60, 0])]
-    assert told(read_score(songs, song=3)) == [(0.0, [0x90, 62, 80]), (0.5, [0x80, 62, 0])]
+    assert timed(read_score(songs, song=1)) == [(0.0, [0x90, 60, 80]), (1.0, [0x80, 60, 0])]
+    assert timed(read_score(songs, song=3)) == [(0.0, [0x90, 62, 80]), (0.5, [0x80, 62, 0])]
     with pytest.raises(ScoreError, match=r"songs\.mid: song 2 has nothing to play"):
         read_score(songs, song=2)
     with pytest.raises(ScoreError, match=r"songs\.mid: has 3 songs: there is no song 4"):
@@ -220,7 +220,11 @@ def test_a_file_of_one_song_has_no_other_and_files_that_were_joined_have_theirs(
 def test_of_many_notes_without_an_end_each_stops_at_the_next_of_its_channel(read):
     notes = on(0, 60) + on(0, 64) + on(0, 70, channel=1) + on(0, 35, channel=9)
     score = read(midi(notes + on(100, 62) + off(100, 62) + on(0, 36, channel=9) + END))
-    assert told(score)[4:7] == [(0.5, [0x80, 60, 64]), (0.5, [0x80, 64, 64]), (0.5, [0x90, 62, 80])]
+    assert timed(score)[4:7] == [
+        (0.5, [0x80, 60, 64]),
+        (0.5, [0x80, 64, 64]),
+        (0.5, [0x90, 62, 80]),
+    ]
     assert len(score.events) == 9
     assert score.warnings == (
         "a note without an end stopped at the next one, 2 times, first at byte 22",

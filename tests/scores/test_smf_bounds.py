@@ -9,7 +9,7 @@ from pathlib import Path
 import mido
 import pytest
 from midi_bytes import END, chunk, midi, off, on, tempo
-from midi_reading import read_file, told
+from midi_reading import read_file, timed
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import Score, ScoreEvent, concatenate
@@ -63,10 +63,10 @@ def test_more_tracks_than_a_header_can_count_are_refused(read):
 
 def test_a_file_cut_anywhere_keeps_a_beginning_of_the_whole(read):
     whole = midi(b"".join(on(10, note, channel=9) for note in range(30, 90)) + END)
-    full = told(read(whole))
+    full = timed(read(whole))
     for length in range(len(whole)):
         try:
-            part = told(read(whole[:length]))
+            part = timed(read(whole[:length]))
         except ScoreError:
             assert length < 22 + 4  # headers and the first note
         else:
@@ -85,7 +85,7 @@ def test_scores_in_a_row_start_when_the_one_before_has_passed():
     first = Score((sound(0.0, 0x90, 60, 80), sound(1.0, 0x80, 60, 0)), 1.5, "one", ("odd",))
     second = Score((sound(0.25, 0x90, 62, 80), sound(0.5, 0x90, 62, 0)), 1.0, "two")
     both = concatenate([first, second])
-    assert told(both) == [
+    assert timed(both) == [
         (0.0, [0x90, 60, 80]),
         (1.0, [0x80, 60, 0]),
         (1.5, [0xFF]),

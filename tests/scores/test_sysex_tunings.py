@@ -76,7 +76,7 @@ def test_the_scale_is_tuned_note_by_note_on_the_channels_that_are_named(pitches)
     assert pitches((fine, 60, 0), (None, 61, 0)) == ([60.5, 61.0], ())
 
 
-def test_what_is_not_obeyed_is_told(pitches):
+def test_what_is_not_supported_is_remarked(pitches):
     single = (0x7F, 0x7F, 8, 2, 0, 1, 60, 61, 0, 0)
     found, remarks = pitches((single, 60, 0))
     assert found == [60.0]

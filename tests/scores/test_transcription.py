@@ -20,8 +20,8 @@ from yehu_server.scores.midi_export import midi_file
 from yehu_server.scores.reading import read_written
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.transcription import (
-    Heard,
-    read_to_write,
+    PlayedNote,
+    read_as_written,
     written_of_midi,
     written_of_seconds,
 )
@@ -64,7 +64,7 @@ def midi(path: Path, notes, ticks=480, channel=0) -> Path:
 def test_keys_are_those_of_the_file_but_c_that_programs_write_unasked(tmp_path):
     tune = [(beat, beat + 1, key, 80) for beat, key in enumerate((67, 69, 71, 72, 74, 76, 78, 79))]
     wrong = []
-    for told, expected in [
+    for signatures, expected in [
         ([], [(0, 1)]),  # what the notes fit: G
         ([(0, "C")], [(0, 1)]),
         ([(0, "Eb")], [(0, -3)]),
@@ -77,17 +77,17 @@ def test_keys_are_those_of_the_file_but_c_that_programs_write_unasked(tmp_path):
         path = midi(tmp_path / "x.mid", tune)
         file = mido.MidiFile(path)
         track, now = file.add_track(), 0
-        for beat, key in told:
+        for beat, key in signatures:
             track.append(mido.MetaMessage("key_signature", key=key, time=480 * (beat - now)))
             now = beat
         file.save(path)
         written, _ = written_of_midi(read_score(path))
         if (found := [(sign.beat, sign.fifths) for sign in written.keys]) != expected:
-            wrong.append((told, found))
+            wrong.append((signatures, found))
         (tmp_path / "again.mid").write_bytes(midi_file(written, performed(written))[0])
         again, _ = written_of_midi(read_score(tmp_path / "again.mid"))
         if again.keys != written.keys:
-            wrong.append((told, again.keys))
+            wrong.append((signatures, again.keys))
     assert not wrong
 
 
@@ -106,7 +106,7 @@ def test_beats_are_divided_as_they_were_written(tmp_path):
         # A program lets go a little early; a rest that is a rest stays one.
         notes = [(at, at + length * Fraction(19, 20), key, 80) for at, length, key in expected]
         path = midi(tmp_path / f"{number}.mid", notes)
-        found = read_to_write(path)[0].parts[0].notes
+        found = read_as_written(path)[0].parts[0].notes
         if [(note.beat, note.length, int(note.pitch)) for note in found] != expected:
             wrong.append(number)
     assert not wrong
@@ -117,7 +117,9 @@ def test_a_hand_that_is_late_by_a_thirtieth_is_written_in_quavers():
     lengths = [chance.choice([0.5, 0.5, 1.0, 1.5]) for _ in range(60)]
     begins = [sum(lengths[:at]) for at in range(len(lengths))]
     heard = [
-        Heard((begin + chance.uniform(-0.03, 0.03)) * 0.75, (begin + 0.8 * length) * 0.75, 70.0)
+        PlayedNote(
+            (begin + chance.uniform(-0.03, 0.03)) * 0.75, (begin + 0.8 * length) * 0.75, 70.0
+        )
         for begin, length in zip(begins, lengths, strict=True)
     ]
     written, _ = written_of_seconds([("", heard)], tempo=80.0)
@@ -128,7 +130,7 @@ def test_a_hand_that_is_late_by_a_thirtieth_is_written_in_quavers():
 
 def test_steady_notes_are_written_as_beats_or_halves_of_them():
     for step in (0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.8, 1.0, 1.2):
-        heard = [Heard(step * at, step * (at + 1), 60.0, 80) for at in range(12)]
+        heard = [PlayedNote(step * at, step * (at + 1), 60.0, 80) for at in range(12)]
         written, _ = written_of_seconds([("", heard)])
         lengths = {note.length for note in written.parts[0].notes}
         assert lengths <= {Fraction(1, 2), Fraction(1), Fraction(2)}, (step, lengths)
@@ -137,7 +139,7 @@ def test_steady_notes_are_written_as_beats_or_halves_of_them():
 def test_loudness_overlaps_and_keys_become_dynamics_slurs_and_signatures(tmp_path):
     loud = [50] * 4 + [96, 96, 112, 96] + [50, 52, 48, 50]
     notes = [(at, at + 1.02 - 0.1 * (at % 2), 69 + at % 3, loud[at]) for at in range(12)]
-    written, _ = read_to_write(midi(tmp_path / "a.mid", [*notes, (12, 13, 74, 50)]))
+    written, _ = read_as_written(midi(tmp_path / "a.mid", [*notes, (12, 13, 74, 50)]))
     [part] = written.parts
     assert [(sign.beat, sign.name) for sign in part.signs] == [(0, "p"), (4, "f"), (8, "p")]
     assert [note.beat for note in part.notes if note.marks] == [6]
@@ -145,7 +147,7 @@ def test_loudness_overlaps_and_keys_become_dynamics_slurs_and_signatures(tmp_pat
         (at, at + 1) for at in range(0, 12, 2)
     }
     assert [key.fifths for key in written.keys] == [2]  # D, on which it ends
-    plain, left = read_to_write(midi(tmp_path / "b.mid", [(0, 1, 60, 64), (0, 1, 67, 64)]))
+    plain, left = read_as_written(midi(tmp_path / "b.mid", [(0, 1, 60, 64), (0, 1, 67, 64)]))
     assert [(note.pitch, note.marks) for note in plain.parts[0].notes] == [(67.0, ())]
     assert not plain.parts[0].signs
     assert left == {"lower notes of chords": 1}
@@ -165,7 +167,7 @@ def test_a_capture_is_written_as_its_players_played(tmp_path):
     ]
     writer.wishes(np.array(wishes, WISH))
     writer.close(3 * second)
-    written, left = read_to_write(path, tempo=60.0)
+    written, left = read_as_written(path, tempo=60.0)
     [part] = written.parts
     assert [(note.beat, note.length, note.pitch) for note in part.notes] == [
         (0, 1, 67.0),
@@ -184,4 +186,4 @@ def test_what_holds_no_note_is_refused(tmp_path):
     file.save(tmp_path / "silent.mid")
     for name in ("session.jsonl", "silent.mid"):
         with pytest.raises(ScoreError, match=f"{name}: has no note to write"):
-            read_to_write(tmp_path / name)
+            read_as_written(tmp_path / name)

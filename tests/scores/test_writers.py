@@ -112,7 +112,7 @@ def scores(draw, marks):
     )
 
 
-def told(written: Written) -> dict[str, object]:
+def contents(written: Written) -> dict[str, object]:
     """All that is held, in no order where it has none."""
     return {
         "title": written.title,
@@ -130,7 +130,7 @@ def told(written: Written) -> dict[str, object]:
 @settings(max_examples=25, deadline=None)
 def test_what_is_written_as_musicxml_is_read_as_it_was(written):
     again, lost = as_musicxml(written)
-    assert told(again) == told(written)
+    assert contents(again) == contents(written)
     assert not lost
     assert not again.unknown
     assert not again.warnings
@@ -140,7 +140,7 @@ def test_what_is_written_as_musicxml_is_read_as_it_was(written):
 @settings(max_examples=25, deadline=None)
 def test_what_is_written_as_jianpu_is_read_as_it_was(written):
     again, lost = as_jianpu(written)
-    assert told(again) == told(written)
+    assert contents(again) == contents(written)
     assert not lost
     assert not again.unknown
 
@@ -153,12 +153,12 @@ def test_examples_are_the_same_in_both_notations(everything):
             again, lost = write(written)
             if "huo_wu" in path.name:
                 assert lost["pitches that move within a note"] == 7
-            elif told(again) != told(written):
+            elif contents(again) != contents(written):
                 different.append((path.name, write))
     assert not different
 
 
-def test_each_mark_is_written_or_told():
+def test_each_mark_is_written_or_counted_as_lost():
     """Of MusicXML all marks are read again; of jianpu those that are not are named."""
     for write in (as_musicxml, as_jianpu):
         missing = []
@@ -178,7 +178,7 @@ def test_each_mark_is_written_or_told():
         assert not missing
 
 
-def test_what_a_notation_has_no_sign_for_is_told_and_the_rest_written():
+def test_what_a_notation_has_no_sign_for_is_counted_and_the_rest_written():
     note = Note(Fraction(0), Fraction(4), 67.25, (), contour=((0.0, 0.0), (1.0, 1.0)))
     other = Note(Fraction(4), Fraction(1, 3), 69.0)
     last = Note(Fraction(13, 3), Fraction(5, 8), 71.0)

@@ -8,7 +8,7 @@ import pytest
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.params.table import TABLE
 from yehu_server.surfaces import common_layout
-from yehu_server.surfaces.catalogue import SURFACES, made
+from yehu_server.surfaces.catalogue import SURFACES, bytes_of
 
 SERVER = ("127.0.0.1", 9000)
 SPEAKING = [surface for surface in SURFACES if surface.name != "parameters.html"]
@@ -18,7 +18,7 @@ ADDRESS = re.compile(r"(?<![\w.])/yehu(/[\w/-]+)")
 
 @cache
 def text_of(surface, part):
-    return surface.content(made(surface, SERVER, part)).decode()
+    return surface.content(bytes_of(surface, SERVER, part)).decode()
 
 
 def addresses_of(surface, part):
@@ -93,5 +93,5 @@ def test_files_of_parts_lie_beside_each_other_and_are_checked(tmp_path, command)
 
 def test_after_a_part_surfaces_are_again_for_all():
     with common_layout.for_part(2):
-        assert common_layout.full("/note") == "/yehu/part/2/note"
-    assert common_layout.full("/note") == "/yehu/note"
+        assert common_layout.osc_address("/note") == "/yehu/part/2/note"
+    assert common_layout.osc_address("/note") == "/yehu/note"

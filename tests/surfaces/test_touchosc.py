@@ -15,7 +15,7 @@ def document():
     return READERS["yehu.tosc"]().file
 
 
-def test_a_fader_tells_its_value_and_takes_what_it_is_told_without_sending_it(document):
+def test_a_fader_sends_its_value_and_takes_what_it_receives_without_sending_it(document):
     for fader in document.find_all(type="FADER"):
         param = BY_ADDRESS[fader.get("tag")]
         (message,) = fader.messages

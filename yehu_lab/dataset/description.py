@@ -134,8 +134,8 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
         license=table.read("license", line, LICENCE),
         data=table.data,
     )
-    keep.only()
-    table.only()
+    keep.refuse_others()
+    table.refuse_others()
     return description
 
 
@@ -172,9 +172,9 @@ def _splits(table: Fields) -> tuple[tuple[str, float], ...]:
         return (("train", 1.0),)
     for name in table.data:
         if not PLAIN_NAME.fullmatch(name):
-            table.wrong(name, "is no plain name for a folder")
+            table.add_error(name, "is no plain name for a folder")
     if len({name.casefold() for name in table.data}) < len(table.data):
-        table.wrong("", "names that differ in no more than capitals")
+        table.add_error("", "names that differ in no more than capitals")
     weights = table.each(lambda _, value: number(value))
     with table.at():
         shares = shares_of(list(weights.values()))

@@ -97,7 +97,7 @@ def axis_from(name: str, entry: Any) -> Axis:
     if not isinstance(entry, Mapping):
         raise ParameterError(f"expected a list, or from, to and steps, got {brief(entry)}")
     table = Fields(entry)
-    table.only("from", "to", "steps", "spread")
+    table.refuse_others("from", "to", "steps", "spread")
     first, last = table.need("from", number), table.need("to", number)
     steps = table.need("steps", whole, 2, MOST_VALUES)
     return spread_axis(name, first, last, steps, table.read("spread", choice, "linear", SPREADS))

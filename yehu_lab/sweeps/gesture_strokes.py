@@ -50,7 +50,7 @@ class GestureBow:
         """Read the entries of a study. Raises ParameterError where one is wrong."""
         for name in BESIDE:
             if name in table.data:
-                table.wrong(name, "belongs into the gesture")
+                table.add_error(name, "belongs into the gesture")
         gesture = table.table("gesture")
         gesture_from(gesture, folder)
         return cls(gesture.data, folder)

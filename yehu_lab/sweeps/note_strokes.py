@@ -126,7 +126,7 @@ class NoteBow:
         rate = table.read("sample_rate", played_rate, 44100.0)
         duration = table.read("duration", number, 0.3, BOW_MOVES, LONGEST, "s")
         if duration == BOW_MOVES:
-            table.wrong("duration", f"expected more than {BOW_MOVES} s")
+            table.add_error("duration", f"expected more than {BOW_MOVES} s")
         fixed = {name: entry.default for name, entry in ENTRIES.items()}
         fixed |= table.table("stroke").each(_checked)
         instrument = table.table("instrument")

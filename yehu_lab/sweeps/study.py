@@ -110,11 +110,11 @@ def study_of(data: Any, folder: Path = Path()) -> Study:
     body, are looked for in a folder. Raises ParameterError where an entry is wrong.
     """
     table = Fields.of(data)
-    table.only(*KNOWN)
+    table.refuse_others(*KNOWN)
     vary = table.table("vary")
     axes = tuple(Fields(_flat(vary.data), vary.document, "vary", vary.key).each(axis_from).values())
     if not axes:
-        vary.wrong("", "nothing is varied: name it under [vary], or by --vary")
+        vary.add_error("", "nothing is varied: name it under [vary], or by --vary")
     bow = (GestureBow if "gesture" in table.data else NoteBow).of(table, folder)
     refine, levels, border = _refinement(table.table("refine"), axes)
     with table.at("refine"):
@@ -154,7 +154,7 @@ def _refinement(table: Fields, axes: Sequence[Axis]) -> tuple[tuple[int, ...], i
     wanted = table.read("axes", choices, [], names)
     levels = table.read("levels", whole, 0, 0, MOST_LEVELS)
     border = table.read("border", choice, BORDERS[0], BORDERS)
-    table.only()
+    table.refuse_others()
     return tuple(sorted(names.index(name) for name in wanted)), levels if wanted else 0, border
 
 

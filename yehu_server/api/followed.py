@@ -14,7 +14,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.following.frames import HOP_S
 from yehu_server.following.heard import hear
 from yehu_server.following.notes import midi_of, strokes_of
-from yehu_server.following.performance import STYLES, Wanted, performed
+from yehu_server.following.performance import STYLES, FollowOptions, performed
 from yehu_server.following.recording import (
     HIGHEST_RATE,
     LOWEST_RATE,
@@ -126,7 +126,7 @@ def follow(
     share = number(correct, "correct", 0.0, 1.0)
     if style not in STYLES:
         raise ParameterError(f"style: {style!r} is not one of {', '.join(STYLES)}")
-    wanted = Wanted(
+    wanted = FollowOptions(
         correct=share,
         keeps_vibrato=bool(keep_vibrato),
         style=STYLES[style],

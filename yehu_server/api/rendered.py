@@ -31,7 +31,7 @@ from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
 from yehu_server.rendering.to_files import NORMALIZED_PEAK
 from yehu_server.rendering.true_peak import TruePeak
 from yehu_server.scores.phrasing import PHRASING
-from yehu_server.scores.reading import How, read_any
+from yehu_server.scores.reading import ReadOptions, read_any
 from yehu_server.scores.score import Score
 
 Sound = NDArray[np.float32]
@@ -219,7 +219,7 @@ def render(
     )
     number_of_song = None if song is None else whole(song, "song", 1, 1 << 16)
     named = () if part is None else (str(part),)
-    how = How.by(playing, named, all_parts=channels is not None)
+    how = ReadOptions.by(playing, named, all_parts=channels is not None)
     if isinstance(score, Score):
         read = score
     elif is_file:

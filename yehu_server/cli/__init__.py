@@ -20,7 +20,7 @@ from yehu_server.cli.terminal import INTERRUPTED, interrupt, warn
 from yehu_server.errors import YehuError
 from yehu_server.util import __version__
 from yehu_server.util.files import why
-from yehu_server.util.signals import when_asked_to_end
+from yehu_server.util.signals import on_termination
 
 OF_ALL: tuple[list[str], ...] = (
     [],
@@ -37,7 +37,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     # No Python that is started here takes modules from the current folder, where anything may lie.
     os.environ["PYTHONSAFEPATH"] = "1"
-    when_asked_to_end(interrupt)
+    on_termination(interrupt)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is to be ignored
         signal.signal(signal.SIGINT, interrupt)
     logging.basicConfig(format="yehu-server: %(message)s", level=logging.WARNING)

@@ -92,7 +92,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.following.heard import hear
     from yehu_server.following.notes import strokes_of
     from yehu_server.following.performance import STYLES as ALL
-    from yehu_server.following.performance import Wanted, performed
+    from yehu_server.following.performance import FollowOptions, performed
     from yehu_server.following.recording import need_follow, recording_of_file
     from yehu_server.playing.stringing import notes_of, range_text
 
@@ -102,7 +102,7 @@ def run(arguments: argparse.Namespace) -> int:
     recording = recording_of_file(arguments.recording, arguments.max_duration)
     with progress_bar(arguments, "listening") as progress:
         heard = hear(recording, progress=progress)
-    wanted = Wanted(
+    wanted = FollowOptions(
         transpose=arguments.transpose,
         correct=arguments.correct,
         keeps_vibrato=arguments.keep_vibrato,

@@ -161,11 +161,11 @@ def _scores(
     Raises DamagedError where --strict refuses one; ScoreError where one cannot be read, or they
     last too long together.
     """
-    from yehu_server.scores.reading import How, read_any
+    from yehu_server.scores.reading import ReadOptions, read_any
 
     longest = arguments.max_duration
     whole = arguments.ensemble is not None or arguments.channel is not None
-    how = How.by(replace(playing, quantities=quantities), arguments.part, all_parts=whole)
+    how = ReadOptions.by(replace(playing, quantities=quantities), arguments.part, all_parts=whole)
     read = partial(read_any, song=arguments.song, strict=arguments.strict, max_duration_h=longest)
     scores = []
     for path in arguments.midi:

@@ -103,14 +103,14 @@ def _plot(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.playing.stringing import notes_of
     from yehu_server.plot.bowed_score import write_bowed_score
     from yehu_server.scores.chosen_parts import numbers_of
-    from yehu_server.scores.written.in_range import usual_parts
+    from yehu_server.scores.written.in_range import default_parts
 
     check_distinct(picture_output(arguments), [arguments.score])
     quantities = instrument_of(arguments)
     within = notes_of(quantities)
     with naming(arguments.score):
         asked = [arguments.part] if arguments.part else []
-        numbers = numbers_of(written.names, asked) if asked else usual_parts(written, within)
+        numbers = numbers_of(written.names, asked) if asked else default_parts(written, within)
         if not numbers or not written.parts[numbers[0]].notes:
             raise ScoreError("has no note to draw")
     compile_all(argparse.Namespace(quiet=False))
@@ -123,14 +123,14 @@ def _write(arguments: argparse.Namespace) -> int:
     from yehu_server.scores.chosen_parts import numbers_of
     from yehu_server.scores.jianpu.writer import jianpu_of
     from yehu_server.scores.musicxml.writer import musicxml_of
-    from yehu_server.scores.transcription import read_to_write
+    from yehu_server.scores.transcription import read_as_written
     from yehu_server.scores.written.notated import times
 
     output, ending = arguments.output, arguments.output.suffix.lower()
     if ending not in (*MUSICXML, *JIANPU):
         raise OutputError(f"{output}: ends in none of {', '.join((*MUSICXML, *JIANPU))}")
     check_distinct({"-o": output}, [arguments.score])
-    written, left = read_to_write(arguments.score, arguments.song, arguments.tempo)
+    written, left = read_as_written(arguments.score, arguments.song, arguments.tempo)
     with naming(arguments.score):
         if arguments.part:
             numbers = numbers_of(written.names, arguments.part)

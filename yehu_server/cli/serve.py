@@ -35,7 +35,7 @@ from yehu_server.cli.terminal import (
 )
 from yehu_server.errors import YehuError
 from yehu_server.live.network import lan_address, lan_interface
-from yehu_server.util.signals import when_asked_to_end
+from yehu_server.util.signals import on_termination
 
 if TYPE_CHECKING:
     from yehu_server.live.page.pages import PageOptions
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     allow_files(FILES_NEEDED)
     ending = _Ending()
     signal.signal(signal.SIGINT, ending)
-    when_asked_to_end(ending)
+    on_termination(ending)
     set_up_log(arguments)
     return _serve(arguments, ending)
 

@@ -43,7 +43,7 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.core.engine.rig import MOST_PARTS
-    from yehu_server.surfaces.catalogue import chosen, file_of, is_fresh, write
+    from yehu_server.surfaces.catalogue import chosen, file_of, is_up_to_date, write
     from yehu_server.surfaces.common_layout import ALL
 
     folder: Path = arguments.output
@@ -58,7 +58,9 @@ def run(arguments: argparse.Namespace) -> int:
         raise ParameterError(f"--part {part}: a stage has parts 1 to {MOST_PARTS}")
     surfaces = chosen(arguments.only)
     if arguments.check:
-        stale = [surface for surface in surfaces if not is_fresh(surface, folder, server, part)]
+        stale = [
+            surface for surface in surfaces if not is_up_to_date(surface, folder, server, part)
+        ]
         for surface in stale:
             print_result(
                 f"{file_of(surface, folder, part)}: stale; "

@@ -1,1 +1,1 @@
-"""Follows a voice or a recording: what is heard of it, and the performance that this becomes."""
+"""The analysis of recordings of one voice, and the performances made of them."""

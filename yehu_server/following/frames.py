@@ -1,8 +1,8 @@
-"""What is heard of each 5 ms: level, change of the spectrum, and pitches that it may have.
+"""Analyse a sound in frames, one each 5 ms: level, bands of the spectrum, candidates of the pitch.
 
-The candidates are the tracker's pitch, simple ratios of it, and the first pitch at which the sound
-is much like itself. Each is refined by the normalised square difference [McLeod], at the most
-periods that fit. The tracker is [SwiftF0], a small network whose weights come with its package;
+The candidates are the tracker's pitch, simple ratios of it, and the first high peak of the
+normalised square difference function (NSDF) [McLeod]. Each is refined by that function, at as many
+periods as fit. The tracker is [SwiftF0], a small network whose weights come with its package;
 docs/follow.md compares it with others.
 """
 
@@ -29,23 +29,23 @@ LOWEST_HZ, HIGHEST_HZ = 50.0, 2200.0
 RATIOS = (1.0, 0.5, 2.0, 1.0 / 3.0, 3.0)  # of the tracker's pitch
 CANDIDATES = len(RATIOS) + 1
 NEARLY_BEST = 0.9  # the first peak this near to the highest is the period, not a multiple of it
-FINE_S = 0.009  # of the lag at which a pitch is refined, about
-SEARCHED = 0.06  # as a part of the period
+FINE_S = 0.009  # about, the lag at which a pitch is refined
+SEARCHED = 0.06  # half of the searched range, as a part of the period
 SILENCE_DB = -120.0
 BATCH = 400  # frames at a time
-# Bands of the change: so many, from the lowest to the highest; a band is compared with what it was
-# some frames before, and changes of quiet ones count less.
+# Spectral flux: number of bands, and their ends; frames over which a band's rise is taken, and the
+# level below which changes do not count.
 BANDS, BAND_HZ = 24, (100.0, 7800.0)
-BACK, FLOOR_DB = 4, -70.0
+FLUX_FRAMES, FLOOR_DB = 4, -70.0
 
 _WINDOW = np.hanning(SHORT + 2)[1:-1]
 _SCALE = 2.0 / (SHORT * np.square(_WINDOW).sum())
 _A_WEIGHTS = _SCALE * a_weighting(np.fft.rfftfreq(SHORT, 1.0 / RATE)) ** 2
-REACH = 40  # lags to either side, the most that is searched
+REACH = 40  # lags to either side, at most, of the searched range
 
 
 def _band_weights() -> Array:
-    """Which of the spectrum belongs to each band: ndarray [shape=(SHORT // 2 + 1, BANDS)]."""
+    """The bins of the spectrum in each band: ndarray [shape=(SHORT // 2 + 1, BANDS)]."""
     hz = np.fft.rfftfreq(SHORT, 1.0 / RATE)
     edges = np.geomspace(*BAND_HZ, BANDS + 1)
     weights = ((hz[:, None] >= edges[:-1]) & (hz[:, None] < edges[1:])).astype(np.float64)
@@ -57,14 +57,14 @@ _BANDS = _band_weights()
 
 @dataclass(frozen=True)
 class Frames:
-    """What was heard of some frames."""
+    """The analysis of some frames."""
 
     level_db: Array  # [shape=(frames,)] A-weighted (dB of full scale)
     bands_db: Array  # [shape=(frames, bands)] levels of the bands of the spectrum
-    # [shape=(frames, CANDIDATES)] the candidates, the tracker's first, and how like the sound is
-    # to itself a period before, up to 1; NaN and 0 where there is none.
+    # [shape=(frames, CANDIDATES)] the candidates, the tracker's first, and their clarity: the NSDF
+    # at their periods, up to 1; NaN and 0 where there is none.
     pitch_hz: Array
-    likeness: Array
+    clarity: Array
     certainty: Array  # [shape=(frames,)] the tracker's
 
 
@@ -79,28 +79,29 @@ def measured(sound: Array, pitch_hz: Array, certainty: Array) -> Frames:
     long = windows.astype(np.float64)
     short = long[:, (LONG - SHORT) // 2 : (LONG + SHORT) // 2]
     power = np.square(np.abs(np.fft.rfft(short * _WINDOW, axis=1)))
-    alike = {False: likeness(long), True: likeness(short)}  # by whether they are short
-    own = most_alike(alike[False])
-    wanted = np.concatenate((pitch_hz[:, None] * np.array(RATIOS), own[:, None]), axis=1)
-    found, like = np.full(wanted.shape, np.nan), np.zeros(wanted.shape)
-    is_within = (wanted >= LOWEST_HZ) & (wanted <= HIGHEST_HZ)
-    for is_short, curves in alike.items():
-        row, column = np.nonzero(is_within & ((wanted >= SHORT_FROM_HZ) == is_short))
+    curves = {False: nsdf(long), True: nsdf(short)}  # by whether they are short
+    own = first_peaks_hz(curves[False])
+    rough = np.concatenate((pitch_hz[:, None] * np.array(RATIOS), own[:, None]), axis=1)
+    found, clarity = np.full(rough.shape, np.nan), np.zeros(rough.shape)
+    is_within = (rough >= LOWEST_HZ) & (rough <= HIGHEST_HZ)
+    for is_short, of_frames in curves.items():
+        row, column = np.nonzero(is_within & ((rough >= SHORT_FROM_HZ) == is_short))
         if len(row):
-            found[row, column], like[row, column] = refined(curves, row, wanted[row, column])
-    heard = _db(power @ _A_WEIGHTS), _db(power @ _BANDS), found, like, certainty
-    return Frames(*(each.astype(np.float32) for each in heard))  # half the memory of an hour
+            refined_hz, peak = refined(of_frames, row, rough[row, column])
+            found[row, column], clarity[row, column] = refined_hz, peak
+    results = _db(power @ _A_WEIGHTS), _db(power @ _BANDS), found, clarity, certainty
+    return Frames(*(each.astype(np.float32) for each in results))  # half the memory of an hour
 
 
 def _db(power: Array) -> Array:
     return 10.0 * np.log10(np.maximum(power, 10.0 ** (SILENCE_DB / 10.0)))
 
 
-def likeness(frames: Array) -> Array:
-    """The normalised square difference of frames, at lags of half samples.
+def nsdf(frames: Array) -> Array:
+    """The normalised square difference function of frames, at lags of half samples.
 
-    Of frames [shape=(frames, samples)] an ndarray [shape=(frames, lags)]: 1 where a frame is the
-    same again, 0 where unrelated.
+    Of frames [shape=(frames, samples)] an ndarray [shape=(frames, lags)]: 1 where a frame
+    repeats itself, 0 where it is unrelated.
     """
     x = frames - frames.mean(axis=1, keepdims=True)
     size = x.shape[1]
@@ -116,10 +117,10 @@ def likeness(frames: Array) -> Array:
     return 2.0 * product / np.maximum(fine, 1e-12)
 
 
-def most_alike(alike: Array) -> Array:
-    """The pitch (Hz) at the first high peak of each curve of `likeness`; 0 where there is none."""
+def first_peaks_hz(curves: Array) -> Array:
+    """The pitch (Hz) at the first high peak of each curve of `nsdf`; 0 where there is none."""
     first, last = int(2 * RATE / HIGHEST_HZ), int(2 * RATE / LOWEST_HZ)
-    part = alike[:, first : last + 1]
+    part = curves[:, first : last + 1]
     inner = part[:, 1:-1]
     is_peak = (inner > part[:, :-2]) & (inner >= part[:, 2:])
     peaks = np.where(is_peak, inner, -np.inf)
@@ -128,33 +129,32 @@ def most_alike(alike: Array) -> Array:
     return np.where(highest > 0.0, 2.0 * RATE / lag, 0.0)
 
 
-def refined(alike: Array, row: Array, wanted_hz: Array) -> tuple[Array, Array]:
-    """The pitches (Hz) of peaks near those wanted, and the likeness a period before.
+def refined(curves: Array, row: Array, rough_hz: Array) -> tuple[Array, Array]:
+    """The pitches (Hz) of peaks near rough ones, and the NSDF at one period of each.
 
-    `alike` is that of `likeness`, and `row` [shape=(pitches,)] tells which of its frames each is
-    of.
+    `curves` are those of `nsdf`, and `row` [shape=(pitches,)] is the frame of each pitch.
     """
-    period = 2.0 * RATE / wanted_hz  # lags
-    near, like = _peak(alike, row, period, np.maximum(SEARCHED * period, 2.0))
-    most = np.minimum(2.0 * FINE_S * RATE, alike.shape[1] - 3.0)
+    period = 2.0 * RATE / rough_hz  # lags
+    near, clarity = _peak(curves, row, period, np.maximum(SEARCHED * period, 2.0))
+    most = np.minimum(2.0 * FINE_S * RATE, curves.shape[1] - 3.0)
     periods = np.maximum(np.floor(most / near), 1.0)
-    lag, _ = _peak(alike, row, periods * near, np.clip(0.02 * periods * near, 2.0, 0.3 * near))
-    return 2.0 * RATE * periods / lag, like
+    lag, _ = _peak(curves, row, periods * near, np.clip(0.02 * periods * near, 2.0, 0.3 * near))
+    return 2.0 * RATE * periods / lag, clarity
 
 
-def _peak(alike: Array, row: Array, lag: Array, reach: Array) -> tuple[Array, Array]:
-    """The place of the highest value near a lag, by a parabola, and that value.
+def _peak(curves: Array, row: Array, lag: Array, reach: Array) -> tuple[Array, Array]:
+    """The lag of the highest value near one, by a parabola, and that value.
 
-    Where it lies at the end of what is searched there is no peak: the lag as it was.
+    Where it lies at the end of the searched range there is no peak, and the lag stays.
     """
     offsets = np.arange(-REACH, REACH + 1)
     places = np.rint(lag).astype(np.int64)[:, None] + offsets
-    places = np.clip(places, 1, alike.shape[1] - 2)
-    values = alike[row[:, None], places]
+    places = np.clip(places, 1, curves.shape[1] - 2)
+    values = curves[row[:, None], places]
     values = np.where(np.abs(offsets) <= np.ceil(reach)[:, None], values, -np.inf)
     best = np.argmax(values, axis=1)
     here = places[np.arange(len(row)), best]
-    left, middle, right = (alike[row, here + step] for step in (-1, 0, 1))
+    left, middle, right = (curves[row, here + step] for step in (-1, 0, 1))
     bend = left - 2.0 * middle + right
     is_peak = (left <= middle) & (middle >= right) & (bend < 0.0)
     safe = np.where(is_peak, bend, -1.0)
@@ -162,22 +162,22 @@ def _peak(alike: Array, row: Array, lag: Array, reach: Array) -> tuple[Array, Ar
     return np.where(is_peak, vertex, lag), middle
 
 
-class Listener:
-    """Listens to a sound that comes in blocks; what it keeps of each frame alone grows."""
+class Analyser:
+    """Analyses a sound that comes in blocks; its memory grows with the number of frames only."""
 
     def __init__(self) -> None:
         from swift_f0 import SwiftF0
 
         # One thread: more give the same, and a pool that spins takes the cores of the rendering.
         self._tracker = SwiftF0(threads=1, spin=False).stream()
-        self._tracked = np.zeros((2, 0))  # pitches (Hz) and how sure they are, each PERIOD_S
+        self._tracked = np.zeros((2, 0))  # pitches (Hz) and certainties, each PERIOD_S
         self._sound = np.zeros(HALF, np.float32)  # half a frame before the first
         self._samples = self._measured = 0
         self._frames: list[Frames] = []
 
     @property
     def time_s(self) -> float:
-        """How much it has heard."""
+        """Duration of the sound so far (s)."""
         return self._samples / RATE
 
     def push(self, samples: Array) -> None:

@@ -1,4 +1,4 @@
-"""Strokes and notes in what was heard: where a bow would change, and where a finger."""
+"""Find strokes and notes in an analysed recording: where a bow would change, and where a finger."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.following.frames import BACK, HOP_S
+from yehu_server.following.frames import FLUX_FRAMES, HOP_S
 from yehu_server.following.heard import Heard
 
 Array = Any
 
 A4_HZ = 440.0
 SHORTEST_S = 0.045  # of a stroke, or of a note in it
-BRIDGED_S = 0.02  # a pitch that is lost for no longer goes on
-# A note that goes one way by so much (semitones), and lasts no longer, is a part of a slide.
+BRIDGED_S = 0.02  # the longest gap in a pitch that is filled
+# A note that moves one way by so much (semitones), and lasts no longer, is a part of a slide.
 PASSING, PASSING_S, ONE_WAY = 0.6, 0.2, 0.8
-# Struck again: the level rises by so much, and on the mean of all bands, in so short a time; and
-# had fallen before.
+# A new stroke: the level rises by so much, and the mean of all bands, in so short a time; and had
+# fallen before.
 RISE_DB, FALL_DB, FLUX_DB, RISE_S, FALL_S = 5.0, 2.0, 2.2, 0.06, 0.15
-# Where the sound stays as much like itself as it was by so much, as with a vibrato, all bands rise
-# by more.
-ALIKE, ALIKE_FLUX_DB = 0.15, 4.0
+# Where the clarity falls by less than this, as with a vibrato, the rise of all bands must be more.
+CLARITY_FALL, CLEAR_FLUX_DB = 0.15, 4.0
 # Cost of a frame of a note, by the distance of its pitch (semitones), and of another note.
 SPREAD, FARTHEST, STEP = 0.35, 6.0, 15.0
-AT_NOTE = 0.3  # semitones from the middle of a note: what lies between two is the way
+AT_NOTE = 0.3  # semitones from the middle of a note, within which a pitch belongs to it
 SMOOTHED, STEADY = 36, 0.01  # frames; semitones a frame
-SLIDE_S = 0.075  # on the way for longer, and it is a slide
-ATTACK_DB, LOOK_S = 3.0, 0.25  # below the highest level near its beginning, a stroke is there
+SLIDE_S = 0.075  # between two notes for longer, and it is a slide
+# An attack ends so far below the highest level within this time.
+ATTACK_DB, ATTACK_WITHIN_S = 3.0, 0.25
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Stroke:
 
     notes: tuple[HeardNote, ...]
     pitch: Array  # [shape=(frames,)] of each of its frames (fractional MIDI note)
-    attack_s: float  # until it has its level
+    attack_s: float  # duration of the attack
 
     @property
     def start(self) -> int:
@@ -79,9 +79,9 @@ def strokes_of(heard: Heard) -> list[Stroke]:
     offset = _offset([pitch[start:end] for start, end in runs])
     strokes = []
     for start, end in runs:
-        for first, last in pairwise([start, *_struck_again(heard, start, end), end]):
+        for first, last in pairwise([start, *_new_strokes(heard, start, end), end]):
             notes = _notes(pitch[first:last], first, offset)
-            near = heard.level_db[first : min(last, first + round(LOOK_S / HOP_S))]
+            near = heard.level_db[first : min(last, first + round(ATTACK_WITHIN_S / HOP_S))]
             attack_s = float(np.argmax(near >= near.max() - ATTACK_DB) * HOP_S)
             strokes.append(Stroke(notes, pitch[first:last], attack_s))
     return strokes
@@ -100,7 +100,7 @@ def _runs(is_voiced: Array) -> list[tuple[int, int]]:
 
 
 def _offset(pitches: list[Array]) -> float:
-    """How far the voice is from the nearest notes of equal temperament, on the mean (semitones)."""
+    """The mean distance (semitones) of a voice from the nearest notes of equal temperament."""
     if not pitches:
         return 0.0
     turns = 0.0j
@@ -112,12 +112,12 @@ def _offset(pitches: list[Array]) -> float:
     return float(np.angle(turns) / (2.0 * np.pi)) if turns else 0.0
 
 
-def _struck_again(heard: Heard, start: int, end: int) -> list[int]:
+def _new_strokes(heard: Heard, start: int, end: int) -> list[int]:
     """The frames of a run at which a new stroke begins."""
-    level, flux, alike = (
-        each[start:end] for each in (heard.level_db, heard.flux_db, heard.likeness)
+    level, flux, clarity = (
+        each[start:end] for each in (heard.level_db, heard.flux_db, heard.clarity)
     )
-    usual = float(np.median(alike))
+    typical = float(np.median(clarity))
     rise, fall = round(RISE_S / HOP_S), round(FALL_S / HOP_S)
     found: list[int] = []
     at = rise // 2
@@ -128,9 +128,9 @@ def _struck_again(heard: Heard, start: int, end: int) -> list[int]:
             low = max(at - rise, 0) + int(np.argmin(before))
             gained = level[at : at + rise].max() - level[low]
             lost = level[max(low - fall, 0) : low + 1].max() - level[low]
-            near = slice(max(low - BACK, 0), at + BACK)
-            is_alike = usual - alike[near].min() < ALIKE and flux[at] < ALIKE_FLUX_DB
-            if gained >= RISE_DB and lost >= FALL_DB and not is_alike:
+            near = slice(max(low - FLUX_FRAMES, 0), at + FLUX_FRAMES)
+            goes_on = typical - clarity[near].min() < CLARITY_FALL and flux[at] < CLEAR_FLUX_DB
+            if gained >= RISE_DB and lost >= FALL_DB and not goes_on:
                 found.append(start + at)
                 at += rise
         at += 1
@@ -138,12 +138,12 @@ def _struck_again(heard: Heard, start: int, end: int) -> list[int]:
 
 
 def _notes(pitch: Array, first: int, offset: float) -> tuple[HeardNote, ...]:
-    """The notes of a stroke, whose first frame has a number."""
+    """The notes of a stroke with these pitches, whose first frame is number `first`."""
     lowest = int(np.floor(pitch.min() - offset))
     states = np.arange(lowest, int(np.ceil(pitch.max() - offset)) + 1) + offset
     distance = np.square((pitch[:, None] - states) / SPREAD)
     cost = np.minimum(0.5 * distance, FARTHEST)
-    path = _cheapest(cost)
+    path = _cheapest_path(cost)
     borders = [0, *(np.flatnonzero(np.diff(path)) + 1).tolist(), len(pitch)]
     borders = _without_short(borders, pitch)
     notes: list[HeardNote] = []
@@ -159,31 +159,31 @@ def _notes(pitch: Array, first: int, offset: float) -> tuple[HeardNote, ...]:
 
 
 def _is_passing(pitch: Array) -> bool:
-    """Whether what was taken for a note is a part of a slide."""
+    """Whether a note is rather a part of a slide."""
     span = float(np.ptp(pitch))
     is_one_way = abs(float(pitch[-1] - pitch[0])) > ONE_WAY * span
     return span > PASSING and is_one_way and len(pitch) * HOP_S < PASSING_S
 
 
-def _cheapest(cost: Array) -> Array:
+def _cheapest_path(cost: Array) -> Array:
     """The cheapest path through states, where each change costs STEP."""
     frames, states = cost.shape
-    came = np.zeros((frames, states), np.int32)
+    previous = np.zeros((frames, states), np.int32)
     best, own = cost[0], np.arange(states)
     for at in range(1, frames):
         other = int(best.argmin())
         changes = best[other] + STEP < best
-        came[at] = np.where(changes, other, own)
+        previous[at] = np.where(changes, other, own)
         best = np.where(changes, best[other] + STEP, best) + cost[at]
     path = np.zeros(frames, np.int64)
     path[-1] = best.argmin()
     for at in range(frames - 1, 0, -1):
-        path[at - 1] = came[at, path[at]]
+        path[at - 1] = previous[at, path[at]]
     return path
 
 
 def _without_short(borders: list[int], pitch: Array) -> list[int]:
-    """Borders of notes, without those too short: each goes to the nearer of its neighbours."""
+    """Borders of notes, where each that is too short is joined to the nearer neighbour."""
     shortest = SHORTEST_S / HOP_S
     while len(borders) > 2:
         lengths = np.diff(borders)
@@ -198,7 +198,7 @@ def _without_short(borders: list[int], pitch: Array) -> list[int]:
 
 
 def _is_slide(pitch: Array, border: int, before: float, after: float) -> bool:
-    """Whether the way from one note to the next, about a border, takes long."""
+    """Whether the pitch takes long from one note to the next, about a border."""
     reach = round(0.3 / HOP_S)
     near = pitch[max(border - reach, 0) : border]
     left = np.flatnonzero(np.abs(near - before) < AT_NOTE)

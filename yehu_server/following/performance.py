@@ -1,6 +1,6 @@
-"""The performance that a recording becomes: notes, bends and dynamics, as a score's events.
+"""Make a performance of an analysed recording: notes, bends and dynamics, as a score's events.
 
-The player does the rest: which string and finger, how the bow is drawn so that it speaks.
+The player does the rest: which string and finger, how the bow is drawn so that the string speaks.
 """
 
 from __future__ import annotations
@@ -22,30 +22,29 @@ from yehu_server.following.heard import Heard
 from yehu_server.following.notes import A4_HZ, AT_NOTE, SLIDE_S, HeardNote, Stroke
 from yehu_server.playing.options import STILL_HANDS
 from yehu_server.playing.tuning import EQUAL, KEYS, STANDARD_A4, Tuning
-from yehu_server.scores.score import Score, ScoreEvent, Setting
+from yehu_server.scores.score import BEND, Score, ScoreEvent, Setting
+from yehu_server.scores.written.mark_settings import ATTACK, INNER, STRING
 
 Array = Any
 
-BEND, DYNAMICS = "/playing/bend", "/playing/dynamics"
-ATTACK, STRING = "/playing/attack", "/playing/string"
-INNER = 1.0
-# A note about the open outer string that is not within so many semitones for most of its time is
-# not played on it.
+DYNAMICS = "/playing/dynamics"
+# A note about the open outer string that is not within so many semitones for this share of its time
+# is not played on it.
 STILL, MOSTLY = 0.12, 0.8
-QUARTER_S = 0.5  # of the beats that the score counts
+QUARTER_S = 0.5  # of the score
 VELOCITY = 80  # neutral: loudness is in the dynamics
 LOUD_SHARE = 0.98  # of the voiced frames: the level of full dynamics
 STEP_FRAMES = 2  # between two bends
-NEAR_CENTS, NEAR_DB = 1.5, 0.4  # closer to what it was, nothing is sent
-SHORTEST_ATTACK_MS, LONGEST_ATTACK_MS, USUAL_ATTACK_MS = 12.0, 200.0, 40.0
-# What is asked for so much later is heard: the finger slides for 8 ms, the string follows. Measured
-# by round trips (bench/following.py).
-LATER_MS = 10.0
+NEAR_CENTS, NEAR_DB = 1.5, 0.4  # smaller changes are not sent
+SHORTEST_ATTACK_MS, LONGEST_ATTACK_MS, DEFAULT_ATTACK_MS = 12.0, 200.0, 40.0
+# Events come so much earlier, since the finger slides for 8 ms and the string follows. Measured by
+# round trips (bench/following.py).
+DELAY_MS = 10.0
 
 
 @dataclass(frozen=True)
 class Style:
-    """How much of what was heard is played, each from 0 to 1."""
+    """Shares, 0 to 1, of the differences in loudness and of the attacks that are played."""
 
     loudness: float = 1.0
     attacks: float = 1.0
@@ -55,12 +54,12 @@ STYLES = {"exact": Style(1.0, 1.0), "gentle": Style(0.6, 0.4), "even": Style(0.0
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """How a recording is to be played."""
+class FollowOptions:
+    """Options of how a recording is played."""
 
     transpose: float | None = None  # semitones; None: by octaves into the range of the instrument
     correct: float = 0.0  # how far notes are moved to the tuning, 0 to 1
-    # Whether a correction moves notes as they are; else it also narrows what moves in them.
+    # Whether a correction only moves notes; else it also narrows their vibrato and slides.
     keeps_vibrato: bool = False
     style: Style = field(default_factory=Style)
     tuning: Tuning = EQUAL
@@ -79,25 +78,25 @@ class Performed:
     notes_moved: int  # by further octaves
 
 
-def performed(heard: Heard, strokes: list[Stroke], wanted: Wanted) -> Performed:
-    """Make a performance of what was heard. Raises ScoreError where there is no note in it."""
+def performed(heard: Heard, strokes: list[Stroke], options: FollowOptions) -> Performed:
+    """Make a performance of a recording. Raises ScoreError where there is no note in it."""
     notes = [note for stroke in strokes for note in stroke.notes]
     if not notes:
         raise ScoreError(f"{heard.name}: there is no note in it")
-    sharper = 12.0 * math.log2(A4_HZ / wanted.a4)
-    semitones = wanted.transpose
+    sharper = 12.0 * math.log2(A4_HZ / options.a4)
+    semitones = options.transpose
     if semitones is None:
-        semitones = _octaves(notes, sharper, wanted.within)
-    maker = _Maker(heard, wanted, sharper + semitones)
+        semitones = _octaves(notes, sharper, options.within)
+    builder = _Builder(heard, options, sharper + semitones)
     for address, value in STILL_HANDS.items():
-        maker.set(0, address, value)
+        builder.set(0, address, value)
     for stroke in strokes:
-        maker.add(stroke)
-    events = sorted(maker.events, key=lambda each: each.time_s)
+        builder.add(stroke)
+    events = sorted(builder.events, key=lambda each: each.time_s)
     duration = max(heard.duration_s, events[-1].time_s)
     name = heard.name.rpartition("/")[2].rpartition(".")[0] or heard.name
     score = Score(tuple(events), duration, name, heard.warnings)
-    return Performed(score, semitones, len(notes), len(strokes), maker.moved)
+    return Performed(score, semitones, len(notes), len(strokes), builder.moved)
 
 
 def _octaves(notes: list[HeardNote], sharper: float, within: NoteRange) -> float:
@@ -113,18 +112,20 @@ def _is_in_range(pitches: Array, within: NoteRange) -> Array:
     return (pitches > within.lowest - 0.5) & (pitches < within.highest + 0.5)
 
 
-class _Maker:
-    """Adds up the events of strokes."""
+class _Builder:
+    """Collects the events of strokes."""
 
-    def __init__(self, heard: Heard, wanted: Wanted, shift: float) -> None:
+    def __init__(self, heard: Heard, options: FollowOptions, shift: float) -> None:
         self.events: list[ScoreEvent] = []
         self.moved = 0
         self._is_inner = False
-        self._wanted, self._shift = wanted, shift
+        self._options, self._shift = options, shift
         voiced = heard.level_db[heard.is_voiced]
         full = float(np.quantile(voiced, LOUD_SHARE)) if len(voiced) else 0.0
-        self._dynamics = dynamics_of(wanted.style.loudness * np.minimum(heard.level_db - full, 0.0))
-        tuned = ((key, wanted.tuning.pitch(key, wanted.a4)) for key in KEYS)
+        self._dynamics = dynamics_of(
+            options.style.loudness * np.minimum(heard.level_db - full, 0.0)
+        )
+        tuned = ((key, options.tuning.pitch(key, options.a4)) for key in KEYS)
         mapped = [(key, pitch) for key, pitch in tuned if pitch is not None]
         self._keys = [key for key, _ in mapped]
         self._pitches = np.array([pitch for _, pitch in mapped])
@@ -165,36 +166,36 @@ class _Maker:
         self._send(stroke.end, "note_off", held)
 
     def _choose_string(self, frame: int, pitch: Array) -> None:
-        """Ask for the inner string where the open outer one would not follow a pitch."""
-        within = self._wanted.within
+        """Set the inner string where the open outer one could not follow a pitch."""
+        within = self._options.within
         off = np.abs(pitch - within.open_notes[1])
         is_about = off.min() < OPEN_WITHIN and pitch.max() <= within.highest_notes[0]
-        wanted = bool(is_about and np.quantile(off[off < OPEN_WITHIN], MOSTLY) > STILL)
-        if wanted != self._is_inner:
-            self.set(frame, STRING, INNER if wanted else None)
-            self._is_inner = wanted
+        is_inner = bool(is_about and np.quantile(off[off < OPEN_WITHIN], MOSTLY) > STILL)
+        if is_inner != self._is_inner:
+            self.set(frame, STRING, INNER if is_inner else None)
+            self._is_inner = is_inner
 
     def _played(self, stroke: Stroke) -> Array:
         """The pitch of each frame of a stroke as it is played."""
         pitch = _stepped(stroke) + self._shift
         first = stroke.start
-        middles, moves, keep = [], [], self._wanted.keeps_vibrato
-        correct = self._wanted.correct
+        middles, moves, keep = [], [], self._options.keeps_vibrato
+        correct = self._options.correct
         for note in stroke.notes:
             part = slice(note.start - first, note.end - first)
             octaves = self._fit(note.pitch + self._shift)
-            wanted = float(self._pitches[np.abs(self._pitches - note.pitch - self._shift).argmin()])
+            _, tuned = self._key(note.pitch + self._shift)
             if not keep:
                 pitch[part] += correct * (note.pitch + self._shift - pitch[part])
             middles.append(0.5 * (note.start + note.end) - first)
-            moves.append(correct * (wanted - note.pitch - self._shift))
+            moves.append(correct * (tuned - note.pitch - self._shift))
             pitch[part] += octaves
         pitch += np.interp(np.arange(len(pitch)), middles, moves)
-        return np.clip(pitch, *self._wanted.within.ends)
+        return np.clip(pitch, *self._options.within.ends)
 
     def _fit(self, pitch: float) -> float:
         """The octaves (semitones) that bring a note into range."""
-        octaves, (lowest, highest) = 0.0, self._wanted.within.ends
+        octaves, (lowest, highest) = 0.0, self._options.within.ends
         while pitch + octaves <= lowest - 0.5:
             octaves += 12.0
         while pitch + octaves >= highest + 0.5:
@@ -208,9 +209,9 @@ class _Maker:
         return self._keys[place], float(self._pitches[place])
 
     def _attack_ms(self, stroke: Stroke) -> float:
-        share = self._wanted.style.attacks
+        share = self._options.style.attacks
         heard = min(max(1e3 * stroke.attack_s, SHORTEST_ATTACK_MS), LONGEST_ATTACK_MS)
-        return float(USUAL_ATTACK_MS * (heard / USUAL_ATTACK_MS) ** share)
+        return float(DEFAULT_ATTACK_MS * (heard / DEFAULT_ATTACK_MS) ** share)
 
     def set(self, frame: int, address: str, value: float | None) -> None:
         """Set a parameter at a frame."""
@@ -221,12 +222,12 @@ class _Maker:
         self._add(frame, mido.Message(kind, note=key, velocity=velocity))
 
     def _add(self, frame: int, message: Any) -> None:
-        time_s = max(frame * HOP_S - 1e-3 * LATER_MS, 0.0)
+        time_s = max(frame * HOP_S - 1e-3 * DELAY_MS, 0.0)
         self.events.append(ScoreEvent(time_s, message, time_s / QUARTER_S))
 
 
 def _stepped(stroke: Stroke) -> Array:
-    """The pitch of a stroke, where fingers step at once what a voice does in a moment."""
+    """The pitch of a stroke, where short transitions of a voice become steps of the fingers."""
     pitch, reach = stroke.pitch.copy(), round(SLIDE_S / HOP_S)
     for before, after in pairwise(stroke.notes):
         if after.is_slide:
@@ -242,7 +243,7 @@ def _stepped(stroke: Stroke) -> Array:
 
 
 def _groups(notes: tuple[HeardNote, ...]) -> list[tuple[int, int]]:
-    """Frames of what is played with one key: notes that a slide connects."""
+    """The frames of notes that slides connect, which are played with one key."""
     groups: list[tuple[int, int]] = []
     for note in notes:
         if note.is_slide and groups:

@@ -1,4 +1,4 @@
-"""Recordings to follow: read in blocks, made one channel at the rate of the analysis."""
+"""Read recordings to follow in blocks, as one channel at the sample rate of the analysis."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ LOWEST_RATE, HIGHEST_RATE = 8000, 768_000
 MOST_CHANNELS = 64
 SHORTEST_S = 0.05
 BLOCK_S = 2.0
-QUIETEST = 1e-4  # peak of full scale, under which there is only silence
+QUIETEST = 1e-4  # RMS of full scale, below which there is only silence
 WORKING_PEAK = 0.5  # to which sounds are scaled: as the pitch tracker was trained
-CLIPPED, CLIPPED_SHARE = 0.999, 1e-3  # of the peak; of all samples
-# A mean of channels with less than this share of the power of the loudest is not taken: one side is
-# dead, or both cancel each other.
+CLIPPED, CLIPPED_SHARE = 0.999, 1e-3  # of full scale; of all samples, for a warning
+# Where the mean of the channels has less than this share of the loudest's power, that one is taken:
+# the others are silent, or cancel each other.
 LEAST_SHARE = 0.3
 
 
@@ -41,12 +41,12 @@ class Recording:
 
 
 @dataclass(frozen=True)
-class Form:
-    """How one channel is made of a recording, and what is wrong with it."""
+class Downmix:
+    """The weights that make one channel of a recording, and warnings about it."""
 
     weights: Array  # [shape=(channels,)] of the channels, with the scale to WORKING_PEAK
-    offset: float  # what is subtracted then
-    gain_db: float  # by how much louder the result is
+    offset: float  # subtracted then: the mean
+    gain_db: float  # of the result, over the recording
     duration_s: float
     warnings: tuple[str, ...]
 
@@ -78,7 +78,7 @@ def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Rec
     def blocks() -> Iterator[Array]:
         try:
             with open_regular(path) as data, soundfile.SoundFile(data) as file:
-                # Not its own blocks(), which wants to know how long a sound is: some do not tell.
+                # Not its own blocks(), which needs the length of a sound: some files have none.
                 while len(block := file.read(size, dtype="float32", always_2d=True)):
                     yield block
         except OSError as error:
@@ -115,8 +115,8 @@ def _check_rate(name: str, rate: int) -> None:
         raise ScoreError(f"{name}: {rate} Hz is not within {LOWEST_RATE} to {HIGHEST_RATE} Hz")
 
 
-def form_of(recording: Recording) -> Form:
-    """Read a recording once, to tell how one channel is made of it.
+def downmix_of(recording: Recording) -> Downmix:
+    """Read a recording once, to decide how one channel is made of it.
 
     Raises ScoreError where it cannot be followed: too short, silent, or with samples that are no
     numbers.
@@ -160,17 +160,17 @@ def form_of(recording: Recording) -> Form:
     scale = WORKING_PEAK / peak
     gain_db = 20.0 * math.log10(scale)
     offset = float(weights @ offsets) * scale
-    return Form(weights * scale, offset, gain_db, duration_s, tuple(warnings))
+    return Downmix(weights * scale, offset, gain_db, duration_s, tuple(warnings))
 
 
-def heard_blocks(recording: Recording, form: Form) -> Iterator[Array]:
+def mono_blocks(recording: Recording, downmix: Downmix) -> Iterator[Array]:
     """Yield a recording as one channel at RATE: ndarrays [shape=(frames,), float32]."""
     import soxr
 
     resampler = soxr.ResampleStream(recording.rate, RATE, 1, dtype="float32")
-    weights = form.weights.astype(np.float32)
+    weights = downmix.weights.astype(np.float32)
     for block in recording.blocks():
-        yield resampler.resample_chunk(block @ weights - np.float32(form.offset))
+        yield resampler.resample_chunk(block @ weights - np.float32(downmix.offset))
     yield resampler.resample_chunk(np.zeros(0, np.float32), last=True)
 
 

@@ -13,7 +13,7 @@ from yehu_server.errors import ParameterError, did_you_mean
 
 @dataclass(frozen=True)
 class BowStep:
-    """What the bow does from a time on in a note: `at_ms` and a share of the note's length.
+    """A move of the bow at a time of a note: `at_ms` and a share of the note's length.
 
     `speed`, `weight`: factors on the bow's speed and on its pressure.
     `ramp_ms`, `ramp_share`: time in which it comes to that: ms, and a share of the note's length.
@@ -33,7 +33,7 @@ class BowStep:
 
 @dataclass(frozen=True)
 class FingerStep:
-    """Where a finger goes at a time of a note: semitones from the note's pitch.
+    """A move of a finger at a time of a note: to semitones from the note's pitch.
 
     `glide_ms`: the time in which it slides there; 0: the next finger is put down there.
     """

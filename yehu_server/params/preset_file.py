@@ -68,16 +68,16 @@ def preset_from(document: Document, name: str) -> Preset:
     table = document.toml()
     version = table.data.get("version")
     if type(version) is not int or version < 1:
-        table.wrong("version", f"not a preset file: it has no line version = {VERSION}")
+        table.add_error("version", f"not a preset file: it has no line version = {VERSION}")
     elif version > VERSION:
         reason = f"{version} is newer than this program, which reads up to {VERSION}"
-        table.wrong("version", reason)
-    document.finish()
+        table.add_error("version", reason)
+    document.raise_errors()
     about = table.read("about", words, "")
     program = table.read("program", whole, None, 1, PROGRAMS)
     found = table.table("values").each(_value)
-    table.only("version")
-    document.finish()
+    table.refuse_others("version")
+    document.raise_errors()
     values = {address: value for address, value in found.items() if value is not None}
     unknown = tuple(address for address in found if address not in values)
     return Preset(name, values, about, program, unknown)

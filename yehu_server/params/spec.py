@@ -14,7 +14,7 @@ TURNED_ON = 0.5  # a switch is on from here
 
 
 class Curve(Enum):
-    """How 0..1 is mapped to a range."""
+    """A mapping of 0..1 to a range."""
 
     LIN = "linear"
     EXP = "exp"  # equal ratios; the range must be above zero
@@ -42,7 +42,7 @@ class Curve(Enum):
 
 
 class Place(Enum):
-    """Where the value is held: in the compiled engine, or in the player's record."""
+    """The holder of the value: the compiled engine, or the player's record."""
 
     ENGINE = "engine"
     PLAYER = "player"

@@ -119,11 +119,11 @@ def with_bases(path: Path, contents: MappingFile) -> Mapping:
         table = document_of(files[-1]).read(files[-1], MOST_BYTES).toml()
         below = _named(base, files[-1]) if _is_name(base) else None
         if below is None:
-            table.wrong("base", _unknown(base))
+            table.add_error("base", _unknown(base))
         elif any(_is_same(below, file) for file in files):
             chain = ", ".join(file.stem for file in (*files, below))
-            table.wrong("base", f"the bases go round in a circle ({chain})")
-        table.document.finish()
+            table.add_error("base", f"the bases go round in a circle ({chain})")
+        table.document.raise_errors()
         assert below is not None  # noqa: S101 - or the line before has raised
         files.append(below)
         layers.append(read_mapping_file(below))

@@ -169,8 +169,8 @@ def mapping_file_from(table: Fields) -> MappingFile:
         start=read_settings(table.table("start")),
         binds=tuple(filter(None, map(_bind, table.tables("bind", 0, MOST_BINDS)))),
     )
-    table.only()
-    table.document.finish()
+    table.refuse_others()
+    table.document.raise_errors()
     return mapping_file
 
 
@@ -199,13 +199,13 @@ def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
         if may_replace
         else (),
     )
-    table.only()
+    table.refuse_others()
     if not {"source", "target"} <= table.data.keys():
-        table.wrong("", "needs a source and a target")
+        table.add_error("", "needs a source and a target")
     if source is None or param is None:
         return None
     for name, reason in _conflicts(bind, table.data):
-        table.wrong(name, reason)
+        table.add_error(name, reason)
     return bind
 
 

@@ -22,7 +22,7 @@ from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.plot import png
 from yehu_server.plot.strokes import Stroke, strokes_of
-from yehu_server.scores.jianpu.figures import SIGN_OF, figure_of, signed_lengths
+from yehu_server.scores.jianpu.figures import FIGURE_OF, figure_of, notatable_lengths
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written import layout
 from yehu_server.scores.written.in_range import moved_part
@@ -91,7 +91,7 @@ def write_bowed_score(
         panels = figure.subplots(len(rows), 1, squeeze=False)[:, 0]
         for axes, row in zip(panels, rows, strict=True):
             page.draw(axes, row)
-        told = [written.title, written.names[number], octaves.told]
+        told = [written.title, written.names[number], octaves.summary]
         title = png.plain(" - ".join(filter(None, told)))
         panels[0].set_title(f"{title}\n{page.head}", loc="left", fontsize=12, color=INK)
 
@@ -158,7 +158,7 @@ class _Page:
         axes.text(x, 0.0, text, fontsize=15, color=INK, ha="center", va="center")
         factor = cut.factor
         length = cut.length / factor
-        beam, dots = SIGN_OF.get(length, ("", ""))
+        beam, dots = FIGURE_OF.get(length, ("", ""))
         lines = " qsdh".index(beam) if beam else 0
         for line in range(lines):
             y = -0.55 - 0.16 * line
@@ -233,7 +233,7 @@ class _Page:
 
 
 def _lengths(piece: Piece) -> list[Fraction]:
-    return [piece.factor * each for each in signed_lengths(piece.length / piece.factor, piece)]
+    return [piece.factor * each for each in notatable_lengths(piece.length / piece.factor, piece)]
 
 
 def _width(piece: Piece) -> float:

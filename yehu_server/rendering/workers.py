@@ -21,7 +21,7 @@ from typing import Any
 
 from yehu_server.errors import YehuError
 from yehu_server.util.files import why
-from yehu_server.util.signals import when_asked_to_end
+from yehu_server.util.signals import on_termination
 
 ProgressCallback = Callable[[float, float], None]  # what is done, and of what
 Perform = Callable[[Any, ProgressCallback], Any]
@@ -124,7 +124,7 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
 def _serve(connection: Connection, perform: Perform) -> None:
     """Do tasks as they come, until the parent hangs up."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent
-    when_asked_to_end(_interrupt)
+    on_termination(_interrupt)
     tasks: queue.SimpleQueue[Any] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(connection, tasks), daemon=True).start()
     told = [time.monotonic()]

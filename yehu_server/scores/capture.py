@@ -44,7 +44,7 @@ class Capture:
     build: dict[str, str]
     version: int = VERSION
     wishes: Any = field(default_factory=lambda: np.zeros(0, WISH))  # by frame
-    players: Any = field(default_factory=lambda: np.zeros(0, np.int64))  # whose they are, from 0
+    players: Any = field(default_factory=lambda: np.zeros(0, np.int64))  # of each wish, from 0
     gaps: dict[int, int] = field(
         default_factory=dict
     )  # frame of each rest, and since when it was silent
@@ -85,7 +85,7 @@ def read_capture(path: Path) -> Capture:
 
 
 def _rows(path: Path, lines: Iterator[str], capture: Capture) -> Iterator[tuple[WishRow, int]]:
-    """The wishes of all lines and whose they are; what else is told goes into the capture."""
+    """The wishes of all lines, with their players; other entries go into the capture."""
     count = 0
     for number, line in enumerate(lines, start=2):
         try:

@@ -1,4 +1,4 @@
-"""What a captured session starts from: the first line of its file; docs/capture.md describes it."""
+"""The first line of a capture: what the session starts from; docs/capture.md describes it."""
 
 from __future__ import annotations
 
@@ -31,9 +31,8 @@ from yehu_server.scores.gesture import sample_rate
 from yehu_server.util.documents import Fields
 from yehu_server.util.values import brief, choice, flag, number, whole
 
-LOWEST_A4, HIGHEST_A4 = 1.0, 20000.0  # Hz
-
-FORMER_NOTES = 28  # in the tables of bowing of captures made when fiddles had fewer high notes
+A4_RANGE = 1.0, 20000.0  # Hz, of files
+FORMER_NOTES = 28  # in the bowing tables of captures made when fiddles had fewer high notes
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ class SessionStart:
 
 
 def session_start_of(instruments: Sequence[Instrument], *, has_room: bool) -> SessionStart:
-    """What instruments on one stage started from."""
+    """The start of a session of instruments on one stage."""
     return SessionStart(tuple(instrument.spec for instrument in instruments), has_room)
 
 
@@ -90,11 +89,11 @@ def _as_data(start: InstrumentSpec, before: Sequence[InstrumentSpec]) -> dict[st
     }
 
 
-def _changes(own: Any, usual: Any) -> dict[str, Any]:
-    """What differs between quantities, as ``physics.quantities.override`` takes it."""
+def _changes(own: Any, default: Any) -> dict[str, Any]:
+    """The differences between quantities, as ``physics.quantities.override`` takes them."""
     changes: dict[str, Any] = {}
     for item in fields(own):
-        value, base = getattr(own, item.name), getattr(usual, item.name)
+        value, base = getattr(own, item.name), getattr(default, item.name)
         if value == base:
             continue
         if isinstance(value, Body):
@@ -108,7 +107,7 @@ def _changes(own: Any, usual: Any) -> dict[str, Any]:
 
 
 def read_header(table: Fields, version: int) -> SessionStart:
-    """What a session starts from, by the first line of its capture.
+    """The start of a session, from the first line of its capture.
 
     Raises YehuError, that of the document, or ParameterError, where a value is missing, none or out
     of range.
@@ -156,7 +155,7 @@ def _calibration(data: Any, before: Sequence[InstrumentSpec]) -> Calibration | N
         return None
     if type(data) is int:
         return before[whole(data, 1, len(before)) - 1].calibration
-    Fields(data).need("a4", number, LOWEST_A4, HIGHEST_A4)
+    Fields(data).need("a4", number, *A4_RANGE)
     return read_measured(data)
 
 

@@ -70,8 +70,8 @@ class LiveCapture:
     """Writes the wishes that players fulfil to a file; a full disk ends only the capture.
 
     The ensemble's instruments must report their wishes (``Instrument.report_wishes``) from the
-    first frame on; `has_room` tells whether it plays in a room. `on_message` is called with a line
-    when the capture ends by itself. Raises OutputError where the file cannot be written, or is
+    first frame on; `has_room`: whether it plays in a room. `on_message` is called with a line when
+    the capture ends by itself. Raises OutputError where the file cannot be written, or is
     there.
     """
 

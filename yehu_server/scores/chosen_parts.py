@@ -1,4 +1,4 @@
-"""Which parts of a score are played: those that are asked for by name, else the usual ones."""
+"""Choose the parts of a score that are played: those asked for by name, else the default ones."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
-from yehu_server.scores.octaves import Sounding, octaves_of
+from yehu_server.scores.octaves import NoteSpan, octaves_of
 from yehu_server.scores.phrases import REST_S
 from yehu_server.scores.score import Score, ScorePart, notes_of
 from yehu_server.scores.smf.tunings import RPN_FINE, transposed_keys
@@ -27,24 +27,24 @@ def numbers_of(names: Sequence[str], asked: Sequence[str]) -> list[int]:
     by its number from 1. Raises ScoreError where there is no such part, or several.
     """
     found: set[int] = set()
-    for wish in asked:
-        word = wish.strip().casefold()
+    for text in asked:
+        word = text.strip().casefold()
         same = [at for at, name in enumerate(names) if name.casefold() == word]
         begun = [at for at, name in enumerate(names) if name.casefold().startswith(word)]
         if not (same or begun) and word.isdecimal() and 0 < int(word[:6]) <= len(names):
             same = [int(word[:6]) - 1]
         chosen = same or begun
         if not chosen:
-            more = did_you_mean(wish, names) or f"; it has {listed(names)}"
-            raise ScoreError(f"has no part {wish}{more}")
+            more = did_you_mean(text, names) or f"; it has {listed(names)}"
+            raise ScoreError(f"has no part {text}{more}")
         if len(chosen) > 1:
-            raise ScoreError(f"part {wish} may be {listed([names[at] for at in chosen])}")
+            raise ScoreError(f"part {text} may be {listed([names[at] for at in chosen])}")
         found.add(chosen[0])
     return sorted(found)
 
 
 def listed(names: Sequence[str]) -> str:
-    """Names for a line: the first of them, and how many others there are."""
+    """Names for a line: the first of them, and the number of others."""
     shown = [*names[:MOST_NAMED]]
     if len(names) > MOST_NAMED:
         shown.append(f"{len(names) - MOST_NAMED} others")
@@ -60,17 +60,17 @@ def says_mpe(score: Score) -> bool:
     )
 
 
-def usual_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
+def default_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
     """Return the part of a score of MIDI that carries the tune, and name the others in a remark.
 
     Parts that take turns stay together.
     """
     names = [part.name for part in score.parts]
-    parts: list[list[Sounding]] = [[] for _ in names]
+    parts: list[list[NoteSpan]] = [[] for _ in names]
     for note in notes_of(score):
         at = _number_of(score.parts, note.channel, score.events[note.begins].track)
         if at is not None:
-            parts[at].append(Sounding(note.start_s, note.end_s, (float(note.key),)))
+            parts[at].append(NoteSpan(note.start_s, note.end_s, (float(note.key),)))
     tune = melodic_part(names, parts, within)
     if tune is None or take_turns(parts):
         return score
@@ -79,7 +79,7 @@ def usual_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
     return replace(_only(score, [score.parts[tune]]), remarks=(*score.remarks, line))
 
 
-def told_others(written: Written, plays: Sequence[int]) -> str:
+def others_line(written: Written, plays: Sequence[int]) -> str:
     """A line that names the parts that are played and the others; empty where there are none."""
     names = written.names
     others = [names[at] for at, part in enumerate(written.parts) if part.notes and at not in plays]
@@ -123,19 +123,19 @@ def midi_in_range(score: Score, *, is_mpe: bool, within: NoteRange = YEHU) -> Sc
         name = "" if is_mpe else _name(score.parts, note.channel, track)
         by_part.setdefault(name, []).append(number)
     moves: dict[int, int] = {}  # of events, in semitones
-    told = []
+    parts = []
     for name, numbers in by_part.items():
         own = [notes[number] for number in numbers]
         octaves = octaves_of(
             [
-                Sounding(note.start_s, note.end_s, (note.key + transposed.get(note.begins, 0.0),))
+                NoteSpan(note.start_s, note.end_s, (note.key + transposed.get(note.begins, 0.0),))
                 for note in own
             ],
             REST_S,
             within,
         )
-        if octaves.told:
-            told.append((name, octaves.told))
+        if octaves.summary:
+            parts.append((name, octaves.summary))
         for note, by in zip(own, octaves.of_notes, strict=True):
             if 0 <= note.key + 12 * by <= 127:
                 moves[note.begins] = 12 * by
@@ -152,7 +152,7 @@ def midi_in_range(score: Score, *, is_mpe: bool, within: NoteRange = YEHU) -> Sc
             events.append(replace(event, message=message))
         else:
             events.append(event)
-    line = line_of([("" if len(by_part) == 1 else name, how) for name, how in told], within)
+    line = line_of([("" if len(by_part) == 1 else name, how) for name, how in parts], within)
     remarks = (*score.remarks, *filter(None, (line.replace(":  ", ": "),)))
     return replace(score, events=tuple(events), remarks=remarks)
 

@@ -1,6 +1,6 @@
-"""Read an ensemble file: who plays which part of a score, on what, and where on the stage.
+"""Read an ensemble file: the players of a score's parts, their instruments and places on the stage.
 
-The format is described in docs/ensemble.md.
+docs/ensemble.md describes the format.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class PartEntry:
     preset: str | None = None
     mapping: str | None = None
     instrument: Path | None = None
-    section: int | None = None  # number of people who play it
+    section: int | None = None  # number of its players
     seed: int | None = None
     pan: float | None = None
     distance: float | None = None
@@ -43,7 +43,7 @@ class PartEntry:
 
 @dataclass(frozen=True)
 class EnsembleFile:
-    """What an ensemble file says: its parts, and its room, by values or the name of a preset."""
+    """An ensemble file: its parts, and its room, by values or the name of a preset."""
 
     path: Path
     parts: tuple[PartEntry, ...]
@@ -65,8 +65,8 @@ def read_ensemble(path: Path) -> EnsembleFile:
         room_name=room if isinstance(room, str) else None,
         room_where=document.where(("room",)),
     )
-    table.only("room")
-    document.finish()
+    table.refuse_others("room")
+    document.raise_errors()
     return ensemble
 
 
@@ -76,15 +76,15 @@ def _room(table: Fields) -> Values:
         for name in ROOM_ENTRIES
         if name in table.data
     ]
-    table.only(*ROOM_ENTRIES)
+    table.refuse_others(*ROOM_ENTRIES)
     if table.data and "size" not in table.data:
-        table.wrong("", "needs a size in metres")
+        table.add_error("", "needs a size in metres")
     return tuple(values)
 
 
 def _part(table: Fields, folder: Path) -> PartEntry:
     if not {"channel", "track"} & table.data.keys():
-        table.wrong("", "needs a channel or a track")
+        table.add_error("", "needs a channel or a track")
     channel = table.read("channel", whole, None, 1, CHANNELS)
     part = PartEntry(
         table.where(),
@@ -101,7 +101,7 @@ def _part(table: Fields, folder: Path) -> PartEntry:
         gain_db=table.read("gain", find("/output/gain").within, 0.0),
         settings=read_settings(table.table("set")),
     )
-    table.only()
+    table.refuse_others()
     return part
 
 

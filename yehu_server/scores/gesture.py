@@ -135,18 +135,18 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
         for name, control in CONTROLS.items()
         if name in controls.data
     }
-    controls.only(*CONTROLS)
+    controls.refuse_others(*CONTROLS)
     shortest = min(string.L for string in quantities.strings)
     for name in ("bow_position", "finger_position"):
         with controls.at(name):
             curve = curves.get(name, ((0.0, CONTROLS[name].default),))
-            _stays_within(curve, quantities.bridge_x)
+            _check_within(curve, quantities.bridge_x)
     has_pluck, has_hammer = (table.data.get(name) is not None for name in ("pluck", "hammer"))
     pluck = _pluck(table.table("pluck"), quantities.bridge_x, shortest) if has_pluck else None
     hammer: Curve = ()
     if has_hammer:
         hammer = table.read("hammer", _curve, (), -HAMMER_LIMIT, HAMMER_LIMIT, "N")
-    table.only("pluck", "hammer")
+    table.refuse_others("pluck", "hammer")
     return Gesture(rate, duration, quantities, curves, pluck, hammer, table.data)
 
 
@@ -168,11 +168,11 @@ def _pluck(table: Fields, bridge: float, shortest: float) -> Pluck:
         position=table.read("position", number, 0.1, 0.0, shortest, "m"),
         amplitude=table.read("amplitude", number, 0.001, -0.1, 0.1, "m"),
     )
-    table.only()
+    table.refuse_others()
     if pluck.string != table.data.get("string", 1):
-        table.wrong("string", f"expected 1 or 2, got {table.data['string']}")
+        table.add_error("string", f"expected 1 or 2, got {table.data['string']}")
     if pluck.position in (0.0, bridge, shortest):
-        table.wrong("position", f"{pluck.position} m is not on the free string")
+        table.add_error("position", f"{pluck.position} m is not on the free string")
     return pluck
 
 
@@ -194,7 +194,7 @@ def _curve(value: Any, lo: float, hi: float, unit: str) -> Curve:
     return tuple(points)
 
 
-def _stays_within(curve: Curve, bridge: float) -> None:
+def _check_within(curve: Curve, bridge: float) -> None:
     for _, position in curve:
         if not 0.0 < position < bridge:
             raise ParameterError(

@@ -1,6 +1,6 @@
-"""Write what is played of a score as a MIDI file; of a written one, with its tempi and bars.
+"""Write a performance as a MIDI file; of a written score, with its tempi and bars.
 
-What bow and fingers do becomes the controllers of the mapping `keyboard`, as far as that has them.
+Moves of bow and fingers become controllers of the mapping `keyboard`, as far as that has them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from yehu_server.scores.written.tempo import WrittenClock
 TICKS = 960  # a quarter note
 BEND_RANGE = 24  # semitones
 SLIDE_POINTS = 16  # of a written slide
-SLOWEST = 0xFFFFFF  # microseconds a quarter, the longest that a file can say
+SLOWEST = 0xFFFFFF  # microseconds a quarter, the most that a file can have
 
 
 def midi_file(written: Written, score: Score) -> tuple[bytes, dict[str, int]]:
@@ -131,7 +131,7 @@ class _Translation:
         for bind in load(DEFAULT).binds:
             if bind.source.startswith("cc "):
                 self._binds.setdefault(bind.target, bind)
-        self._bent: dict[int, float] = {}  # semitones, of channels whose bend range is told
+        self._bent: dict[int, float] = {}  # semitones, of channels whose bend range is set
 
     def messages(self, setting: Setting) -> Iterator[mido.Message]:
         """The messages of a setting; none where MIDI cannot say it."""
@@ -161,7 +161,7 @@ class _Translation:
             yield (at_s if point else 0.0), _wheel(channel, bend)
 
     def _range(self, channel: int) -> Iterator[mido.Message]:
-        """Tell the range of a channel's bends, if it is not told."""
+        """Set the bend range of a channel, if it is not set yet."""
         if channel not in self._bent:
             self._bent[channel] = 0.0
             for control, number in ((101, 0), (100, 0), (6, BEND_RANGE), (38, 0)):

@@ -1,4 +1,4 @@
-"""By how many octaves the notes of a part are moved, so that its tune keeps its shape.
+"""Move the notes of a part by octaves into range, so that its tune keeps its shape.
 
 The whole part moves so that the fewest notes are left outside the instrument's range; where some
 are, a phrase may move otherwise, from rest to rest. What is outside still is left to the player,
@@ -18,7 +18,7 @@ NUMBERS = ("", "an octave", "two octaves", "three octaves", "four octaves", "fiv
 
 
 @dataclass(frozen=True)
-class Sounding:
+class NoteSpan:
     """A note to be moved: when it sounds, in any unit, and its pitches (MIDI notes)."""
 
     begin: float
@@ -32,14 +32,14 @@ class Octaves:
 
     of_notes: tuple[int, ...]  # for each note
     whole: int  # of most of the part
-    # How many phrases there are, and how many of them are moved otherwise.
+    # Number of phrases, and of those that are moved otherwise.
     phrases: int
     others: int
     outside: int  # notes that are outside the range still
 
     @property
-    def told(self) -> str:
-        """What is done, such as "an octave up, 2 of 9 phrases otherwise"; empty for nothing."""
+    def summary(self) -> str:
+        """The moves as text, such as "an octave up, 2 of 9 phrases otherwise"; empty for none."""
         words = []
         if self.whole:
             words.append(f"{NUMBERS[abs(self.whole)]} {'up' if self.whole > 0 else 'down'}")
@@ -51,8 +51,8 @@ class Octaves:
         return ", ".join(words)
 
 
-def octaves_of(notes: Sequence[Sounding], rest: float, within: NoteRange = YEHU) -> Octaves:
-    """Return by how many octaves each of some notes is moved.
+def octaves_of(notes: Sequence[NoteSpan], rest: float, within: NoteRange = YEHU) -> Octaves:
+    """Return the octaves by which each note is moved.
 
     Notes come in the order of their beginnings. A silence of `rest`, in their unit, parts phrases;
     the instrument has the notes `within`.
@@ -69,24 +69,24 @@ def octaves_of(notes: Sequence[Sounding], rest: float, within: NoteRange = YEHU)
     return Octaves(tuple(of_notes), whole, len(phrases), others, outside)
 
 
-def _best(notes: Sequence[Sounding], usual: int, within: NoteRange) -> int:
-    """The octaves that leave the fewest notes outside, and of these the nearest to the usual."""
+def _best(notes: Sequence[NoteSpan], preferred: int, within: NoteRange) -> int:
+    """The octaves that leave the fewest notes outside, and of these the nearest to `preferred`."""
 
     def cost(octaves: int) -> tuple[int, int, int]:
-        return _outside(notes, octaves, within), abs(octaves - usual), -octaves
+        return _outside(notes, octaves, within), abs(octaves - preferred), -octaves
 
     return min(range(-FARTHEST, FARTHEST + 1), key=cost)
 
 
-def _outside(notes: Sequence[Sounding], octaves: int, within: NoteRange) -> int:
-    """How many notes are outside the range, moved by so many octaves."""
+def _outside(notes: Sequence[NoteSpan], octaves: int, within: NoteRange) -> int:
+    """Number of notes outside the range, when moved by so many octaves."""
     lowest = within.lowest - OPEN_WITHIN - 12.0 * octaves
     highest = within.highest + OPEN_WITHIN - 12.0 * octaves
     return sum(not all(lowest < pitch < highest for pitch in note.pitches) for note in notes)
 
 
-def _phrases(notes: Sequence[Sounding], rest: float) -> list[list[Sounding]]:
-    phrases: list[list[Sounding]] = []
+def _phrases(notes: Sequence[NoteSpan], rest: float) -> list[list[NoteSpan]]:
+    phrases: list[list[NoteSpan]] = []
     end = 0.0
     for note in notes:
         if not phrases or note.begin - end >= rest:

@@ -1,4 +1,4 @@
-"""Where the phrases of a voice begin and end, from its notes alone."""
+"""Divide a voice into phrases, by its notes alone."""
 
 from __future__ import annotations
 
@@ -31,5 +31,5 @@ def _ends_before(phrase: list[ScoreNote], lengths: list[float], note: ScoreNote)
         return True
     if note.beat - phrase[0].beat >= LONGEST_PHRASE_BEATS:
         return True
-    usual = lengths[len(lengths) // 2]
-    return len(phrase) > 3 and last.length_s > LONG_NOTE * usual
+    median_s = lengths[len(lengths) // 2]
+    return len(phrase) > 3 and last.length_s > LONG_NOTE * median_s

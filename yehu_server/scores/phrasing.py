@@ -1,7 +1,7 @@
-"""Shapes files with bare notes as a player would: phrases, accents, and bows of several notes.
+"""Shape scores of plain notes as a player would: phrases, accents, and bows of several notes.
 
-docs/playing.md tells the rules and where they are from. Pitches stay, and onsets but for
-``rubato``. What a file marks itself is left alone, channel by channel: velocities that differ,
+docs/playing.md has the rules and their sources. Pitches stay, and onsets but for ``rubato``. What
+a file marks itself is left alone, channel by channel: velocities that differ,
 controllers of loudness, notes that overlap. A page marks loudness in few places: between them
 phrases are shaped, but less.
 """
@@ -25,7 +25,7 @@ LOUDNESS = {1, 2, 7, 11}  # controllers: modulation, breath, volume, expression
 PEDALS = {64, 68}  # sustain, legato
 LEFT_HAND = {1, 5, 65, 76, 77, 78, 84}  # modulation, portamento, vibrato
 LEFT_HAND_MESSAGES = {"pitchwheel", "aftertouch", "polytouch"}
-FEW_VELOCITIES = 3  # so many different ones are no marks of a person
+FEW_VELOCITIES = 3  # so many different ones are no dynamics
 MARKED_SPAN = 12  # between the softest and the loudest
 
 # In steps of velocity at full phrasing: from the ends of a phrase to its middle, and on the beats;
@@ -63,12 +63,12 @@ def _phrased(score: Score, amount: float, playing: PlayingOptions) -> Score:
             if event.message.type == "control_change" and event.message.channel == channel
         }
         phrases = phrases_of(notes)
-        usual = sum(note.key for note in notes) / len(notes)
+        mean_key = sum(note.key for note in notes) / len(notes)
         is_marked = is_shaped(notes, controllers)
         if score.is_written or not is_marked:
             depth = amount * (BETWEEN_MARKS if is_marked else 1.0)
             for phrase in phrases:
-                velocities.update(shaped(phrase, score, depth, usual, is_marked=is_marked))
+                velocities.update(shaped(phrase, score, depth, mean_key, is_marked=is_marked))
         is_free = not is_bowed(notes, controllers)
         if amount >= LEAST_FOR_BOWS and is_free:
             for phrase in phrases:
@@ -104,12 +104,12 @@ def is_fingered(score: Score) -> bool:
 
 
 def shaped(
-    phrase: Sequence[ScoreNote], score: Score, amount: float, usual: float, *, is_marked: bool
+    phrase: Sequence[ScoreNote], score: Score, amount: float, mean_key: float, *, is_marked: bool
 ) -> dict[int, int]:
     """Return the velocities of a phrase's notes, by the numbers of their events.
 
     An arch whose mean is where the velocities were, accents of the metre, and higher notes louder.
-    `usual` is the mean pitch of the part (MIDI note). Where loudness `is_marked`, each run of notes
+    `mean_key` is that of the part (MIDI note). Where loudness `is_marked`, each run of notes
     that are marked alike keeps its mean, and pitch does nothing.
     """
     begin, end = phrase[0].start_s, phrase[-1].start_s
@@ -120,7 +120,7 @@ def shaped(
         arch = [4.0 * at * (1.0 - at) for at in places]  # a parabola, 1 in the middle
         middle = sum(arch) / len(arch)
         for note, height in zip(notes, arch, strict=True):
-            higher = 0.0 if is_marked else HIGHER * (note.key - usual)
+            higher = 0.0 if is_marked else HIGHER * (note.key - mean_key)
             higher = min(max(higher, -MOST_HIGHER), MOST_HIGHER)
             change = amount * (ARCH * (height - middle) + accent(note.beat, score) + higher)
             velocities[note.begins] = min(max(round(note.velocity + change), 1), 127)

@@ -1,4 +1,4 @@
-"""Read a score of any kind that is known, by its first bytes or its ending, or one part of it."""
+"""Read a score of any known format, by its first bytes or its ending; or one part of it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, naming
 from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
-from yehu_server.scores.written.in_range import moved, usual_parts
+from yehu_server.scores.written.in_range import default_parts, moved
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.performed import leading_notes, performed
 from yehu_server.util.files import open_regular
@@ -38,25 +38,25 @@ def tracks_with_notes(scores: Iterable[Score]) -> list[int]:
 def part_name(scores: Sequence[Score], channel: int | None = None, track: int | None = None) -> str:
     """The name of what a channel or a track plays; its number where it has none of its own."""
     found = {(part.channel, part.track): part.name for score in scores[:1] for part in score.parts}
-    usual = f"channel {channel + 1}" if channel is not None else f"track {track}"
+    numbered = f"channel {channel + 1}" if channel is not None else f"track {track}"
     for (its_channel, its_track), name in found.items():
         if its_channel == channel is not None or its_track == track is not None:
             return name
     if channel is None:
-        return usual
+        return numbered
     tracks = {event.track for event in _notes(scores[:1]) if event.message.channel == channel}
-    return found.get((None, min(tracks)), usual) if len(tracks) == 1 else usual
+    return found.get((None, min(tracks)), numbered) if len(tracks) == 1 else numbered
 
 
 def percussion_notes(scores: Iterable[Score]) -> int:
-    """How many notes channel 10 has."""
+    """Number of notes on channel 10."""
     return sum(event.message.channel == PERCUSSION for event in _notes(scores))
 
 
 def part_of(score: Score, channel: int | None = None, track: int | None = None) -> Score:
     """The part of a score that one channel and one track have; None means any.
 
-    What moves all, such as a reset, is in each part. Controllers that a file has in a track
+    Messages for all, such as a reset, are in each part. Controllers that a file has in a track
     without notes belong to all tracks that play on their channel.
     """
     keeps: list[Callable[[ScoreEvent], bool]] = []
@@ -107,8 +107,8 @@ BYTE_ORDER_MARKS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
 
 
 @dataclass(frozen=True)
-class How:
-    """How a score is to be played."""
+class ReadOptions:
+    """Which parts of a score are played, and in which range."""
 
     parts: Sequence[str] = ()  # names of the parts to play
     # Whether all are played where none is named: else the one that carries the tune.
@@ -118,8 +118,10 @@ class How:
     within: NoteRange = YEHU  # the notes of the instrument
 
     @classmethod
-    def by(cls, playing: PlayingOptions, parts: Sequence[str] = (), *, all_parts: bool) -> How:
-        """How a player with some options plays it."""
+    def by(
+        cls, playing: PlayingOptions, parts: Sequence[str] = (), *, all_parts: bool
+    ) -> ReadOptions:
+        """The options with which a player of some options reads a score."""
         return cls(
             parts,
             all_parts=all_parts,
@@ -129,12 +131,12 @@ class How:
         )
 
 
-USUAL = How()
+DEFAULT = ReadOptions()
 
 
 def read_any(
     path: str | os.PathLike[str],
-    how: How = USUAL,
+    options: ReadOptions = DEFAULT,
     *,
     song: int | None = None,
     strict: bool = False,
@@ -151,51 +153,51 @@ def read_any(
     if not is_written(path):
         score = read_score(path, song=song, strict=strict, max_duration_h=max_duration_h)
         with naming(path):
-            return _midi_played(score, how)
+            return _midi_played(score, options)
     written = read_written(path, song)
     with naming(path):
-        score = performed_part(written, how)
+        score = performed_part(written, options)
         check_duration(score.duration_s, max_duration_h)
         if strict and score.warnings:
             raise DamagedError(f"{score.warnings[0]}: refused by --strict")
     return replace(score, name=path.stem)
 
 
-def performed_part(written: Written, how: How = USUAL) -> Score:
+def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
     """Return the parts of a written score that are asked for, as they are played.
 
     Raises ScoreError where there is no such part, or no note.
     """
-    if how.parts:
-        plays = chosen_parts.numbers_of(written.names, how.parts)
-    elif how.all_parts:
+    if options.parts:
+        plays = chosen_parts.numbers_of(written.names, options.parts)
+    elif options.all_parts:
         plays = [*range(len(written.parts))]
     else:
-        plays = usual_parts(written, how.within)
-    remarks = [*written.remarks, chosen_parts.told_others(written, plays)]
-    if how.in_range:
-        written, line = moved(written, plays, how.within)
+        plays = default_parts(written, options.within)
+    remarks = [*written.remarks, chosen_parts.others_line(written, plays)]
+    if options.in_range:
+        written, line = moved(written, plays, options.within)
         remarks.append(line)
     remarks = [*filter(None, remarks)]
-    score = performed(replace(written, remarks=tuple(remarks)), plays, how.within)
-    leading = leading_notes(written, next(iter(usual_parts(written)), 0))
+    score = performed(replace(written, remarks=tuple(remarks)), plays, options.within)
+    leading = leading_notes(written, next(iter(default_parts(written)), 0))
     return replace(score, delays=delays_of(leading))
 
 
-def _midi_played(score: Score, how: How) -> Score:
-    is_mpe = how.is_mpe or chosen_parts.says_mpe(score)
-    tune = score if is_mpe else chosen_parts.usual_midi_part(score)
+def _midi_played(score: Score, options: ReadOptions) -> Score:
+    is_mpe = options.is_mpe or chosen_parts.says_mpe(score)
+    tune = score if is_mpe else chosen_parts.default_midi_part(score)
     score = replace(score, delays=midi_delays(score, tune))
-    if how.parts:
-        score = chosen_parts.parts_chosen(score, how.parts)
-    elif len(score.parts) > 1 and not (how.all_parts or is_mpe):
-        score = chosen_parts.usual_midi_part(score, how.within)
+    if options.parts:
+        score = chosen_parts.parts_chosen(score, options.parts)
+    elif len(score.parts) > 1 and not (options.all_parts or is_mpe):
+        score = chosen_parts.default_midi_part(score, options.within)
     if not has_notes([score]):
         line = "has controllers and no note: nothing sounds"
         return replace(score, remarks=(*score.remarks, line))
-    if not how.in_range:
+    if not options.in_range:
         return score
-    return chosen_parts.midi_in_range(score, is_mpe=is_mpe, within=how.within)
+    return chosen_parts.midi_in_range(score, is_mpe=is_mpe, within=options.within)
 
 
 def read_written(path: Path, song: int | None = None) -> Written:
@@ -255,7 +257,7 @@ def _beginning(path: Path) -> bytes:
     try:
         with open_regular(path) as file:
             return file.read(64)
-    except (OSError, ValueError):  # the reader tells what is wrong
+    except (OSError, ValueError):  # the reader reports it
         return b""
 
 

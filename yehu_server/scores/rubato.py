@@ -1,7 +1,7 @@
-"""The tempo of a score gives way: slower where a phrase begins and ends, and at the very end.
+"""Rubato: a tempo that is slower where a phrase begins and ends, and at the end of the score.
 
-All parts move together, by the phrases of the one that leads. A phrase begins when it is written:
-what is slow at its ends is made up for in its middle. Arches of tempo: [Friberg], [Todd]; the end:
+All parts move together, by the phrases of the leading one. A phrase begins where it is written:
+the time that its ends take is regained in its middle. Arches of tempo: [Friberg], [Todd]; the end:
 [FribergSundberg]. Amounts are small, by ear.
 """
 
@@ -51,7 +51,7 @@ def is_in_time(notes: Sequence[ScoreNote]) -> bool:
 
 
 def delays_of(notes: Sequence[ScoreNote]) -> Delays:
-    """How much later than written a score is at full rubato: points of seconds, in order.
+    """The delays of a score at full rubato: points of seconds as written and delays (s), in order.
 
     `notes`: of the part that leads. Between the points are straight lines.
     """
@@ -72,7 +72,7 @@ def delays_of(notes: Sequence[ScoreNote]) -> Delays:
 
 
 def _with_end(notes: Sequence[ScoreNote], points: list[tuple[float, float]]) -> Delays:
-    """The same with the last beats slower, where their tempo is steady."""
+    """The delays with those of the last beats added, where their tempo is steady."""
     close = [note for note in notes if note.beat > notes[-1].beat - 2.0 * LAST_BEATS - NEAR]
     tempi = _tempi(close)
     is_steady = bool(tempi) and 0.0 < max(tempi) <= (1.0 + SAME_TEMPO) * min(tempi)
@@ -102,7 +102,7 @@ def _slowed(seconds: float, begin: float, last: float, held_s: float) -> float:
 
 
 def _tempi(notes: Sequence[ScoreNote]) -> list[float]:
-    """How long a quarter is (s), from each note to the next."""
+    """The length of a quarter (s), from each note to the next."""
     return [
         (after.start_s - one.start_s) / (after.beat - one.beat)
         for one, after in pairwise(notes)
@@ -122,7 +122,7 @@ def at_time(points: Sequence[tuple[float, float]], seconds: float) -> float:
 
 
 def delayed(score: Score, amount: float) -> Score:
-    """Return a score whose tempo gives way, as far as an amount of 0 to 1; at 0 as it is."""
+    """Return a score with rubato of an amount, 0 to 1; at 0 as it is."""
     if amount == 0.0 or not score.delays:
         return score
 

@@ -1,4 +1,4 @@
-"""A score to be played: messages at times and settings, whatever file they come from; its notes."""
+"""A score to be played, from any kind of file: messages and settings at times; and its notes."""
 
 from __future__ import annotations
 
@@ -63,12 +63,12 @@ BEND = "/playing/bend"  # address of what lies between keys
 
 @dataclass(frozen=True)
 class Setting:
-    """Stands among the messages of a score's events."""
+    """A parameter that a score sets, among the messages of its events."""
 
     address: str  # of `params/table.py`
     value: float | None  # None: what it was before the score set it
     channel: int = 0  # of the part, counted from 0; where that is not played, nothing is set
-    is_passing: bool = False  # until the next note begins, which takes the hands as they are
+    is_passing: bool = False  # holds until the next note begins, which ends it without a move
     type: ClassVar[str] = "setting"  # as messages have one
 
 
@@ -146,12 +146,12 @@ class Score:
     warnings: tuple[str, ...] = ()
     metres: tuple[Metre, ...] = (COMMON_TIME,)  # the time signatures, in order
     parts: tuple[ScorePart, ...] = ()  # those with notes, as far as they are known
-    # One line each, of what a player should know and no file is to blame for.
+    # One line each, which a player should know and which are no fault of a file.
     remarks: tuple[str, ...] = ()
-    keys: tuple[KeySignature, ...] = ()  # in order, as far as they are told
-    # How much later it is at full rubato (``rubato.delays_of``); none where that is not known.
+    keys: tuple[KeySignature, ...] = ()  # in order, as far as they are known
+    # Its delays at full rubato (``rubato.delays_of``); none where that is not known.
     delays: tuple[tuple[float, float], ...] = ()
-    is_written: bool = False  # from a page, whose marks of loudness are for stretches of notes
+    is_written: bool = False  # from notation, whose dynamics hold for many notes
 
     def bar_at(self, beat: float) -> tuple[float, float]:
         """Return the beat from which the metre of a beat holds, and the quarters in its bars."""
@@ -189,7 +189,7 @@ def concatenate(scores: Sequence[Score]) -> Score:
 
 @dataclass(frozen=True)
 class ScoreNote:
-    """A note of a score, by the numbers of its events; times in seconds."""
+    """A note of a score, with the numbers of its events; times in seconds."""
 
     # Numbers of its note-on and its note-off; `ends` is -1 where nothing ends it.
     begins: int
@@ -203,7 +203,7 @@ class ScoreNote:
 
     @property
     def length_s(self) -> float:
-        """How long it lasts (s)."""
+        """Its duration (s)."""
         return self.end_s - self.start_s
 
 

@@ -1,7 +1,7 @@
-"""Slides over leaps, in files: the finger leaves a note before its end, to be there on the beat.
+"""Add slides over leaps to scores: the finger leaves a note early, to arrive on the beat.
 
-A file tells what comes. So the bow that plays the first note carries the slide, and the second
-note begins where it is written, on its pitch; live a slide can only follow the beat
+In a score the next note is known. So the bow that plays the first note carries the slide, and the
+second note begins where it is written, on its pitch; live a slide can only follow the beat
 (``core.player.phrasing``, which has its size too). The slide is a bend of the first note.
 """
 
@@ -38,13 +38,13 @@ ARTICULATION, STRING = "/playing/articulation", "/playing/string"
 PHRASING, PIZZICATO, PORTAMENTO = "/playing/phrasing", "/playing/pizzicato", "/playing/portamento"
 INNER = 1.0
 SEEN = (ARTICULATION, BEND, PHRASING, PIZZICATO, PORTAMENTO, STRING)
-STEP_S = 0.005  # between the points of a slide: the player looks no more often
+STEP_S = 0.005  # between the points of a slide: the player's own interval
 BEND_S = 1e-3 * find(BEND).smooth_ms  # after which the finger is at a point
 GAP_S = 0.03  # between two notes that a slide may join
 
 
 def logistic(part: float) -> float:
-    """How far a slide has come, 0 to 1, at a share of its time, 0 to 1; as `gestures.slid`."""
+    """The share of a slide, 0 to 1, that is done at a share of its time; as `gestures.slid`."""
 
     def curve(at: float) -> float:
         return 1.0 / (1.0 + exp(-STEEP * (2.0 * at - 1.0)))
@@ -63,7 +63,7 @@ class Slide(NamedTuple):
 
 
 class _State(NamedTuple):
-    """What parameters of SEEN are, and how often the bend was set until then."""
+    """The values of the parameters of SEEN, and how often the bend was set until then."""
 
     values: Mapping[str, float]
     bends: int
@@ -138,17 +138,17 @@ def _pitch(note: ScoreNote, playing: PlayingOptions, within: NoteRange) -> float
 
 
 def _states(score: Score, playing: PlayingOptions, amount: float) -> dict[int, _State]:
-    """What parameters are as notes begin, by the numbers of their events."""
+    """The values of parameters as notes begin, by the numbers of the notes' events."""
     start = {**dict(playing.mapping.start), PHRASING: amount}
     start |= {**dict(playing.start), **dict(playing.settings)}
-    usual = {address: start.get(address, find(address).default) for address in SEEN}
-    by_channel: dict[int, _State] = defaultdict(lambda: _State(usual, 0))
+    defaults = {address: start.get(address, find(address).default) for address in SEEN}
+    by_channel: dict[int, _State] = defaultdict(lambda: _State(defaults, 0))
     found = {}
     for number, event in enumerate(score.events):
         message = event.message
         if isinstance(message, Setting) and message.address in SEEN:
             values, bends = by_channel[message.channel]
-            value = usual[message.address] if message.value is None else message.value
+            value = defaults[message.address] if message.value is None else message.value
             own = _State({**values, message.address: value}, bends + (message.address == BEND))
             by_channel[message.channel] = own
         elif message.type == "note_on":

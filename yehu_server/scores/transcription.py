@@ -1,4 +1,4 @@
-"""From notes that were played to a written score: a MIDI file, or the capture of a session.
+"""Transcribe notes that were played, a MIDI file or a capture, to a written score.
 
 Each beat is divided as simply as its onsets allow; a note that is let go a little before the next
 one begins is written up to that. Notes that overlap are slurred, as they are played. Loudness
@@ -40,16 +40,17 @@ from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Mark, Note, Part, Sign, Span, Tempo, Written
 
-# Parts of a beat, and what each costs (quarters) beside the distance of its onsets.
+# Parts of a beat, and the cost of each (quarters), added to the distance of its onsets.
 DIVISIONS = {1: 0.0, 2: 0.004, 4: 0.008, 3: 0.012, 8: 0.016, 6: 0.02, 5: 0.03, 12: 0.03, 16: 0.03,
              7: 0.04}  # fmt: skip
-EXACT, PROGRAMS = 0.002, (48, 20, 28)  # quarters from such parts, where a program wrote it
-EARLY = 0.02  # quarters before a beat that belong to it
-HAND = 4.0  # costs are so much higher where a hand played
+# Onsets within so many quarters of such parts were written by a program.
+EXACT, PROGRAMS = 0.002, (48, 20, 28)
+EARLY = 0.02  # quarters; an onset so much before a beat belongs to it
+HAND = 4.0  # factor on costs, where it was played by hand
 SHARE = 0.65  # of the time to the next note, from which a note is written up to it
 OVERLAP = 0.002  # quarters that notes sound together, from which they are slurred
 STEP, ACCENT = 10.0, 12.0  # of velocity: to another dynamic, and of a single note
-TEMPI = range(60, 181)  # quarters a minute, among which that of a capture is sought
+TEMPI = range(60, 181)  # quarters a minute, candidates for the tempo of a capture
 # Costs of a tempo (semiquavers): of a quaver off the beat, half that of others; and of an octave.
 OFF_BEAT, UNUSUAL = 0.03, 0.02
 SAME_TEMPO = 0.01  # share
@@ -58,8 +59,8 @@ SELECTING = {0, 6, 32, 38, *range(96, 102), *range(120, 128)}  # of banks, param
 
 
 @dataclass(frozen=True)
-class Heard:
-    """A note that was played: from and to a time, in seconds or quarters, and how."""
+class PlayedNote:
+    """A note that was played; times in seconds or quarters."""
 
     begin: float
     end: float
@@ -67,7 +68,7 @@ class Heard:
     velocity: int = 0
 
 
-def read_to_write(
+def read_as_written(
     path: Path, song: int | None = None, tempo: float | None = None
 ) -> tuple[Written, dict[str, int]]:
     """Read any score, MIDI file or capture as a written score, and what is left out of it.
@@ -94,7 +95,7 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
     higher = transposed_keys(score)
     by_frames = any(math.isnan(note.beat) for note in notes)
     names = (ScorePart(""),) if says_mpe(score) or not score.parts else score.parts
-    voices: list[tuple[str, list[Heard]]] = [(part.name, []) for part in names]
+    voices: list[tuple[str, list[PlayedNote]]] = [(part.name, []) for part in names]
     for note in notes:
         track = score.events[note.begins].track
         at = next(
@@ -105,7 +106,7 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
             end = score.events[note.ends].beat if note.ends >= 0 else note.beat + 1.0
             begin, end = (note.start_s, note.end_s) if by_frames else (note.beat, end)
             pitch = note.key + higher.get(note.begins, 0.0)
-            voices[at][1].append(Heard(begin, end, pitch, note.velocity))
+            voices[at][1].append(PlayedNote(begin, end, pitch, note.velocity))
     lost = Counter(filter(None, map(_left_out, score.events)))
     if by_frames:
         written, more = written_of_seconds(voices, tempo)
@@ -116,7 +117,7 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
 
 
 def _left_out(event: ScoreEvent) -> str:
-    """What of a message no notation has a sign for; empty where it has."""
+    """The name of a message that notation has no sign for; empty where it has one."""
     message = event.message
     if message.type == "control_change":
         return "" if message.control in SELECTING else f"controller {message.control}"
@@ -127,7 +128,7 @@ def written_of_capture(
     capture: Capture, tempo: float | None = None
 ) -> tuple[Written, dict[str, int]]:
     """Return what the players of a capture played as a written score, and what is left out."""
-    voices: list[tuple[str, list[Heard]]] = []
+    voices: list[tuple[str, list[PlayedNote]]] = []
     lost: Counter[str] = Counter()
     players = len(capture.beginning.players)
     for player in range(players):
@@ -141,8 +142,10 @@ def written_of_capture(
     return written, {**+lost, **more}
 
 
-def _of_wishes(wishes: Sequence[tuple[int, int, int, float, float]], rate: float) -> list[Heard]:
-    heard: list[Heard] = []
+def _of_wishes(
+    wishes: Sequence[tuple[int, int, int, float, float]], rate: float
+) -> list[PlayedNote]:
+    heard: list[PlayedNote] = []
     held: dict[tuple[int, float], tuple[float, float, int]] = {}
     velocity = 0
     for frame, kind, index, value, other in wishes:
@@ -152,14 +155,14 @@ def _of_wishes(wishes: Sequence[tuple[int, int, int, float, float]], rate: float
         for ended in list(held) if kind == STOP else [key] if kind in (BEGIN, END) else []:
             begin, pitch, loud = held.pop(ended, (now, 0.0, 0))
             if now > begin:
-                heard.append(Heard(begin, now, pitch, loud))
+                heard.append(PlayedNote(begin, now, pitch, loud))
         if kind == BEGIN:
             held[key] = now, other, velocity
     return sorted(heard, key=lambda each: each.begin)
 
 
 def written_of_seconds(
-    voices: Sequence[tuple[str, Sequence[Heard]]], tempo: float | None = None
+    voices: Sequence[tuple[str, Sequence[PlayedNote]]], tempo: float | None = None
 ) -> tuple[Written, dict[str, int]]:
     """Return a score of notes in seconds; without a tempo, at that which fits their onsets."""
     begins = sorted(note.begin for _, heard in voices for note in heard)
@@ -179,7 +182,8 @@ def written_of_seconds(
 def _tempo_of(begins: Sequence[float]) -> float:
     """The tempo at which onsets lie nearest to semiquavers.
 
-    Of those alike, that at which more of them are beats and quavers, and the most usual.
+    Of those alike, that at which more of them are beats and quavers, and the nearest to
+    DEFAULT_TEMPO.
     """
 
     def cost(tempo: int) -> float:
@@ -187,8 +191,8 @@ def _tempo_of(begins: Sequence[float]) -> float:
         near = [round(place) for place in places]
         off = sum(abs(place - at) for place, at in zip(places, near, strict=True))
         odd = sum((at % 2 > 0) + (at % 4 > 0) for at in near)
-        usual = abs(log2(tempo / notated.USUAL_TEMPO))
-        return (off + OFF_BEAT * odd) / len(places) + UNUSUAL * usual
+        distance = abs(log2(tempo / notated.DEFAULT_TEMPO))
+        return (off + OFF_BEAT * odd) / len(places) + UNUSUAL * distance
 
     return float(min(TEMPI, key=cost))
 
@@ -197,15 +201,15 @@ def _tempo_of(begins: Sequence[float]) -> float:
 
 
 def _written(
-    voices: Sequence[tuple[str, Sequence[Heard]]],
+    voices: Sequence[tuple[str, Sequence[PlayedNote]]],
     tempi: Sequence[Tempo],
     metres: Sequence[Metre],
-    told: Sequence[KeySignature] = (),
+    signatures: Sequence[KeySignature] = (),
 ) -> tuple[Written, int]:
     """A score of notes in quarters, and how many lower notes of chords it leaves out.
 
-    Key signatures count that were `told`, but C alone, which sequencers write unasked: then those
-    that the notes fit.
+    The keys are the `signatures` of the file; where there are none but C, which sequencers write
+    unasked, the one that the notes fit.
     """
     begins = sorted({note.begin for _, heard in voices for note in heard})
     if not begins:
@@ -220,7 +224,7 @@ def _written(
         chords += more
         if part.notes:
             parts.append(part)
-    signs = {each.beat.limit_denominator(960): each.fifths for each in told}
+    signs = {each.beat.limit_denominator(960): each.fifths for each in signatures}
     if not any(signs.values()):
         signs = {Fraction(0): _fifths_of(parts)}
     keys = tuple(KeySignature(*each) for each in ({Fraction(0): 0} | signs).items())
@@ -228,7 +232,7 @@ def _written(
 
 
 class _Grid:
-    """How each beat is divided."""
+    """The division of each beat."""
 
     def __init__(self, begins: Sequence[float]) -> None:
         exact = sum(
@@ -257,8 +261,8 @@ class _Grid:
         return whole + Fraction(round((beat - whole) * division), division)
 
 
-def _part(name: str, heard: Sequence[Heard], grid: _Grid) -> tuple[Part, int]:
-    by_beat: dict[Fraction, Heard] = {}
+def _part(name: str, heard: Sequence[PlayedNote], grid: _Grid) -> tuple[Part, int]:
+    by_beat: dict[Fraction, PlayedNote] = {}
     chords = 0
     for note in heard:
         at = grid.near(note.begin)

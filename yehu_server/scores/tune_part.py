@@ -1,4 +1,4 @@
-"""Which part of a score carries its tune, as far as its name and its notes tell."""
+"""Find the part of a score that carries the tune, by its name and its notes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
-from yehu_server.scores.octaves import Sounding, octaves_of
+from yehu_server.scores.octaves import NoteSpan, octaves_of
 
 NAMED = re.compile(
     r"melod|\btune\b|\blead\b|\bvocals?\b|^voice\b|\bsing|\bsolo\b|旋律|主奏|领奏|領奏|唱",
@@ -21,12 +21,12 @@ LOWEST_TUNE = 50.0  # mean of MIDI notes, below which a part is a bass
 LONG_ENOUGH = 0.25  # of the time that the longest part sounds
 IN_RANGE = 0.9  # of its notes, moved by octaves as a whole
 TOGETHER, MOST_TOGETHER = 0.02, 0.15  # quarters or seconds apart, and share of notes: chords
-REPEATED = 0.8  # share of notes that are the one before: a drone or an accompaniment
+REPEATED = 0.8  # share of notes equal to the one before, from which a part is an accompaniment
 OVERLAP = 0.05  # of the shorter part's sound, from which two parts sound at once
 
 
 def melodic_part(
-    names: Sequence[str], parts: Sequence[Sequence[Sounding]], within: NoteRange = YEHU
+    names: Sequence[str], parts: Sequence[Sequence[NoteSpan]], within: NoteRange = YEHU
 ) -> int | None:
     """Return the number, from 0, of the first part that is a melody; else the first with notes.
 
@@ -41,7 +41,7 @@ def melodic_part(
     return next(iter([*named, *tunes, *sounding]), None)
 
 
-def take_turns(parts: Sequence[Sequence[Sounding]]) -> bool:
+def take_turns(parts: Sequence[Sequence[NoteSpan]]) -> bool:
     """Whether no two of the parts sound at once, so that one instrument can play them all."""
     return not any(
         _together(one, other) > OVERLAP * min(_sounds(one), _sounds(other))
@@ -50,11 +50,11 @@ def take_turns(parts: Sequence[Sequence[Sounding]]) -> bool:
     )
 
 
-def _sounds(notes: Sequence[Sounding]) -> float:
+def _sounds(notes: Sequence[NoteSpan]) -> float:
     return sum(note.end - note.begin for note in notes)
 
 
-def _is_tune(notes: Sequence[Sounding], longest: float, within: NoteRange) -> bool:
+def _is_tune(notes: Sequence[NoteSpan], longest: float, within: NoteRange) -> bool:
     pitches = [max(note.pitches) for note in notes if note.pitches]
     if not pitches or _sounds(notes) <= LONG_ENOUGH * longest:
         return False
@@ -69,7 +69,7 @@ def _is_tune(notes: Sequence[Sounding], longest: float, within: NoteRange) -> bo
     )
 
 
-def _together(one: Sequence[Sounding], other: Sequence[Sounding]) -> float:
+def _together(one: Sequence[NoteSpan], other: Sequence[NoteSpan]) -> float:
     """For how long notes of both sound, of parts in the order of their beginnings."""
     together, at = 0.0, 0
     for note in one:

@@ -1,1 +1,1 @@
-"""Control surfaces from the parameter table: TouchOSC, Max, Pd, Open Stage Control, a page."""
+"""Control surfaces from the parameter table: TouchOSC, Max, Pd, Open Stage Control, HTML."""

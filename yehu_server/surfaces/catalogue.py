@@ -1,4 +1,4 @@
-"""The list of surfaces; writes them into a folder and tells which files there are out of date."""
+"""List the surfaces, write them into a folder, and check whether files there are up to date."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ from yehu_server.util.files import write_bytes
 
 @dataclass(frozen=True)
 class Surface:
-    """A file for one program: made for a server at an address.
+    """A file for one program.
 
-    `content` gives what two files must share to be the same.
+    `make`: returns its bytes, for a server at an address.
+    `content`: returns the part of a file by which two are compared.
     """
 
     name: str
@@ -38,7 +39,7 @@ SURFACES = (
 
 
 def chosen(names: Sequence[str]) -> list[Surface]:
-    """Return surfaces by their files' names, all without any; raises OutputError for others."""
+    """Return surfaces by their file names, or all; raises OutputError for unknown names."""
     known = {surface.name: surface for surface in SURFACES}
     for name in names:
         if name not in known:
@@ -52,18 +53,18 @@ def file_of(surface: Surface, folder: Path, part: int = ALL) -> Path:
     return path if part == ALL else path.with_stem(f"{path.stem}-part-{part}")
 
 
-def made(surface: Surface, server: Address, part: int) -> bytes:
-    """What a surface's file has, for a server and a part."""
+def bytes_of(surface: Surface, server: Address, part: int) -> bytes:
+    """The bytes of a surface's file, for a server and a part."""
     with for_part(part):
         return surface.make(server)
 
 
 def write(surface: Surface, folder: Path, server: Address = OSC_ADDRESS, part: int = ALL) -> Path:
     """Write a surface's file, replacing an older one; return its path. Raises OutputError."""
-    return write_bytes(file_of(surface, folder, part), made(surface, server, part))
+    return write_bytes(file_of(surface, folder, part), bytes_of(surface, server, part))
 
 
-def is_fresh(
+def is_up_to_date(
     surface: Surface, folder: Path, server: Address = OSC_ADDRESS, part: int = ALL
 ) -> bool:
     """Whether a folder holds the file as it would be written now."""
@@ -71,4 +72,4 @@ def is_fresh(
         there = surface.content(file_of(surface, folder, part).read_bytes())
     except (OSError, zlib.error):
         return False
-    return there == surface.content(made(surface, server, part))
+    return there == surface.content(bytes_of(surface, server, part))

@@ -23,7 +23,7 @@ HARDEST_N = 2.0
 
 
 class Frame(NamedTuple):
-    """A place and a size: of a page, of what is on it, or as shares of a page."""
+    """A position and a size: of a page, of a control on it, or as shares of a page."""
 
     x: float
     y: float
@@ -31,7 +31,7 @@ class Frame(NamedTuple):
     height: float
 
     def on(self, page: Frame, gap: float = 0.0) -> Frame:
-        """The frame on a page of which this one has the shares, with a gap around it."""
+        """The place on a page of a frame that is given as shares, less a gap around it."""
         x, y = page.x + self.x * page.width, page.y + self.y * page.height
         width, height = self.width * page.width, self.height * page.height
         return Frame(x + gap, y + gap, width - 2 * gap, height - 2 * gap)
@@ -58,14 +58,14 @@ class Axis:
 
 @dataclass(frozen=True)
 class Pad:
-    """A pad with an axis across and one upwards."""
+    """A pad with a horizontal and a vertical axis."""
 
     name: str
     axes: tuple[Axis, Axis]
     frame: Frame
-    # The calls that it makes, each with the numbers of the axes that are its arguments.
+    # Its calls, each with the numbers of the axes that are the arguments.
     calls: tuple[tuple[str, tuple[int, ...]], ...]
-    lifted: str = ""  # the call that is made with zeros when the hand leaves the pad
+    lifted: str = ""  # the call that is sent with zeros when the hand leaves the pad
 
     @property
     def title(self) -> str:
@@ -115,7 +115,7 @@ def label(param: Param) -> str:
 
 # -- the part that a surface is for ---------------------------------------------------------------
 
-ALL = 0  # in place of a part, from 1: the addresses without a part, which are those of the first
+ALL = 0  # no part: addresses without one, which are those of the first part
 _part: ContextVar[int] = ContextVar("part", default=ALL)
 _FOR_ALL = {param.address for param in TABLE if param.is_shared} | {
     call.address for call in CALLS if call.is_for_all
@@ -124,7 +124,7 @@ _FOR_ALL = {param.address for param in TABLE if param.is_shared} | {
 
 @contextmanager
 def for_part(part: int) -> Iterator[None]:
-    """Let what is made meanwhile speak to a part, from 1, or `ALL`."""
+    """Make the addresses within the block those of a part, from 1, or `ALL`."""
     before = _part.set(part)
     try:
         yield
@@ -132,8 +132,8 @@ def for_part(part: int) -> Iterator[None]:
         _part.reset(before)
 
 
-def full(address: str) -> str:
-    """Return the OSC address of a parameter or call."""
+def osc_address(address: str) -> str:
+    """Return the whole OSC address of a parameter or call, with the part."""
     part = _part.get()
     if part == ALL or address.removesuffix(UNIT) in _FOR_ALL:
         return PREFIX + address
@@ -141,22 +141,22 @@ def full(address: str) -> str:
 
 
 def subscriptions(form: str = "") -> list[str]:
-    """The OSC addresses to subscribe at, so that all parameters are told in a form."""
-    asked = full("/subscribe" + form)
-    common = PREFIX + "/subscribe" + form  # a part does not tell what all parts share
-    return [asked] if asked == common else [asked, common]
+    """The OSC addresses to subscribe at for all parameters, in a form: "" or `UNIT`."""
+    own = osc_address("/subscribe" + form)
+    common = PREFIX + "/subscribe" + form  # parameters that all parts share
+    return [own] if own == common else [own, common]
 
 
-def named(name: str) -> str:
-    """Put the part behind a name: ``yehu part 2``."""
+def with_part(name: str) -> str:
+    """A name with the part behind it: ``yehu part 2``."""
     return name if _part.get() == ALL else f"{name} part {_part.get()}"
 
 
-def local(name: str) -> str:
-    """A name within a program, which the patch of another part does not have: ``yehu.out``."""
-    return f"{named('yehu').replace(' ', '.')}.{name}"
+def local_name(name: str) -> str:
+    """A name within a patch, different from those in the patch of another part: ``yehu.out``."""
+    return f"{with_part('yehu').replace(' ', '.')}.{name}"
 
 
 def port_from(first: int) -> int:
-    """A port to listen at, another for each part."""
+    """A port to listen at, a different one for each part."""
     return first + _part.get()

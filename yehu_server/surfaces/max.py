@@ -15,7 +15,7 @@ from py2max.core.common import Rect
 from yehu_server.live.network import Address
 from yehu_server.params.spec import Param
 from yehu_server.surfaces import common_layout
-from yehu_server.surfaces.common_layout import Frame, Group, full
+from yehu_server.surfaces.common_layout import Frame, Group, osc_address
 from yehu_server.surfaces.patch_cords import QUIET_MS, Network, width_of
 
 PORT = 7400  # at which the patch receives values from the server; that of part N at N more
@@ -26,18 +26,18 @@ MARGIN, LINE = 16, 22
 HANDS = Frame(MARGIN, 2 * MARGIN + LINE, COLUMNS * CELL[0], 260)
 TOP = HANDS.y + HANDS.height + MARGIN  # of the dials
 STEPS = 1000  # of a pad, whose numbers are whole
-FLOAT, CUSTOM = 0, 9  # a parameter's type; its unit's style
+FLOAT, CUSTOM = 0, 9  # the type of a parameter; the style of its unit
 
-# What sends to the server, and what shows its values unless a dial is being moved.
+# Sends to the server, and shows its values unless a dial is being moved.
 NETWORK = """
 out[udpsend {host} {port}]
-[loadbang] -> [1( -> [metro {every_ms}] -> subscribe[{asking}( -> out
+[loadbang] -> [1( -> [metro {every_ms}] -> subscribe[{calls}( -> out
 [r ~out] -> out
 moved[r ~moved] -> out
 moved -> order[t b b] -> [delay {quiet_ms}] -> then[t b b] -> subscribe
 order:1 -> [0( -> gate[gate 1 1] -> [s ~in]
 then:1 -> [1( -> gate
-[udpreceive {heard_at}] -> 1:gate
+[udpreceive {listen_at}] -> 1:gate
 send[s ~out]
 """
 DIAL = """
@@ -47,12 +47,12 @@ DIAL = """
 
 
 class Panel(Network[Box]):
-    """A patcher: controls lie where the panel shows them, and the network beneath them."""
+    """A patcher, with controls at their places on the panel, and the network beneath them."""
 
     def __init__(self, bottom: float) -> None:
         super().__init__(top=bottom)
         self.patcher = Patcher(
-            title=common_layout.named("yehu"),
+            title=common_layout.with_part("yehu"),
             openinpresentation=1,
             on_invalid="raise",
             validate_attrs=False,
@@ -92,15 +92,15 @@ def make(server: Address) -> bytes:
     rows = max(row + -(-len(group.params) // COLUMNS) for group, row, _ in shelves)
     panel = Panel(TOP + rows * CELL[1] + MARGIN)
     host, port = server
-    heard_at = common_layout.port_from(PORT)
-    told_for = f"{common_layout.SUBSCRIBED_S} {heard_at}"
-    asking = ", ".join(f"{to} {told_for}" for to in common_layout.subscriptions())
+    listen_at = common_layout.port_from(PORT)
+    arguments = f"{common_layout.SUBSCRIBED_S} {listen_at}"
+    calls = ", ".join(f"{to} {arguments}" for to in common_layout.subscriptions())
     panel.draw(
         NETWORK.format(
             host=host,
             port=port,
-            asking=asking,
-            heard_at=heard_at,
+            calls=calls,
+            listen_at=listen_at,
             every_ms=1000 * common_layout.SUBSCRIBE_EVERY_S,
             quiet_ms=QUIET_MS,
         )
@@ -163,11 +163,11 @@ def _hands(panel: Panel) -> None:
     panel.draw("keys -> note[pack 0 0] -> [@/note] -> send\nkeys:1 -> 1:note", keys=keys)
     for place, call in enumerate(("/bow 0 0", *(f"/{name}" for name in common_layout.BUTTONS))):
         frame = Frame(MARGIN + place * 130, MARGIN, 120, LINE)
-        panel.draw("said -> send", said=panel.show("message", full(call), frame))
+        panel.draw("message -> send", message=panel.show("message", osc_address(call), frame))
 
 
 def _dial(panel: Panel, param: Param, x: float, y: float) -> None:
-    """Add a dial, what it sends, and what sets it without sending."""
+    """Add a dial, with the boxes that send its value and set it without sending."""
     unit = "" if param.unit == "1" else f" {param.unit}"
     value = {
         "parameter_longname": param.address,
@@ -188,5 +188,5 @@ def _dial(panel: Panel, param: Param, x: float, y: float) -> None:
     )
     beneath = Frame(x, y + 50, CELL[0] - 8, LINE)
     panel.show("comment", param.range_text, beneath, textjustification=1, fontsize=9.0)
-    address = full(param.address)
+    address = osc_address(param.address)
     panel.draw(DIAL.format(address=address, param=param.address, default=param.default), dial=dial)

@@ -11,7 +11,7 @@ from typing import Any
 from yehu_server.live.network import Address
 from yehu_server.params.spec import Curve, Param
 from yehu_server.surfaces import common_layout
-from yehu_server.surfaces.common_layout import Frame, Pad, full
+from yehu_server.surfaces.common_layout import Frame, Pad, osc_address
 
 FORMAT = "1.30.1"  # the version of Open Stage Control whose sessions these are
 COLUMNS = 8
@@ -59,7 +59,7 @@ def _hands() -> list[Widget]:
         "type": "keyboard",
         "id": "keys",
         **_placed(common_layout.KEYS_FRAME, HANDS),
-        "address": full("/note"),
+        "address": osc_address("/note"),
         "start": common_layout.KEYS[0],
         "keys": len(common_layout.KEYS),
         "on": common_layout.VELOCITY,
@@ -69,7 +69,7 @@ def _hands() -> list[Widget]:
     buttons = [
         {"type": "button", "id": name, "label": name, "mode": "momentary"}
         | _placed(Frame(place * width, 0, width, 1), BUTTONS)
-        | {"address": full(f"/{name}")}
+        | {"address": osc_address(f"/{name}")}
         for place, name in enumerate(common_layout.BUTTONS)
     ]
     return [*pads, keys, *buttons]
@@ -79,12 +79,12 @@ def _pad(pad: Pad) -> Widget:
     x, y = pad.axes
     (call, _), *others = pad.calls
     if others:
-        sending = [f"send('{full(to)}', value[{of[0]}])" for to, of in pad.calls]
+        sending = [f"send('{osc_address(to)}', value[{of[0]}])" for to, of in pad.calls]
         sends = {"bypass": True, "onValue": "\n".join(sending)}
     else:
-        sends = {"address": full(call)}
+        sends = {"address": osc_address(call)}
     if pad.lifted:
-        sends["onTouch"] = f"if (event.type === 'stop') send('{full(pad.lifted)}', 0, 0)"
+        sends["onTouch"] = f"if (event.type === 'stop') send('{osc_address(pad.lifted)}', 0, 0)"
     return {
         "type": "xy",
         "id": f"{pad.name} pad",  # two widgets of one id would move each other
@@ -103,7 +103,7 @@ def _fader(param: Param) -> Widget:
         "type": "fader",
         "id": param.address,
         "html": f"{common_layout.label(param)}<br/>{param.range_text}",
-        "address": full(param.address),
+        "address": osc_address(param.address),
         "range": {"min": param.lo, "max": param.hi},
         "logScale": param.curve is Curve.EXP,
         "default": param.default,

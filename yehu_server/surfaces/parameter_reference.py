@@ -11,7 +11,7 @@ from yehu_server.live.osc.call import Argument
 from yehu_server.params.spec import Param
 from yehu_server.params.table import UNIT
 from yehu_server.surfaces import common_layout
-from yehu_server.surfaces.common_layout import full
+from yehu_server.surfaces.common_layout import osc_address
 
 STYLE = """\
 :root { color-scheme: light dark; --ink: #2b2622; --paper: #fbf8f2; --line: #d9cfbd;
@@ -64,7 +64,11 @@ def make(server: Address) -> bytes:
         _section(group.name, HEADS, map(_row, group.params)) for group in common_layout.groups()
     ]
     calls = [
-        (_code(full(call.address)), ", ".join(map(_argument, call.arguments)), escape(call.doc))
+        (
+            _code(osc_address(call.address)),
+            ", ".join(map(_argument, call.arguments)),
+            escape(call.doc),
+        )
         for call in CALLS
     ]
     lines = [
@@ -73,11 +77,11 @@ def make(server: Address) -> bytes:
         "<head>",
         '<meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        f"<title>{common_layout.named('yehu')} parameters</title>",
+        f"<title>{common_layout.with_part('yehu')} parameters</title>",
         f"<style>\n{STYLE}</style>",
         "</head>",
         "<body>",
-        f"<h1>{common_layout.named('yehu')} parameters</h1>",
+        f"<h1>{common_layout.with_part('yehu')} parameters</h1>",
         f"<p>Set each at its address, or as 0 to 1 at <code>ADDRESS{UNIT}</code>.</p>",
         '<p><input type="search" aria-label="Search" placeholder="Search"></p>',
         *sections,
@@ -119,7 +123,7 @@ def _section(title: str, heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]
 def _row(param: Param) -> tuple[str, ...]:
     unit = "" if param.unit == "1" else param.unit
     return (
-        _code(full(param.address)),
+        _code(osc_address(param.address)),
         escape(param.symbol),
         f"{param.lo:g} to {param.hi:g}",
         escape(unit),

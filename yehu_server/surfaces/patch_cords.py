@@ -1,4 +1,4 @@
-"""Networks of boxes and cords, drawn in text: what the patches of Max and Pure Data have alike."""
+"""Draw networks of boxes and cords from text, for the patches of Max and Pure Data."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
 
-from yehu_server.surfaces.common_layout import full, local
+from yehu_server.surfaces.common_layout import local_name, osc_address
 
 # While a control is moved it ignores the server, whose echo would move it back.
 QUIET_MS = 250
@@ -18,7 +18,7 @@ Box = TypeVar("Box")
 
 
 class Network(ABC, Generic[Box]):
-    """What a patch is drawn on; boxes of a line of text lie in a row, from `top` on."""
+    """A patch to draw on; the boxes of a line of text lie in a row, from `top` on."""
 
     def __init__(self, top: float) -> None:
         self._boxes: dict[str, Box] = {}
@@ -42,10 +42,10 @@ class Network(ABC, Generic[Box]):
         ``[metro 500]`` is an object, ``[1(`` a message. A name before the bracket keeps it for
         later lines, and later texts; ``1:gate`` is the second inlet of such a box, ``order:1`` its
         second outlet. `boxes` are others that the text may name. ``[@/note]`` sends its input to
-        the call /note, and ``~out`` is a name of this part's patch, see `local`.
+        the call /note, and ``~out`` is a name of this part's patch, see `local_name`.
         """
-        text = re.sub(r"~(\w+)", lambda found: local(found[1]), text)
-        text = re.sub(r"@(/[\w/]+)", lambda found: self.prefixing(full(found[1])), text)
+        text = re.sub(r"~(\w+)", lambda found: local_name(found[1]), text)
+        text = re.sub(r"@(/[\w/]+)", lambda found: self.prefixing(osc_address(found[1])), text)
         self._boxes |= boxes
         for line in text.strip().splitlines():
             x, before = float(LEFT), None

@@ -1,7 +1,7 @@
 """The Pure Data patch, for Pd vanilla 0.51 or newer.
 
 Its network objects are in a subpatch. Each slider receives at its OSC address and sends at the
-same with `MOVED` after it; what the server tells comes back through the socket it was asked by.
+same with `MOVED` after it; the server's values come back through the socket of the subscription.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from yehu_server.live.network import Address
 from yehu_server.params.spec import Curve, Param
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.surfaces import common_layout
-from yehu_server.surfaces.common_layout import Group, full, local
+from yehu_server.surfaces.common_layout import Group, local_name, osc_address
 from yehu_server.surfaces.patch_cords import QUIET_MS, Network
 
 MOVED = ".moved"
@@ -52,8 +52,8 @@ moved:1 -> [0( -> 1:gate
 rested:1 -> [1( -> 1:gate
 """
 WIRED_SLIDER = r"""
-told[r {address}{moved}] -> [@{param}] -> packet
-told -> [set \$1( -> [s {address}]
+slider[r {address}{moved}] -> [@{param}] -> packet
+slider -> [set \$1( -> [s {address}]
 """
 
 
@@ -125,16 +125,16 @@ def _play(patch: Canvas) -> None:
     """Add keys and buttons."""
     keys = common_layout.KEYS
     patch.text(20, 10, f"keys {note_name(keys[0])} to {note_name(keys[-1])}")
-    strip = f"hradio 22 1 0 {len(keys)} {local(KEY)} empty empty 0 -8 0 10 {COLOURS} 0"
+    strip = f"hradio 22 1 0 {len(keys)} {local_name(KEY)} empty empty 0 -8 0 10 {COLOURS} 0"
     patch.add("obj", 20, 34, strip)
     for place, (name, label) in enumerate(BUTTONS.items()):
-        button = f"bng 22 250 50 0 {local(name)} empty {label} 28 11 0 12 {COLOURS}"
+        button = f"bng 22 250 50 0 {local_name(name)} empty {label} 28 11 0 12 {COLOURS}"
         patch.add("obj", 20 + 140 * place, 72, button)
 
 
 def _slider(patch: Canvas, param: Param, x: int, y: int) -> None:
     """Add name, slider, number and range of one parameter."""
-    address = full(param.address)
+    address = osc_address(param.address)
     sent, ends = address + MOVED, f"{param.lo:g} {param.hi:g}"
     slider = f"hsl {SLIDER} 16 {ends} {int(param.curve is Curve.EXP)} 0 {sent} {address} empty"
     number = x + NAME + SLIDER + 14
@@ -145,7 +145,7 @@ def _slider(patch: Canvas, param: Param, x: int, y: int) -> None:
 
 
 def _wires(server: Address) -> Canvas:
-    """The subpatch of what sends to the server and receives from it."""
+    """The subpatch that sends to the server and receives from it."""
     wires = Canvas(1000, 700, "wires 0")
     host, port = server
     wires.draw(
@@ -163,8 +163,10 @@ def _wires(server: Address) -> Canvas:
         wires.draw(f"subscribe -> [{wires.prefixing(address)}] -> send")
     params = [param for group in common_layout.groups() for param in group.params]
     for param in params:
-        address = full(param.address)
+        address = osc_address(param.address)
         wires.draw(WIRED_SLIDER.format(address=address, moved=MOVED, param=param.address))
-    defaults = " ".join(f"\\; {full(param.address)} set {param.default:g}" for param in params)
+    defaults = " ".join(
+        f"\\; {osc_address(param.address)} set {param.default:g}" for param in params
+    )
     wires.draw(f"order:2 -> [{defaults}(")
     return wires

@@ -30,7 +30,7 @@ from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import UNIT
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.surfaces import common_layout
-from yehu_server.surfaces.common_layout import Axis, Frame, Group, Pad, full
+from yehu_server.surfaces.common_layout import Axis, Frame, Group, Pad, osc_address
 
 WIDTH, HEIGHT = 1024, 768
 BAR, TABS, GAP = 52, 44, 8
@@ -124,7 +124,7 @@ def _identify(control: Control, path: str) -> None:
 def _bar() -> Iterator[Control]:
     """Return the title and the buttons, which are above all pages."""
     frame = (GAP, GAP, 500, BAR - 2 * GAP)
-    yield _label("title", frame, common_layout.named("yehu"), text_size=22, text_align_h=1)
+    yield _label("title", frame, common_layout.with_part("yehu"), text_size=22, text_align_h=1)
     for place, name in enumerate(common_layout.BUTTONS):
         x = WIDTH - (len(common_layout.BUTTONS) - place) * (150 + GAP)
         frame = (x, GAP, 150, BAR - 2 * GAP)
@@ -261,7 +261,7 @@ def _message(
     address: str, arguments: list[Partial], triggers: list[Trigger], *, receive: bool = False
 ) -> OscMessage:
     return OscMessage(
-        receive=receive, triggers=triggers, path=ui.path(full(address)), arguments=arguments
+        receive=receive, triggers=triggers, path=ui.path(osc_address(address)), arguments=arguments
     )
 
 

@@ -1,7 +1,7 @@
-"""Read TOML and JSON of users, and refuse what is wrong in one form of error.
+"""Read TOML and JSON of users, with all errors in one form: ``FILE:LINE: PLACE: REASON``.
 
-That is ``FILE:LINE: PLACE: REASON``, such as ``mine.toml:7: bind 1: span: expected ...``. The line
-is that of an entry in TOML; what a program gives has no file.
+For example ``mine.toml:7: bind 1: span: expected ...``. The line is that of an entry in TOML; data
+from a program have no file.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, why
 from yehu_server.util.parsing import KeyPath, line_at, lines_of, parse_json, parse_toml
 from yehu_server.util.values import brief
 
-MOST_ERRORS = 50  # a hint at a similar name takes milliseconds each
+MOST_ERRORS = 50  # searching for a similar name takes milliseconds each
 MANY = sys.maxsize
 _LINE = re.compile(r"\bline ([0-9]+)")
 _DOTTED = re.compile(r"[\w.-]+")
@@ -31,7 +31,7 @@ P = ParamSpec("P")
 
 @dataclass(eq=False)
 class Document:
-    """A text of a user, and the errors found in it."""
+    """The text of a file, and the errors found in it."""
 
     name: Path | str = ""  # what errors begin with
     what: str = "a document"  # what it should be, such as "a mapping file"
@@ -91,14 +91,14 @@ class Document:
         return str(self.name) if line is None else f"{self.name}:{line}"
 
     def add(self, key: KeyPath, reason: str) -> None:
-        """Add an error in an entry; raises all of them where they are as many as may be."""
+        """Add an error in an entry; raises all of them once there are `most_errors`."""
         where = self.where(key)
         self._found.append((self._line(key) or 0, f"{where}: {reason}" if where else reason))
         if len(self._found) >= self.most_errors:
-            self.finish()
+            self.raise_errors()
 
-    def finish(self) -> None:
-        """Raise what was added, by line, as one error; return if nothing was."""
+    def raise_errors(self) -> None:
+        """Raise the errors that were added, by line, as one; return where there are none."""
         if self._found:
             lines = [what for _, what in sorted(self._found, key=lambda one: one[0])]
             self._found = []
@@ -109,8 +109,8 @@ class Document:
 class Fields:
     """A table of a document.
 
-    What is wrong is an error of the document. So a reader goes on with its default, unless the
-    document raises its errors at once.
+    Wrong entries become errors of the document. So a reader goes on with its default, unless the
+    document raises errors at once.
 
     `data`: its entries.
     `document`: by default one without a name, that raises ParameterError.
@@ -128,14 +128,14 @@ class Fields:
         self.is_table = isinstance(data, Mapping)
         self.data: Mapping[str, Any] = data if self.is_table else {}
         if not self.is_table:
-            self.wrong("", f"expected a table of names and values, got {brief(data)}")
+            self.add_error("", f"expected a table of names and values, got {brief(data)}")
 
     @staticmethod
     def of(data: Any, place: str = "") -> Fields:
         """A table that is one already, or of data that come from no file."""
         return data if isinstance(data, Fields) else Fields(data, place=place)
 
-    def wrong(self, name: str, reason: str) -> None:
+    def add_error(self, name: str, reason: str) -> None:
         """Add an error in an entry, or in all of the table where the name is empty."""
         place = self._place(name)
         key = (*self.key, name) if name else self.key
@@ -154,13 +154,13 @@ class Fields:
 
     @contextmanager
     def at(self, name: str = "") -> Iterator[None]:
-        """Make a ParameterError that has no place yet one in an entry; see `wrong`."""
+        """Give a ParameterError without a place the place of an entry; see `add_error`."""
         try:
             yield
         except ParameterError as error:
             if error is self.document.raised:
                 raise
-            self.wrong(name, str(error))
+            self.add_error(name, str(error))
 
     def read(
         self,
@@ -180,9 +180,9 @@ class Fields:
     def need(
         self, name: str, reader: Callable[Concatenate[Any, P], T], *args: P.args, **kwargs: P.kwargs
     ) -> T:
-        """`read` what has to be there, of a document that raises its errors at once."""
+        """`read` an entry that has to be there, of a document that raises errors at once."""
         if name not in self.data:
-            self.wrong(name, "missing")
+            self.add_error(name, "missing")
         return cast("T", self.read(name, reader, None, *args, **kwargs))
 
     def each(self, reader: Callable[[str, Any], T]) -> dict[str, T]:
@@ -199,12 +199,12 @@ class Fields:
         return Fields(self.data.get(name, {}), self.document, self._place(name), (*self.key, name))
 
     def tables(self, name: str, least: int = 0, most: int = MANY) -> list[Fields]:
-        """The tables of an array of so many, each written as ``[[name]]``."""
+        """The tables of an array, `least` to `most`, each written as ``[[name]]``."""
         self._known[name] = None
         found = self.data.get(name, [])
         place, key = self._place(name), (*self.key, name)
         if not isinstance(found, list):
-            self.wrong(name, f"write each as [[{name}]]")
+            self.add_error(name, f"write each as [[{name}]]")
         elif not least <= len(found) <= most:
             upto = "or more" if most == MANY else f"to {most}"
             reason = f"{place}: expected {least} {upto} of [[{name}]], got {len(found)}"
@@ -217,10 +217,10 @@ class Fields:
             return [table for table in tables if table.is_table]
         return []
 
-    def only(self, *others: str) -> None:
-        """Refuse entries that neither were read nor are others of a name."""
+    def refuse_others(self, *others: str) -> None:
+        """Refuse all entries but those that were read, and `others`."""
         for name in self.data:
             if name not in self._known and name not in others:
                 known = (*self._known, *others)
                 hint = did_you_mean(name, known)
-                self.wrong(name, f"unknown entry{hint} (known: {', '.join(known)})")
+                self.add_error(name, f"unknown entry{hint} (known: {', '.join(known)})")

@@ -1,4 +1,4 @@
-"""Libraries that come with extras of the package only."""
+"""Check for libraries that only extras of the package bring."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from yehu_server.errors import ParameterError
 def need(module: str, what: str, extra: str) -> None:
     """Check that a library is there.
 
-    Raises ParameterError where it is missing: the extra that brings it.
+    Raises ParameterError where it is missing, which names the extra that brings it.
 
     `what`: what needs it, for the message.
     """

@@ -19,7 +19,7 @@ from yehu_server.util import PACKAGE
 
 MAX_TEXT_BYTES = 64 * 2**20
 PIECE_BYTES = 2**20
-MAX_LINE_BYTES = 1 << 20  # the first of a capture tells how each player of a stage bows each note
+MAX_LINE_BYTES = 1 << 20  # the first line of a capture has the bowing tables of all players
 MAX_SETTINGS_BYTES = 2**20  # for files that are read while the instrument plays
 # Names that come over the network: no path, no hidden file.
 PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
@@ -84,9 +84,9 @@ def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
 
 
 def why(error: BaseException) -> str:
-    """The reason of an error, for a message: ours or the system's, where it has one."""
+    """The reason of an error, for a message: its own, or the system's where it has one."""
     if isinstance(error, OSError) and error.strerror:
-        # `socket.create_server` adds an address, which the message has.
+        # `socket.create_server` adds an address, which our message has already.
         return error.strerror.partition(" (while attempting to bind")[0]
     return str(error) or type(error).__name__
 
@@ -179,7 +179,7 @@ def check_free(target: Path, may_replace: Callable[[Path], bool] = nothing) -> N
 
 
 def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.FileIO:
-    """Open a new file that is written bit by bit.
+    """Open a new file that is written piece by piece.
 
     Raises OutputError as `check_target`, where there is an older file, or on a full disk; an older
     file is not changed then.

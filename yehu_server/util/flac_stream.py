@@ -1,7 +1,7 @@
 """Write FLAC files whose header is valid after every write, for all whole blocks.
 
 libFLAC encodes, but writes the number of samples into the header only at the end. Here it is
-written all along: a block has 4096 samples, so that a crash loses less than a tenth of a second.
+rewritten after every block of 4096 samples, so that a crash loses less than a tenth of a second.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ class FlacStream:
         self, file: io.FileIO, rate: int, subtype: str, software: str = "", *, channels: int = 1
     ) -> None:
         self.frames = 0  # in the file
-        self._given = 0
-        self._spy = _CountingFile(file)
+        self._encoded = 0
+        self._output = _CountingFile(file)
         self._encoder = soundfile.SoundFile(
-            self._spy,
+            self._output,
             "w",
             samplerate=rate,
             channels=channels,
@@ -56,7 +56,7 @@ class FlacStream:
         # soundfile asserts that all frames were written, which fails on a full disk.
         with contextlib.suppress(AssertionError, soundfile.LibsndfileError):
             self._encoder.write(samples)
-        self._given += len(samples)
+        self._encoded += len(samples)
         self._update_header()
 
     def close(self) -> None:
@@ -66,14 +66,14 @@ class FlacStream:
         self._update_header()
 
     def _update_header(self) -> None:
-        self.frames = min(self._given, self._spy.frames)
-        if self._spy.error is not None:
+        self.frames = min(self._encoded, self._output.frames)
+        if self._output.error is not None:
             with contextlib.suppress(OSError):
-                self._spy.cut()
-                self._spy.tell_total(self.frames)
-            raise self._spy.error
+                self._output.cut()
+                self._output.write_total(self.frames)
+            raise self._output.error
         if not self._encoder.closed:  # at its end it has written the number itself
-            self._spy.tell_total(self.frames)
+            self._output.write_total(self.frames)
 
 
 class _CountingFile(io.RawIOBase):
@@ -121,7 +121,7 @@ class _CountingFile(io.RawIOBase):
         """Remove an incomplete block from the end."""
         self._file.truncate(self._whole)
 
-    def tell_total(self, frames: int) -> None:
+    def write_total(self, frames: int) -> None:
         """Write the number of frames into the header."""
         if len(self._header) < HEADER_BYTES:
             return  # there is no header yet

@@ -1,4 +1,4 @@
-"""Parse the bytes of TOML and JSON to values; refuse what is not safe to process and print."""
+"""Parse TOML and JSON, and refuse what is not safe to process or print."""
 
 from __future__ import annotations
 

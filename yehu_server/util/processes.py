@@ -1,4 +1,4 @@
-"""Helper processes: started, spoken with, and started again when they end; a lock for all.
+"""Start helper processes, exchange messages with them, and restart them; a lock for all of them.
 
 PortAudio and RtMidi may hang or crash when the sound server under them dies. Each runs in a
 process of its own and exchanges lines of JSON: orders in, events out. The process ends when its
@@ -28,7 +28,7 @@ Message = dict[str, Any]
 
 log = logging.getLogger(__name__)
 
-GOODBYE_S = 1.0
+EXIT_S = 1.0  # for a process to end by itself
 PIPE_BYTES = 1 << 20  # buffer for events while the parent is stopped
 F_SETPIPE_SZ = 1031  # of Linux
 
@@ -36,7 +36,7 @@ F_SETPIPE_SZ = 1031  # of Linux
 def python_command(module: str, *arguments: str) -> list[str]:
     """The command that runs a module of this package in another Python, with the same path.
 
-    Not by ``-m``, which first looks for all modules in the current folder, where anything may lie.
+    Not by ``-m``, which first searches all modules in the current folder, where anything may lie.
     """
     path = [*filter(None, sys.path), str(PACKAGE.parent)]
     code = (
@@ -71,11 +71,11 @@ class Child:
             pass_fds=share,
             start_new_session=True,  # Ctrl-C is for the parent
         )
-        self._widen()
+        self._enlarge_pipe()
         events = threading.Thread(target=self._listen, name=f"{self._name} events", daemon=True)
-        overheard = threading.Thread(target=self._log_stderr, name=f"{self._name} log", daemon=True)
+        logger = threading.Thread(target=self._log_stderr, name=f"{self._name} log", daemon=True)
         try:
-            overheard.start()
+            logger.start()
             events.start()
         except BaseException:  # nobody would read its output
             self.kill()
@@ -103,24 +103,24 @@ class Child:
 
     def stop(self) -> None:
         """Let the process end by itself; kill it if it does not."""
-        self._hang_up()
+        self._close_input()
         with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(GOODBYE_S)
+            self._process.wait(EXIT_S)
         self.kill()
 
     def kill(self) -> None:
         """Kill the process, and wait until it has ended."""
         self._process.kill()
         self._process.wait()
-        self._hang_up()
+        self._close_input()
 
-    def _hang_up(self) -> None:
+    def _close_input(self) -> None:
         pipe = self._process.stdin
         if pipe is not None:
             with self._sending, contextlib.suppress(OSError):
                 pipe.close()
 
-    def _widen(self) -> None:
+    def _enlarge_pipe(self) -> None:
         """Enlarge the pipe of events, so that the process does not block while we are stopped."""
         with contextlib.suppress(ImportError, OSError, AttributeError):
             from fcntl import fcntl
@@ -140,7 +140,7 @@ class Child:
         except (OSError, MemoryError):  # it could not be read any more
             self._process.kill()
         self._process.wait()
-        self._hang_up()
+        self._close_input()
         self._dispatch({"event": "gone"})
 
     def _dispatch(self, message: Message) -> None:
@@ -170,7 +170,7 @@ class Parent:
         os.dup2(2, 1)  # what libraries print is no event
         self._sending = threading.Lock()
 
-    def tell(self, event: str, **details: Any) -> None:
+    def send(self, event: str, **details: Any) -> None:
         """Send an event; exit where the parent is gone."""
         line = json.dumps({"event": event, **details}) + "\n"
         try:
@@ -185,11 +185,11 @@ class Parent:
             yield json.loads(line)
 
 
-LIVES_S = 5.0  # a process that ends sooner is started again only after a while
+SHORTEST_RUN_S = 5.0  # a process that ends sooner is restarted only after a while
 
 
 class Supervisor:
-    """A helper process and its successors; a subclass says what it is told and tells.
+    """Runs a helper process, again after it ends; a subclass sends orders and handles events.
 
     `module`: the module to run, as ``python -m``.
     `what`: what the process does, for the thread's name and for messages of errors.
@@ -209,14 +209,14 @@ class Supervisor:
         self._thread = threading.Thread(target=run_forever, args=turns, name=what, daemon=True)
 
     def attend(self, child: Child, gone: threading.Event) -> None:
-        """Speak with a new process; return once the event is set, when it is gone."""
+        """Exchange messages with a new process until the event is set, when it is gone."""
         raise NotImplementedError
 
     def on_event(self, event: Message) -> None:
-        """Hear of an event, but for the last one; in a thread of its own."""
+        """Handle an event, but for the last one; in a thread of its own."""
 
     def on_exit(self, *, by_itself: bool) -> None:
-        """Act on the end of a process, which it came to by itself or by `stop`."""
+        """Handle the end of a process, by itself or by `stop`."""
 
     def start(self) -> None:
         """Start the process."""
@@ -231,7 +231,7 @@ class Supervisor:
 
     def _serve(self) -> None:
         """Run a process until it ends."""
-        gone = self._gone = threading.Event()  # of its own: the last process may tell it late
+        gone = self._gone = threading.Event()  # of its own: the last process may set it late
         if self._ending.is_set():  # `stop` set both before
             return
         begun = time.monotonic()
@@ -241,7 +241,7 @@ class Supervisor:
         finally:
             child.stop()
             self.on_exit(by_itself=not self._ending.is_set())
-        if time.monotonic() - begun > LIVES_S:
+        if time.monotonic() - begun > SHORTEST_RUN_S:
             self._backoff.worked()
         self._ending.wait(self._backoff.failed())
 
@@ -254,9 +254,9 @@ class Supervisor:
 
 @contextlib.contextmanager
 def machine_lock(name: str = "") -> Iterator[None]:
-    """Hold a lock of this user's on this machine, as long as a block lasts.
+    """Hold a lock of this user on this machine, as long as a block lasts.
 
-    What the first process compiles and stores, the others find.
+    So one process compiles, and the others load what it stored.
     """
     user = os.getuid() if hasattr(os, "getuid") else 0
     path = Path(tempfile.gettempdir()) / f"yehu-server-{user}{name}.lock"

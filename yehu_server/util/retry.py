@@ -16,17 +16,15 @@ from yehu_server.util.files import why
 
 log = logging.getLogger(__name__)
 
-AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 0.5, 5.0
-LONGEST_TURN_S = 0.25
+FIRST_RETRY_S, LONGEST_RETRY_S = 0.5, 5.0
+LONGEST_GAP_S = 0.25
 SHORTAGES = (OSError, MemoryError, RuntimeError)  # of files, of memory, of threads
 
 
 class Backoff:
     """Exponential backoff: a longer wait after each failure in a row, and one report for all."""
 
-    def __init__(
-        self, first_s: float = AGAIN_AFTER_S, most_s: float = AGAIN_AFTER_AT_MOST_S
-    ) -> None:
+    def __init__(self, first_s: float = FIRST_RETRY_S, most_s: float = LONGEST_RETRY_S) -> None:
         self._first_s = self._next_s = first_s
         self._most_s = most_s
         self._reported = ""
@@ -42,7 +40,7 @@ class Backoff:
         return is_news
 
     def worked(self) -> None:
-        """Record a success: the wait is short again."""
+        """Record a success, after which the wait is short again."""
         self._next_s, self._reported = self._first_s, ""
 
 
@@ -50,7 +48,7 @@ class AwakeTime:
     """A clock that stands still while the process is stopped or the machine sleeps.
 
     Peers that could not be heard meanwhile must not be taken for dead. It must be called at
-    least every `LONGEST_TURN_S`: longer gaps count as sleep.
+    least every `LONGEST_GAP_S`: longer gaps count as sleep.
     """
 
     def __init__(self) -> None:
@@ -60,7 +58,7 @@ class AwakeTime:
     def __call__(self) -> float:
         """Seconds awake since the clock was made."""
         now = time.monotonic()
-        self._awake_s += min(now - self._last_call, LONGEST_TURN_S)
+        self._awake_s += min(now - self._last_call, LONGEST_GAP_S)
         self._last_call = now
         return self._awake_s
 

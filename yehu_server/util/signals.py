@@ -1,4 +1,4 @@
-"""Signals that ask a process to end."""
+"""Handle the signals that end a process."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import signal
 from collections.abc import Callable
 
 
-def when_asked_to_end(handler: Callable[..., object]) -> None:
+def on_termination(handler: Callable[..., object]) -> None:
     """Call a function at SIGTERM, and at SIGHUP where that is not ignored.
 
-    Behind ``nohup`` it is: the process goes on when its terminal is closed.
+    Under ``nohup`` it is ignored: the process goes on when its terminal is closed.
     """
     signal.signal(signal.SIGTERM, handler)
     hang_up = getattr(signal, "SIGHUP", None)  # not on Windows

@@ -1,4 +1,4 @@
-"""Write sound files: renderings that appear when complete, recordings valid at every moment."""
+"""Write sound files: renderings that appear when complete, recordings that are always valid."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def format_of(target: Path) -> str:
 
 
 def check_format(format_name: str, subtype: str, channels: int = 1) -> None:
-    """Refuse (OutputError) a subtype of samples, or number of channels, that a format has not."""
+    """Refuse (OutputError) a subtype or a number of channels that a format does not have."""
     if format_name not in SUBTYPES[subtype].files:
         raise OutputError(f"a {format_name} file cannot hold {subtype} samples; use 16 or 24")
     most = MOST_CHANNELS[format_name]

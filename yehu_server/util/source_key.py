@@ -1,4 +1,4 @@
-"""Keys of source code, which change with what the code does and not with its prose."""
+"""Hash source code without its comments and docstrings, so that the hash changes with the code."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-_PROSE = re.compile(
+_COMMENTS = re.compile(
     r'(?P<docstring>^[ \t]*"""(?:[^\\]|\\.)*?"""[ \t]*$)'
     r'|(?P<text>"""(?:[^\\]|\\.)*?"""|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)*\')'
     r"|#[^\n]*",
@@ -16,14 +16,14 @@ _PROSE = re.compile(
 )
 
 
-def without_prose(source: str) -> str:
+def without_comments(source: str) -> str:
     """Python source without comments, docstrings and empty lines."""
-    code = _PROSE.sub(lambda match: match["text"] or "", source)
+    code = _COMMENTS.sub(lambda match: match["text"] or "", source)
     return "\n".join(line for line in map(str.rstrip, code.splitlines()) if line)
 
 
 def key_of(sources: Iterable[Path], *more: str) -> str:
-    """Hash of what some files of Python code do, and of other texts (16 hex digits)."""
+    """Hash of the code in some Python files, and of other texts (16 hex digits)."""
     digest = hashlib.sha256()
     for text in more:
         digest.update(text.encode() + b"\0")
@@ -36,5 +36,5 @@ def key_of(sources: Iterable[Path], *more: str) -> str:
 
 @cache
 def _code(path: Path, _mtime_ns: int, _size: int) -> bytes:
-    """A file without prose; read once, as long as it does not change."""
-    return without_prose(path.read_text(encoding="utf-8")).encode()
+    """A file without comments; read once, as long as it does not change."""
+    return without_comments(path.read_text(encoding="utf-8")).encode()

@@ -1,4 +1,4 @@
-"""A token bucket: how often something may be done."""
+"""Limit how often something may be done: a token bucket."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ class TokenBucket:
     def __init__(self, per_s: float, at_once: float) -> None:
         self._per_s = per_s
         self._at_once = self._left = at_once
-        self._looked = math.inf  # never yet
+        self._updated = math.inf  # never yet
 
     def left(self, now: float) -> float:
         """The number of tokens at a time."""
-        gained = self._per_s * max(now - self._looked, 0.0)
+        gained = self._per_s * max(now - self._updated, 0.0)
         self._left = min(self._left + gained, self._at_once)
-        self._looked = now
+        self._updated = now
         return self._left
 
     def spend(self, count: float) -> None:

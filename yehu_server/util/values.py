@@ -1,4 +1,4 @@
-"""Readers of values in documents; all raise ParameterError for a wrong one, without its place."""
+"""Check values in documents. All raise ParameterError for a wrong one, without its place."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def line(value: Any) -> str:
 
 
 def words(value: Any) -> str:
-    """A text, its lines and spaces joined by one space each; raises ParameterError."""
+    """A text with single spaces in place of line ends and spaces; raises ParameterError."""
     if not isinstance(value, str):
         raise ParameterError(f"expected a line of text, got {brief(value)}")
     return " ".join(value.split())
@@ -64,7 +64,7 @@ def choice(value: Any, known: Collection[str]) -> str:
 
 
 def choices(value: Any, known: Collection[str]) -> list[str]:
-    """A list of some words; raises ParameterError."""
+    """A list of such words; raises ParameterError."""
     if not isinstance(value, list):
         raise ParameterError(f"expected a list of some of {', '.join(known)}, got {brief(value)}")
     return [choice(each, known) for each in value]

@@ -93,7 +93,7 @@ class WavStream:
         return b"RIFF" + struct.pack("<I", 4 + len(chunks) + size + size % 2) + b"WAVE" + chunks
 
     def _fmt(self, form: int) -> bytes:
-        """The chunk that tells the form of the samples: PCM or IEEE_FLOAT."""
+        """The chunk with the format of the samples, `form`: PCM or IEEE_FLOAT."""
         each, bits = self._frame_bytes, 8 * SUBTYPES[self._subtype].size
         tag = form if self._channels <= 2 else EXTENSIBLE
         fmt = struct.pack("<HHIIHH", tag, self._channels, self._rate, self._rate * each, each, bits)
@@ -121,7 +121,7 @@ def encoded(samples: Samples, subtype: str) -> bytes:
     size = SUBTYPES[subtype].size
     highest = scaled.astype("<i4").reshape(-1, 1).view(np.uint8)[:, -size:]
     packed = np.empty(highest.shape, np.uint8)
-    for place in range(size):  # four times as fast as all bytes in their order
+    for place in range(size):  # four times as fast as copying all bytes in order
         packed[:, place] = highest[:, place]
     return packed.tobytes()
 

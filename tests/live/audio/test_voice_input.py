@@ -23,7 +23,7 @@ class ToldError(Exception):
 class Ending:
     """A parent, and a queue of orders that has none, without waiting."""
 
-    def tell(self, event: str, **_fields: object) -> None:
+    def send(self, event: str, **_fields: object) -> None:
         raise ToldError(event)
 
     def get(self, **_within: float) -> None:

@@ -47,7 +47,7 @@ class Controller:
         self.told.append(EVENTS[kind - MESSAGE])
         return True
 
-    def tell(self, event: str, **_details: object) -> None:
+    def send(self, event: str, **_details: object) -> None:
         self.told.append(event)
 
     def sense_for(self, ms: int) -> None:

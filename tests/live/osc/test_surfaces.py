@@ -130,28 +130,28 @@ def test_a_key_begins_before_the_last_one_ends(live, until, patch, monkeypatch):
             return call(note, *words, **named)
 
         monkeypatch.setattr(live.player, name, hear)
-    patch.move(common_layout.local(puredata.KEY), 2)
-    patch.move(common_layout.local(puredata.KEY), 4)
+    patch.move(common_layout.local_name(puredata.KEY), 2)
+    patch.move(common_layout.local_name(puredata.KEY), 4)
     until(lambda: ("note_off", 67.0) in heard, "the end of G4")
     assert heard[-2:] == [("note_on", 69.0), ("note_off", 67.0)]
 
 
 def test_keys_end_and_panic(live, until, patch):
-    patch.move(common_layout.local(puredata.KEY), 2)
+    patch.move(common_layout.local_name(puredata.KEY), 2)
     until(lambda: live.player.pitch == 67.0, "G4")
-    patch.move(common_layout.local(puredata.KEY), 4)
+    patch.move(common_layout.local_name(puredata.KEY), 4)
     until(lambda: live.player.pitch == 69.0, "A4")
-    patch.move(common_layout.local(puredata.END), "bang")
+    patch.move(common_layout.local_name(puredata.END), "bang")
     until(lambda: live.player.pitch is None, "its end")
-    patch.move(common_layout.local(puredata.KEY), 4)
+    patch.move(common_layout.local_name(puredata.KEY), 4)
     until(lambda: live.player.pitch == 69.0, "the same key again")
-    patch.move(common_layout.local(puredata.PANIC), "bang")
+    patch.move(common_layout.local_name(puredata.PANIC), "bang")
     until(lambda: live.player.pitch is None, "panic")
     patch.move("/yehu/bow/speed", 0.2)
     until(lambda: live.player.value("/bow/speed") == pytest.approx(0.2), "the bow")
-    patch.move(common_layout.local(puredata.LIFT), "bang")
+    patch.move(common_layout.local_name(puredata.LIFT), "bang")
     until(lambda: live.player.value("/bow/speed") == 0.0, "the bow lifted")
-    patch.move(common_layout.local(puredata.RELEASE), "bang")
+    patch.move(common_layout.local_name(puredata.RELEASE), "bang")
     assert live.is_well()
 
 

@@ -42,10 +42,10 @@ def shipped(tmp_path, monkeypatch) -> Path:
 
 
 def told(monkeypatch) -> list[dict[str, Any]]:
-    """What the process that looks for a server's module tells."""
+    """The events of the process that finds a module for a server."""
     events: list[dict[str, Any]] = []
-    tell = lambda event, **details: events.append({"event": event, **details})  # noqa: E731
-    monkeypatch.setattr(module_process, "Parent", lambda: SimpleNamespace(tell=tell))
+    send = lambda event, **details: events.append({"event": event, **details})  # noqa: E731
+    monkeypatch.setattr(module_process, "Parent", lambda: SimpleNamespace(send=send))
     monkeypatch.setattr(module_process.os, "nice", lambda _: None)
     module_process.main()
     return events

@@ -366,7 +366,7 @@ import time
 from yehu_server.util.processes import Parent
 parent = Parent()
 for _ in range(5000):
-    parent.tell("midi", port="keystep", at=time.monotonic_ns(), bytes=[144, 60, 100])
+    parent.send("midi", port="keystep", at=time.monotonic_ns(), bytes=[144, 60, 100])
 """
 
 

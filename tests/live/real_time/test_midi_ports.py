@@ -460,7 +460,7 @@ class Studio:
 
     close_port = cancel_callback
 
-    def tell(self, event: str, **details: object) -> None:
+    def send(self, event: str, **details: object) -> None:
         self.done.append((event, details))
 
 

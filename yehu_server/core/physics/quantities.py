@@ -301,7 +301,7 @@ def _override(base: Any, table: Fields, folder: Path) -> Any:
             values[name] = table.read(name, _checked, None, item)
         else:
             values[name] = _override(getattr(base, name), table.table(name), folder)
-    table.only(*(item.name for item in fields(base)))
+    table.refuse_others(*(item.name for item in fields(base)))
     return replace(base, **values)
 
 

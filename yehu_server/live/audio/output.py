@@ -35,7 +35,7 @@ NULL = "null"
 NULL_RATE = 48000.0
 FIRST_LOOK_S, COMPILING_S = 10.0, 300.0
 HUNG_AFTER_S = 2.0
-LISTEN_S = 0.2  # to wait at a time for events of the device's process; within LONGEST_TURN_S
+LISTEN_S = 0.2  # to wait at a time for events of the device's process; within LONGEST_GAP_S
 AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 1.0, 30.0
 HOPELESS_S = 0.5  # a delay that the silent clock does not make up for
 

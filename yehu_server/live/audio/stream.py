@@ -116,7 +116,7 @@ def main() -> None:
     try:
         stream = _serve(parent, orders)
     except DeviceError as error:
-        parent.tell("failed", reason=str(error))
+        parent.send("failed", reason=str(error))
     if stream is not None:
         stream.close()
     os._exit(0)  # PortAudio's own clean-up may hang
@@ -136,18 +136,18 @@ def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None
     from yehu_server.core.engine.warming import is_warm
 
     if order["kind"] == OUTPUT and not is_warm():
-        parent.tell("compiling")
+        parent.send("compiling")
     try:
         stream = Stream(sounddevice, device, order)
     except sounddevice.PortAudioError as error:
         raise DeviceError(_reason(sounddevice, device, order, error)) from error
-    parent.tell("ready", latency_ms=stream.latency_ms)
+    parent.send("ready", latency_ms=stream.latency_ms)
     if orders.get() is not None:
         try:
             stream.start()
         except sounddevice.PortAudioError as error:
             raise DeviceError(f"{device.full_name}: {error}") from error
-        parent.tell("started")
+        parent.send("started")
         _watch(parent, orders, stream)
     return stream
 
@@ -164,9 +164,9 @@ def _look(
         except DeviceError as error:
             if str(error) != missing:
                 missing = str(error)
-                parent.tell("missing", reason=missing)
+                parent.send("missing", reason=missing)
         else:
-            parent.tell(
+            parent.send(
                 "found",
                 name=device.full_name,
                 rate=device.rate,
@@ -192,7 +192,7 @@ def _watch(parent: Parent, orders: queue.Queue[Message | None], stream: Stream) 
         except queue.Empty:
             before, heard = heard, stream.heard
             still = still + 1 if heard is not None and heard == before else 0
-    parent.tell("lost", at=time.monotonic())
+    parent.send("lost", at=time.monotonic())
     os._exit(1)
 
 

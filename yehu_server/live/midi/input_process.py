@@ -62,14 +62,14 @@ class Input:
         elif data[0] not in CLOCKS and len(data) <= MOST_BYTES:  # no system exclusive
             self._feed.receive(self.name, data, at)
             if self.is_forwarded:
-                self._parent.tell("midi", port=self.name, bytes=list(data))
+                self._parent.send("midi", port=self.name, bytes=list(data))
 
     def sense(self) -> None:
         """End the notes of the port where active sensing has stopped."""
         if self._senses and time.monotonic() - self._last > SENSE_WITHIN_S:
             self._senses = False
             self._feed.end_port_notes(self.name, time.monotonic_ns(), is_gone=False)
-            self._parent.tell("silent", port=self.name)
+            self._parent.send("silent", port=self.name)
 
     def wait_anew(self) -> None:
         """Begin the time for active sensing again."""
@@ -120,7 +120,7 @@ class Inputs:
         for name in gone:
             self._open.pop(name).close()
             self._feed.end_port_notes(name, time.monotonic_ns(), is_gone=True)
-            self._parent.tell("vanished", port=name)
+            self._parent.send("vanished", port=name)
         self._refused = {name: at for name, at in self._refused.items() if name in stable}
         early = time.monotonic() - AGAIN_S
         for name, full_name in stable.items():
@@ -138,7 +138,7 @@ class Inputs:
         present = list(names)
         for pattern in self._sought:
             if not any(is_wanted(name, [pattern]) for name in present):
-                self._parent.tell("missing", pattern=pattern, present=present)
+                self._parent.send("missing", pattern=pattern, present=present)
         self._sought.clear()
 
     def sense(self) -> None:
@@ -161,13 +161,13 @@ class Inputs:
         if finder is None:
             if problem != self._problem:
                 self._problem = problem
-                self._parent.tell("none", reason=problem)
+                self._parent.send("none", reason=problem)
             return False
         self._finder = finder
         self._api = finder.get_current_api()
         if self._api == _number("jack"):
             self._watch = JackWatch(f"{CLIENT} watch")
-        self._parent.tell("system", api=api_name(self._api))
+        self._parent.send("system", api=api_name(self._api))
         if self._virtual is not None:
             self._add(self._virtual, None)
         return True
@@ -193,12 +193,12 @@ class Inputs:
         self._refused.pop(name, None)
         self._open[name] = port
         port.is_forwarded = self._is_heard
-        self._parent.tell("appeared", port=name, number=number)
+        self._parent.send("appeared", port=name, number=number)
 
     def _refuse(self, name: str, reason: str) -> None:
         """Leave a port for now; the parent is told the first time."""
         if name not in self._refused:
-            self._parent.tell("refused", port=name, reason=reason)
+            self._parent.send("refused", port=name, reason=reason)
         self._refused[name] = time.monotonic()
 
     def _client(self) -> Any:

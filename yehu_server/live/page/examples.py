@@ -14,7 +14,7 @@ from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, MPE
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.scores.capture_header import SessionStart, header_of
-from yehu_server.scores.reading import How, is_written, read_any
+from yehu_server.scores.reading import ReadOptions, is_written, read_any
 from yehu_server.scores.score import ScoreEvent, Setting
 from yehu_server.util.files import shipped_folder, write_text
 
@@ -74,7 +74,7 @@ def example(file: Path) -> dict[str, Any]:
     Of several players the first plays: a page has one instrument.
     """
     mapping = MAPPING.get(file.stem, DEFAULT)
-    score = read_any(file, How(is_mpe=mapping == MPE))
+    score = read_any(file, ReadOptions(is_mpe=mapping == MPE))
     events = score.events if mapping == MPE else _of_first_player(score.events)
     return {
         "name": score.name,

@@ -24,12 +24,12 @@ def main() -> None:
     try:
         with tempfile.TemporaryDirectory(prefix="yehu-page-") as folder:
             for file in write_capture_headers(Path(folder)):
-                parent.tell("beginning", name=file.name, text=file.read_text("utf-8"))
+                parent.send("beginning", name=file.name, text=file.read_text("utf-8"))
         path = page_module()
     except (YehuError, OSError) as error:
-        parent.tell("none", reason=str(error))
+        parent.send("none", reason=str(error))
     else:
-        parent.tell("module", path=str(path))
+        parent.send("module", path=str(path))
 
 
 if __name__ == "__main__":

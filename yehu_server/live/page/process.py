@@ -116,7 +116,7 @@ def main() -> None:
     orders = parent.orders()
     pages = Pages(next(orders))
     threading.Thread(target=partial(pages.hear, orders), daemon=True).start()
-    parent.tell("serving")
+    parent.send("serving")
     pages.run()
 
 

@@ -1,1 +1,1 @@
-"""Read ABC, tunes in letters."""
+"""Read ABC notation."""

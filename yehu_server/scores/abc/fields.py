@@ -48,7 +48,7 @@ JUMPS: Mapping[str, str] = {
     "d.c.alfine": "dacapo", "d.c.alcoda": "dacapo", "d.s.alfine": "dalsegno",
     "d.s.alcoda": "dalsegno",
 }  # fmt: skip
-SILENT = frozenset({"thumb", "shortphrase", "mediumphrase", "longphrase", "5", "editorial"})
+IGNORED = frozenset({"thumb", "shortphrase", "mediumphrase", "longphrase", "5", "editorial"})
 
 _KEY = re.compile(r"([A-G])([#b]?)\s*([A-Za-z]*)")
 _ACCIDENTAL = re.compile(r"(\^\^|\^|__|_|=)([A-Ga-g])")

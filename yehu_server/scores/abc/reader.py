@@ -1,6 +1,6 @@
 """Read ABC, the notation in letters: melodies of version 2.1 of its standard.
 
-docs/scores.md tells what is understood.
+docs/scores.md lists what is understood.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The music of one voice of ABC: its letters become bars."""
+"""Read the music of one voice of ABC into bars."""
 
 from __future__ import annotations
 
@@ -268,7 +268,7 @@ class VoiceReader:
             self._direct("wedge", WEDGES[name])
         elif name.lower() in JUMPS:
             self._bar.lines.jumps.add(JUMPS[name.lower()])
-        elif name not in fields.SILENT:
+        elif name not in fields.IGNORED:
             self._unknown[one_line(name[:40])] += 1
 
     def _text(self, text: str) -> None:

@@ -1,11 +1,11 @@
-"""Chinese characters as notes: the 二四谱 of Chaozhou, and 工尺谱.
+"""The notes of Chinese characters: 二四谱 of Chaozhou, and 工尺谱.
 
 Both are read with the rhythm, octaves and marks of jianpu; their characters are degrees of a scale
 on do. In 二四谱 the characters 三 and 六 are light or heavy, by the mode of the piece or by a sign
 before the character; 五 is living (活五) in one of the modes: raised and slid, a gesture.
 
-Pitches of heavy and living notes differ between players and pieces. Those here are one account
-each; docs/jianpu.md tells which.
+Pitches of heavy and living notes differ between players and pieces. docs/jianpu.md names the
+sources of those here.
 """
 
 from __future__ import annotations
@@ -47,15 +47,15 @@ _HEAVY = frozenset({SAN, LIU})
 
 @dataclass(frozen=True)
 class Mode:
-    """A mode of Chaozhou music: which characters are heavy, and whether 五 lives."""
+    """A mode of Chaozhou music: which characters are heavy, and whether 五 is living."""
 
     heavy: frozenset[str] = frozenset()
     living: bool = False
 
 
-USUAL_MODE = Mode()
+DEFAULT_MODE = Mode()
 _MODES = {
-    **dict.fromkeys(("轻六", "轻三六", "轻三轻六", "qingliu"), USUAL_MODE),
+    **dict.fromkeys(("轻六", "轻三六", "轻三轻六", "qingliu"), DEFAULT_MODE),
     **dict.fromkeys(("重六", "重三六", "重三重六", "zhongliu"), Mode(_HEAVY)),
     **dict.fromkeys(("轻三重六", "qingsanzhongliu"), Mode(frozenset({LIU}))),
     **dict.fromkeys(("活五", "活三五", "huowu"), Mode(_HEAVY, living=True)),
@@ -87,7 +87,7 @@ def is_living(character: str, weight: str, mode: Mode) -> bool:
 
 
 def living(character: str, quarters: Fraction) -> Contour:
-    """How a living note moves within its length, as `notated.Note.contour`."""
+    """The moves of a living note within its length, as `notated.Note.contour`."""
     swings: tuple[float, ...]
     if character == SAN:
         swings, points = TURNING_SWINGS, [(Fraction(0), 0.0)]

@@ -1,4 +1,4 @@
-"""How jianpu writes pitches in a key, lengths by lines, dots and dashes, and slurs."""
+"""Write pitches in a key, lengths and slurs as jianpu does."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FIGURES = sorted(
      for factor, dots in ((Fraction(1), ""), (Fraction(3, 2), "."), (Fraction(7, 4), ".."))),
     reverse=True,
 )  # fmt: skip
-SIGN_OF = dict(FIGURES)
+FIGURE_OF = dict(FIGURES)
 PICKUPS = {Fraction(4, unit) * factor: f"{unit}{dot}" for unit in (1, 2, 4, 8, 16, 32, 64)
            for factor, dot in ((Fraction(1), ""), (Fraction(3, 2), "."))}  # fmt: skip
 
@@ -42,7 +42,7 @@ def figure_of(pitch: float, fifths: int) -> tuple[str, int]:
     return f"{'#' * sign if sign > 0 else 'b' * -sign}{degree + 1}", octaves
 
 
-def signed_lengths(length: Fraction, piece: Piece) -> list[Fraction]:
+def notatable_lengths(length: Fraction, piece: Piece) -> list[Fraction]:
     """Lengths that one figure has, with its dashes, and that are as long together."""
     found: list[Fraction] = []
     if length >= 2:

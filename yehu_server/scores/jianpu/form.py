@@ -1,4 +1,4 @@
-"""The elements of a jianpu text in bars, with repeats, endings and jumps: read, and unfolded."""
+"""Collect the elements of a jianpu text in bars, and unfold its repeats, endings and jumps."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ MOST_TIMES = 100
 
 
 class Bars:
-    """The place within the bar, in the order of the page.
+    """Tracks the place within the bar, in the order of the page, and warns of bars that do not fit.
 
-    Only once a metre is written are notes held against it. `length` is that of a whole bar, `place`
+    Notes are checked only once a metre is written. `length` is that of a whole bar, `place`
     what has passed of it, both in quarters.
     """
 
@@ -37,52 +37,52 @@ class Bars:
         self._short: Word | None = None  # the end of a bar that an upbeat completes, if it is last
 
     def change(self, length: Fraction, first: Fraction) -> None:
-        """A metre is written; its first bar may be a short one."""
+        """Begin a metre; its first bar may be shorter."""
         self.length, self.place = length, length - first
         self._upbeat = first
         self._is_written = True
 
     def step(self, length: Fraction, word: Word) -> None:
-        """A note is written."""
+        """Advance by a note."""
         if self._short is not None:
-            self._tell(UNFIT, self._short)
+            self._warn(UNFIT, self._short)
             self._short = None
         self.place += length
         if self.place >= self.length:
             over, self.place = self.place - self.length, self.place % self.length
             if over and length < self.length and self._is_written:
-                self._tell("notes cross a bar line", word)
+                self._warn("notes cross a bar line", word)
 
     def line(self, word: Word) -> None:
-        """A bar line is written."""
+        """Check the place at a bar line."""
         if self.place and self._is_written:
             if self.place + self._upbeat == self.length:
                 self._short = word
             else:
-                self._tell(UNFIT, word)
+                self._warn(UNFIT, word)
             self.place = Fraction(0)
 
     def repeat(self, begin: Fraction, times: int) -> None:
-        """A repeat ends, which began at a place."""
+        """Move to the place after a repeat, which began at a place."""
         self._before_repeat = self.place
         self.place = (begin + times * (self.place - begin)) % self.length
 
     def undo_repeat(self) -> None:
-        """The repeat that has just ended has endings, which follow its first time."""
+        """Go back to the end of the last repeat's first time, where its endings begin."""
         self.place = self._before_repeat
 
     def return_to(self, place: Fraction) -> None:
-        """The next ending begins where the first one did."""
+        """Go back to the place where the first ending began, for the next one."""
         self.place = place
 
-    def _tell(self, what: str, word: Word) -> None:
+    def _warn(self, what: str, word: Word) -> None:
         first = next((text for text in self._notices if text.startswith(what)), None)
         self._notices[first or f"{what} (first at line {word.line}, column {word.column})"] += 1
 
 
 @dataclass(slots=True)
-class Sounding:
-    """A note, rest or dash as it will be played, perhaps several times."""
+class Element:
+    """A note, rest or dash, which may be played several times."""
 
     kind: Kind
     length: Fraction
@@ -104,7 +104,7 @@ class MetreMark:
 
 @dataclass
 class Repeat:
-    """What is played several times, and the endings, of which each time takes one."""
+    """A passage that is played several times, and its endings, one for each time."""
 
     times: int
     body: list[object] = field(default_factory=list)
@@ -124,18 +124,18 @@ class _Open:
 
 
 class RepeatStack:
-    """Collects elements, in the order of the page."""
+    """Collects elements, in the order of the page, with the repeats that are open."""
 
     def __init__(self, bars: Bars) -> None:
         self._stack = [_Open([], Word("", 1, 1), Repeat(1), Fraction(0))]  # first the whole piece
         self._bars = bars
 
     def add(self, element: object) -> None:
-        """Put an element where the page is."""
+        """Add an element to the innermost open repeat."""
         self._stack[-1].elements.append(element)
 
     def open_repeat(self, times: str, word: Word, *, signs: bool = False) -> None:
-        """A repeat begins. Raises ScoreError beyond its bounds."""
+        """Begin a repeat. Raises ScoreError beyond its bounds."""
         if len(times) > 4 or int(times) > MOST_TIMES:
             raise failure(word, f"more than {MOST_TIMES} times")
         repeat = Repeat(int(times))
@@ -148,7 +148,7 @@ class RepeatStack:
         self._stack.append(opened)
 
     def open_endings(self, word: Word) -> None:
-        """The endings of the repeat before begin. Raises ScoreError where there is none."""
+        """Begin the endings of the last repeat. Raises ScoreError where there is none."""
         before = next(iter(self._stack[-1].elements[-1:]), None)
         if not isinstance(before, Repeat) or before.endings:
             raise failure(word, "A{ belongs after the } of a repeat")
@@ -157,7 +157,7 @@ class RepeatStack:
         self._open(_Open(before.endings[0], word, before, self._bars.place, endings=True))
 
     def bar_line(self, word: Word) -> None:
-        """A bar line, or the end of one ending where endings are open."""
+        """Take a bar line; where endings are open it ends one of them."""
         opened = self._stack[-1]
         if not opened.endings:
             self._bars.line(word)
@@ -169,12 +169,12 @@ class RepeatStack:
         self._bars.return_to(opened.begin)
 
     def begin_by_sign(self, word: Word) -> None:
-        """A bar line with points to its right, ``|:``; it ends one that has no end."""
-        self._forget_sign()
+        """Begin a repeat at ``|:``; an open one of such a sign ends."""
+        self._drop_sign()
         self.open_repeat("2", word, signs=True)
 
     def end_by_sign(self) -> None:
-        """A bar line with points to its left, ``:|``: from its sign, or from the repeat before."""
+        """End a repeat at ``:|``: one from its sign, or from the end of the repeat before."""
         if self._stack[-1].signs:
             self._stack.pop()
             return
@@ -185,14 +185,14 @@ class RepeatStack:
             begin += 1
         elements[begin:] = [Repeat(2, elements[begin:])]
 
-    def _forget_sign(self) -> None:
+    def _drop_sign(self) -> None:
         """Play once what a sign began and none ended."""
         if self._stack[-1].signs:
             self._stack.pop().repeat.times = 1
 
     def close(self, word: Word) -> None:
-        """A repeat or its endings end. Raises ScoreError where none is open."""
-        self._forget_sign()
+        """End a repeat or its endings. Raises ScoreError where none is open."""
+        self._drop_sign()
         if len(self._stack) == 1:
             raise failure(word, "} without a { before it")
         closed = self._stack.pop()
@@ -201,7 +201,7 @@ class RepeatStack:
 
     def all_closed(self) -> list[object]:
         """Return all elements. Raises ScoreError where a repeat has no end."""
-        self._forget_sign()
+        self._drop_sign()
         if len(self._stack) > 1:
             raise failure(self._stack[-1].word, "has no } that ends it")
         return self._stack[0].elements

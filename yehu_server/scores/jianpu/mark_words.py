@@ -17,13 +17,13 @@ SHORT = {".": "staccato", "!": "staccatissimo", "_": "portato", ">": "accent", "
 NAMED = ("harmonic", "up", "down", "bend", "tilde", "staccato", "souyin")
 THERE_AND_BACK = ((0.0, 0.0), (0.4, 0.0), (0.6, -2.0), (0.8, 0.0))  # by ear
 SLURS_AND_TIES = {"(": Meaning("slur"), ")": Meaning("slur end"), "~": Meaning("tie")}
-# Understood, and nothing to hear.
-SILENT = frozenset({
+# Understood, and without effect on the sound.
+IGNORED = frozenset({
     "OnePage", "NoBarNums", "NoIndent", "RaggedLast", "SeparateTimesig", "angka", "Indonesian",
     "WithStaff", "PartMidi", "ChordsRoman", "RepeatAccidentals", "NormalAccidentals",
     "KeepOctave", "[(", ")]", "\\(", "\\)", "\\break", "\\noBreak", "\\pageBreak",
 })  # fmt: skip
-SILENT_HEADERS = frozenset({
+IGNORED_HEADERS = frozenset({
     "subtitle", "subsubtitle", "composer", "poet", "arranger", "copyright", "opus", "piece",
     "meter", "tagline", "dedication", "frets", "chords",
 })  # fmt: skip
@@ -84,7 +84,7 @@ TEXTS: Mapping[str, Meaning] = {
 
 @lru_cache(maxsize=1024)
 def action_of(word: str) -> Meaning | None:
-    """What a word does at the note before it; None where it is not understood."""
+    """The meaning of a word for the note before it; None where it is not understood."""
     bare = word.lstrip("_^") if word[:2] in ("_\\", "^\\") else word
     if bare.startswith("\\"):
         return COMMANDS.get(bare[1:])

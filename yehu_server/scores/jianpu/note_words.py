@@ -1,4 +1,4 @@
-"""One word of jianpu that is a note: figures, octaves, accidentals, and how long it lasts."""
+"""Read one word of jianpu as a note: figures, octaves, accidentals and length."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _GRACE = re.compile(r"g\[([^\]]+)\]|\[([^\]]+)\]g")
 
 
 class Kind(Enum):
-    """What a word of figures is."""
+    """The kinds of words of figures."""
 
     NOTE = auto()
     REST = auto()
@@ -220,5 +220,5 @@ def height(figure: Figure) -> float:
 
 @lru_cache(maxsize=1024)
 def quarters(beams: int, dots: int, tuplet: Fraction) -> Fraction:
-    """How long a note of so many beams and dots is, in quarters."""
+    """The length of a note of so many beams and dots, in quarters."""
     return Fraction(2 ** (dots + 1) - 1, 1 << (dots + beams)) * tuplet

@@ -1,4 +1,4 @@
-"""From the words of one part to what sounds, in the order of the page."""
+"""Parse the words of one part to elements: notes, marks and repeats, in the order of the page."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from yehu_server.scores.jianpu.form import (
     JUMPS,
     MOST_UNFOLDED,
     Bars,
+    Element,
     MetreMark,
     RepeatStack,
-    Sounding,
 )
-from yehu_server.scores.jianpu.mark_words import AHEAD, SILENT, action_of
+from yehu_server.scores.jianpu.mark_words import AHEAD, IGNORED, action_of
 from yehu_server.scores.jianpu.note_words import (
     Figure,
     Kind,
@@ -69,7 +69,7 @@ class PartParser:
         self._in_harmonics = False
         self._ahead: list[Meaning] = []
         self._graces: tuple[Grace, ...] = ()
-        self._last: Sounding | None = None
+        self._last: Element | None = None
         self._count = 0
         self._skips = False  # the argument of \bar
         self._ways: tuple[Callable[[Word], bool], ...] = (
@@ -94,7 +94,7 @@ class PartParser:
             self.unknown[printable(word.text)] += 1
 
     def end(self) -> list[object]:
-        """Return all elements in the order of the page: soundings, tempi, metres, repeats, jumps.
+        """Return all elements in the order of the page: notes, tempi, metres, repeats, jumps.
 
         Raises ScoreError where a repeat or a tuplet has no end.
         """
@@ -119,47 +119,47 @@ class PartParser:
             self.notices["octave marks between two figures, read as of the one before"] += 1
         melody = len(note.figures) > 1 and not note.figures[0].sign.isascii()
         for group in [(figure,) for figure in note.figures] if melody else [note.figures]:
-            self._sound(note, group, word)
+            self._add_note(note, group, word)
         self._add_dashes(note, self._tuplet, word)
         return True
 
     def _add_dashes(self, note: NoteWord, length: Fraction, word: Word) -> None:
         """Each dash holds the note before it for a length; ``part`` joins them."""
         for _ in range(note.dashes):
-            self._add(Sounding(Kind.DASH, length), word)
+            self._add(Element(Kind.DASH, length), word)
 
-    def _sound(self, note: NoteWord, figures: tuple[Figure, ...], word: Word) -> None:
-        sounding = Sounding(note.kind, self._length(note))
+    def _add_note(self, note: NoteWord, figures: tuple[Figure, ...], word: Word) -> None:
+        element = Element(note.kind, self._length(note))
         if note.kind is Kind.BEAT:
             self.notices["beats of percussion (x), played as rests"] += 1
         if figures:
-            self._give_pitches(sounding, figures, note.tremolo, word)
+            self._give_pitches(element, figures, note.tremolo, word)
         ahead, self._ahead = self._ahead, []
         if note.kind is Kind.NOTE:
-            sounding.actions += ahead
-            sounding.before, self._graces = self._graces, ()
+            element.actions += ahead
+            element.before, self._graces = self._graces, ()
             if self._in_harmonics:
-                sounding.actions.append(Meaning("mark", "harmonic"))
+                element.actions.append(Meaning("mark", "harmonic"))
         else:
             self._ahead = ahead
-        self._add(sounding, word)
+        self._add(element, word)
 
     def _give_pitches(
-        self, sounding: Sounding, figures: tuple[Figure, ...], tremolo: bool, word: Word
+        self, element: Element, figures: tuple[Figure, ...], tremolo: bool, word: Word
     ) -> None:
         single = len(figures) == 1
         pitches = [self.scale.pitch(figure, word, shifted=single) for figure in figures]
-        sounding.pitch = max(pitches)
+        element.pitch = max(pitches)
         if tremolo and len(figures) == 2:
-            sounding.pitch, sounding.other = pitches
+            element.pitch, element.other = pitches
         elif tremolo:
-            sounding.actions.append(Meaning("mark", "tremolo", 3.0))
+            element.actions.append(Meaning("mark", "tremolo", 3.0))
         elif not single:
             self.notices[
                 "chords, of which the highest note is played (if they are no chords, write a "
                 "space between the notes)"
             ] += 1
-        sounding.living = self.scale.living(figures[0])
+        element.living = self.scale.living(figures[0])
 
     def _length(self, note: NoteWord) -> Fraction:
         beams = note.beams
@@ -168,13 +168,13 @@ class PartParser:
         self._last_beams = beams
         return quarters(beams, note.dots, self._tuplet)
 
-    def _add(self, sounding: Sounding, word: Word) -> None:
+    def _add(self, element: Element, word: Word) -> None:
         self._count += 1
         if self._count > MOST_UNFOLDED:
             raise failure(word, f"more than {MOST_UNFOLDED} notes")
-        self._braces.add(sounding)
-        self._last = sounding
-        self._bars.step(sounding.length, word)
+        self._braces.add(element)
+        self._last = element
+        self._bars.step(element.length, word)
 
     def _as_graces(self, word: Word) -> bool:
         graces = grace_word(word.text, self._octaves)
@@ -201,7 +201,7 @@ class PartParser:
         if action is None:
             return False
         if self._last is None:  # before the first note: a moment without length
-            self._last = Sounding(Kind.REST, Fraction(0))
+            self._last = Element(Kind.REST, Fraction(0))
             self._braces.add(self._last)
         self._last.actions.append(action)
         return True
@@ -235,7 +235,7 @@ class PartParser:
         elif text == "\\bar":
             self._skips = True
         else:
-            return text in SILENT or _LETTER.fullmatch(text) is not None
+            return text in IGNORED or _LETTER.fullmatch(text) is not None
         return True
 
     # ------------------------------------------------------------ tempo, metre
@@ -263,7 +263,7 @@ class PartParser:
     def _rest_of_bars(self, found: re.Match[str], word: Word) -> None:
         if len(found[1]) > 4 or int(found[1]) > MOST_BARS_REST:
             raise failure(word, f"a rest of more than {MOST_BARS_REST} bars")
-        self._add(Sounding(Kind.REST, int(found[1]) * self._bars.length), word)
+        self._add(Element(Kind.REST, int(found[1]) * self._bars.length), word)
 
     # ------------------------------------------------------------ form
 

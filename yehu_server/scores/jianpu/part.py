@@ -1,4 +1,4 @@
-"""From what sounds, in the order of playing, to the notes, spans and signs of a part."""
+"""Make the notes, spans and signs of a part from its elements, in the order of playing."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from yehu_server.scores.jianpu.characters import Contour, living
-from yehu_server.scores.jianpu.form import MetreMark, Sounding
+from yehu_server.scores.jianpu.form import Element, MetreMark
 from yehu_server.scores.jianpu.mark_words import THERE_AND_BACK
 from yehu_server.scores.jianpu.note_words import Kind
 from yehu_server.scores.score import Metre
@@ -25,18 +25,18 @@ class _Draft:
     """A note that may still grow, by ties and dashes."""
 
     note: Note
-    element: Sounding
+    element: Element
     returns: bool = False  # slides away and back
 
-    def grow(self, more: Sounding, marks: Iterable[Mark]) -> None:
+    def grow(self, more: Element, marks: Iterable[Mark]) -> None:
         """Let it go on with another element."""
         note = self.note
         length, marks, after = note.length + more.length, (*note.marks, *marks), note.after
         self.note = replace(note, length=length, marks=marks, after=(*after, *more.after))
 
 
-class PartPlayer:
-    """Walks once through the elements of a part; what it plays is in its lists then.
+class PartBuilder:
+    """Builds the notes, spans, signs, tempi and metres of a part, as lists.
 
     `end` is the beat after the last note or rest; with `has_pickup` a metre begins with a short
     bar.
@@ -56,12 +56,12 @@ class PartPlayer:
         self._hairpin = OpenSpan(self.spans)
         self._change = OpenSpan(self.spans, notated.LONGEST_CHANGE)  # of tempo
         self._glissando: Fraction | None = None
-        self._tempo = notated.USUAL_TEMPO
+        self._tempo = notated.DEFAULT_TEMPO
 
-    def play(self, elements: Sequence[object]) -> None:
-        """Play all elements."""
+    def build(self, elements: Sequence[object]) -> None:
+        """Take all elements, in the order of playing."""
         for element in elements:
-            if isinstance(element, Sounding):
+            if isinstance(element, Element):
                 self._sound(element)
             elif isinstance(element, MetreMark):
                 self._metre(element)
@@ -77,7 +77,7 @@ class PartPlayer:
 
     # ------------------------------------------------------------ in time
 
-    def _sound(self, element: Sounding) -> None:
+    def _sound(self, element: Element) -> None:
         begin = self.end
         self.end = begin + element.length
         last = self._drafts[-1] if self._drafts else None
@@ -91,7 +91,7 @@ class PartPlayer:
         for action in element.actions:
             self._act(action, begin)
 
-    def _rest(self, element: Sounding, begin: Fraction) -> None:
+    def _rest(self, element: Element, begin: Fraction) -> None:
         if element.length:
             self._untied()
         for mark in _marks(element):
@@ -100,7 +100,7 @@ class PartPlayer:
             else:
                 self._notices["marks on rests left out"] += 1
 
-    def _note(self, element: Sounding, pitch: float, begin: Fraction, last: _Draft | None) -> None:
+    def _note(self, element: Element, pitch: float, begin: Fraction, last: _Draft | None) -> None:
         marks = _marks(element)
         if self._tied and last is not None and last.note.pitch == pitch and not element.before:
             last.grow(element, [mark for mark in marks if mark not in last.note.marks])
@@ -189,5 +189,5 @@ class PartPlayer:
         self._span("slur", note.beat, turns[-1].beat)
 
 
-def _marks(element: Sounding) -> list[Mark]:
+def _marks(element: Element) -> list[Mark]:
     return [Mark(each.name, each.value) for each in element.actions if each.kind == "mark"]

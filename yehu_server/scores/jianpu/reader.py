@@ -1,4 +1,4 @@
-"""Reads jianpu (简谱, numbered notation), written as text in the words of jianpu-ly, and 二四谱.
+"""Read jianpu (简谱, numbered notation) in the text format of jianpu-ly, and 二四谱.
 
 The format is that of [jianpu-ly], as docs/jianpu.md describes it. 二四谱 and 工尺谱 are read
 with it (`characters`).
@@ -16,9 +16,9 @@ from itertools import pairwise
 from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.characters import NOTATIONS, mode_named
 from yehu_server.scores.jianpu.form import unfolded
-from yehu_server.scores.jianpu.mark_words import SILENT_HEADERS
+from yehu_server.scores.jianpu.mark_words import IGNORED_HEADERS
 from yehu_server.scores.jianpu.parser import PartParser
-from yehu_server.scores.jianpu.part import PartPlayer
+from yehu_server.scores.jianpu.part import PartBuilder
 from yehu_server.scores.jianpu.scale import Scale
 from yehu_server.scores.jianpu.text import Header, Word, decoded, printable, words_of
 from yehu_server.scores.score import (
@@ -60,13 +60,13 @@ def parse_jianpu(data: bytes) -> Written:
     for movement in _movements(text):
         reader.read(movement)
     written = reader.written()
-    told = [guess] if guess else []
-    told += [notice if count == 1 else f"{notice} ({count})" for notice, count in notices.items()]
+    lines = [guess] if guess else []
+    lines += [notice if count == 1 else f"{notice} ({count})" for notice, count in notices.items()]
     named = dict(unknown.most_common(MOST_UNKNOWN))
     others = unknown.total() - sum(named.values())
     if others:
         named["other words"] = others
-    return replace(written, unknown=named, warnings=tuple(told))
+    return replace(written, unknown=named, warnings=tuple(lines))
 
 
 def _movements(text: str) -> list[list[Words]]:
@@ -91,7 +91,7 @@ class _Reader:
         self._title = ""
         self._characters: dict[str, float] | None = None
         self._names: dict[int, str] = {}
-        self._parts: dict[int, list[PartPlayer]] = {}
+        self._parts: dict[int, list[PartBuilder]] = {}
         self._end = Fraction(0)
         self._key: float | None = None
 
@@ -112,8 +112,8 @@ class _Reader:
                 self._key = key
             order, warnings = unfolded(parser.end())
             self._notices.update(warnings)
-            played.append(PartPlayer(self._end, self._notices))
-            played[-1].play(order)
+            played.append(PartBuilder(self._end, self._notices))
+            played[-1].build(order)
         if len({each.end for each in played}) > 1:
             self._notices["parts differ in length"] += 1
         for number, each in enumerate(played):
@@ -132,7 +132,7 @@ class _Reader:
             scale.characters = self._characters
         elif header.name in ("mode", "调", "调式") and mode_named(header.value):
             scale.mode = mode_named(header.value) or scale.mode
-        elif header.name not in SILENT_HEADERS:
+        elif header.name not in IGNORED_HEADERS:
             value = f"={header.value}" if header.name in ("notation", "mode", "谱", "调") else "="
             self._unknown[printable(f"{header.name}{value}")] += 1
 
@@ -155,7 +155,7 @@ class _Reader:
         return replace(whole, keys=(KeySignature(Fraction(0), fifths),))
 
     def _tempi(self) -> tuple[Tempo, ...]:
-        """Of all parts; where several change it at once, the first of them."""
+        """The tempi of all parts; where several change it at once, that of the first."""
         found: dict[Fraction, Tempo] = {}
         for movements in self._parts.values():
             of_part = {tempo.beat: tempo for each in movements for tempo in each.tempi}

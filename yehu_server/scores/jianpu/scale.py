@@ -5,26 +5,26 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from yehu_server.scores.jianpu.characters import ERSIPU, USUAL_MODE, is_living, semitones_of
+from yehu_server.scores.jianpu.characters import DEFAULT_MODE, ERSIPU, is_living, semitones_of
 from yehu_server.scores.jianpu.note_words import MAJOR, MOST_OCTAVES, Figure
 from yehu_server.scores.jianpu.text import Word, failure, printable
 from yehu_server.scores.written.layout import SEMITONES
 
 MIDDLE_C = 60.0
 LOWEST_DO = -5.0  # semitones from middle C, without the sharp or flat of the key
-USUAL_CHARACTER_KEY = 65.0  # F, in which Chaozhou music is written
+DEFAULT_CHARACTER_KEY = 65.0  # F, in which Chaozhou music is written
 
 _KEY = re.compile(r"([1-7])=(?:([A-Ga-g])([#b]?)|([#b])([A-Ga-g]))")
 
 
 class Scale:
-    """What figures sound like at a place of the text, which begins in the key of the part before.
+    """The pitches of figures at a place of the text, which begins in the key of the part before.
 
     Keys are in semitones above middle C.
     """
 
     def __init__(self, characters: Mapping[str, float] | None, key: float | None = None) -> None:
-        self.mode = USUAL_MODE  # of 二四谱
+        self.mode = DEFAULT_MODE  # of 二四谱
         self.characters = characters or ERSIPU  # semitones above do, in this notation
         self._key = key
         self.first_key, self._has_own = key, False  # the first that is written, if one is
@@ -51,10 +51,10 @@ class Scale:
     def pitch(self, figure: Figure, word: Word, *, shifted: bool = False) -> float:
         """The MIDI note of a figure.
 
-        `shifted` tells whether the base octave counts: it does not in chords and grace notes.
+        `shifted`: whether the base octave counts; it does not in chords and grace notes.
         Raises ScoreError beyond MIDI's range, or where the notation has no such character.
         """
-        key = MIDDLE_C if figure.sign.isascii() else USUAL_CHARACTER_KEY
+        key = MIDDLE_C if figure.sign.isascii() else DEFAULT_CHARACTER_KEY
         if self._key is not None:
             key = MIDDLE_C + self._key
         if figure.sign.isascii():

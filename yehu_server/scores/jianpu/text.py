@@ -1,4 +1,4 @@
-"""The words of a jianpu text, each with its place: headers, comments and lyrics set apart."""
+"""Split a jianpu text into words and headers with their places, without comments and lyrics."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 from yehu_server.errors import ScoreError
 
-# What Chinese keyboards and word processors write in place of plain signs; one for one, so that
-# columns stay.
+# Plain signs for those of Chinese keyboards and word processors; one for one, so that columns stay.
 _PLAIN = {
     **{code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)},
     **dict.fromkeys((0x2018, 0x2019, 0x2032), ord("'")),

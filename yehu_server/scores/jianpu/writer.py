@@ -1,4 +1,4 @@
-"""Write a score as a jianpu text, in the words that `reader` understands: the same score again.
+"""Write a score as a jianpu text, which `reader` reads as the same score.
 
 Repeats are written out; a part has a bar a word group, and some bars a line.
 """
@@ -20,8 +20,14 @@ from yehu_server.scores.written.words import WRITTEN_CHANGES, words_of_sign
 
 BARS_A_LINE = 4
 GRACES = {Fraction(1, 2): "q", Fraction(1, 4): "s", Fraction(1, 8): "d", Fraction(1, 16): "h"}
-# What these words are read as, where they have no value (semitones).
-USUAL = {"trill": 2.0, "mordent": 1.0, "inverted-mordent": 2.0, "turn": 2.0, "inverted-turn": 2.0}
+# The values (semitones) of these words, where none is written.
+DEFAULTS = {
+    "trill": 2.0,
+    "mordent": 1.0,
+    "inverted-mordent": 2.0,
+    "turn": 2.0,
+    "inverted-turn": 2.0,
+}
 HAIRPINS = {"crescendo": "\\<", "diminuendo": "\\>"}
 TEMPO_UNITS = (("4", Fraction(1)), ("8", Fraction(1, 2)), ("4.", Fraction(3, 2)),
                ("16", Fraction(1, 4)), ("2", Fraction(2)))  # fmt: skip
@@ -202,18 +208,17 @@ class _PartWriter:
     def _plain(self, piece: Piece, factor: Fraction) -> Iterator[str]:
         """A note or rest, with what stands at it."""
         yield from self._tempo(piece.begin)
-        for cut in layout.split(
-            piece, [factor * each for each in figures.signed_lengths(piece.length / factor, piece)]
-        ):
-            yield from self._signed_piece(cut, factor)
+        lengths = figures.notatable_lengths(piece.length / factor, piece)
+        for cut in layout.split(piece, [factor * each for each in lengths]):
+            yield from self._figured(cut, factor)
 
-    def _signed_piece(self, piece: Piece, factor: Fraction) -> Iterator[str]:
+    def _figured(self, piece: Piece, factor: Fraction) -> Iterator[str]:
         length = piece.length / factor
         note = piece.note
         if note is not None and piece.is_first:
             for grace in note.before:
-                yield f"g[{self._small(grace)}]"
-        beam, dots = figures.SIGN_OF.get(length, ("", ""))
+                yield f"g[{self._grace(grace)}]"
+        beam, dots = figures.FIGURE_OF.get(length, ("", ""))
         figure = "0" if note is None else self._figure(note.pitch)
         is_tremolo = note is not None and piece.is_first and bool(note.marked("tremolo"))
         yield f"{beam}{figure}{dots}{'///' if is_tremolo else ''}"
@@ -229,7 +234,7 @@ class _PartWriter:
             yield "~"
         elif note is not None:
             for grace in note.after:
-                yield f"[{self._small(grace)}]g"
+                yield f"[{self._grace(grace)}]g"
 
     def _tempo(self, beat: Fraction) -> Iterator[str]:
         while self._tempi and self._tempi[0].beat <= beat:
@@ -252,9 +257,9 @@ class _PartWriter:
             self._lost["pitches that move within a note"] += 1
         for mark in note.marks:
             word = MARK_WORDS.get(mark)
-            if word is None and mark.value is not None:  # the usual one says nearly the same
+            if word is None and mark.value is not None:  # without it is nearly the same
                 word = MARK_WORDS.get(Mark(mark.name))
-                self._lost[f"{mark.name} {mark.value:g}"] += mark.value != USUAL.get(mark.name)
+                self._lost[f"{mark.name} {mark.value:g}"] += mark.value != DEFAULTS.get(mark.name)
             if mark.name == "tremolo" and word is None:  # three strokes are written at the figure
                 self._lost[f"tremolo {mark.value or 0:g}"] += mark.value != 3.0
                 continue
@@ -270,6 +275,6 @@ class _PartWriter:
         figure, octaves = figures.figure_of(pitch, self._fifths)
         return figure + ("'" * octaves if octaves > 0 else "," * -octaves)
 
-    def _small(self, grace: Grace) -> str:
+    def _grace(self, grace: Grace) -> str:
         self._lost["marks of grace notes"] += len(grace.marks)
         return f"{GRACES.get(grace.length, 'q')}{self._figure(grace.pitch)}"

@@ -1,4 +1,4 @@
-"""The bars of one part of a MusicXML file, as written: notes, directions, bar lines."""
+"""Read the bars of one part of a MusicXML file: notes, directions, bar lines."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class BarReader:
     def __init__(self, part: Element, unknown: Counter[str], warnings: Counter[str]) -> None:
         self._unknown = unknown
         self._warnings = warnings
-        # Some writers tell the divisions after the first notes.
+        # Some writers give the divisions after the first notes.
         first = next(map(_divisions, part.iterfind("measure/attributes/divisions")), None)
         self._divisions = Fraction(1) if first is None else first
         self._fifths = 0
@@ -47,7 +47,7 @@ class BarReader:
         self._bars = 0
         self._notes = 0
         self._head: RawNote | None = None  # what <chord/> belongs to, played or not
-        self._smalls: list[RawNote] = []  # grace notes before their note
+        self._graces: list[RawNote] = []  # grace notes before their note
         self._at = Fraction(0)
         self._bar = RawBar("", BarLines())
 
@@ -60,7 +60,7 @@ class BarReader:
             self._last_ending = max(self._ending), self._bars
         self._at = Fraction(0)
         self._head = None
-        self._smalls = []
+        self._graces = []
         directions = DirectionReader(bar.directions, lines.jumps, self._unknown)
         for child in measure:
             if child.tag == "note":
@@ -179,7 +179,7 @@ class BarReader:
             self._bar.length = max(self._bar.length, self._at)
             self._head = note
         is_rest = element.find("rest") is not None
-        silent = "" if is_rest else _why_silent(element)
+        silent = "" if is_rest else _why_not_played(element)
         if silent:
             self._warnings[silent] += 1
             return
@@ -211,12 +211,12 @@ class BarReader:
             return
         notes.append(note)
         if note.is_grace:
-            self._smalls.append(note)
+            self._graces.append(note)
             return
-        for small in self._smalls:  # it may stand on the other staff
+        for small in self._graces:  # it may stand on the other staff
             if small.voice[1] == note.voice[1]:
                 small.voice = note.voice
-        self._smalls = [each for each in self._smalls if each.voice[1] != note.voice[1]]
+        self._graces = [each for each in self._graces if each.voice[1] != note.voice[1]]
 
     def _in_chord(self, first: RawNote, note: RawNote) -> None:
         """Keep the highest note of a chord, with the marks of all."""
@@ -272,7 +272,7 @@ class BarReader:
         note.marks = marks.marks
 
 
-def _why_silent(element: Element) -> str:
+def _why_not_played(element: Element) -> str:
     """Why a note is not played, as MuseScore has it for hidden ones; empty where it is."""
     if element.find("cue") is not None:
         return "cue notes are not played"

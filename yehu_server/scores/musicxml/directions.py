@@ -1,4 +1,4 @@
-"""Directions of MusicXML: dynamics, hairpins, tempi, words, and where to jump."""
+"""Read directions of MusicXML: dynamics, hairpins, tempi, words and jumps."""
 
 from __future__ import annotations
 
@@ -42,10 +42,12 @@ class DirectionReader:
         has_tempo = tempo is not None or direction.find("direction-type/metronome") is not None
         for kind in direction.iterfind("direction-type"):
             for child in kind:
-                self._type(child, at, has_tempo=has_tempo, is_told=tempo is not None, jumps=jumps)
+                self._type(
+                    child, at, has_tempo=has_tempo, has_sound_tempo=tempo is not None, jumps=jumps
+                )
 
     def _type(
-        self, child: Element, at: Fraction, *, has_tempo: bool, is_told: bool, jumps: bool
+        self, child: Element, at: Fraction, *, has_tempo: bool, has_sound_tempo: bool, jumps: bool
     ) -> None:
         tag = child.tag
         if tag == "dynamics":
@@ -55,7 +57,7 @@ class DirectionReader:
         elif tag == "dashes":
             self._add(at, "dashes", child.get("type", ""))
         elif tag == "metronome":
-            if not is_told:
+            if not has_sound_tempo:
                 self._metronome(child, at)
         elif tag == "words":
             self._words(child.text or "", at, has_tempo=has_tempo, jumps=jumps)

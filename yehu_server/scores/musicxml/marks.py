@@ -41,7 +41,7 @@ ORNAMENTS: Mapping[str, tuple[str, int]] = {
     "haydn": ("turn", 1),
 }  # fmt: skip
 # These say nothing about the sound, or are read elsewhere.
-SILENT = {
+IGNORED = {
     "accidental-mark", "tied", "slur", "tuplet", "glissando", "slide", "wavy-line", "dynamics",
 }  # fmt: skip
 GROUPS = {"articulations", "ornaments", "technical"}
@@ -92,8 +92,8 @@ def neighbour(letter: str, octave: int, steps: int, fifths: int, alter: float | 
 class NoteMarks:
     """Reads the <notations> of one note.
 
-    `interval` tells the semitones from the note to its neighbour above (1) or below (-1) in the
-    key, with an accidental of its own or None; `count` is told each mark that is not understood.
+    `interval` returns the semitones from the note to its neighbour above (1) or below (-1) in the
+    key, with an accidental of its own or None; `count` is called with each unknown mark.
     """
 
     def __init__(self, interval: Callable[[int, float | None], float], count: Count) -> None:
@@ -123,7 +123,7 @@ class NoteMarks:
             elif tag == "fingering" and (child.text or "").strip() in {*"01234", ""}:
                 if finger := (child.text or "").strip():
                     self._add("finger", float(finger))
-            elif tag not in SILENT:
+            elif tag not in IGNORED:
                 self._count(f"{printable(tag)} {printable(child.text or '')}".strip())
 
     def _add(self, name: str, value: float | None = None) -> None:

@@ -1,6 +1,6 @@
 """Read MusicXML: `.musicxml`, `.xml` and `.mxl`.
 
-docs/scores.md tells what is understood. Each voice becomes a part of its own, with one note at a
+docs/scores.md lists what is understood. Each voice becomes a part of its own, with one note at a
 time: the highest of a chord. Entities are refused: none of them belongs into a score, and they can
 make a small file endless. Nothing but the file itself is opened: neither its document type nor what
 an archive names.
@@ -75,7 +75,7 @@ def written_of(root: Element) -> Written:
 
 
 def _partwise(root: Element) -> Element:
-    """The same score with its bars in parts, and not its parts in bars."""
+    """Change a score of bars with parts to one of parts with bars."""
     changed = Element("score-partwise")
     changed.extend(child for child in root if child.tag != "measure")
     parts: dict[str, Element] = {}

@@ -24,7 +24,7 @@ HEAD = (
     b'"-//Recordare//DTD MusicXML 4.0 Partwise//EN" '
     b'"http://www.musicxml.org/dtds/partwise.dtd">\n'
 )
-MOST_DIVISIONS, USUAL_DIVISIONS = 16_383, 5040  # of a quarter note
+MOST_DIVISIONS, DEFAULT_DIVISIONS = 16_383, 5040  # of a quarter note
 VALUES = {
     Fraction(16): "long", Fraction(8): "breve", Fraction(4): "whole", Fraction(2): "half",
     Fraction(1): "quarter", Fraction(1, 2): "eighth", Fraction(1, 4): "16th",
@@ -46,7 +46,7 @@ def musicxml_of(written: Written) -> tuple[bytes, dict[str, int]]:
     lost: Counter[str] = Counter()
     divisions = math.lcm(*_denominators(written))
     if divisions > MOST_DIVISIONS:
-        divisions = USUAL_DIVISIONS
+        divisions = DEFAULT_DIVISIONS
         written, moved = layout.rounded(written, [divisions])
         lost["beats finer than 1/5040 of a quarter"] += moved
     root = Element("score-partwise", version="4.0")
@@ -135,7 +135,7 @@ class _PartWriter:
                 self._direction(measure, events.popleft(), bar.end)
 
     def _ends_of_lines(self) -> Iterator[tuple[Fraction, bool, Span]]:
-        """Where slurs and slides end and begin, the last first; they join different notes."""
+        """The ends and beginnings of slurs and slides between different notes, the last first."""
         begins = [note.beat for note in self._part.notes]
         found: list[tuple[Fraction, bool, Span]] = []
         for span in self._part.spans:
@@ -258,7 +258,7 @@ class _PartWriter:
         SubElement(found, "octave").text = str(octave)
 
     def _value(self, element: Element, length: Fraction) -> None:
-        """How a length is drawn, where there is a sign for it."""
+        """Write the type and dots of a length, where there are any for it."""
         if length in SIGNS_OF:
             name, dots = SIGNS_OF[length]
             SubElement(element, "type").text = name

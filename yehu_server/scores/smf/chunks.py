@@ -1,7 +1,7 @@
-"""A MIDI file's chunks, within what it came in: RIFF, a Macintosh's header, a mail.
+"""Find the chunks of a MIDI file, also within RIFF, a MacBinary header or a mail.
 
-What is no MIDI file at all is named, so that its owner knows what to do with it. Headers and tracks
-are found also where lengths are wrong.
+An error names the kind of a file that is no MIDI file, so that its owner knows what to do with it.
+Headers and tracks are found also where lengths are wrong.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from yehu_server.errors import ScoreError
 
-MOST_KINDS = 30  # that are told apart; a hostile file could have one for each of its bytes
+MOST_KINDS = 30  # listed separately; a hostile file could have one for each of its bytes
 OTHERS = "further faults of other kinds"
 
 

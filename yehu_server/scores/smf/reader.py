@@ -2,8 +2,8 @@
 
 Real files are cut short, have wrong lengths and counts, come in wrappers and have velocities above
 127. This reader keeps all valid messages, lists the damage in `Score.warnings`, and refuses only
-files with nothing to play and those that ask for too much. docs/midi_files.md has what becomes of
-each fault.
+files with nothing to play and those that ask for too much. docs/midi_files.md says what becomes
+of each fault.
 """
 
 from __future__ import annotations
@@ -175,7 +175,7 @@ def _play_together(
         check_duration(end_s, max_duration_h)
     except ScoreError as error:
         raise ScoreError(f"{error}{_longest_rest(tracks, clock, end_s)}") from None
-    starts = [track.start_at for track in tracks]  # a message's byte tells its track
+    starts = [track.start_at for track in tracks]  # a message's byte is within its track
     events = tuple(
         ScoreEvent(
             clock.seconds(tick), message, clock.beat(tick), first - 1 + bisect_right(starts, at)
@@ -221,7 +221,7 @@ def _keys(tracks: Sequence[Track], division: int) -> tuple[KeySignature, ...]:
 
 
 def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> str:
-    """Where most of the time is one rest, words that tell its place."""
+    """The place of a rest that is most of the duration, as text; empty where there is none."""
     rests = (track.longest for track in tracks)
     longest = ((clock.seconds(tick) - clock.seconds(tick - delta), at) for delta, tick, at in rests)
     seconds, at = max(longest)

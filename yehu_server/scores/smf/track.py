@@ -1,4 +1,4 @@
-"""One track of a MIDI file: bytes to messages at ticks, and ticks to seconds."""
+"""Decode one track of a MIDI file to messages at ticks, and convert ticks to seconds."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from yehu_server.scores.smf.tunings import MOST as MOST_TUNINGS
 from yehu_server.scores.smf.tunings import is_tuning
 
 DEFAULT_TEMPO = 500_000  # microseconds a quarter note, 120 bpm
-USUAL_TICKS = 480  # a quarter note, where a file has 0
-USUAL_FRAME_TICKS = 40  # with 25 frames a second, milliseconds
+DEFAULT_TICKS = 480  # a quarter note, where a file has 0
+DEFAULT_FRAME_TICKS = 40  # with 25 frames a second, milliseconds
 TRUE_FRAMES = {29: (30_000, 1001)}  # "29" frames a second are the 29.97 of drop-frame video
 FILM_FRAMES = (24, 25, 29, 30)
 SMPTE = 0x8000
@@ -36,16 +36,16 @@ Placed = tuple[int, mido.Message, int]  # tick, message, byte in the file
 def checked_division(division: int, at: int, faults: DamageReport) -> int:
     """Return the division of a header, at a byte; where it is impossible, the one assumed."""
     if division == 0:
-        faults.add(f"a division of 0: {USUAL_TICKS} ticks a quarter note assumed", at)
-        return USUAL_TICKS
+        faults.add(f"a division of 0: {DEFAULT_TICKS} ticks a quarter note assumed", at)
+        return DEFAULT_TICKS
     if division < SMPTE:
         return division
     frames = 256 - (division >> 8)
     if frames not in FILM_FRAMES:
         faults.add(f"{frames} frames a second, as no film has, believed", at)
     if division & 0xFF == 0:
-        faults.add(f"a division of 0: {USUAL_FRAME_TICKS} ticks a frame assumed", at)
-        return division | USUAL_FRAME_TICKS
+        faults.add(f"a division of 0: {DEFAULT_FRAME_TICKS} ticks a frame assumed", at)
+        return division | DEFAULT_FRAME_TICKS
     return division
 
 
@@ -88,7 +88,7 @@ class Clock:
 
 @dataclass
 class Track:
-    """What a track holds, at ticks."""
+    """The messages of a track and its other events, at ticks."""
 
     messages: list[Placed] = field(default_factory=list)
     tempos: list[tuple[int, int]] = field(default_factory=list)  # in us a quarter

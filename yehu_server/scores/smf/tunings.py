@@ -1,8 +1,9 @@
-"""Tuning in MIDI files: by RPN 1 and 2, and by system exclusive of all notes or the scale.
+"""Apply tunings in MIDI files: RPN 1 and 2, and system exclusive of all notes or the scale.
 
 Master fine and coarse tuning (device control), and scale/octave tuning in its one-byte and two-byte
-forms (MIDI Tuning Standard) are obeyed: notes move by semitones, and the rest is a bend. Tunings of
-single keys and their dumps are not. [MIDI 1.0 Detailed Specification; MIDI Tuning Standard, RP-020]
+forms (MIDI Tuning Standard) are supported: notes move by semitones, and the rest is a bend. Tunings
+of single keys and their dumps are not. [MIDI 1.0 Detailed Specification; MIDI Tuning Standard,
+RP-020]
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ MOST_BYTES, MOST = 512, 1000  # of a message; messages of a track
 CENTRE, FINE_CENTRE = 64, 8192
 DATA, NRPN_FINE, NRPN, RPN_FINE, RPN = 6, 98, 99, 100, 101
 FINE, COARSE = 1, 2
-SINGLE_KEYS = "tuning of single keys by system exclusive is not obeyed"
+SINGLE_KEYS = "tuning of single keys by system exclusive is not supported"
 BENDS_TOO = "tuning by system exclusive is rounded to semitones on channels with pitch bends"
 
 
@@ -35,7 +36,7 @@ def is_tuning(body: bytes) -> bool:
 
 @dataclass
 class _Tuned:
-    """How notes are tuned (semitones)."""
+    """The tuning of notes (semitones)."""
 
     coarse: float = 0.0
     fine: float = 0.0
@@ -81,12 +82,12 @@ def retuned(
     tuned, left = _Tuned(), list(tunings)[::-1]
     moved: dict[tuple[int, int], int] = {}  # by channel and key as written, where it sounds
     bends: dict[int, float] = {}
-    told: dict[str, None] = {}
+    remarks: dict[str, None] = {}
     found: list[ScoreEvent] = []
     for event in events:
         while left and left[-1][0] <= event.time_s:
             if not tuned.take(left.pop()[1]):
-                told[SINGLE_KEYS] = None
+                remarks[SINGLE_KEYS] = None
         message = event.message
         if message.type not in ("note_on", "note_off"):
             found.append(event)
@@ -98,7 +99,7 @@ def retuned(
             moved[at] = key
             bend = round(offset - round(offset), 9)
             if bend and message.channel in bent:
-                told[BENDS_TOO] = None
+                remarks[BENDS_TOO] = None
             elif bend != bends.get(message.channel, 0.0):
                 bends[message.channel] = bend
                 setting = Setting(BEND, bend or None, message.channel)
@@ -107,7 +108,7 @@ def retuned(
             key = moved.pop(at, message.note)
         same = key == message.note
         found.append(event if same else replace(event, message=message.copy(note=key)))
-    return tuple(found), tuple(told)
+    return tuple(found), tuple(remarks)
 
 
 def transposed_keys(score: Score) -> dict[int, float]:

@@ -1,1 +1,1 @@
-"""What a written score says, how its marks are played, and how it is laid out."""
+"""Written scores: their notes and marks, how they are played, and their layout."""

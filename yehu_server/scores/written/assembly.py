@@ -1,4 +1,4 @@
-"""From the bars of all parts, as they stand on the page, to a score with its repeats unfolded."""
+"""Make a score with its repeats unfolded of the bars of all parts as they stand on the page."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def assembled(
 ) -> Written:
     """Return a score of the bars of its parts, which are named.
 
-    `unknown` counts marks that were not understood, `warnings` whatever else is to be told.
-    `sections` are bars that are played one after another, each with repeats of its own, as a header
-    of ABC tells; without them all bars. Raises ScoreError where it is beyond bounds.
+    `unknown` counts marks that were not understood, `warnings` all else that was
+    wrong. `sections` are bars that are played one after another, each with repeats of its own, as a
+    header of ABC says; without them all bars. Raises ScoreError where it is beyond bounds.
     """
     parts_bars = [bars for _, bars in parts]
     count = max(map(len, parts_bars), default=0)
@@ -52,9 +52,9 @@ def assembled(
             if beat not in tempi or ranked[0] > tempi[beat][0]:
                 tempi[beat] = ranked
     longest = max(parts_bars, key=len, default=[])
-    told = [notated.times(text, number) for text, number in warnings.items()]
+    lines_of_warnings = [notated.times(text, number) for text, number in warnings.items()]
     if missing := left_out(count, order):
-        told.insert(0, _told(missing, longest))
+        lines_of_warnings.insert(0, _left_out_line(missing, longest))
     return Written(
         tuple(found),
         tuple(Tempo(beat, tempo) for beat, (_, tempo) in sorted(tempi.items())),
@@ -62,12 +62,12 @@ def assembled(
         tuple(Bar(begin, longest[number].number) for number, begin in played),
         title,
         dict(unknown.most_common(MOST_KINDS)),
-        tuple(told),
+        tuple(lines_of_warnings),
         keys=tuple(_keys(longest, played)),
     )
 
 
-def _told(missing: Sequence[int], bars: Sequence[RawBar]) -> str:
+def _left_out_line(missing: Sequence[int], bars: Sequence[RawBar]) -> str:
     """A line that names bars by their numbers."""
     runs: list[list[int]] = []
     for at in missing:
@@ -107,7 +107,7 @@ def _check_amount(parts_bars: list[list[RawBar]], order: list[int]) -> None:
 
 
 def _lines(parts_bars: list[list[RawBar]], number: int) -> BarLines:
-    """What the bar lines of all parts say; many writers give repeats to the first part alone."""
+    """The bar lines of all parts as one; many writers give repeats to the first part alone."""
     found = BarLines()
     for bars in parts_bars:
         if number < len(bars):
@@ -142,7 +142,7 @@ def _timed(
 
 
 def _length(bars: Sequence[RawBar], metre: Fraction | None) -> Fraction:
-    """How long a bar is, of all parts: a rest that one part has too much does not count."""
+    """The length of a bar in all parts; a rest that is too long in one part does not count."""
     lengths = {bar.length for bar in bars if bar.notes} or {bar.length for bar in bars}
     if metre is None or len(lengths) == 1 or max(lengths) <= metre:
         return max(lengths)
@@ -151,7 +151,7 @@ def _length(bars: Sequence[RawBar], metre: Fraction | None) -> Fraction:
 
 
 def _holding(written: Iterable[T | None]) -> list[T | None]:
-    """What holds at each bar, such as the metre, of what is written there; None before it."""
+    """The value that holds at each bar, such as the metre: the last written one, or None."""
     held: T | None = None
     return [held := held if own is None else own for own in written]
 

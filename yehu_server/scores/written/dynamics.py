@@ -1,4 +1,4 @@
-"""How loud the notes of a written part are: dynamics, hairpins, accents, as MIDI velocities."""
+"""The loudness of a written part: dynamics, hairpins and accents, as MIDI velocities."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fractions import Fraction
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Note, Part, Sign, Span
 from yehu_server.scores.written.tempo import WrittenClock
 
-USUAL = float(DYNAMICS["mf"])
+DEFAULT = float(DYNAMICS["mf"])
 # In steps of velocity, by ear.
 ACCENTS = {"accent": 14.0, "marcato": 20.0, "soft-accent": 8.0, "stress": 8.0, "unstress": -8.0}
 HAIRPIN = 20.0  # of one that leads to no dynamic
@@ -89,7 +89,7 @@ class Loudness:
     def _between(self, after: int, beat: float) -> float:
         """Loudness at a beat that lies before the breakpoint of a number."""
         if after == 0:
-            return USUAL
+            return DEFAULT
         begin, level = self._beats[after - 1], self._levels[after - 1]
         if after == len(self._beats):
             return level
@@ -113,7 +113,7 @@ class Loudness:
         return round(min(max(loudest, SOFTEST), LOUDEST))
 
     def below_db(self, note: Note, beats: Sequence[float]) -> list[float]:
-        """How far below its loudest moment (dB, 0 or more) a note is at some of its beats.
+        """The levels (dB, 0 or more) of a note below its loudest moment, at some of its beats.
 
         One value, 0, where loudness stays the same.
         """
@@ -125,7 +125,7 @@ class Loudness:
 
 def _level_of(sign: Sign) -> float:
     if sign.name == "velocity":
-        return min(max(sign.value or USUAL, SOFTEST), LOUDEST)
+        return min(max(sign.value or DEFAULT, SOFTEST), LOUDEST)
     return float(LEVELS[sign.name])
 
 

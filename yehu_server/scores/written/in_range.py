@@ -1,4 +1,4 @@
-"""Which part of a written score plays, and by how many octaves it moves to be in range."""
+"""Choose the part of a written score that plays, and move parts by octaves into range."""
 
 from __future__ import annotations
 
@@ -7,24 +7,24 @@ from dataclasses import replace
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.playing.stringing import range_text
-from yehu_server.scores.octaves import Octaves, Sounding, octaves_of
+from yehu_server.scores.octaves import NoteSpan, Octaves, octaves_of
 from yehu_server.scores.tune_part import melodic_part
 from yehu_server.scores.written.mark_settings import harmonic_of
 from yehu_server.scores.written.notated import Grace, Note, Part, Written
 
-REST = 0.5  # quarters of silence that part phrases
+REST = 0.5  # quarters of silence between phrases
 
 
-def usual_parts(written: Written, within: NoteRange = YEHU) -> list[int]:
+def default_parts(written: Written, within: NoteRange = YEHU) -> list[int]:
     """The number, from 0, of the part that plays where none is asked for, if any has notes."""
-    parts = [[sounding(note, within) for note in part.notes] for part in written.parts]
+    parts = [[span_of(note, within) for note in part.notes] for part in written.parts]
     tune = melodic_part(written.names, parts, within)
     return [] if tune is None else [tune]
 
 
 def moved_part(part: Part, within: NoteRange = YEHU) -> tuple[Part, Octaves]:
     """Return a part in the range of an instrument, and by how many octaves its notes were moved."""
-    octaves = octaves_of([sounding(note, within) for note in part.notes], REST, within)
+    octaves = octaves_of([span_of(note, within) for note in part.notes], REST, within)
     if not any(octaves.of_notes):
         return part, octaves
     notes = tuple(
@@ -34,30 +34,30 @@ def moved_part(part: Part, within: NoteRange = YEHU) -> tuple[Part, Octaves]:
 
 
 def moved(written: Written, plays: Sequence[int], within: NoteRange = YEHU) -> tuple[Written, str]:
-    """A score whose parts of some numbers are in range, and a line that tells it, if any moved."""
+    """A score with the parts of some numbers in range, and a line about their moves, if any."""
     parts = list(written.parts)
-    told = []
+    moves = []
     for number in plays:
         parts[number], octaves = moved_part(parts[number], within)
-        if octaves.told:
-            told.append((written.names[number], octaves.told))
-    return replace(written, parts=tuple(parts)), line_of(told, within)
+        if octaves.summary:
+            moves.append((written.names[number], octaves.summary))
+    return replace(written, parts=tuple(parts)), line_of(moves, within)
 
 
-def line_of(told: Sequence[tuple[str, str]], within: NoteRange = YEHU) -> str:
-    """A line that tells which parts were moved, and how."""
-    if not told:
+def line_of(moves: Sequence[tuple[str, str]], within: NoteRange = YEHU) -> str:
+    """A line that names the parts that were moved, and their moves."""
+    if not moves:
         return ""
-    moves = "; ".join(f"{name} {how}" for name, how in told)
-    return f"moved to fit {range_text(within)}: {moves}"
+    text = "; ".join(f"{name} {move}" for name, move in moves)
+    return f"moved to fit {range_text(within)}: {text}"
 
 
-def sounding(note: Note, within: NoteRange = YEHU) -> Sounding:
-    """When a note sounds (quarters), and its pitches."""
+def span_of(note: Note, within: NoteRange = YEHU) -> NoteSpan:
+    """The time of a note (quarters), and its pitches."""
     # A harmonic is as high as it is written: its finger touches an open string.
     graces = [grace.pitch for grace in (*note.before, *note.after)]
     own = [] if harmonic_of(note, within) is not None else [note.pitch]
-    return Sounding(float(note.beat), float(note.end), tuple(own + graces))
+    return NoteSpan(float(note.beat), float(note.end), tuple(own + graces))
 
 
 def _moved(note: Note, by: float) -> Note:

@@ -1,4 +1,4 @@
-"""What the marks of a note ask of bow and fingers, as values of parameters.
+"""Translate the marks of a note for bow and fingers to values of parameters.
 
 docs/scores.md has the table. Values are by ear, where nothing else is said.
 """
@@ -132,7 +132,7 @@ def actives_of(part: Part) -> list[Active]:
 
 
 def harmonic_of(note: Note, within: NoteRange = YEHU) -> Node | None:
-    """Where a note's harmonic is touched; None where it is none, or none that speaks."""
+    """The node of a note's harmonic; None where it is no harmonic, or one that does not speak."""
     if note.marked("harmonic") is None:
         return None
     known = harmonics_of(within)
@@ -178,7 +178,7 @@ def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = 
 
 
 def _held(active: Active) -> Values:
-    """What the signs set that hold."""
+    """The values that the signs which hold set."""
     values: Values = dict(PLACES.get(active.place, {}))
     if active.string:
         values[STRING] = active.string

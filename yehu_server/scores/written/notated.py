@@ -21,11 +21,11 @@ MOST_BEATS = 400_000  # quarter notes; a day at 278 a minute
 MOST_PARTS = 64
 LOWEST_TEMPO, HIGHEST_TEMPO = 5.0, 1000.0  # quarter notes a minute
 HAIRPINS = ("crescendo", "diminuendo")
-USUAL_TEMPO = 100.0  # where none is written
+DEFAULT_TEMPO = 100.0  # where none is written
 MOST_NAMED = 12  # marks that were not understood
 LONGEST_CHANGE = Fraction(8)  # quarters of a change of tempo, where nothing written ends it
 
-# Marks on notes, and what their values are; None stands for the usual value.
+# Marks on notes, and the meaning of their values; None stands for the default value.
 MARKS: Mapping[str, str] = {
     "staccato": "short",
     "staccatissimo": "very short",
@@ -118,7 +118,7 @@ SIGNS: Mapping[str, str] = {
 
 
 def times(text: str, count: int) -> str:
-    """A warning, and how often it is meant."""
+    """A warning, and the number of its occurrences."""
     return f"{text} ({count} times)" if count > 1 else text
 
 
@@ -167,7 +167,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Span:
-    """What is written over several notes: a name of SPANS, and its first and last beat."""
+    """A sign over several notes: a name of SPANS, and its first and last beat."""
 
     name: str
     begin: Fraction
@@ -176,7 +176,7 @@ class Span:
 
 
 class OpenSpan:
-    """What words such as cresc. or rit. begin: it acts until something else ends it.
+    """A span that words such as cresc. or rit. begin, and that lasts until something ends it.
 
     It is put into `spans` when it ends; after `longest` quarters it acts no more.
     """
@@ -201,7 +201,7 @@ class OpenSpan:
 
 @dataclass(frozen=True)
 class Sign:
-    """What is written at a beat and holds from there on: a name of SIGNS."""
+    """A sign at a beat that holds from there on: a name of SIGNS."""
 
     beat: Fraction
     name: str
@@ -210,7 +210,7 @@ class Sign:
 
 @dataclass(frozen=True)
 class Part:
-    """What one player plays: one note at a time, in order of beats."""
+    """The part of one player: one note at a time, in order of beats."""
 
     name: str
     notes: tuple[Note, ...]
@@ -249,11 +249,11 @@ class Written:
     metres: tuple[Metre, ...] = (COMMON_TIME,)
     bars: tuple[Bar, ...] = ()
     title: str = ""
-    # Marks that were not understood: each as written (one printable line), and how often.
+    # Marks that were not understood, as written (one printable line), and their numbers.
     unknown: Mapping[str, int] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()  # one line each, about anything else that is not as it should be
     keys: tuple[KeySignature, ...] = ()  # in order of beats; empty where none is written
-    # One line each, of what a player should know and nothing is wrong with.
+    # One line each, which a player should know and which are no fault of the score.
     remarks: tuple[str, ...] = ()
 
     @property

@@ -1,15 +1,15 @@
-"""Ornaments and grace notes as touches of the fingers on one bow; slides away, as a bent pitch.
+"""Play ornaments and grace notes as touches of the fingers on one bow, slides away as a bent pitch.
 
 docs/scores.md has the table. Times are by ear, for the tempo of hands and not of the music.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from yehu_server.scores.phrasing import OVERLAP_S
+from yehu_server.scores.rubato import at_time
 from yehu_server.scores.slides import logistic
 from yehu_server.scores.written.notated import Grace, Note
 
@@ -20,7 +20,7 @@ TURN_SHARE = 0.2  # of a note, at most, for each note of a turn
 TRILL_S = 0.145  # from one tap to the next: some seven a second
 TRILL_LAST_S = 0.07  # of the plain note that ends it
 MOST_TAPS = 1000
-WHOLE, HALF = 2.0, 1.0  # usual intervals: of trills and mordents above, and below
+WHOLE, HALF = 2.0, 1.0  # default intervals: of trills and mordents above, and below
 WIDEST = 12.0  # semitones, that a hand reaches
 # By ear: a slide away takes so long, or so much of its note, and goes so far (semitones).
 SLIDE_S, SLIDE_SHARE, AWAY = 0.13, 0.4, 2.0
@@ -93,8 +93,8 @@ def _ornamented(note: Note, begin_s: float, end_s: float, trill: float | None) -
     return [held, *_trill(held, _step(trill, WHOLE))] if trill else [held]
 
 
-def _step(semitones: float | None, usual: float) -> float:
-    return usual if semitones is None else min(max(semitones, -WIDEST), WIDEST)
+def _step(semitones: float | None, default: float) -> float:
+    return default if semitones is None else min(max(semitones, -WIDEST), WIDEST)
 
 
 def _turn(held: Touch, above: float, *, from_above: bool) -> list[Touch]:
@@ -138,7 +138,7 @@ def curve_of(note: Note, begin_s: float, end_s: float) -> Curve:
     curve: Curve = []
     for number in range(count + 1):
         at_s = begin_s + length_s * number / count
-        bend = min(max(_between(points, at_s), -WIDEST_BEND), WIDEST_BEND)
+        bend = min(max(at_time(points, at_s), -WIDEST_BEND), WIDEST_BEND)
         at_s = min(at_s, end_s - LAST_S)  # before the next note begins
         if not curve or abs(bend - curve[-1][1]) > 1e-4:
             curve.append((at_s, bend))
@@ -154,14 +154,3 @@ def _slide_away(note: Note, begin_s: float, end_s: float) -> Curve:
     shares = [step / SLIDE_STEPS for step in range(SLIDE_STEPS + 1)]
     bends = [(end_s - (1.0 - share) * slide_s, way * logistic(share)) for share in shares]
     return [(begin_s, 0.0), *bends]
-
-
-def _between(points: Curve, at_s: float) -> float:
-    """The value at a time on the lines between points; beyond them, that of the nearest."""
-    after = bisect_right(points, at_s, key=lambda point: point[0])
-    if after == 0:
-        return points[0][1]
-    if after == len(points):
-        return points[-1][1]
-    (begin, first), (end, last) = points[after - 1], points[after]
-    return first + (last - first) * (at_s - begin) / (end - begin)

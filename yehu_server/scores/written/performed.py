@@ -1,6 +1,6 @@
-"""How a written score is played: its marks become notes, bends, loudness and settings.
+"""Perform a written score: its marks become notes, bends, loudness and settings.
 
-docs/scores.md tells what each mark does. Each part gets a MIDI channel of its own.
+docs/scores.md says what each mark does. Each part gets a MIDI channel of its own.
 """
 
 from __future__ import annotations

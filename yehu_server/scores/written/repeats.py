@@ -1,8 +1,8 @@
 """The order in which bars are played: repeats, endings, da capo, dal segno, coda, fine.
 
-First passages that are repeated are found, whatever writers leave out: a repeat without a beginning
+First the repeated passages are found, also where signs are missing: a repeat without a beginning
 begins where the one before it ended, an ending reaches up to its repeat, or has one where another
-ending follows. Then bars are played as a reader's eye goes.
+ending follows. Then bars are played in the order in which a player reads them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ ENDS = {"fine", "dacapo", "dalsegno"}  # after which something else begins
 
 @dataclass
 class BarLines:
-    """What a bar says of the order."""
+    """The signs of a bar for the order."""
 
     forward: bool = False
     # How often the passage that ends here is played, 2 or more; 0: no repeat ends here.
@@ -58,7 +58,7 @@ class _Passage:
 
 @dataclass
 class _Level:
-    """Where repeats begin: the last sign for it, or the bar that stands in for one."""
+    """The beginning of repeats: the bar of the last sign, or the one that replaces it."""
 
     base: int
     sign: int | None = None
@@ -72,7 +72,7 @@ def order_of(bars: Sequence[BarLines]) -> list[int]:
     were played, it goes on with those, as with another movement. Raises ScoreError where that would
     be more than MOST_BARS.
     """
-    return _Player(bars, _passages(bars)).order()
+    return _Unfolder(bars, _passages(bars)).order()
 
 
 def left_out(count: int, order: Sequence[int]) -> list[int]:
@@ -191,7 +191,7 @@ def _fill_passes(group: list[_Ending]) -> None:
 # -- playing ------------------------------------------------------------------------------------
 
 
-class _Player:
+class _Unfolder:
     def __init__(self, bars: Sequence[BarLines], passages: list[_Passage]) -> None:
         self._bars = bars
         self._passages = passages

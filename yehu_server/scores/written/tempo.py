@@ -1,4 +1,4 @@
-"""When the beats of a written score come: tempi, changes of tempo, fermatas, caesuras.
+"""Convert beats of a written score to seconds: tempi, changes of tempo, fermatas, caesuras.
 
 A fermata or caesura slows the beats under it, so that all parts wait together.
 """
@@ -47,7 +47,7 @@ class WrittenClock:
         rates = []  # seconds a quarter
         for beat in self._beats:
             at = bisect_right(starts, beat) - 1
-            quarters = tempi[at].quarters_per_minute if at >= 0 else notated.USUAL_TEMPO
+            quarters = tempi[at].quarters_per_minute if at >= 0 else notated.DEFAULT_TEMPO
             rates.append(60.0 / min(max(quarters, notated.LOWEST_TEMPO), notated.HIGHEST_TEMPO))
         self._rates = self._stretched(rates, stretches)
         self._seconds = [0.0]
@@ -77,7 +77,7 @@ class WrittenClock:
         return self._beats[at] + (seconds - self._seconds[at]) / self._rates[at]
 
     def quarter_s(self, beat: Fraction | float) -> float:
-        """How long a quarter note lasts (s) at a beat."""
+        """The length of a quarter note (s) at a beat."""
         return self._rates[self._at(float(beat))]
 
     def _at(self, beat: float) -> int:
@@ -121,7 +121,7 @@ def _with_changes(written: Written) -> list[Tempo]:
     steps: dict[Fraction, float] = {}
     for span in sorted(spans.values(), key=lambda span: span.begin):
         at = bisect_right(starts, span.begin) - 1
-        before = tempi[at].quarters_per_minute if at >= 0 else notated.USUAL_TEMPO
+        before = tempi[at].quarters_per_minute if at >= 0 else notated.DEFAULT_TEMPO
         steps |= _steps(span, before)
     # At the end of the change the next tempo holds, where one is written there.
     steps |= {tempo.beat: tempo.quarters_per_minute for tempo in tempi}

@@ -1,4 +1,4 @@
-"""What was understood of a written score, as text for a person and as JSON."""
+"""Show what was understood of a written score, as text and as JSON."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.scores.written.in_range import moved_part, usual_parts
+from yehu_server.scores.written.in_range import default_parts, moved_part
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Tempo, Written
 
 ARTICULATED = {float(number): row.name for number, row in enumerate(ARTICULATIONS)}
@@ -21,7 +21,7 @@ MOST_TEMPI = 20  # that the head shows
 def lines_of(written: Written, within: NoteRange = YEHU) -> Iterator[str]:
     """The score as lines: what is at its head, then the notes of each part.
 
-    How parts move is told for an instrument that has the notes `within`.
+    Moves of parts are those for an instrument that has the notes `within`.
     """
     yield written.title or "(no title)"
     yield from written.remarks
@@ -35,27 +35,27 @@ def lines_of(written: Written, within: NoteRange = YEHU) -> Iterator[str]:
     for beat, quarters in _metres(written):
         bar = written.place(beat)[0]
         yield f"bar {bar}: {quarters:g} quarter{'' if quarters == 1.0 else 's'} in a bar"
-    played = next(iter(usual_parts(written, within)), None)
+    played = next(iter(default_parts(written, within)), None)
     for number, (part, name) in enumerate(zip(written.parts, written.names, strict=True), start=1):
         yield ""
-        yield f"part {number}: {name}, {_what(part, within, is_played=number - 1 == played)}"
+        yield f"part {number}: {name}, {_summary(part, within, is_played=number - 1 == played)}"
         yield f"{'bar':>5}  {'quarter':<8}  {'note':<7}  {'length':<7}  marks"
         yield from _notes(written, part)
     yield ""
     yield from [*written.warnings, *written.not_understood] or ["all marks understood"]
 
 
-def _what(part: Part, within: NoteRange, *, is_played: bool) -> str:
-    """How much a part has, how high it is, and what becomes of it."""
+def _summary(part: Part, within: NoteRange, *, is_played: bool) -> str:
+    """The number and range of a part's notes, and whether it is played and moved."""
     if not part.notes:
         return "0 notes, not played"
     pitches = [note.pitch for note in part.notes]
     lowest, highest = note_name(min(pitches)), note_name(max(pitches))
-    told = f"{len(part.notes)} note{'' if len(part.notes) == 1 else 's'}, {lowest} to {highest}"
+    text = f"{len(part.notes)} note{'' if len(part.notes) == 1 else 's'}, {lowest} to {highest}"
     if is_played:
-        told += ", played where no other is asked for"
-    moved = moved_part(part, within)[1].told
-    return f"{told}; {moved}" if moved else told
+        text += ", played where no other is asked for"
+    moved = moved_part(part, within)[1].summary
+    return f"{text}; {moved}" if moved else text
 
 
 def _metres(written: Written) -> list[tuple[Fraction, float]]:
@@ -95,7 +95,7 @@ def _notes(written: Written, part: Part) -> Iterator[str]:
 
 
 def _around(part: Part) -> dict[Fraction, list[str]]:
-    """What signs and spans say, by the beat of the note that they stand at."""
+    """Signs and spans as text, by the beats of the notes that they stand at."""
     beats = [note.beat for note in part.notes]
     around: dict[Fraction, list[str]] = defaultdict(list)
 

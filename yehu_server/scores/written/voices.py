@@ -40,7 +40,7 @@ class RawNote:
 
 @dataclass(frozen=True)
 class RawDirection:
-    """What a direction says, at a beat of its bar."""
+    """A direction at a beat of its bar."""
 
     at: Fraction
     # Sign, wedge, hairpin (words, until the next dynamic), dashes, change (of tempo), back (to
@@ -102,7 +102,7 @@ class Voice:
     def _note(self, raw: RawNote, begin: Fraction) -> None:
         beat = begin + raw.at
         self._ends(raw, beat)
-        at = self._tied.pop(raw.pitch, None)  # some writers tell only where a tie begins
+        at = self._tied.pop(raw.pitch, None)  # some writers write only the beginning of a tie
         if at is not None and self.notes[at].end == beat:
             note = self.notes[at]
             more = tuple(mark for mark in raw.marks if mark not in note.marks)

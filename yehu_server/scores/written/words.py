@@ -1,4 +1,4 @@
-"""What words over the staff mean: pizz., sul pont., rit., Allegro."""
+"""Interpret words over the staff, such as pizz., sul pont., rit. and Allegro."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ WRITTEN_CHANGES: Mapping[str, str] = {"ritardando": "rit.", "accelerando": "acce
 
 @dataclass(frozen=True)
 class Meaning:
-    """What a word means: the kind of thing, its name, and its value."""
+    """The meaning of a word: kind, name and value."""
 
     kind: str  # sign, hairpin, change, back, tempo, jump
     name: str = ""
@@ -80,7 +80,7 @@ class Meaning:
 
 
 def meaning_of(text: str) -> Meaning | None:
-    """Return what words mean; None where that is not known."""
+    """Return the meaning of words; None where it is not known."""
     words = " ".join(text.split()).strip(" ()[]\"'").lower()
     found = DYNAMICS.fullmatch(words)
     if found or BACK.search(words):
@@ -99,7 +99,7 @@ def meaning_of(text: str) -> Meaning | None:
 
 
 def words_of_sign(name: str, value: float | None) -> str | None:
-    """How a sign is written in words, so that they are read as itself; None: it has none."""
+    """The words that are read as a sign; None where there are none."""
     if (name, value) in WRITTEN_SIGNS:
         return WRITTEN_SIGNS[name, value]
     own = (text for text, sign in ARTICULATED.items() if sign == (name, value))

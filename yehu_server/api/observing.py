@@ -18,7 +18,7 @@ from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS, control_column
 from yehu_server.errors import ParameterError
 from yehu_server.lab.simulation import MAX_BYTES, Simulation, about, shape_of, signals
 from yehu_server.params.table import SLOT
-from yehu_server.playing.wishes import WishPoster
+from yehu_server.playing.player import Player
 
 Floats = NDArray[np.float64]
 
@@ -68,7 +68,7 @@ class Run:
         self,
         instrument: Instrument,
         stage: Ensemble | Instrument,
-        wishes: WishPoster,
+        wishes: Player,
         curves: Sequence[Curve] = (),
     ) -> None:
         self._instrument, self._stage, self._wishes = instrument, stage, wishes

@@ -16,8 +16,8 @@ from pathlib import Path
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import MappingError
 from yehu_server.playing.delay import Delay
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.player import Player
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.retry import run_forever
 from yehu_server.util.token_bucket import TokenBucket
@@ -162,7 +162,7 @@ class MappingFollower:
 
     def __init__(
         self,
-        player: LivePlayer,
+        player: Player,
         reread: Callable[[], Mapping],
         on_change: Callable[[], None],
         on_message: Callable[[str], None],
@@ -197,7 +197,7 @@ class Housekeeper:
     def __init__(
         self,
         ensemble: Ensemble,
-        players: Sequence[LivePlayer],
+        players: Sequence[Player],
         delay: Delay,
         followers: Sequence[MappingFollower],
         osc_drops: Callable[[], int],
@@ -246,7 +246,8 @@ class Housekeeper:
     def _turn(self) -> None:
         self._delay.look()
         for player in self._players:
-            player.delay = self._delay.frames  # as the device's period requires
+            player.instrument.delay = self._delay.frames  # as the device's period requires
+            player.finish_remap()
         if self.capture is not None:
             self.capture.keep_up()
         if time.monotonic() > self._next_look:

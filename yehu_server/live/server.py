@@ -38,8 +38,8 @@ from yehu_server.live.web.query import Snapshot
 from yehu_server.live.web.server import Sources, WebServer
 from yehu_server.playing.calibration import Progress
 from yehu_server.playing.delay import Delay
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.parts import Part, assemble, number_of_instruments, player_of, seated
+from yehu_server.playing.player import Player
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.files import anything, check_free, check_target, nothing, shipped_folder
 
@@ -136,7 +136,7 @@ class Server:
         self._housekeeper = self._make_housekeeper()
 
     @property
-    def player(self) -> LivePlayer:
+    def player(self) -> Player:
         """The player of the first part."""
         return self.players[0]
 

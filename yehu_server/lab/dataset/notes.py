@@ -16,7 +16,7 @@ from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.sound import Sound, calibrated, judged, regimes
 from yehu_server.lab.simulation import signals, simulate
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.wishes import Key
+from yehu_server.playing.part_state import Key
 from yehu_server.scores.gesture import Gesture
 
 OPEN_BELOW = 0.01  # semitones: no finger
@@ -93,7 +93,7 @@ def melody(description: Description, number: int) -> Sound:
     _, calibration = calibrated(description)
     spec = PlayingOptions(seed=number % 65536).spec(rate, calibration, description.quantities)
     instrument = Instrument(spec)
-    wishes = PlayingOptions().wishes(instrument)
+    wishes = PlayingOptions().player(instrument)
     for address in description.draws:
         if address.startswith("/"):
             wishes.write(address, drawn[address])

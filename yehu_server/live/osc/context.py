@@ -16,8 +16,8 @@ from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import Counts
 from yehu_server.live.part_addresses import FIRST, PART_PARAMS, group, part_of
 from yehu_server.params.table import PREFIX
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
+from yehu_server.playing.player import Player
 from yehu_server.util.token_bucket import TokenBucket
 
 Act = Callable[[Request], None]
@@ -31,7 +31,7 @@ class CallContext:
     part has one.
     """
 
-    players: Sequence[LivePlayer]  # those of all parts
+    players: Sequence[Player]  # those of all parts
     # Returns the status values of a group, by name; any thread may call.
     states: Callable[[str], Mapping[str, float | str]]
     # Record to a file of a plain name, or end that; return the file's name. Raise YehuError.
@@ -75,7 +75,7 @@ class CallContext:
         for addressed in self.groups if len(self.players) > 1 else (FIRST,):
             self.tree_changed(PREFIX + addressed + path)
 
-    def remap(self, player: LivePlayer, mapping: ControllerMapping) -> None:
+    def remap(self, player: Player, mapping: ControllerMapping) -> None:
         """Give a mapping to a player, and to all others that had the same."""
         before = player.mapping
         for one in self.players:

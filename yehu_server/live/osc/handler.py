@@ -21,7 +21,7 @@ from yehu_server.live.osc.part_calls import PartCalls, within_an_hour
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
 from yehu_server.live.part_addresses import PART, part_of, split_group
 from yehu_server.params.table import PREFIX
-from yehu_server.playing.live_player import Arrivals
+from yehu_server.playing.delay import Arrivals
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import is_own
 
@@ -174,12 +174,12 @@ class OscHandler:
         players = self._players
         if addressed:
             players = players[part_of(addressed) :][:1] if addressed in self._groups else ()
-        hearing = [player for player in players if player.listens and is_own(plain)]
+        hearing = [player for player in players if player.learning.waits and is_own(plain)]
         move = own.get(address)
 
         def hear(call: Request) -> None:
             for player in hearing:
-                player.hear(plain, call.numbers(1)[0])
+                player.learning.hear_address(plain, call.numbers(1)[0])
             if move is not None:
                 move(call)
 

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from yehu_server.live import limits
 from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.work_queue import Shares
-from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.player import Player
 
 AHEAD_S = 0.01  # scheduled messages are posted so long before they are due
 TOGETHER_NS, TRIES = 100_000, 10
@@ -36,7 +36,7 @@ def both_clocks() -> tuple[float, int]:
 class TagClock:
     """Converts time tags to frames."""
 
-    def __init__(self, player: LivePlayer) -> None:
+    def __init__(self, player: Player) -> None:
         self._player = player
         self._anchor: tuple[float, int] | None = None  # a time (s since 1970) and its frame
 

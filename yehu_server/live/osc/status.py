@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from yehu_server.live.midi.ports import MidiPorts
     from yehu_server.live.osc.answering import Traffic, WebTraffic
     from yehu_server.playing.delay import Delay
-    from yehu_server.playing.live_player import LivePlayer
+    from yehu_server.playing.player import Player
 
 STATUS_PREFIX = "/status/"  # before the names, in addresses
 INT_MAX = (1 << 31) - 1
@@ -51,7 +51,7 @@ class Counts:
 class PartSources:
     """What the status values of a part are read from."""
 
-    player: LivePlayer
+    player: Player
     instruments: Sequence[Instrument]  # one, or those of a section
     meters: Sequence[Any]  # of each: a record of dtype telemetry.METERS
 

@@ -94,7 +94,8 @@ class Services:
             self.stop_recording,
             self.said.append,
             lambda action: action(),
-            tree_changed=self.changed.append,
+            lambda action: action(),
+            [self.changed.append],
         )
 
     def states(self, addressed: str) -> dict[str, float | str]:

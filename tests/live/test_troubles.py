@@ -61,7 +61,7 @@ def test_the_players_delay_follows_the_devices_period(until):
         instrument=instrument, know_programs=lambda: None, finish_remap=lambda: None
     )
     ensemble = SimpleNamespace(lost_states=0, instruments=[instrument], first=instrument)
-    keeper = Housekeeper(ensemble, [player], Delay(instrument, 128), [], lambda: 0, print)
+    keeper = Housekeeper(ensemble, [player], Delay(instrument, 128), [], print, lambda: 0, print)
 
     def is_followed() -> bool:
         told["ahead_window"] += 1

@@ -61,7 +61,7 @@ class PartState:
 
     def __init__(self, instruments: Sequence[Instrument], part: int = 0) -> None:
         self.part = part
-        self._all = instruments
+        self.instruments = tuple(instruments)
         self._instrument = instruments[0]
         self.mapping = UNMAPPED
         self.pending: dict[str, Pending] = {}
@@ -79,7 +79,7 @@ class PartState:
     @property
     def people(self) -> int:
         """How many players there are, whether they play or rest."""
-        return len(self._all)
+        return len(self.instruments)
 
     @property
     def record(self) -> Any:
@@ -106,7 +106,7 @@ class PartState:
     @property
     def pitch(self) -> float | None:
         """The pitch (fractional MIDI note) while a note sounds or the bow is drawn by hand."""
-        pitches = (float(instrument.meters()["pitch"]) for instrument in self._all)
+        pitches = (float(instrument.meters()["pitch"]) for instrument in self.instruments)
         return next((pitch for pitch in pitches if not math.isnan(pitch)), None)
 
     def value(self, address: str) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from yehu_server.core.engine.ensemble import Ensemble
@@ -32,14 +32,6 @@ def places(parts: int) -> list[tuple[tuple[str, float], ...]]:
 
 
 SEEDS = 1 << 16
-
-
-@dataclass(frozen=True)
-class Part:
-    """A part: its player, and the instruments that it plays."""
-
-    player: Player
-    instruments: Sequence[Instrument]
 
 
 def number_of_instruments(per_part: Sequence[PlayingOptions]) -> int:

@@ -59,7 +59,8 @@ def context_of(player: Player, lines: list[str]) -> CallContext:
         lambda: "take.wav",
         lines.append,
         lambda action: action(),
-        tree_changed=tree_changed,
+        lambda action: action(),
+        [tree_changed],
     )
 
 

@@ -390,7 +390,7 @@ def test_the_room_is_one_for_all_and_a_section_tells_the_parts_place(server) -> 
     with_pages(server, furnish, 2)
     assert first.value(SIZE) == 12.0
     until(lambda: second.value(PAN) == 0.25, "the pan")
-    assert server.parts[1].instruments[0].target(PAN) != 0.25  # the first player's own place
+    assert server.players[1].instrument.target(PAN) != 0.25  # the first player's own place
 
 
 # ---------------------------------------------------------------- sound

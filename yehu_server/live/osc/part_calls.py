@@ -128,13 +128,13 @@ class PartCalls(GroupCalls):
         "/panic", "Ends all notes and all sound, and drops messages that wait for their time."
     )
     def _panic(self, call: Request) -> None:
-        self._context.drop_scheduled(self._addressed)
+        self._context.schedule.drop_part(self._addressed)
         for player in self._players:
             player.panic(frame=call.frame)
 
     @osc_call("/reset", "The same, and sets every parameter to its default.")
     def _reset(self, call: Request) -> None:
-        self._context.drop_scheduled(self._addressed)
+        self._context.schedule.drop_part(self._addressed)
         for player in self._players:
             player.reset(frame=call.frame)
         self._echo(call.peer, [param.address for param in self.params])

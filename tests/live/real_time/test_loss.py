@@ -257,12 +257,12 @@ def test_a_note_goes_on_where_the_audio_process_dies_between_two_blocks(stopped,
     assert it.keys == (0, 0)
 
 
-@pytest.mark.parametrize("end", ["note_off", pytest.param("panic", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("end", ["key_off", pytest.param("panic", marks=pytest.mark.slow)])
 def test_a_key_that_was_pressed_while_the_audio_process_died_can_be_let_go(stopped, until, end):
     it = stopped(in_block=True)
     it.player.key_on(72.0, 90.0, frame=it.player.frame_of())
     it.kill()
-    words = (72.0,) if end == "note_off" else ()
+    words = (72.0,) if end == "key_off" else ()
     getattr(it.player, end)(*words, frame=it.player.frame_of())
     until(lambda: it.keys == (0, 0), "the key to be let go", 5.0)
     until(lambda: it.player.pitch is None, "its end", 5.0)

@@ -55,13 +55,13 @@ def serve(pipe: Any, has_midi: bool) -> None:
     options = ServeOptions(output=output, midi=midi, osc=(HOST, 0))
     playing = Server(options, lambda _line: None)
     notes: list[tuple[float, float]] = []
-    begin = playing.player.note_on
+    begin = playing.player.key_on
 
-    def note_on(note: float, velocity: float, **more: Any) -> None:
+    def key_on(note: float, velocity: float, **more: Any) -> None:
         notes.append((note, velocity))
         begin(note, velocity, **more)
 
-    vars(playing.player)["note_on"] = note_on
+    vars(playing.player)["key_on"] = key_on
     playing.start()
     pipe.send(playing.osc.port)
     mail = playing.instrument._rig["mail"][0]  # noqa: SLF001

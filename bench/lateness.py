@@ -69,7 +69,7 @@ def counts(server: Server, *, anew: bool) -> dict[str, int]:
     """The counters of the audio side; with `anew` the latest events are forgotten."""
     meters = server.instrument.meters()
     found = {what: int(meters[what]) for what in COUNTS}
-    mails = [part.instruments[0]._rig["mail"][0] for part in server.parts]  # noqa: SLF001
+    mails = [player.instruments[0]._rig["mail"][0] for player in server.players]  # noqa: SLF001
     for source, writer in SOURCES.items():
         found[f"{source} taken"] = sum(int(mail["drained"][writer, 0]) for mail in mails)
         found[f"{source} late"] = sum(int(mail["late"][writer]) for mail in mails)

@@ -17,7 +17,8 @@ from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import fulfil
 from yehu_server.params.table import ENGINE, FINGERS, SLOT, find
-from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.playing.part_state import Key
+from yehu_server.playing.player import Player
 
 RATE = 48000.0  # whole milliseconds are whole frames
 # What the player's moves are computed from.
@@ -184,7 +185,7 @@ class Watched(Instrument):
         return 69.0 + 12.0 * math.log2(frequency / 440.0)
 
 
-class Checked(WishPoster):
+class Checked(Player):
     """Wishes to a `Watched`: what they tell must be what its player holds."""
 
     _instrument: Watched

@@ -9,7 +9,7 @@ import numpy as np
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.wishes import Key
+from yehu_server.playing.part_state import Key
 
 RATE = 44100
 HOP = 220  # frames
@@ -21,7 +21,7 @@ class Playing:
     def __init__(self, seed: int = 0, **values: float) -> None:
         playing = PlayingOptions(seed=seed)
         self.instrument = Instrument(playing.spec(RATE, calibration_for(float(RATE))))
-        self.wishes = playing.wishes(self.instrument)
+        self.wishes = playing.player(self.instrument)
         for name, value in values.items():
             self.wishes.write(f"/playing/{name}", value)
 

@@ -117,7 +117,7 @@ def test_what_cannot_be_learned_or_shown_is_told(duo, refused):
     ):
         at = ("--server", f"127.0.0.1:{duo.osc.port}")
         assert reason in refused(*words.split(), *at)
-    assert not any(player.listens for player in duo.players)
+    assert not any(player.learning.waits for player in duo.players)
 
 
 def test_the_end_of_input_ends_the_questions(monkeypatch, capsys):
@@ -131,7 +131,7 @@ def test_the_end_of_input_ends_the_questions(monkeypatch, capsys):
 
 
 def test_the_bindings_of_a_server_are_shown_with_where_they_are(server, at, capsys):
-    server.player.note_on(70.0, 127.0, frame=server.player.frame_of())
+    server.player.key_on(70.0, 127.0, frame=server.player.frame_of())
 
     def shown() -> dict:
         assert main(["mappings", "show", "--live", "--json", *at]) == 0

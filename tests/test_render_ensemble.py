@@ -21,7 +21,7 @@ from yehu_server.playing.stringing import notes_of
 from yehu_server.rendering import cores
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
-from yehu_server.scores.reading import part_of, read_any
+from yehu_server.scores.reading import ReadOptions, part_of, read_any
 from yehu_server.scores.score import Score
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.util.files import shipped_folder

@@ -9,7 +9,7 @@ import numpy as np
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.wishes import Key
+from yehu_server.playing.part_state import Key
 
 RATE = 44100.0
 FRAMES = 160
@@ -20,8 +20,8 @@ def phrase() -> tuple[Instrument, np.ndarray]:
     """Play two notes, a bend, their ends, a bow by hand, panic and one more, in small blocks."""
     playing = PlayingOptions(seed=1)
     instrument = Instrument(playing.spec(RATE, calibration_for(RATE)))
-    wishes = playing.wishes(instrument)
-    midi = playing.midi(wishes)
+    wishes = playing.player(instrument)
+    midi = playing.mapped(wishes)
     wishes.note_on(Key(0, 70), {"/playing/pressure": 0.5}, frame=0)
     wishes.write("/playing/bend", 0.3, frame=20)
     wishes.write("/playing/vibrato", 30.0, frame=20)
@@ -34,7 +34,7 @@ def phrase() -> tuple[Instrument, np.ndarray]:
     wishes.draw(0.2, 0.4, frame=75)
     wishes.lift(frame=95)
     wishes.stop_sound(frame=100)
-    midi.note_on(Key(1, 83), 0.8, 110)
+    midi.key_on(Key(1, 83), 0.8 * 127.0, frame=110)
     midi.end_all(frame=150)
     out = np.zeros(FRAMES, np.float32)
     for start in range(0, FRAMES, 37):

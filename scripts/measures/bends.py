@@ -26,7 +26,7 @@ def _bent(setup: Setup, note: int, semitones: float) -> list[tuple[float, bool]]
     A delay of 12 ms is allowed.
     """
     take = Take(setup)
-    take.wishes.write("/playing/bend_range", abs(semitones), frame=0, hold=True)
+    take.player.write("/playing/bend_range", abs(semitones), frame=0, hold=True)
     take.on(0.0, note)
 
     def curve(t: float) -> float:

@@ -13,9 +13,9 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.calibration import OPEN_NOTES
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.pitch_and_level import a_weighted_db, cents, pitch_hz
 from yehu_server.playing.section_instruments import section_specs
-from yehu_server.playing.wishes import Key
 
 PEOPLE = 8
 NOTES = range(65, 90)  # F4 to F6
@@ -118,11 +118,10 @@ def loudness(rate: float, seed: int) -> dict[str, Any]:
         playing = PlayingOptions(seed=seed)
         specs = section_specs(playing, rate, calibration_for(rate), people=people)
         ensemble = Ensemble(specs)
-        wishes = playing.wishes(ensemble.instruments)
-        midi = playing.midi(wishes)
+        player = playing.mapped(playing.player(ensemble.instruments))
         for number, note in enumerate(NOTES):
-            midi.note_on(Key(0, note), 80 / 127.0, round(number * BEAT_S * rate))
-            midi.note_off(Key(0, note), round((number * BEAT_S + NOTE_S) * rate))
+            player.key_on(Key(0, note), 80, frame=round(number * BEAT_S * rate))
+            player.key_off(Key(0, note), frame=round((number * BEAT_S + NOTE_S) * rate))
         out = np.zeros((len(alone), 2), np.float32)
         ensemble.process(out)
         power = [10.0 ** (0.1 * a_weighted_db(ear.astype(float), rate)) for ear in out.T]
@@ -145,7 +144,7 @@ def swing(track: Any) -> float:
 def vibrato(rate: float, seed: int) -> dict[str, Any]:
     """See scripts/section.py."""
     take = SectionTake(rate, seed, ROCKED)
-    take.wishes.write("/playing/vibrato", ROCKED_CENTS, frame=0, hold=True)
+    take.player.write("/playing/vibrato", ROCKED_CENTS, frame=0, hold=True)
     each_s = LONG_S + 0.2
     for number, note in enumerate(ROCKED_NOTES):
         take.note(note, number * each_s, number * each_s + LONG_S)

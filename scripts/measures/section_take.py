@@ -12,8 +12,8 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.wishes import BEGIN
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.section_instruments import SECTION, section_specs
-from yehu_server.playing.wishes import Key
 from yehu_server.rendering.cores import Cores, shared
 
 BLOCK_S = 1.0
@@ -30,15 +30,14 @@ class SectionTake:
         self.instruments = self._ensemble.instruments
         for instrument in self.instruments:
             instrument.report_wishes()
-        self.wishes = playing.wishes(self.instruments)
-        self.midi = playing.midi(self.wishes)
+        self.player = playing.mapped(playing.player(self.instruments))
         self.begun: list[list[int]] = [[] for _ in self.instruments]  # frames of onsets
 
     def note(self, note: float, begin_s: float, end_s: float, velocity: int = 80) -> None:
         """Schedule a note; notes come in the order of their beginnings."""
         key = Key(0, note)
-        self.midi.note_on(key, velocity / 127.0, round(begin_s * self.rate))
-        self.midi.note_off(key, round(end_s * self.rate))
+        self.player.key_on(key, velocity, frame=round(begin_s * self.rate))
+        self.player.key_off(key, frame=round(end_s * self.rate))
 
     def play(self, seconds: float) -> Any:
         """Return the sound of each player [shape=(players, frames)]."""

@@ -20,9 +20,9 @@ from yehu_server.params.table import FINGERS, find
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.stringing import notes_of
-from yehu_server.playing.wishes import Key
 
 NOTES = range(65, 90)  # F4 to F6
 SEEDS = 65536
@@ -106,13 +106,13 @@ class Take:
         strung = replace(usual, tensions=(tension * first, tension * second))
         self.instrument = Instrument(playing.spec(setup.rate, strung))
         _believe(self.instrument, usual.tuned(quantities))
-        self.wishes = playing.wishes(self.instrument)
-        self.wishes.write("/playing/variation", setup.variation, frame=0, hold=True)
-        self.wishes.write("/playing/phrasing", setup.phrasing, frame=0, hold=True)
-        self.midi = playing.midi(self.wishes)
+        self.player = playing.player(self.instrument)
+        self.player.write("/playing/variation", setup.variation, frame=0, hold=True)
+        self.player.write("/playing/phrasing", setup.phrasing, frame=0, hold=True)
+        playing.mapped(self.player)
         self._channel = 1 if playing.mapping.mpe else 0  # a member of the zone
         for address, value in (settings or {}).items():
-            self.wishes.write(address, value, frame=0, hold=True)
+            self.player.write(address, value, frame=0, hold=True)
 
     def _frame(self, seconds: float) -> int:
         return self.instrument.frames(1e3 * seconds)
@@ -120,20 +120,20 @@ class Take:
     def at(self, seconds: float, kind: str, **fields: int) -> None:
         """Schedule a MIDI message for a time."""
         message = mido.Message(kind, channel=self._channel, **fields)
-        self.midi.receive(message, frame=self._frame(seconds))
+        self.player.receive(message, frame=self._frame(seconds))
 
     def on(self, seconds: float, note: float, velocity: int = 80) -> None:
         """Schedule the beginning of a note, which may be fractional."""
-        self.midi.note_on(Key(self._channel, note), velocity / 127.0, self._frame(seconds))
+        self.player.key_on(Key(self._channel, note), velocity, frame=self._frame(seconds))
 
     def off(self, seconds: float, note: float) -> None:
         """Schedule the end of a note."""
-        self.midi.note_off(Key(self._channel, note), self._frame(seconds))
+        self.player.key_off(Key(self._channel, note), frame=self._frame(seconds))
 
     def long(self, seconds: float, length_s: float) -> None:
         """Tell how long the note will be that begins at a time, as files do."""
         address = "/playing/note_length"
-        self.wishes.write(address, length_s, frame=self._frame(seconds))
+        self.player.write(address, length_s, frame=self._frame(seconds))
 
     def wheel(self, place: int | None) -> None:
         """Set the bow speed, by its controller, before the first note; None leaves it untouched."""

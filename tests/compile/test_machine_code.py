@@ -32,12 +32,13 @@ from yehu_server.compile import jit
 from yehu_server.core.engine import warming
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.playing.part_state import Key
+from yehu_server.playing.player import Player
 jit._values_named_in = None  # to find what a function calls takes as long as all the rest
 warn_of_compiling(argparse.Namespace(quiet=False))
 warming.warm_up()
 instrument = Instrument(InstrumentSpec(44100.0))
-WishPoster(instrument).note_on(Key(0, 69))
+Player(instrument).note_on(Key(0, 69))
 block = np.zeros(3 * 44100, np.float32)
 instrument.process(block)
 print("numba" in sys.modules, np.sqrt(np.mean(np.square(block[44100:]))), block[:64].tolist())

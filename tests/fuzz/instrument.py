@@ -16,7 +16,7 @@ from yehu_server.core.player.record import prepare_player
 from yehu_server.core.player.wishes import KINDS, fulfil
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.player import Player
 
 CALIBRATION = calibration_for(Leader.rate)  # a shipped one
 QUANTITIES = CALIBRATION.tuned(Quantities())
@@ -109,14 +109,14 @@ def check_numbers(record: np.ndarray) -> None:
             assert np.isfinite(record[name]).all(), name
 
 
-def check_values(player: LivePlayer) -> None:
+def check_values(player: Player) -> None:
     """Every parameter is within its range."""
     values = player.values()
     for param in TABLE:
         assert param.lo <= values[param.address] <= param.hi, param.address
 
 
-def check_silence(player: LivePlayer, instrument: Instrument) -> None:
+def check_silence(player: Player, instrument: Instrument) -> None:
     """After a panic and a second, no note sounds and the bow is lifted and at rest."""
     instrument.now_s += 1.0
     assert player.pitch is None

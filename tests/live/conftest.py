@@ -33,9 +33,11 @@ from yehu_server.live.part_addresses import part_of
 from yehu_server.live.server import Server
 from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import SLOT
-from yehu_server.playing import live_player
+from yehu_server.playing import part_state
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import player_of
+from yehu_server.playing.player import Player
 
 HOST = "127.0.0.1"
 QUIET_S = 0.15  # silence after which nothing more is expected
@@ -68,7 +70,7 @@ def peer() -> FakePeer:
 @pytest.fixture
 def still_time(monkeypatch) -> StillTime:
     clock = StillTime(time.monotonic() + 100.0)  # later than anything on the true clock
-    for module in (clients, schedule, handler, live_player):
+    for module in (clients, schedule, handler, part_state):
         monkeypatch.setattr(module, "time", clock)
     return clock
 
@@ -84,7 +86,7 @@ class Services:
         self.changed: list[str] = []
         self.said: list[str] = []
 
-    def context(self, players: Sequence[live_player.LivePlayer]) -> CallContext:
+    def context(self, players: Sequence[Player]) -> CallContext:
         return CallContext(
             players,
             self.states,
@@ -92,7 +94,8 @@ class Services:
             self.stop_recording,
             self.said.append,
             lambda action: action(),
-            tree_changed=self.changed.append,
+            lambda action: action(),
+            [self.changed.append],
         )
 
     def states(self, addressed: str) -> dict[str, float | str]:
@@ -126,10 +129,9 @@ class StillServer:
         self.instrument.frame_at = self._frame_at
         self.others: list[Instrument] = []  # more instruments, played along
         self._began = (clock.now, 0)
-        self.player = live_player.LivePlayer(
-            self.instrument, playing, delay_ms=1e3 * block / self.RATE + 1.0
-        )
-        self.player.write("/playing/variation", 0.0, frame=0)
+        delay_ms = 1e3 * block / self.RATE + 1.0
+        self.player = player_of(0, playing, [self.instrument], delay_ms=delay_ms)
+        self.player.set("/playing/variation", 0.0, frame=0)
         self.services = Services()
         self.handler = handler.OscHandler(self.services.context([self.player]))
         self.peer = FakePeer()
@@ -379,7 +381,7 @@ class LiveServer:
         performer = self.instrument._rig["player"][0]
         return (
             self.player.pitch is None
-            and not self.player._wishes.held()
+            and not self.player.held()
             and performer["held"] == 0
             and performer["sounding"] == SILENT
             and self.target("/bow/speed") == 0.0

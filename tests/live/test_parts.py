@@ -20,10 +20,10 @@ from yehu_server.params.table import find as param
 from yehu_server.playing import learn as learned
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.learn import LearnedSource
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.parts import places
+from yehu_server.playing.parts import places, player_of
+from yehu_server.playing.player import Player
 
 VOLUME = "/playing/volume"
 SHARED = [param.address for param in TABLE if param.is_shared]
@@ -31,7 +31,7 @@ PARTS = 3
 
 
 @pytest.fixture
-def players(still) -> list[LivePlayer]:
+def players(still) -> list[Player]:
     """Those of three parts; the first is the server's own."""
     more = []
     for part in range(1, PARTS):
@@ -40,7 +40,7 @@ def players(still) -> list[LivePlayer]:
         )
         instrument.frame_at = still.instrument.frame_at
         still.others.append(instrument)
-        more.append(LivePlayer(instrument, PlayingOptions(), delay_ms=3.0, part=part))
+        more.append(player_of(part, PlayingOptions(), [instrument], delay_ms=3.0))
     still.handler = handler.OscHandler(still.services.context([still.player, *more]))
     return [still.player, *more]
 
@@ -144,7 +144,7 @@ def test_a_subscription_is_of_the_addresses_where_it_was_asked_for(still, player
     told = {one.address for one in heard[1:]}
     assert told == {f"/yehu/part/2{one}" for one in OF_PARTS if not one.endswith("/unit")}
     for part, player in enumerate(players):
-        player.write(VOLUME, 0.1 * part + 0.3, frame=0)
+        player.set(VOLUME, 0.1 * part + 0.3, frame=0)
     still.pass_time(0.05)
     heard = {one.address: one.arguments for one in still.peer.received()}
     assert heard.keys() == {f"/yehu/part/2{VOLUME}", "/yehu/part/2/output/level"}  # it moves both
@@ -157,7 +157,7 @@ def test_one_may_subscribe_to_several_parts_each_in_its_form(still, players):
     still.pass_time(0.5)
     still.peer.received()
     for player in players:
-        player.write("/playing/bow_length", 2.0, frame=0)
+        player.set("/playing/bow_length", 2.0, frame=0)
     still.pass_time(0.05)
     heard = {one.address: one.arguments for one in still.peer.received()}
     assert heard == {
@@ -166,7 +166,7 @@ def test_one_may_subscribe_to_several_parts_each_in_its_form(still, players):
     }
     still.ask("/unsubscribe")
     for player in players:
-        player.write("/playing/bow_length", 1.0, frame=0)
+        player.set("/playing/bow_length", 1.0, frame=0)
     still.pass_time(0.05)
     assert still.peer.received() == []
 
@@ -213,8 +213,8 @@ def test_what_a_part_learns_all_parts_of_its_mapping_have(still, players, monkey
         "/yehu/part/2/learning",
         f"/yehu/part/2{VOLUME}",
     )
-    assert [player.listens for player in players] == [False, True, False]
-    players[1]._found(LearnedSource("cc 20"))
+    assert [player.learning.waits for player in players] == [False, True, False]
+    players[1].learning._found(LearnedSource("cc 20"))
     assert [player.mapping for player in players] == [new, new, other]
     heard = still.ask("/part/2/bindings")
     assert heard[-2].arguments[1] == f"/yehu/part/2{VOLUME}"

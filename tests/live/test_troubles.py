@@ -57,14 +57,16 @@ def test_what_came_in_between_is_told_when_the_flood_is_over(clock):
 def test_the_players_delay_follows_the_devices_period(until):
     instrument = Instrument(InstrumentSpec(48000))
     told = instrument._rig["published"]
-    player = SimpleNamespace(delay=0, know_programs=lambda: None)
+    player = SimpleNamespace(
+        instrument=instrument, know_programs=lambda: None, finish_remap=lambda: None
+    )
     ensemble = SimpleNamespace(lost_states=0, instruments=[instrument], first=instrument)
-    keeper = Housekeeper(ensemble, [player], Delay(instrument, 128), [], lambda: 0, print)
+    keeper = Housekeeper(ensemble, [player], Delay(instrument, 128), [], print, lambda: 0, print)
 
     def is_followed() -> bool:
         told["ahead_window"] += 1
         told["ahead"] = told["longest"] = 1024
-        return player.delay > 1024
+        return instrument.delay > 1024
 
     keeper.start()
     try:

@@ -8,13 +8,13 @@ from hands import Checked, Watched, ideal
 
 from yehu_server.params.spec import Curve
 from yehu_server.playing.mapping import Bind, Mapping
-from yehu_server.playing.midi_poster import MidiPoster
+from yehu_server.playing.player import Player
 
 
 class Midi:
     """A keyboard: methods send messages, by default on channel 1 of the first port."""
 
-    def __init__(self, player: MidiPoster) -> None:
+    def __init__(self, player: Player) -> None:
         self.player = player
 
     def send(self, kind: str, channel: int = 1, port: int = 0, **fields: int) -> None:
@@ -73,10 +73,10 @@ def mapping() -> Mapping:
 
 @pytest.fixture
 def midi(player, mapping) -> Midi:
-    return Midi(MidiPoster(player, mapping))
+    return Midi(player.mapped(mapping))
 
 
 @pytest.fixture
 def make(player):
     """A keyboard with a mapping of its own."""
-    return lambda *binds, **more: Midi(MidiPoster(player, Mapping("test", binds, **more)))
+    return lambda *binds, **more: Midi(player.mapped(Mapping("test", binds, **more)))

@@ -6,8 +6,8 @@ import pytest
 from hands import Checked
 
 from yehu_server.params.articulations import NUMBER
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.tuning import KEYS, Tuning
-from yehu_server.playing.wishes import Key
 
 
 def key(note: float) -> Key:

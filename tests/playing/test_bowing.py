@@ -27,8 +27,8 @@ from yehu_server.core.player.bowing import (
     recipe_value,
     share,
 )
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.practice_files import shipped_practice
-from yehu_server.playing.wishes import Key
 
 SHIPPED = shipped_practice(44100.0)
 STOPS = [*((0, note) for note in range(65, 78)), *((1, note) for note in range(72, 90))]

@@ -11,8 +11,9 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.pitch_and_level import a_weighted_db
-from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.playing.player import Player
 
 
 def test_the_finger_waits_at_a_pitch_for_the_bow(player, listener):
@@ -105,7 +106,7 @@ def drawn_by_hand(pitches, seconds: float, evenness: float) -> np.ndarray:
     """The sound of a bow drawn by hand while the finger goes through pitches."""
     tuned = CALIBRATION.tuned(Quantities())
     instrument = Instrument(InstrumentSpec(RATE, tuned, calibration=CALIBRATION))
-    player = WishPoster(instrument)
+    player = Player(instrument)
     player.write("/body/evenness", evenness)
     out = []
     for pitch in pitches:
@@ -146,7 +147,7 @@ def test_a_slide_by_hand_is_evened_out_without_a_click():
 @pytest.mark.parametrize("port", [0, 1])
 def test_a_direct_write_counts_until_the_controller_moves_again(midi, player, port):
     midi.cc(1, 127)
-    midi.player.write("/playing/speed", 0.1)
+    midi.player.set("/playing/speed", 0.1)
     midi.on(67, port=port)
     assert player.value("/playing/speed") == 0.1
     if port == 0:

@@ -27,10 +27,9 @@ from yehu_server.playing import calibration_store
 from yehu_server.playing.calibration import _completed, calibration_key
 from yehu_server.playing.calibration_store import SHIPPED, calibration_for
 from yehu_server.playing.mapping import load
-from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.pitch_and_level import a_weighted_db
-from yehu_server.playing.wishes import WishPoster
+from yehu_server.playing.player import Player
 
 RATES = (44100.0, 48000.0, 96000.0)
 
@@ -129,10 +128,10 @@ def begun(
     """An instrument on which a note begins."""
     tuned = calibration_for(rate, quantities, a4=a4)
     instrument = Instrument(PlayingOptions().spec(rate, tuned, quantities))
-    player = WishPoster(instrument)
+    player = Player(instrument)
     for name, value in settings.items():
         player.write(f"/body/{name}", value)
-    midi = MidiPoster(player, load("keyboard"))
+    midi = player.mapped(load("keyboard"))
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=16, value=wheel), frame=0)
     midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)

@@ -16,10 +16,15 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import TABLE
-from yehu_server.playing.live_player import Arrivals, LivePlayer
+from yehu_server.playing.bind import Bind
+from yehu_server.playing.delay import Arrivals
+from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import player_of
+from yehu_server.playing.player import Player
 
 RATE = 48000.0
+VOLUME = "/playing/volume"
 
 
 @pytest.fixture
@@ -30,13 +35,13 @@ def instrument() -> Instrument:
 
 
 @pytest.fixture
-def live(instrument) -> LivePlayer:
-    return LivePlayer(instrument, PlayingOptions(), delay_ms=3.0)
+def live(instrument) -> Player:
+    return player_of(0, PlayingOptions(), [instrument], delay_ms=3.0)
 
 
 def test_a_note_is_heard_at_its_frame(live, instrument):
-    live.note_on(67.0, 90.0, frame=500)
-    live.note_off(67.0, frame=600)
+    live.key_on(67.0, 90.0, frame=500)
+    live.key_off(67.0, frame=600)
     run(instrument, 500)
     assert live.pitch is None
     assert instrument.target("/bow/speed") == 0.0
@@ -70,17 +75,17 @@ def test_messages_of_one_source_keep_their_order_where_the_delay_becomes_shorter
     instrument.process(np.zeros(480, np.float32))
     arrivals, frames = Arrivals(live.frame_of, instrument.rate), []
     for number in range(100):
-        live.delay = 1072 if 20 <= number < 60 else 176
+        live.instrument.delay = 1072 if 20 <= number < 60 else 176
         frames.append(arrivals.frame_of(time.monotonic_ns() + 100_000 * number))
     assert frames == sorted(frames)
     assert frames[30] - frames[10] > 1072 - 176
 
 
 def test_what_arrives_is_played_before_what_is_tagged_for_later(live, instrument):
-    live.note_on(67.0, 90.0, frame=500)  # with a time tag
+    live.key_on(67.0, 90.0, frame=500)  # with a time tag
     receive(live, mido.Message("note_on", note=72, velocity=90), frame=300, port=0)
     receive(live, mido.Message("note_off", note=72), frame=350, port=0)
-    live.note_off(67.0, frame=600)
+    live.key_off(67.0, frame=600)
     pitches = []
     for _ in range(7):  # frames 0, 100, ... 600
         run(instrument, 1)
@@ -94,8 +99,8 @@ def test_what_arrives_is_played_before_what_is_tagged_for_later(live, instrument
 
 @pytest.mark.parametrize("ending", ["note_off", "end_notes", "panic"])
 def test_a_note_that_is_ended_before_it_begins_does_not_hang(live, instrument, ending):
-    live.note_on(67.0, 90.0, frame=500)  # with a time tag
-    live.note_off(67.0, frame=360)
+    live.key_on(67.0, 90.0, frame=500)  # with a time tag
+    live.key_off(67.0, frame=360)
     if ending != "note_off":
         getattr(live, ending)(frame=700)
     run(instrument, 1000)
@@ -104,15 +109,15 @@ def test_a_note_that_is_ended_before_it_begins_does_not_hang(live, instrument, e
 
 
 def test_direct_writes_to_the_instrument_do_not_wait_for_decisions(live, instrument):
-    live.note_on(67.0, 90.0, frame=500)
-    live.write("/bow/position", 0.2, frame=100)
+    live.key_on(67.0, 90.0, frame=500)
+    live.set("/bow/position", 0.2, frame=100)
     run(instrument, 101)
     assert instrument.target("/bow/position") == 0.2
 
 
 def test_what_was_set_is_told_until_it_is_reached_and_then_what_became_of_it(live, instrument):
-    live.write("/bow/speed", 0.11, frame=500)
-    live.note_on(67.0, 90.0, frame=600)
+    live.set("/bow/speed", 0.11, frame=500)
+    live.key_on(67.0, 90.0, frame=600)
     assert live.value("/bow/speed") == 0.11
     for frames in (400, 200):
         run(instrument, frames)
@@ -125,12 +130,12 @@ def test_what_was_set_is_told_until_it_is_reached_and_then_what_became_of_it(liv
 def test_every_parameter_is_where_it_was_put(live, instrument):
     for param in TABLE:
         if param.address == "/playing/section":  # nobody else is there
-            assert live.write(param.address, param.hi, frame=0) == 1.0
+            assert live.set(param.address, param.hi, frame=0) == 1.0
             continue
         middle = 0.5 * (param.lo + param.hi)
-        assert live.write(param.address, middle, frame=0) == middle
+        assert live.set(param.address, middle, frame=0) == middle
         assert live.value(param.address) == middle
-        assert live.write(param.address, param.hi + 1.0, frame=0) == param.hi
+        assert live.set(param.address, param.hi + 1.0, frame=0) == param.hi
         assert live.values()[param.address] == param.hi
     live.reset(frame=0)
     defaults = {param.address: param.default for param in TABLE}
@@ -143,13 +148,28 @@ def test_notes_out_of_midis_range_are_refused_and_change_nothing(live, instrumen
     before = instrument.posted
     for value in (math.nan, math.inf, -1.0, 128.0):
         for call in (
-            lambda to: live.note_on(to, 90.0, frame=0),
-            lambda to: live.note_on(67.0, to, frame=0),
-            lambda to: live.slide(to, frame=0),
+            lambda to: live.key_on(to, 90.0, frame=0),
+            lambda to: live.key_on(67.0, to, frame=0),
         ):
             with pytest.raises(ParameterError):
                 call(value)
     assert instrument.posted == before
+
+
+def test_of_mappings_that_come_at_once_the_last_is_used_and_nobody_waits(live, instrument):
+    mappings = [Mapping(f"{n}", (Bind(f"cc {n}", VOLUME),)) for n in range(20, 25)]
+    until = time.monotonic() + 0.5
+    for mapping in mappings:  # more than the audio side can have waiting
+        live.remap(mapping, frame=1000)
+    assert time.monotonic() < until
+    for _ in range(2):
+        run(instrument, 2400)
+        live.finish_remap()
+    assert live.mapping == mappings[-1]
+    live.receive(mido.Message("control_change", control=24, value=0), frame=instrument.frame)
+    live.receive(mido.Message("control_change", control=20, value=127), frame=instrument.frame)
+    run(instrument, 4800)
+    assert live.value(VOLUME) == 0.0
 
 
 @pytest.mark.parametrize("ending", ["panic", "reset", "end_notes"])
@@ -159,7 +179,7 @@ def test_nothing_sounds_on_after_the_end_and_a_panic_is_silent_within_ten_millis
     receive(live, mido.Message("control_change", control=64, value=127), frame=0, port=0)
     receive(live, mido.Message("note_on", note=72, velocity=90), frame=0, port=0)
     receive(live, mido.Message("note_off", note=72), frame=100, port=0)
-    live.note_on(67.0, 90.0, frame=200)
+    live.key_on(67.0, 90.0, frame=200)
     run(instrument, 9600)
     live.draw(0.2, 1.0, frame=9600)
     run(instrument, 9600)
@@ -174,7 +194,7 @@ def test_nothing_sounds_on_after_the_end_and_a_panic_is_silent_within_ten_millis
 def test_a_held_setting_stays_through_notes_and_controllers(live):
     live.hold("/playing/speed", 0.5)
     receive(live, mido.Message("control_change", control=16, value=0), frame=0, port=0)
-    live.note_on(67.0, 90.0, frame=0)
+    live.key_on(67.0, 90.0, frame=0)
     assert live.value("/playing/speed") == 0.5
 
 
@@ -182,8 +202,8 @@ def test_many_threads_take_turns_without_a_torn_note(live, instrument):
     def hammer(thread: int) -> None:
         for turn in range(200):
             note = 65.0 + (turn * 7 + thread) % 24
-            live.note_on(note, 90.0, frame=turn)
-            live.note_off(note, frame=turn)
+            live.key_on(note, 90.0, frame=turn)
+            live.key_off(note, frame=turn)
 
     threads = [threading.Thread(target=hammer, args=(thread,)) for thread in range(4)]
     for thread in threads:

@@ -12,7 +12,6 @@ from yehu_server.params.spec import Curve
 from yehu_server.playing.mapping import Bind, load, mapping_folder, shipped_mappings
 from yehu_server.playing.mapping_file import read_mapping_file
 from yehu_server.playing.mapping_writer import as_toml, canonical
-from yehu_server.playing.midi_poster import MidiPoster
 
 SHIPPED = shipped_mappings()
 BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'
@@ -46,7 +45,7 @@ def test_a_shipped_mapping_is_explained_and_audible_before_any_controller_moves(
     (pan,) = mapping.of("cc 10")
     pans = [from_unit(pan, value / 127.0) for value in (0, 1, 64, 127)]
     assert pans == pytest.approx([-1.0, -1.0, 0.0, 1.0], abs=1e-12)
-    midi = MidiPoster(player, mapping)
+    midi = player.mapped(mapping)
     midi.receive(mido.Message("note_on", note=74, velocity=80, channel=1))
     assert abs(listener["/bow/speed"]) > 0.1
     assert listener["/output/level"] > 0.3
@@ -141,15 +140,15 @@ def test_what_is_no_mapping_says_so(read, tmp_path):
 
 def test_a_mapping_says_where_parameters_begin_that_are_not_held(read, player):
     text = '[start]\n"/playing/dynamics" = 0.4\n'
-    MidiPoster(player, read(text))
+    player.mapped(read(text))
     assert player.value("/playing/dynamics") == 0.4
     player.write("/playing/dynamics", 0.9, hold=True)
-    MidiPoster(player, read(text))
+    player.mapped(read(text))
     assert player.value("/playing/dynamics") == 0.9
 
 
 def test_a_mapping_may_give_the_sustain_pedal_another_meaning(read, player, listener):
-    midi = MidiPoster(player, read('[[bind]]\nsource = "cc 64"\ntarget = "/playing/tremolo"\n'))
+    midi = player.mapped(read('[[bind]]\nsource = "cc 64"\ntarget = "/playing/tremolo"\n'))
     midi.receive(mido.Message("note_on", note=74, velocity=80))
     midi.receive(mido.Message("control_change", control=64, value=127))
     assert listener["/bow/tremolo"] == 20.0
@@ -158,7 +157,7 @@ def test_a_mapping_may_give_the_sustain_pedal_another_meaning(read, player, list
 
 
 def test_key_switches_choose_articulations_and_sound_no_notes(player, listener):
-    midi = MidiPoster(player, load("keyboard-articulations"))
+    midi = player.mapped(load("keyboard-articulations"))
     chosen = []
     last = 36 + len(ARTICULATIONS) - 1
     for key in (36, last, 39):
@@ -174,7 +173,7 @@ def test_key_switches_choose_articulations_and_sound_no_notes(player, listener):
 
 
 def test_without_key_switches_low_keys_play_and_a_bank_number_changes_nothing(player, listener):
-    midi = MidiPoster(player, load("keyboard"))
+    midi = player.mapped(load("keyboard"))
     midi.receive(mido.Message("control_change", control=32, value=5))
     midi.receive(mido.Message("note_on", note=39, velocity=80))
     assert player.value("/playing/articulation") == 0.0

@@ -6,9 +6,8 @@ import mido
 import pytest
 from hands import Checked
 
-from yehu_server.playing.midi_poster import MidiPoster
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.tuning import RangePolicy
-from yehu_server.playing.wishes import Key
 
 
 def silent(listener, player) -> bool:
@@ -39,7 +38,7 @@ def test_velocity_sets_the_bow_force_and_not_its_speed_also_of_a_note_that_retur
 
 @pytest.mark.parametrize(("chosen", "playing"), [((), {*range(16)} - {9}), (({2, 9},), {2, 9})])
 def test_all_channels_but_the_tenth_play_or_those_chosen(player, mapping, chosen, playing):
-    midi = MidiPoster(player, mapping, *chosen)
+    midi = player.mapped(mapping, *chosen)
     for channel in range(16):
         for velocity in (64, 64, 0):
             midi.receive(mido.Message("note_on", note=75, velocity=velocity, channel=channel))
@@ -60,7 +59,7 @@ def test_the_tenth_channel_moves_nothing(midi, listener):
 
 
 def test_messages_that_are_none_of_the_players_business_change_nothing(player, listener, mapping):
-    midi = MidiPoster(player, mapping)
+    midi = player.mapped(mapping)
     heard = len(listener.moves)
     for message in (
         mido.Message("program_change", program=40),
@@ -75,7 +74,7 @@ def test_messages_that_are_none_of_the_players_business_change_nothing(player, l
 
 
 def test_a_message_acts_at_its_frame(player, listener, mapping):
-    midi = MidiPoster(player, mapping)
+    midi = player.mapped(mapping)
     heard = len(listener.moves)
     midi.receive(mido.Message("note_on", note=75), frame=321)
     midi.receive(mido.Message("control_change", control=120), frame=321)
@@ -85,7 +84,7 @@ def test_a_message_acts_at_its_frame(player, listener, mapping):
 
 def test_a_skipped_note_leaves_the_sounding_one_alone(listener, mapping):
     player = Checked(listener, RangePolicy.SKIP)
-    midi = MidiPoster(player, mapping)
+    midi = player.mapped(mapping)
     midi.receive(mido.Message("note_on", note=75, velocity=30))
     heard = list(listener.moves)
     midi.receive(mido.Message("note_on", note=40, velocity=127))

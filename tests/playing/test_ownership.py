@@ -7,7 +7,7 @@ import math
 import pytest
 
 from yehu_server.errors import ParameterError
-from yehu_server.playing.wishes import Key
+from yehu_server.playing.part_state import Key
 
 
 def key(note: int) -> Key:

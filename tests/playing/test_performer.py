@@ -12,8 +12,8 @@ from yehu_server.core.player.bowing import FIRST, TOP_SPEED, default_recipes
 from yehu_server.core.player.velocity import NEUTRAL
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.tuning import RangePolicy
-from yehu_server.playing.wishes import Key
 
 YEHU = Quantities()
 

@@ -12,7 +12,8 @@ from sound import run_for
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.playing.part_state import Key
+from yehu_server.playing.player import Player
 
 RATE = 44100
 
@@ -24,7 +25,7 @@ class Stand:
         self.instrument: Instrument = Instrument(
             PlayingOptions().spec(RATE, calibration_for(float(RATE)))
         )
-        self.player: WishPoster = PlayingOptions().wishes(self.instrument)
+        self.player: Player = PlayingOptions().player(self.instrument)
         self.wish(0.0, variation=0.0, **wishes)
 
     def wish(self, seconds: float, **wishes: float) -> None:

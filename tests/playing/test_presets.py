@@ -21,10 +21,10 @@ from yehu_server.params.preset_file import NOT_SAVED, POSSIBLE, SAVED
 from yehu_server.params.table import TABLE
 from yehu_server.playing import preset_folders as folders
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import load
-from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import player_of
+from yehu_server.playing.player import Player
 from yehu_server.playing.preset_folders import (
     MOST_BYTES,
     MOST_NAMED,
@@ -284,13 +284,13 @@ def instrument() -> Instrument:
     return instrument
 
 
-def live_player(instrument: Instrument, **playing) -> LivePlayer:
-    return LivePlayer(instrument, PlayingOptions(**playing), delay_ms=3.0)
+def live_player(instrument: Instrument, **playing) -> Player:
+    return player_of(0, PlayingOptions(**playing), [instrument], delay_ms=3.0)
 
 
 def test_a_load_sets_what_it_names_and_leaves_the_rest_and_what_is_held(instrument):
     live = live_player(instrument)
-    live.write("/playing/variation", 0.7, frame=0)
+    live.set("/playing/variation", 0.7, frame=0)
     live.hold("/body/gain", 3.0)
     live.hold("/playing/tremolo", 20.0)
     loaded = {"/playing/vibrato": 20.0, "/output/gain": -6.0}
@@ -303,7 +303,7 @@ def test_a_load_sets_what_it_names_and_leaves_the_rest_and_what_is_held(instrume
 
 def test_all_of_a_load_is_heard_at_one_frame(instrument):
     live = live_player(instrument)
-    live.note_on(74.0, 90.0, frame=0)
+    live.key_on(74.0, 90.0, frame=0)
     run(instrument, 22050)
     instrument.applied_wishes()
     moved = ("/bow/speed", "/bow/position", "/output/gain")
@@ -322,8 +322,8 @@ def test_loading_while_a_note_sounds_makes_no_click(instrument):
     """No jump between samples is larger than those of either sound by itself."""
     presets = Presets(Path(os.devnull))
     live = live_player(instrument)
-    live.write("/playing/variation", 0.0, frame=0)
-    live.note_on(77.0, 64.0, frame=0)
+    live.set("/playing/variation", 0.0, frame=0)
+    live.key_on(77.0, 64.0, frame=0)
     sounds = []
     for name in ("ordinary", "flautando", "sul-ponticello", "sul-tasto", "vibrato", "ordinary"):
         live.load(presets.load(name).values, frame=instrument.frame)
@@ -334,7 +334,7 @@ def test_loading_while_a_note_sounds_makes_no_click(instrument):
 
 
 def test_what_velocity_moves_is_spread_around_what_was_put(player):
-    midi = MidiPoster(player, load("keyboard"))
+    midi = player.mapped(load("keyboard"))
     key = mido.Message("note_on", note=77, velocity=127)
 
     def pressed() -> float:
@@ -353,7 +353,7 @@ def test_what_velocity_moves_is_spread_around_what_was_put(player):
 def test_the_beginning_is_where_a_reset_leads_back_to(instrument):
     live = live_player(instrument, start=(("/playing/vibrato", 20.0),))
     assert live.value("/playing/vibrato") == 20.0
-    live.write("/playing/vibrato", 5.0, frame=0)
+    live.set("/playing/vibrato", 5.0, frame=0)
     live.reset(frame=0)
     assert live.value("/playing/vibrato") == 20.0
 
@@ -361,7 +361,7 @@ def test_the_beginning_is_where_a_reset_leads_back_to(instrument):
 # ---------------------------------------------------------------- program changes
 
 
-def change(live: LivePlayer, program: int, channel: int = 1) -> None:
+def change(live: Player, program: int, channel: int = 1) -> None:
     message = mido.Message("program_change", program=program - 1, channel=channel - 1)
     receive(live, message, frame=0, port=0)
 
@@ -410,7 +410,7 @@ def test_an_unknown_program_is_ignored_and_counted(instrument, presets):
     live = live_player(instrument, presets=presets, programs=True)
     for _ in range(3):
         change(live, 41)
-    assert (live.values(), live._midi.unknown_programs) == (DEFAULTS, {41: 3})
+    assert (live.values(), live.unknown_programs) == (DEFAULTS, {41: 3})
 
 
 # ---------------------------------------------------------------- how they sound
@@ -420,7 +420,7 @@ def heard(name: str, note: int, seconds: float = 0.5) -> np.ndarray:
     values = Presets(Path(os.devnull)).load(name).values | {"/playing/variation": 0.0}
     playing = PlayingOptions(start=tuple(values.items()))
     instrument = Instrument(playing.spec(RATE, calibration_for(RATE)))
-    midi = playing.midi(playing.wishes(instrument))
+    midi = playing.mapped(playing.player(instrument))
     midi.receive(mido.Message("note_on", note=note, velocity=64), frame=0)
     return run(instrument, round(RATE * seconds)).astype(np.float64)
 

@@ -51,7 +51,7 @@ def test_a_new_beginning_is_taken_where_nobody_has_moved_it(make, player):
     starts = {VOLUME: 0.5, EXPRESSION: 0.5, "/playing/attack": 50.0}
     midi = make(Bind("cc 1", EXPRESSION), start=tuple(starts.items()))
     midi.on(75)
-    midi.player.write(VOLUME, 0.1)
+    midi.player.set(VOLUME, 0.1)
     midi.cc(1, 127)
     to(midi, Bind("cc 1", EXPRESSION), start=((VOLUME, 0.7), (EXPRESSION, 0.7)))
     assert player.value(VOLUME) == 0.1  # written since

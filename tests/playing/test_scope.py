@@ -5,9 +5,7 @@ from __future__ import annotations
 import pytest
 
 from yehu_server.playing.bind import Bind
-from yehu_server.playing.live_player import ELSEWHERE
 from yehu_server.playing.mapping import Mapping, load
-from yehu_server.playing.wishes import Key
 
 VOLUME, PRESS, BEND = "/playing/volume", "/playing/press", "/playing/bend"
 KEYS, BREATH = 0, 1  # ports
@@ -49,7 +47,7 @@ def test_a_box_without_keys_moves_the_notes_of_every_port_and_by_osc(studio, pla
         assert player.value(VOLUME) == 7 * channel / 127
         studio.on(76)
         assert player.value(VOLUME) == 7 * channel / 127
-    studio.player.note_on(Key(ELSEWHERE, 75.0), 0.5, None)
+    studio.player.key_on(75.0, 64.0)
     studio.cc(7, 30, port=BREATH)
     assert player.value(VOLUME) == 30 / 127
 
@@ -112,7 +110,7 @@ def test_a_box_that_ends_its_sound_or_is_reset_lets_go_of_the_keyboards_notes(ma
 def test_a_soft_knob_of_a_box_waits_for_where_the_keyboards_note_has_it(make, player):
     studio = make(Bind("cc 7", VOLUME, is_soft=True))
     studio.on(75)
-    studio.player.write(VOLUME, 0.5)
+    studio.player.set(VOLUME, 0.5)
     studio.cc(7, 10, port=BREATH)
     assert player.value(VOLUME) == 0.5
     studio.cc(7, 64, port=BREATH)

@@ -23,10 +23,10 @@ from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.part_state import Key
+from yehu_server.playing.player import Player
 from yehu_server.playing.section_instruments import section_specs
-from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.rendering.cores import Cores
 
 BEAT = 24000  # frames
@@ -49,7 +49,7 @@ class Told:
     The first of the part leads it: what is posted there is interpreted at once, for all of them.
     """
 
-    is_live, frame, spec = False, 0, InstrumentSpec(44100.0)
+    is_live, frame, rate, spec = False, 0, RATE, InstrumentSpec(44100.0)
 
     def __init__(self, number: int, part: list[Told]) -> None:
         self.address, self._part = number * RIG_BYTES, part
@@ -117,7 +117,7 @@ kinds_of_settings = (kinds.WRITE, kinds.HOLD, kinds.EXPRESS)
 def section(people: int, playing: PlayingOptions | None = None) -> SimpleNamespace:
     told: list[Told] = []
     told += [Told(number, told) for number in range(people)]
-    return SimpleNamespace(told=told, wishes=(playing or PlayingOptions()).wishes(told))
+    return SimpleNamespace(told=told, wishes=(playing or PlayingOptions()).player(told))
 
 
 @pytest.fixture
@@ -142,7 +142,7 @@ def off(to, *keys, frame):
 def test_players_of_a_section_lie_one_after_another():
     apart = section(3).told[::2]
     with pytest.raises(ValueError, match="one after another"):
-        WishPoster(apart)
+        Player(apart)
 
 
 def test_a_new_stroke_and_a_slur_stay_one_in_every_player(four):
@@ -273,7 +273,7 @@ MPE = Mapping("mpe", (Bind("bend", "/playing/bend"), Bind("cc 1", "/playing/vibr
 
 
 def test_a_chord_is_bent_as_a_whole_and_in_mpe_each_note_by_itself(four):
-    midi = MidiPoster(four.wishes, MPE)
+    midi = four.wishes.mapped(MPE)
     for channel, note in ((1, 76), (2, 67)):
         midi.receive(mido.Message("note_on", note=note, channel=channel), frame=0)
     for number, (channel, pitch, bends) in enumerate([(1, 8191, (48, 0)), (2, -8192, (48, -48))]):
@@ -285,7 +285,7 @@ def test_a_chord_is_bent_as_a_whole_and_in_mpe_each_note_by_itself(four):
     midi.receive(mido.Message("control_change", control=1, value=127), frame=BEAT + 20)
     assert all(told.value("/playing/vibrato") == 100.0 for told in four.told)
     four = section(4)
-    midi = MidiPoster(four.wishes, replace(MPE, mpe=False))
+    midi = four.wishes.mapped(replace(MPE, mpe=False))
     for note in CHORD:
         midi.receive(mido.Message("note_on", note=note), frame=0)
     midi.receive(mido.Message("pitchwheel", pitch=8191), frame=BEAT)
@@ -384,7 +384,7 @@ def played(playing: PlayingOptions, people: int, block: int, seconds: float = 1.
     """The sound of each player of a chord and a line."""
     stage = Ensemble(section_specs(playing, RATE, ideal(), people=people), has_room=False)
     cores = Cores(stage, map, has_stems=True)
-    midi = playing.midi(playing.wishes(stage.instruments))
+    midi = playing.mapped(playing.player(stage.instruments))
     events = [(0.1, "note_on", 67), (0.1, "note_on", 74), (0.6, "note_off", 67)]
     events += [(0.6, "note_off", 74), (0.6, "note_on", 70), (1.1, "note_off", 70)]
     frames = round(seconds * RATE)
@@ -415,7 +415,7 @@ def test_no_note_hangs_whatever_is_played(seed):
     playing = replace(PlayingOptions(), start=(("/playing/section", float(people)),))
     part = section(people, playing)
     told, wishes = part.told, part.wishes
-    midi = playing.midi(wishes)
+    midi = playing.mapped(wishes)
     frame = 0
     for number in range(400):
         frame += int(random.choice([0, 0, 100, 1500, 6000, 20000]))
@@ -456,9 +456,9 @@ def test_a_reset_lets_all_play_that_played_at_the_start():
     playing = replace(PlayingOptions(), start=(("/playing/section", 4.0),))
     part = section(4, playing)
     told, wishes = part.told, part.wishes
-    midi = playing.midi(wishes)
+    playing.mapped(wishes)
     wishes.write("/playing/section", 1.0, frame=10)
-    midi.reset_to_start_values(frame=20)
+    wishes.reset(frame=20)
     assert wishes.value("/playing/section") == 4.0
     wishes.note_on(Key(0, 67), frame=BEAT)
     assert all(each.settled() == [67] for each in told)

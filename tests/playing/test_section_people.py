@@ -16,6 +16,7 @@ from yehu_server.core.physics.radiation import response
 from yehu_server.core.player.calibration import wave_speed
 from yehu_server.core.player.rows import ROW
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.section_instruments import (
     MODE,
     SIZE,
@@ -24,7 +25,6 @@ from yehu_server.playing.section_instruments import (
     section_specs,
     vary,
 )
-from yehu_server.playing.wishes import Key
 
 SEEDS = range(20)
 
@@ -143,7 +143,7 @@ def test_a_part_of_one_player_is_the_instrument_of_its_style():
         playing.spec(44100.0, ideal()),
     ):
         instrument = Instrument(spec)
-        wishes = playing.wishes(instrument)
+        wishes = playing.player(instrument)
         wishes.draw(0.2, 0.6, frame=0)
         out.append(np.zeros(4410, np.float32))
         instrument.process(out[-1])
@@ -155,7 +155,7 @@ def vibratos(variation):
     """Rate and depth of the vibrato of each of six, and its phase as their note begins."""
     specs = section_specs(PlayingOptions(), 44100.0, ideal(), people=6)
     ensemble = Ensemble(specs, has_room=False)
-    wishes = PlayingOptions().wishes(ensemble.instruments)
+    wishes = PlayingOptions().player(ensemble.instruments)
     wishes.write("/playing/variation", variation)
     wishes.write("/playing/vibrato", 30.0)
     wishes.note_on(Key(0, 74))

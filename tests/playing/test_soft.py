@@ -24,40 +24,40 @@ def at(player):
 
 def test_a_controller_waits_until_it_comes_to_its_target_or_jumps_over_its_place(make, at):
     midi = make(SOFT)
-    midi.player.write(VOLUME, 0.5)
+    midi.player.set(VOLUME, 0.5)
     assert [at(midi, value) for value in (0, 40, 61)] == [0.5] * 3
     assert at(midi, 62) == pytest.approx(62 / 127)  # 1/64 of the way is two steps
     assert at(midi, 0) == 0.0
-    midi.player.write(VOLUME, 0.5)
+    midi.player.set(VOLUME, 0.5)
     assert at(midi, 127) == 1.0
 
 
 def test_whoever_moves_the_target_takes_it_from_the_controller(make, at):
     midi = make(SOFT, Bind("cc 2", VOLUME), Bind("/fader", VOLUME))
-    midi.player.write(VOLUME, 0.0)
+    midi.player.set(VOLUME, 0.0)
     assert at(midi, 0, 100) == pytest.approx(100 / 127)
     at(midi, 20, control=2)
     assert at(midi, 101) == pytest.approx(20 / 127)  # waits
     assert at(midi, 19) == pytest.approx(19 / 127)  # passed
     midi.player.move("/fader", 0.9)
     assert at(midi, 20) == 0.9
-    midi.player.write(VOLUME, 0.2)
+    midi.player.set(VOLUME, 0.2)
     assert at(midi, 30) == pytest.approx(30 / 127)  # passed, from 20 to 30
 
 
 def test_hard_and_soft_targets_of_one_controller_do_not_disturb_each_other(make, at, player):
     midi = make(SOFT, Bind("cc 1", "/playing/expression"))
-    midi.player.write(VOLUME, 0.5)
+    midi.player.set(VOLUME, 0.5)
     assert at(midi, 10) == 0.5
     assert player.value("/playing/expression") == pytest.approx(10 / 127)
     value = at(midi, 100)
-    midi.player.write(VOLUME, value)  # where it was: it is not taken
+    midi.player.set(VOLUME, value)  # where it was: it is not taken
     assert at(midi, 20) == pytest.approx(20 / 127)
 
 
 def test_each_channel_picks_up_for_itself(make, at, player):
     midi = make(SOFT)
-    midi.player.write(VOLUME, 0.5)
+    midi.player.set(VOLUME, 0.5)
     midi.on(70)
     assert at(midi, 0, 127, channel=1) == 1.0
     midi.on(72, channel=2)
@@ -70,7 +70,7 @@ def test_each_channel_picks_up_for_itself(make, at, player):
 
 def test_the_master_of_a_zone_picks_up_for_its_members(make, at, player):
     midi = make(SOFT, mpe=True)
-    midi.player.write(VOLUME, 0.5)
+    midi.player.set(VOLUME, 0.5)
     midi.on(70, channel=4)
     assert at(midi, 0, channel=1) == 0.5
     assert at(midi, 127, 10, channel=1) == pytest.approx(10 / 127)
@@ -90,12 +90,12 @@ def test_a_reset_lets_the_controller_wait_again(make, at, player):
 
 def test_an_osc_fader_waits_too(make, player):
     midi = make(Bind("/fader", VOLUME, input_range=(0.0, 10.0), is_soft=True))
-    midi.player.write(VOLUME, 0.5)
+    midi.player.set(VOLUME, 0.5)
     midi.player.move("/fader", 1.0)
     assert player.value(VOLUME) == 0.5
     midi.player.move("/fader", 9.0)
     assert player.value(VOLUME) == 0.9
-    midi.player.write(VOLUME, 0.1)
+    midi.player.set(VOLUME, 0.1)
     midi.player.move("/fader", 8.0)
     assert player.value(VOLUME) == 0.1
     midi.player.move("/fader", 1.1)
@@ -104,7 +104,7 @@ def test_an_osc_fader_waits_too(make, player):
 
 def test_fourteen_bits_are_picked_up_by_either_half(make, at):
     midi = make(Bind("cc 1/33", VOLUME, is_soft=True))
-    midi.player.write(VOLUME, 0.5)
+    midi.player.set(VOLUME, 0.5)
     assert at(midi, 60) == 0.5
     assert at(midi, 127, control=33) == 0.5
     assert at(midi, 62) == pytest.approx(62 * 128 / 16383)

@@ -120,7 +120,7 @@ def test_data_entry_for_anything_else_moves_no_nrpn(playing):
 
 def test_an_nrpn_is_stepped_from_where_it_or_its_target_is(playing):
     midi, cc = playing(Bind("nrpn 300", VOLUME))
-    midi.player.write(VOLUME, 0.5)
+    midi.player.set(VOLUME, 0.5)
     assert cc((99, 2), (98, 44), (96, 0)) == pytest.approx(0.5 + 1 / 127)
     assert cc((97, 0), (97, 0)) == pytest.approx(0.5 - 1 / 127)
     assert cc(*[(96, 0)] * 127) == 1.0
@@ -212,7 +212,7 @@ def test_whatever_comes_next_need_not_wait_for_the_glide(playing, listener):
     heard = len(listener.moves)
     midi.on(74)
     assert all(move.ramp_ms != 900.0 for move in listener.moves[heard:])
-    midi.player.write("/playing/speed", 0.15)
+    midi.player.set("/playing/speed", 0.15)
     assert listener.of("/bow/speed")[-1][1:] == (0.15, None, find("/bow/speed").smooth_ms)
 
 

@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
-from yehu_server.playing.midi_poster import MidiPoster
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.tuning import RangePolicy
-from yehu_server.playing.wishes import Key
 
 CHANNELS = (0, 1, 9)
 ours = settings(max_examples=25)
@@ -62,7 +61,7 @@ def test_no_note_sticks_once_all_keys_and_pedals_are_up(policy):
         listener = calibrated(seed)
         player = Checked(listener, policy)
         player.write("/playing/variation", 1.0)
-        midi = MidiPoster(player, load("keyboard"))
+        midi = player.mapped(load("keyboard"))
         listener.write("/bow/speed", 0.0)
         listener.write("/bow/side", 0.0)
         for message in stream:
@@ -154,7 +153,7 @@ def boxes(seed: int) -> Iterator[tuple[int, mido.Message | None]]:
 def test_the_last_key_struck_of_those_hand_or_pedal_hold_is_the_one_that_sounds(everything):
     for seed in range(60 if everything else 20):
         player = Checked(calibrated())
-        midi = MidiPoster(player, load("keyboard"))
+        midi = player.mapped(load("keyboard"))
         expected = Keyboards()
         for number, (port, message) in enumerate(boxes(seed)):
             if message is None:

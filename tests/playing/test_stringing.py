@@ -20,9 +20,10 @@ from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.live.page.facts import facts
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
+from yehu_server.playing.part_state import Key
+from yehu_server.playing.player import Player
 from yehu_server.playing.practice_files import practice_beside, read_practice
 from yehu_server.playing.stringing import notes_of, range_text
-from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.scores.capture_header import SessionStart, header_of, read_header
 from yehu_server.scores.octaves import NoteSpan, octaves_of
 from yehu_server.util.documents import Fields
@@ -142,7 +143,7 @@ def test_strings_in_fourths_are_stopped_where_their_notes_are():
     spec = in_fourths()
     for note, string, stop in ((67, 0, 0), (71, 0, 4), (72, 1, 0), (79, 1, 7), (50, 0, 0)):
         instrument = Instrument(spec)
-        wishes = WishPoster(instrument)
+        wishes = Player(instrument)
         assert (wishes.notes.ends, wishes.policy.fit(66.0, wishes.notes)) == ((67, 89), 78.0)
         wishes.write("/playing/variation", 0.0)
         wishes.note_on(Key(0, note), tuned=float(note))

@@ -9,7 +9,7 @@ from yehu_server.core.midi.channels import bend_range, configure_zone, master_of
 from yehu_server.core.midi.record import MIDI, NONE, prepare_midi
 from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import load
-from yehu_server.playing.wishes import Key
+from yehu_server.playing.part_state import Key
 
 # ---------------------------------------------------------------- zones
 

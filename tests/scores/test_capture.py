@@ -41,7 +41,7 @@ from yehu_server.core.player.wishes import (
 from yehu_server.errors import OutputError, ScoreError, YehuError
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.wishes import Key
+from yehu_server.playing.part_state import Key
 from yehu_server.rendering.replay import blocks, replay
 from yehu_server.scores.capture import read_capture
 from yehu_server.scores.capture_format import build
@@ -286,7 +286,7 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
     stage = Ensemble(
         [playing.spec(RATE, measured(seed), body=playing.seed) for playing in per_part]
     )
-    asked = [playing.wishes(one) for playing, one in zip(per_part, stage.instruments, strict=True)]
+    asked = [playing.player(one) for playing, one in zip(per_part, stage.instruments, strict=True)]
     for one in stage.instruments:
         one.report_wishes()
     capture = LiveCapture(stage, tmp_path / "c", said.append, has_room=True)

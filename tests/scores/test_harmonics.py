@@ -73,7 +73,7 @@ def test_all_that_marks_set_is_put_back():
     _, played = sound(*((72.0 + n, mark) for n, mark in enumerate(marks)), (67.0, "slide-out-down"),
                       signs=(Sign(Fraction(1), "sul-ponticello"), Sign(Fraction(2), "pizz"),
                              Sign(Fraction(4), "arco"), Sign(Fraction(6), "ordinary")))  # fmt: skip
-    before, after = usual.players[0].midi.sound(), played.players[0].midi.sound()
+    before, after = usual.players[0].player.sound(), played.players[0].player.sound()
     moved = {"/playing/note_length", "/playing/velocity", "/playing/pressure"}  # by each note
     assert {a for a in after if after[a] != before[a]} <= moved
 
@@ -85,7 +85,7 @@ def test_marks_are_put_back_to_a_preset_and_move_nothing_that_is_held(how, is_mo
     signs = (Sign(Fraction(0), "sul-ponticello"), Sign(Fraction(1), "ordinary"))
     score = performed(Written((Part("", notes, (), signs),)))
     performance = Performance([rendering.Part(score, playing)], Options(tail_s=0.0, block=4410))
-    places = [performance.wishes.value("/playing/bow_position") for _ in performance.blocks()]
+    places = [performance.player.value("/playing/bow_position") for _ in performance.blocks()]
     assert places[-1] == 0.18
     assert (len({*places}) > 1) == is_moved
 
@@ -97,7 +97,7 @@ def test_settings_of_a_part_that_is_not_played_set_nothing():
     part = rendering.Part(score, PlayingOptions(channels=frozenset({0})))
     performance = Performance([part], Options(tail_s=0.0))
     next(performance.blocks())
-    assert performance.wishes.value("/playing/pizzicato") == 0.0
+    assert performance.player.value("/playing/pizzicato") == 0.0
 
 
 # ---------------------------------------------------------------- jianpu

@@ -15,7 +15,7 @@ from yehu_server.core.physics.layout import MAX_FINGERS, control_columns, probe_
 from yehu_server.core.player.calibration import frequency_hz, wave_speed
 from yehu_server.errors import ParameterError
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.wishes import Key
+from yehu_server.playing.part_state import Key
 from yehu_server.scores.gesture import Gesture
 from yehu_server.simulation.run import signals, simulate
 
@@ -93,7 +93,7 @@ def melody(description: Description, number: int) -> Sound:
     _, calibration = calibrated(description)
     playing = PlayingOptions(seed=number % 65536, quantities=description.quantities)
     instrument = Instrument(playing.spec(rate, calibration))
-    wishes = PlayingOptions().wishes(instrument)
+    wishes = PlayingOptions().player(instrument)
     for address in description.draws:
         if address.startswith("/"):
             wishes.write(address, drawn[address])

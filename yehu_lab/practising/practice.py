@@ -37,8 +37,9 @@ from yehu_server.core.player.bowing import (
 )
 from yehu_server.core.player.calibration import Calibration, frequency_hz
 from yehu_server.core.player.note_range import LOWEST_NOTE, NoteRange
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.pitch_and_level import cents, pitch_hz
-from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.playing.player import Player
 
 Array = Any
 Progress = Callable[[float, float], None]
@@ -191,7 +192,7 @@ class Practice:
         spec = InstrumentSpec(self._rate, self._tuned, calibration=self._calibration, bowing=table)
         instrument = Instrument(spec)
         instrument.disable_pressure_correction()
-        wishes = WishPoster(instrument)
+        wishes = Player(instrument)
         wishes.write("/playing/variation", 0.0)
         wishes.write("/playing/bow_length", 0.0)
         instrument.write("/bow/noise", 0.0, ramp_ms=0.0)
@@ -207,7 +208,7 @@ class Practice:
         return (speaks - off / OFF_WEIGHT) / count
 
     def _play(
-        self, instrument: Instrument, wishes: WishPoster, search: Search, passage: Passage
+        self, instrument: Instrument, wishes: Player, search: Search, passage: Passage
     ) -> tuple[bool, bool, float]:
         """Whether a note speaks early and late in a passage, and its error (cents) early."""
         start = instrument.frame

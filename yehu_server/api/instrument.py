@@ -29,7 +29,8 @@ from yehu_server.errors import ParameterError, YehuError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import find
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.playing.part_state import Key
+from yehu_server.playing.player import Player
 from yehu_server.simulation.run import Simulation
 from yehu_server.util import __version__
 
@@ -117,7 +118,7 @@ class Instrument:
     ) -> None:
         self._rate, self._playing = rate, playing
         self._channels = 2 if stereo else 1
-        self._wishes: WishPoster
+        self._wishes: Player
         self._stage: Ensemble | Engine
         if stereo:
             self._stage = Ensemble([spec])
@@ -406,7 +407,7 @@ class Instrument:
     def _begin(self) -> None:
         """Give all parameters the values that preset and settings begin with."""
         self._dropped = 0
-        self._wishes = self._playing.wishes(self._engine)
+        self._wishes = self._playing.player(self._engine)
         for address, value in self._playing.start:
             if find(address).place is Place.ENGINE:
                 self._engine.write(address, value, ramp_ms=0.0)

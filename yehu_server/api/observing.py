@@ -17,7 +17,7 @@ from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS, control_columns, probe_columns
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import SLOT
-from yehu_server.playing.wishes import WishPoster
+from yehu_server.playing.player import Player
 from yehu_server.simulation.run import MAX_BYTES, Simulation, about, shape_of, signals
 
 Floats = NDArray[np.float64]
@@ -68,7 +68,7 @@ class Run:
         self,
         instrument: Instrument,
         stage: Ensemble | Instrument,
-        wishes: WishPoster,
+        wishes: Player,
         curves: Sequence[Curve] = (),
     ) -> None:
         self._instrument, self._stage, self._wishes = instrument, stage, wishes

@@ -2,6 +2,6 @@
 
 web thread ─> OSC thread ──┐
              pages process ┤
-                           ├─> LivePlayer ─> ring ─> C callback, in the audio process ─> device
+                           ├─> Player ─> ring ─> C callback, in the audio process ─> device
               MIDI process ┘                              └─> meters, applied wishes, tape
 """

@@ -16,8 +16,8 @@ from pathlib import Path
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import MappingError
 from yehu_server.playing.delay import Delay
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.player import Player
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.retry import run_forever
 from yehu_server.util.token_bucket import TokenBucket
@@ -152,42 +152,11 @@ def _counted(count: int, what: str) -> str:
     return f"{count} {what}{'' if count == 1 else 's'}"
 
 
-class MappingFollower:
-    """Watches a mapping's files, and gives the player the new mapping where they are right.
-
-    `reread`: reads the files. Raises MappingError.
-    `on_change`: called when the player has got a new mapping.
-    `on_message`: called with a line about each change, and about what is wrong with the files.
-    """
-
-    def __init__(
-        self,
-        player: LivePlayer,
-        reread: Callable[[], Mapping],
-        on_change: Callable[[], None],
-        on_message: Callable[[str], None],
-    ) -> None:
-        self._player = player
-        self._watch = MappingWatch(player.mapping, reread)
-        self._on_change = on_change
-        self._on_message = on_message
-
-    def look(self) -> None:
-        """Look at the files."""
-        try:
-            mapping = self._watch.look()
-        except MappingError as error:
-            self._on_message(f"{error}; the mapping stays as it was")
-            return
-        if mapping is not None:
-            self._player.remap(mapping, frame=self._player.frame_of())
-            self._on_change()
-            self._on_message(f"the mapping {mapping.name} has changed; it is used from now on")
-
-
 class Housekeeper:
     """Keeps a server's delay, capture, mappings and programs up to date, from `start` to `stop`.
 
+    `watches`: of players whose mapping's files are watched.
+    `on_remap`: called when a player has got a new mapping.
     `osc_drops`: returns the number of OSC packets that the system dropped.
     `on_message`: called with a line for the player.
 
@@ -197,9 +166,10 @@ class Housekeeper:
     def __init__(
         self,
         ensemble: Ensemble,
-        players: Sequence[LivePlayer],
+        players: Sequence[Player],
         delay: Delay,
-        followers: Sequence[MappingFollower],
+        watches: Sequence[tuple[Player, MappingWatch]],
+        on_remap: Callable[[], None],
         osc_drops: Callable[[], int],
         on_message: Callable[[str], None],
     ) -> None:
@@ -207,7 +177,8 @@ class Housekeeper:
         self._ensemble = ensemble
         self._players = players
         self._delay = delay
-        self._followers = followers
+        self._watches = watches
+        self._on_remap, self._on_message = on_remap, on_message
         self._osc_drops = osc_drops
         self._counters = CounterReport(on_message)
         self._under_runs = UnderRunReport(on_message)
@@ -246,7 +217,8 @@ class Housekeeper:
     def _turn(self) -> None:
         self._delay.look()
         for player in self._players:
-            player.delay = self._delay.frames  # as the device's period requires
+            player.instrument.delay = self._delay.frames  # as the device's period requires
+            player.finish_remap()
         if self.capture is not None:
             self.capture.keep_up()
         if time.monotonic() > self._next_look:
@@ -261,7 +233,19 @@ class Housekeeper:
                 }
             )
             self._under_runs.look(self._gaps()[0])
-            for follower in self._followers:
-                follower.look()
+            for player, watch in self._watches:
+                self._follow(player, watch)
             for player in self._players:
                 player.know_programs()
+
+    def _follow(self, player: Player, watch: MappingWatch) -> None:
+        """Give a player its mapping anew where the files have changed and are right."""
+        try:
+            mapping = watch.look()
+        except MappingError as error:
+            self._on_message(f"{error}; the mapping stays as it was")
+            return
+        if mapping is not None:
+            player.remap(mapping, frame=player.frame_of())
+            self._on_remap()
+            self._on_message(f"the mapping {mapping.name} has changed; it is used from now on")

@@ -21,7 +21,7 @@ from yehu_server.live.announce import Announcer, announced
 from yehu_server.live.audio.output import Output
 from yehu_server.live.audio.recordings import Recordings
 from yehu_server.live.audio.voice_input import VoiceInput
-from yehu_server.live.housekeeper import Housekeeper, MappingFollower
+from yehu_server.live.housekeeper import Housekeeper, MappingWatch
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
 from yehu_server.live.osc.all_calls import more_calls
@@ -30,14 +30,15 @@ from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.osc.status import PartSources, StatusSources, read_part_status, read_status
+from yehu_server.live.osc.work_queue import Calls
 from yehu_server.live.page.pages import Pages
 from yehu_server.live.part_addresses import part_of
 from yehu_server.live.web.query import Snapshot
 from yehu_server.live.web.server import Sources, WebServer
 from yehu_server.playing.calibration import Progress
 from yehu_server.playing.delay import Delay
-from yehu_server.playing.live_player import LivePlayer
-from yehu_server.playing.parts import Part, assemble, number_of_instruments, player_of, seated
+from yehu_server.playing.parts import assemble, number_of_instruments, player_of, seated
+from yehu_server.playing.player import Player
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.files import anything, check_free, check_target, nothing, shipped_folder
 
@@ -87,14 +88,15 @@ class Server:
             )
             self.delay = Delay(self.instrument, options.output.blocksize, options.jitter_ms)
             delay_ms = 1e3 * self.delay.frames / rate
-            self.parts = tuple(
-                Part(player_of(part, playing, own, delay_ms=delay_ms), own)
+            self.players = tuple(
+                player_of(part, playing, own, delay_ms=delay_ms)
                 for part, (playing, own) in enumerate(zip(per_part, instruments, strict=True))
             )
-            self.players = tuple(part.player for part in self.parts)
             self.player.presets.all()  # read now, so that listing them is quick later
             self.takes = Recordings(self.ensemble, options.recordings, on_message)
             self._files = ThreadPoolExecutor(1, "files")
+            calls = Calls()
+            undo.callback(calls.close)
             self.context = CallContext(
                 self.players,
                 self.states,
@@ -102,10 +104,10 @@ class Server:
                 self.takes.stop,
                 on_message,
                 self._files.submit,
+                calls.soon,
             )
             self.handler = OscHandler(self.context)
-            self.osc = OscPorts(*options.osc, options.allowed, self.handler)
-            self.context.call_soon = self.osc.call_soon
+            self.osc = OscPorts(*options.osc, options.allowed, self.handler, calls)
             undo.callback(self.osc.stop)
             self.pages = self._pages()
             if self.pages is not None:
@@ -113,7 +115,7 @@ class Server:
             self.web = self._web()
             if self.web is not None:
                 undo.callback(self.web.stop)
-                self.context.tree_changed = self.web.tree_changed
+                self.context.on_tree_change.append(self.web.tree_changed)
             if options.capture is not None:
                 for instrument in self.ensemble.instruments:
                     instrument.report_wishes()
@@ -134,7 +136,7 @@ class Server:
         self._housekeeper = self._make_housekeeper()
 
     @property
-    def player(self) -> LivePlayer:
+    def player(self) -> Player:
         """The player of the first part."""
         return self.players[0]
 
@@ -144,9 +146,8 @@ class Server:
         return self.ensemble.first
 
     def _make_housekeeper(self) -> Housekeeper:
-        on_change = partial(self.context.tree_changed, "/")
-        followers = [
-            MappingFollower(player, part.reread, on_change, self._on_message)
+        watches = [
+            (player, MappingWatch(player.mapping, part.reread))
             for player, part in zip(self.players, self.options.parts, strict=True)
             if part.reread is not None
         ]
@@ -154,7 +155,8 @@ class Server:
             self.ensemble,
             self.players,
             self.delay,
-            followers,
+            watches,
+            partial(self.context.tree_changed, "/"),
             lambda: self.osc.traffic.kernel_drops,
             self._on_message,
         )
@@ -188,7 +190,7 @@ class Server:
     @property
     def _rigs(self) -> list[int]:
         """The first instrument of each part, by its number on the stage."""
-        return [self.ensemble.instruments.index(part.instruments[0]) for part in self.parts]
+        return [self.ensemble.instruments.index(player.instrument) for player in self.players]
 
     def _web(self) -> WebServer | None:
         if self.options.http is None:
@@ -196,7 +198,7 @@ class Server:
         sources = Sources(
             lambda group: Snapshot(self.context.values(group), self.states(group)),
             shipped_folder("mappings"),
-            len(self.parts),
+            len(self.players),
             lambda: more_calls(self.players),
             lambda: None if self.pages is None else self.pages.port,
         )
@@ -288,7 +290,7 @@ class Server:
         """The status values, by name; any thread may call."""
         return read_status(
             StatusSources(
-                parts=list(map(_sources, self.parts)),
+                parts=[PartSources.of(player) for player in self.players],
                 ensemble=self.ensemble,
                 delay=self.delay,
                 output=self.output.state,
@@ -306,15 +308,10 @@ class Server:
 
     def part_status(self, part: int) -> dict[str, float]:
         """The status values of a part, counted from 0; any thread may call."""
-        return read_part_status(_sources(self.parts[part]))
+        return read_part_status(PartSources.of(self.players[part]))
 
     def _sound(self) -> dict[str, float | str | None]:
         """What pages show of the sound."""
         state = self.output.state
         delay_ms = 1e3 * self.player.delay / self.ensemble.rate
         return {"device": state.device, "latencyMs": state.latency_ms + delay_ms}
-
-
-def _sources(part: Part) -> PartSources:
-    meters = [instrument.meters() for instrument in part.instruments]
-    return PartSources(part.player, part.instruments, meters)

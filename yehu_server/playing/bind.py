@@ -67,7 +67,7 @@ class Bind:
     span: tuple[float, float] | None = None
     curve: Curve | Breakpoints = Curve.LIN
     invert: bool = False
-    # Shortest time in which a move changes a sounding note; see `WishPoster.write`.
+    # Shortest time in which a move changes a sounding note; see `Player.write`.
     smoothing_ms: float = 0.0
     channels: tuple[int, ...] = ()  # MIDI channels, 1 to 16, that it receives on; all if empty
     # Soft take-over: the target moves only once the source has reached the target's value.

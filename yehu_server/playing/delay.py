@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable
 
 from yehu_server.core.engine.instrument import Instrument
 
@@ -62,3 +63,26 @@ class Delay:
         self._blocks.append(min(now[0], self._last[0]))
         self._periods.append(max(self._block, min(now[1], self._last[1])))
         self._last = now
+
+
+class Arrivals:
+    """Assigns frames to the messages of one source, in the order of their arrival.
+
+    Small corrections of the clock must not swap messages that arrive close together.
+
+    `frame_at`: returns the frame for a ``time.monotonic_ns()``, such as `Player.frame_of`.
+    `rate` (Hz).
+    """
+
+    def __init__(self, frame_at: Callable[[int], int], rate: float) -> None:
+        self._frame_at = frame_at
+        self._rate = rate
+        self._latest = 0
+
+    def frame_of(self, arrived_ns: int) -> int:
+        """The frame for a message that arrived then."""
+        frame = self._frame_at(arrived_ns)
+        if self._latest - frame > self._rate:  # no small correction of the clock
+            self._latest = frame
+        self._latest = max(self._latest, frame)
+        return self._latest

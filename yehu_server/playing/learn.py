@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import threading
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -97,6 +98,50 @@ class Learner:
     def _moved(self, channel: int, source: str, position: float) -> LearnedSource | None:
         began = self._began_at.setdefault((channel, source), AT_REST.get(source, position))
         return LearnedSource(source) if abs(position - began) >= DISTANCE else None
+
+
+class Learning:
+    """Waits for the source that the user moves next; any thread may call."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._learner = Learner()
+        self._found: Callable[[LearnedSource], None] | None = None
+        self.on_change: Callable[[], None] = lambda: None  # called where `waits` changes
+
+    @property
+    def waits(self) -> bool:
+        """Whether it waits for a source to move."""
+        return self._found is not None
+
+    def listen(self, found: Callable[[LearnedSource], None] | None) -> None:
+        """Call `found` once with the source that the user moves next; with None, stop listening.
+
+        It is called from any thread, and must not block.
+        """
+        with self._lock:
+            self._learner, self._found = Learner(), found
+        self.on_change()
+
+    def hear_address(self, address: str, argument: float) -> None:
+        """Receive a number at an OSC address of the user's own."""
+        with self._lock:
+            source = self._learner.learn_from_address(address, argument)
+        self._report(source)
+
+    def hear_message(self, message: mido.Message, port: int) -> None:
+        """Receive a MIDI message of a port, counted from 0; it plays elsewhere."""
+        with self._lock:
+            source = self._learner.hear(message, port)
+        self._report(source)
+
+    def _report(self, source: LearnedSource | None) -> None:
+        with self._lock:
+            found = self._found if source is not None else None
+            self._found = None if found is not None else self._found
+        if source is not None and found is not None:
+            found(source)
+            self.on_change()
 
 
 def own_file(mapping: Mapping) -> Path:

@@ -17,7 +17,7 @@ from yehu_server.core.player.velocity import NEUTRAL
 from yehu_server.playing.calibration import Progress
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
-from yehu_server.playing.midi_poster import MidiPoster
+from yehu_server.playing.player import Player
 from yehu_server.playing.practice_files import (
     practice_beside,
     practices_beside,
@@ -27,7 +27,6 @@ from yehu_server.playing.practice_files import (
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning
-from yehu_server.playing.wishes import WishPoster
 
 # Where a voice is followed. It varies by itself, so hands do not; as it sings, nobody can know its
 # attacks nor how hard they are, so the bow has quick ones of its own.
@@ -135,9 +134,10 @@ class PlayingOptions:
             person=person,
         )
 
-    def wishes(self, instruments: Instrument | Sequence[Instrument]) -> WishPoster:
-        """What posts wishes with these options to an instrument, or to those of a section."""
-        return WishPoster(instruments, self.policy, self.tuning, self.a4)
+    def player(self, instruments: Instrument | Sequence[Instrument], part: int = 0) -> Player:
+        """A player with these options, without the mapping, of an instrument or a section."""
+        tuned = (self.policy, self.tuning, self.a4)
+        return Player(instruments, *tuned, part=part, presets=self.presets)
 
     def tables(self, controls: Controls) -> Any:
         """The tables of these options (``midi.tables``), with named controls numbered as given."""
@@ -151,8 +151,8 @@ class PlayingOptions:
             programs=self.presets.programs() if self.programs else None,
         )
 
-    def midi(self, wishes: WishPoster) -> MidiPoster:
-        """A MIDI player with these options."""
+    def mapped(self, player: Player) -> Player:
+        """A player that plays by the mapping from the beginning on; see `Player.mapped`."""
         channels = None if self.channels is None else set(self.channels)
         programs = self.presets.programs() if self.programs else None
-        return MidiPoster(wishes, self.mapping, channels, start=self.start, programs=programs)
+        return player.mapped(self.mapping, channels, start=self.start, programs=programs)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from yehu_server.core.engine.ensemble import Ensemble
@@ -12,8 +12,8 @@ from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.errors import ParameterError
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.player import Player
 from yehu_server.playing.section_instruments import part_specs, section_size
 
 WIDEST = 0.7  # pan of the outermost players; by ear: the room stays around them
@@ -31,14 +31,6 @@ def places(parts: int) -> list[tuple[tuple[str, float], ...]]:
 
 
 SEEDS = 1 << 16
-
-
-@dataclass(frozen=True)
-class Part:
-    """A part: its player, and the instruments that it plays."""
-
-    player: LivePlayer
-    instruments: Sequence[Instrument]
 
 
 def number_of_instruments(per_part: Sequence[PlayingOptions]) -> int:
@@ -85,7 +77,10 @@ def assemble(
 
 def player_of(
     part: int, playing: PlayingOptions, instruments: Sequence[Instrument], *, delay_ms: float
-) -> LivePlayer:
-    """The player of a part, counted from 0: its wishes go to all of its instruments."""
-    wishes = playing.wishes(instruments)
-    return LivePlayer(instruments[0], playing, delay_ms=delay_ms, part=part, wishes=wishes)
+) -> Player:
+    """The player of a part, counted from 0, on all of its instruments.
+
+    `delay_ms`: from the arrival of a message to its sound.
+    """
+    instruments[0].delay = instruments[0].frames(delay_ms)
+    return playing.mapped(playing.player(instruments, part))

@@ -30,20 +30,19 @@ LEAST_AHEAD = 2048  # frames of a block for which another thread costs less than
 
 
 class PartPlayer:
-    """Plays a part on an instrument or those of a section, by `wishes` and `midi`."""
+    """Plays a part's score on an instrument or those of a section, by `player`."""
 
     def __init__(self, part: Part, instruments: Sequence[Instrument]) -> None:
         self.part, self.instruments = part, instruments
         playing = part.playing
-        self.wishes = playing.wishes(instruments)
-        self.midi = playing.midi(self.wishes)
-        self.wishes.write("/playing/phrasing", playing.phrasing or 0.0)
+        self.player = playing.mapped(playing.player(instruments))
+        self.player.write("/playing/phrasing", playing.phrasing or 0.0)
         for address, value in playing.start:
-            self.wishes.jump(address, value)
+            self.player.jump(address, value)
         gain = () if playing.gain_db is None else (("/output/gain", playing.gain_db),)
         for address, value in (*gain, *playing.settings):
-            self.wishes.start_with(address, value)
-        self._sound = self.midi.sound()  # what settings of the score are put back to
+            self.player.start_with(address, value)
+        self._sound = self.player.sound()  # what settings of the score are put back to
         self._passing: set[str] = set()  # what is set until the next note
         self._lengths_s = {note.begins: note.length_s for note in notes_of(part.score)}
         self._events = enumerate(part.score.events)
@@ -63,18 +62,18 @@ class PartPlayer:
             if event is not None:
                 self._receive(number, event, frame)
         self._next = END
-        self.midi.end_all(frame=frame)
+        self.player.end_all(frame=frame)
 
     def _receive(self, number: int, event: ScoreEvent, frame: int) -> None:
         if number in self._lengths_s:
             for address in self._passing:
-                self.wishes.post(EXPRESS, frame, ROW[address], self._usual(address))
+                self.player.post(EXPRESS, frame, ROW[address], self._usual(address))
             self._passing.clear()
-            self.wishes.write("/playing/note_length", self._lengths_s[number], frame=frame)
+            self.player.write("/playing/note_length", self._lengths_s[number], frame=frame)
         if isinstance(event.message, Setting):
             self._set(event.message, frame)
         else:
-            self.midi.receive(event.message, frame=frame)
+            self.player.receive(event.message, frame=frame)
 
     def _usual(self, address: str) -> float:
         """What a parameter is where the score does not set it."""
@@ -82,16 +81,16 @@ class PartPlayer:
 
     def _set(self, setting: Setting, frame: int) -> None:
         """Set a parameter as a mark of the score asks, or put it back."""
-        if not self.midi.plays(setting.channel):
+        if not self.player.plays(setting.channel):
             return
         value = setting.value
         if value is None:
             value = self._usual(setting.address)
         if setting.is_passing:
             self._passing.add(setting.address)
-            self.wishes.write(setting.address, value, frame=frame)
+            self.player.write(setting.address, value, frame=frame)
         else:
-            self.midi.write(setting.address, value, frame=frame)
+            self.player.set(setting.address, value, frame=frame)
 
 
 class Performance:
@@ -128,7 +127,7 @@ class Performance:
             PartPlayer(part, self.ensemble.instruments[place])
             for part, place in zip(parts, self._places, strict=True)
         ]
-        self.instrument, self.wishes = self.ensemble.first, self.players[0].wishes
+        self.instrument, self.player = self.ensemble.first, self.players[0].player
         duration_s = max(part.score.duration_s for part in parts)
         self.score_frames = self.instrument.frames(duration_s * 1e3)
         # Of the last block: the sound of each part, then of the room; the pitch that each part is

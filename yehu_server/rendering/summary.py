@@ -77,34 +77,34 @@ def summary_of(
         rms=rms,
         notes_played=sum(part.notes_played for part in parts),
         notes_out_of_range=sum(part.notes_out_of_range for part in parts),
-        range=range_text(players[0].wishes.notes),
+        range=range_text(players[0].player.notes),
         policy=players[0].part.playing.policy,
         unconverged_solves=sum(each.unconverged_solves for each in instruments),
         lost_states=performance.ensemble.lost_states,
         friction_bound=max(each.friction_bound for each in instruments),
         notes_by_channel=dict(sorted(channels.items())),
-        percussion_notes=sum(player.midi.percussion_notes for player in players),
+        percussion_notes=sum(one.player.percussion_notes for one in players),
         unknown_programs=tuple(
-            sorted({each for player in players for each in player.midi.unknown_programs})
+            sorted({each for one in players for each in one.player.unknown_programs})
         ),
         parts=parts,
     )
 
 
-def _part_summary(player: PartPlayer) -> PartSummary:
-    part, wishes = player.part, player.wishes
+def _part_summary(one: PartPlayer) -> PartSummary:
+    part, player = one.part, one.player
     return PartSummary(
         name=part.name,
-        people=len(player.instruments),
-        notes_played=wishes.notes_played,
-        notes_out_of_range=wishes.notes_out_of_range,
-        notes_by_channel=dict(sorted(player.midi.notes_by_channel.items())),
+        people=len(one.instruments),
+        notes_played=player.notes_played,
+        notes_out_of_range=player.notes_out_of_range,
+        notes_by_channel=dict(sorted(player.notes_by_channel.items())),
         seed=part.playing.seed,
-        gain_db=wishes.value("/output/gain"),
-        pan=wishes.value("/room/pan"),
-        distance_m=wishes.value("/room/distance"),
+        gain_db=player.value("/output/gain"),
+        pan=player.value("/room/pan"),
+        distance_m=player.value("/room/distance"),
         mapping=part.playing.mapping.name,
         preset=None if part.playing.preset is None else str(part.playing.preset),
-        unconverged_solves=sum(each.unconverged_solves for each in player.instruments),
-        lost_states=sum(each.lost_states for each in player.instruments),
+        unconverged_solves=sum(each.unconverged_solves for each in one.instruments),
+        lost_states=sum(each.lost_states for each in one.instruments),
     )

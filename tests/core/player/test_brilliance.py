@@ -9,7 +9,8 @@ from hands import Watched, ideal
 
 from yehu_server.core.player.brilliance import HARDER, NEARER, PLAIN_EFFORT, PLAIN_PLACE
 from yehu_server.core.player.calibration import ABOVE, GAINS, PITCHES
-from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.playing.part_state import Key
+from yehu_server.playing.player import Player
 
 PLAIN_HZ = 600.0
 CENTROIDS = np.array([0.9, 1.0, 1.2, 1.5, 2.0]) * PLAIN_HZ
@@ -25,7 +26,7 @@ def bowed(effort: float, place: float = PLAIN_PLACE, **settings: float) -> Watch
     """An instrument whose notes all brighten alike, bowed with an effort (m/s)."""
     calibration = replace(ideal(), centroids=tables(CENTROIDS), louder=tables(LOUDER))
     instrument = Watched(calibration=calibration)
-    wishes = WishPoster(instrument)
+    wishes = Player(instrument)
     pressure = effort / instrument.wished("/playing/speed")
     settings |= {"pressure": pressure, "bow_position": place, "variation": 0.0}
     for name, value in settings.items():
@@ -60,7 +61,7 @@ def test_what_the_shelf_adds_to_the_loudness_is_taken_back():
 def test_a_bow_that_leans_harder_in_mid_note_is_brighter_and_as_loud():
     instrument = bowed(PLAIN_EFFORT)
     louder = 0.3 / instrument.wished("/playing/speed")
-    WishPoster(instrument).write("/playing/pressure", louder)
+    Player(instrument).write("/playing/pressure", louder)
     brighter = bowed(0.3)
     for address in ("/body/brilliance", "/output/balance"):
         assert instrument.target(address) == pytest.approx(brighter.target(address), abs=1e-9)
@@ -76,5 +77,5 @@ def test_brilliance_scales_the_gain_and_at_nothing_the_model_sounds_alone():
 
 def test_an_instrument_that_nobody_measured_is_as_the_model():
     instrument = Watched()
-    WishPoster(instrument).note_on(Key(0, PITCH))
+    Player(instrument).note_on(Key(0, PITCH))
     assert instrument.target("/body/brilliance") == 0.0

@@ -7,9 +7,8 @@ import pytest
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
-from yehu_server.playing.midi_poster import MidiPoster
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.wishes import WishPoster
+from yehu_server.playing.player import Player
 
 RATE = 44_100
 NOTE = 74
@@ -19,9 +18,9 @@ OLD = "keyboard-bow-speed"
 def steady(mapping: str, *controls: tuple[int, int]) -> np.ndarray:
     """A second of a held note, once its vibrato has come in."""
     instrument = Instrument(PlayingOptions().spec(float(RATE), calibration_for(float(RATE))))
-    wishes = WishPoster(instrument)
+    wishes = Player(instrument)
     wishes.write("/playing/variation", 0.0, frame=0, hold=True)
-    midi = MidiPoster(wishes, load(mapping))
+    midi = wishes.mapped(load(mapping))
     for control, value in controls:
         midi.receive(mido.Message("control_change", control=control, value=value), frame=0)
     midi.receive(mido.Message("note_on", note=NOTE, velocity=80), frame=0)

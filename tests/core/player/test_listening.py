@@ -16,8 +16,9 @@ from yehu_server.core.player.wishes import STOP
 from yehu_server.params.table import FINGERS, TABLE
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.part_state import Key
 from yehu_server.playing.pitch_and_level import cents, pitch_hz
-from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.playing.player import Player
 
 RATE = 44100
 NOTES = (66, 71, 74, 75, 78, 80, 82, 84)
@@ -30,7 +31,7 @@ class Play:
     def __init__(self, listening: float = 1.0, detuned: float = 0.0, **values: float) -> None:
         playing = PlayingOptions()
         self.instrument = Instrument(playing.spec(RATE, calibration_for(float(RATE))))
-        self.wishes: WishPoster = playing.wishes(self.instrument)
+        self.wishes: Player = playing.player(self.instrument)
         self.wishes.write("/playing/variation", 0.0)
         self.wishes.write("/playing/listening", listening)
         self.detune(detuned)

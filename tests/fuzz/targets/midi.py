@@ -12,9 +12,9 @@ from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.live.midi.feed import MidiFeed
 from yehu_server.live.midi.input_process import Input
 from yehu_server.live.midi.routes import Router
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import load, shipped_mappings
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import player_of
 
 PORTS = 4
 MOST_MESSAGES = 1000
@@ -46,7 +46,7 @@ def midi_messages(data: bytes) -> None:
     every = with_each_mapping()
     instrument = Instrument()
     playing = every[program.byte() % len(every)]
-    player = LivePlayer(instrument, playing, delay_ms=3.0, wishes=playing.wishes([instrument]))
+    player = player_of(0, playing, [instrument], delay_ms=3.0)
 
     def post(_time_ns: int, kind: int, index: int) -> bool:
         return instrument.post(kind, frame=player.frame_of(), index=index)

@@ -23,10 +23,11 @@ from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.packets import pack, unpack
 from yehu_server.live.part_addresses import part_of
 from yehu_server.params.table import PREFIX, TABLE, UNIT
-from yehu_server.playing import live_player
-from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing import part_state
 from yehu_server.playing.mapping import load
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import player_of
+from yehu_server.playing.player import Player
 from yehu_server.playing.preset_folders import Presets
 
 MOST_PACKETS = 200
@@ -49,7 +50,7 @@ def states(addressed: str) -> dict[str, float | str]:
     return {"load": 0.5, "recording": ""}
 
 
-def context_of(player: LivePlayer, lines: list[str]) -> CallContext:
+def context_of(player: Player, lines: list[str]) -> CallContext:
     """What the handler needs of a server."""
     return CallContext(
         [player],
@@ -58,7 +59,8 @@ def context_of(player: LivePlayer, lines: list[str]) -> CallContext:
         lambda: "take.wav",
         lines.append,
         lambda action: action(),
-        tree_changed=tree_changed,
+        lambda action: action(),
+        [tree_changed],
     )
 
 
@@ -72,7 +74,7 @@ def still_time() -> Iterator[StillTime]:
         patch.object(clients, "time", clock),
         patch.object(schedule, "time", clock),
         patch.object(osc, "time", clock),
-        patch.object(live_player, "time", clock),
+        patch.object(part_state, "time", clock),
         patch.dict(os.environ, XDG_CONFIG_HOME=str(home)),
     ):
         yield clock
@@ -135,7 +137,7 @@ def osc_calls(data: bytes) -> None:
         playing = PlayingOptions(
             mapping=mapping(), presets=Presets(scratch() / "config" / "presets")
         )
-        player = LivePlayer(instrument, playing, delay_ms=3.0, wishes=playing.wishes([instrument]))
+        player = player_of(0, playing, [instrument], delay_ms=3.0)
         handler = OscHandler(context_of(player, lines))
 
         def take(what: bytes) -> None:

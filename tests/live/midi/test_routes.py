@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from yehu_server.errors import ParameterError
@@ -88,14 +90,14 @@ class Player:
     """Keeps what it hears to learn from, and what it lets go of."""
 
     def __init__(self) -> None:
-        self.listens = True
+        self.learning = SimpleNamespace(waits=True, hear_message=self.hear_message)
         self.heard: list[tuple[str, int]] = []
         self.let_go: list[int] = []
 
     def frame_of(self) -> int:
         return 0
 
-    def learn_from_message(self, message, port: int) -> None:
+    def hear_message(self, message, port: int) -> None:
         self.heard.append((message.type, port))
 
     def end_port_notes(self, port: int, *, frame: int) -> None:  # noqa: ARG002

@@ -19,6 +19,8 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/note", [("67", 90), (67, None)], "expected a number"),
     ("/note", [(-1, 90), (127.5, 90), (67, -1), (67, 127.5)], "not within"),
     ("/note", [(NAN, 90.0), (67.0, NAN), (67.0, INF)], "not finite"),
+    ("/note/off", [(-1,), (127.5, 0)], "not within"),
+    ("/pitch", [(-1,), (127.5,)], "not within"),
     ("/bow", [NOTHING, (0.2,), (0.2, 0.5, 1.0)], "expected 2 arguments"),
     ("/bow", [(0.2, "x"), (NAN, 0.5), (0.2, INF)], ""),
     ("/bend", [("x",)], "expected a number"),
@@ -89,7 +91,7 @@ def test_what_cannot_be_done_is_answered_with_the_reason_and_changes_nothing(
     still.pass_time(0.05)
     assert still.player.values() == before
     assert still.player.pitch is None
-    assert not still.player.listens
+    assert not still.player.learning.waits
     assert still.frames("/bow/speed") == []
     assert still.handler.clients.subscribers == 0
     assert not list(own_presets.parent.rglob("*.toml"))

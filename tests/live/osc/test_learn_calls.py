@@ -101,7 +101,7 @@ def test_an_address_of_the_users_own_is_learned_as_a_knob_is(still, wire):
 def test_listening_can_be_ended_and_ends_after_a_minute(still):
     def end_by(*arguments: object) -> None:
         assert told(still.ask("/learn", *arguments), "/learning") == [[""]]
-        assert not still.player.listens
+        assert not still.player.learning.waits
 
     for end in (
         end_by,

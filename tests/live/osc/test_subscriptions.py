@@ -18,7 +18,7 @@ def test_a_subscriber_may_be_told_of_zero_to_one(still):
     speed = still.player.value("/playing/speed")
     assert told["/yehu/playing/speed/unit"] == f32(find("/playing/speed").to_unit(speed))
     assert {f"/yehu{param.address}/unit" for param in TABLE} <= set(told)
-    still.player.write("/playing/speed", find("/playing/speed").from_unit(0.7), frame=0)
+    still.player.set("/playing/speed", find("/playing/speed").from_unit(0.7), frame=0)
     still.pass_time(0.1)
     assert values(still.peer.received()) == {"/yehu/playing/speed/unit": pytest.approx(0.7)}
 
@@ -149,13 +149,13 @@ def test_who_subscribes_to_the_status_is_told_it_at_once_and_then_each_change(st
 def test_who_subscribes_to_both_is_told_of_both_until_it_unsubscribes(still):
     still.ask("/subscribe", 60.0)
     still.ask("/subscribe/status", 60.0)
-    still.player.write("/playing/attack", 50.0, frame=0)
+    still.player.set("/playing/attack", 50.0, frame=0)
     still.services.names.append("take")
     still.pass_time(0.3)
     heard = values(still.peer.received())
     assert heard == {"/yehu/playing/attack": 50.0, "/yehu/status/recording": "take"}
     still.ask("/unsubscribe")
-    still.player.write("/playing/attack", 60.0, frame=0)
+    still.player.set("/playing/attack", 60.0, frame=0)
     still.services.names.append("another")
     still.pass_time(0.5)
     assert still.peer.received() == []

@@ -77,8 +77,8 @@ class RunningPatch:
 def patch(live, until, tmp_path):
     if not PD:
         pytest.skip("Pure Data is not here")
-    live.player.write("/playing/variation", 0.0, frame=0)
-    live.player.write("/playing/vibrato", 12.5, frame=0)
+    live.player.set("/playing/variation", 0.0, frame=0)
+    live.player.set("/playing/vibrato", 12.5, frame=0)
     with contextlib.closing(RunningPatch(tmp_path, live.ports.port)) as patch:
         until(lambda: "watched: set 12.5" in patch.printed, "what the server had")
         yield patch
@@ -122,7 +122,7 @@ def test_a_slider_follows_the_server_says_nothing_back_and_shows_what_it_has_mov
 
 def test_a_key_begins_before_the_last_one_ends(live, until, patch, monkeypatch):
     heard = []
-    for name in ("note_on", "note_off"):
+    for name in ("key_on", "key_off"):
         call = getattr(live.player, name)
 
         def hear(note, *words, name=name, call=call, **named):
@@ -132,8 +132,8 @@ def test_a_key_begins_before_the_last_one_ends(live, until, patch, monkeypatch):
         monkeypatch.setattr(live.player, name, hear)
     patch.move(common_layout.local_name(puredata.KEY), 2)
     patch.move(common_layout.local_name(puredata.KEY), 4)
-    until(lambda: ("note_off", 67.0) in heard, "the end of G4")
-    assert heard[-2:] == [("note_on", 69.0), ("note_off", 67.0)]
+    until(lambda: ("key_off", 67.0) in heard, "the end of G4")
+    assert heard[-2:] == [("key_on", 69.0), ("key_off", 67.0)]
 
 
 def test_keys_end_and_panic(live, until, patch):

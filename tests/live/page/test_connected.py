@@ -256,7 +256,7 @@ def test_a_page_does_not_end_the_keys_of_others(server) -> None:
 
     async def play(page: Page) -> None:
         await page.wish(wish(BEGIN, 0, 72.0, 72.0), wish(END, 0, 72.0, 0.0))
-        await asyncio.to_thread(until, lambda: server.player._wishes.notes_played, "no note")
+        await asyncio.to_thread(until, lambda: server.player.notes_played, "no note")
 
     with_pages(server, play, 1)
     time.sleep(0.1)
@@ -344,16 +344,16 @@ def test_a_page_plays_its_part_and_lets_go_of_it_as_it_leaves(server) -> None:
     async def play(page: Page) -> None:
         await page.wish(wish(BEGIN, 3, 72.0, 72.0))
         await asyncio.to_thread(until, lambda: second.pitch is not None, "no note")
-        assert len(second._wishes.held()) == 1
+        assert len(second.held()) == 1
 
     with_pages(server, play, 2)
     assert first.pitch is None
-    until(lambda: not second._wishes.held() and second.pitch is None, "it still sounds")
+    until(lambda: not second.held() and second.pitch is None, "it still sounds")
 
 
 def test_silence_in_a_page_silences_its_part(server) -> None:
     for player in server.players:
-        player.note_on(69.0, 90.0, frame=player.frame_of())
+        player.key_on(69.0, 90.0, frame=player.frame_of())
     until(lambda: all(player.pitch for player in server.players), "no notes")
 
     async def panic(page: Page) -> None:
@@ -366,8 +366,8 @@ def test_silence_in_a_page_silences_its_part(server) -> None:
 
 def test_a_look_is_at_the_parts_own_instrument_and_the_level_that_of_the_mix(server) -> None:
     for player, value in zip(server.players, (25.0, 75.0), strict=True):
-        player.write(VIBRATO, value, frame=player.frame_of())
-    server.player.note_on(69.0, 90.0, frame=server.player.frame_of())
+        player.set(VIBRATO, value, frame=player.frame_of())
+    server.player.key_on(69.0, 90.0, frame=server.player.frame_of())
 
     async def look(page: Page, value: float) -> None:
         while (await page.look(VIBRATO, value.__eq__))[look_layout()["rms"][0]] < 1e-3:
@@ -390,14 +390,14 @@ def test_the_room_is_one_for_all_and_a_section_tells_the_parts_place(server) -> 
     with_pages(server, furnish, 2)
     assert first.value(SIZE) == 12.0
     until(lambda: second.value(PAN) == 0.25, "the pan")
-    assert server.parts[1].instruments[0].target(PAN) != 0.25  # the first player's own place
+    assert server.players[1].instrument.target(PAN) != 0.25  # the first player's own place
 
 
 # ---------------------------------------------------------------- sound
 
 
 def test_twenty_listeners_get_what_is_played_without_a_gap(server) -> None:
-    server.player.note_on(69.0, 90.0, frame=server.player.frame_of())
+    server.player.key_on(69.0, 90.0, frame=server.player.frame_of())
 
     async def listen(session: aiohttp.ClientSession, seconds: float) -> tuple[int, Any]:
         async with session.ws_connect(url(server, "/sound"), max_msg_size=0) as socket:

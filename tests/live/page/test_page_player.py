@@ -20,14 +20,13 @@ from yehu_server.core.player.note_range import NoteRange
 from yehu_server.core.player.wishes import BEGIN
 from yehu_server.live.page import facts
 from yehu_server.params.table import find
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.mapping_writer import as_toml
-from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.part_state import UNMAPPED, Key
+from yehu_server.playing.player import Player
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, STANDARD_A4, Tuning, read_tuning
-from yehu_server.playing.wishes import UNMAPPED, Key, WishPoster
 
 STREAMS, MANY_STREAMS = 50, 4_000
 SOME_MAPPINGS = 12
@@ -64,47 +63,44 @@ class Recorder(Leader):
         return find(address).default
 
 
-class Server(LivePlayer):
+NAMES = {"endPortNotes": "end_port_notes", "endNotes": "end_notes", "write": "set"}
+
+
+class Server(Player):
     """A live player with the methods of the page's; a frame of None is now."""
 
     def __init__(self, mappings: dict[str, Mapping], tunings: dict[str, Tuning], presets) -> None:
         recorder = Recorder()
-        options = PlayingOptions(mapping=UNMAPPED, presets=presets)
-        super().__init__(recorder, options, delay_ms=0.0, wishes=WishPoster([recorder]))
+        super().__init__([recorder], presets=presets)
+        self.mapped(UNMAPPED)
         self._mappings, self._tunings = mappings, tunings
         self._key: Key | None = None
         self.remap(mappings[facts.DEFAULT], frame=None)
-
-    def _at(self, frame):
-        return None if frame is None else super()._at(frame)
-
-    def _after_all(self, frame):
-        return None if frame is None else super()._after_all(frame)
 
     def call(self, method: str, *values: Any) -> None:
         """Do what the page's player does by this method."""
         *given, frame = values
         if method == "midi":
             data, frame, port = values
-            self._midi.receive(data, frame=self._at(frame), port=port)
+            self.receive(data, frame=frame, port=port)
         elif method == "fingerOn":
             _hand, at, velocity = given
             self._key = Key(HAND, at)
-            self._wishes.post(FINGER_ON, self._at(frame), HAND, at, velocity)
+            self.post(FINGER_ON, frame, HAND, at, velocity)
         elif method == "noteOff" and self._key is not None:
-            self._midi.note_off(self._key, self._at(frame))
+            self.key_off(self._key, frame=frame)
         elif method == "lift":
-            self._wishes.lift(frame=self._at(frame))
+            self.lift(frame=frame)
         elif method == "applyPreset":
             self.load(self.presets.load(given[0]).values, frame=frame)
         elif method == "remap":
             self.remap(self._mappings[given[0]], frame=frame)
         elif method == "applyTuning":  # options of the server's do not change
-            self._wishes._tuning = self._tunings[values[0]]
-            in_use = self._wishes.record["tables"]
-            self.instrument.tables[in_use] = self._midi._tables()[0]
+            self._tuning = self._tunings[values[0]]
+            in_use = self.record["tables"]
+            self.instrument.tables[in_use] = self._tables()[0]
         else:
-            name = {"endPortNotes": "end_port_notes", "endNotes": "end_notes"}.get(method, method)
+            name = NAMES.get(method, method)
             getattr(self, name)(*given, frame=frame)
 
 
@@ -174,7 +170,7 @@ def test_the_page_writes_the_tables_that_the_server_writes(page_told, mappings):
     tuning = read_tuning(Path("chaozhou-seven-equal"))
     _, tables, _ = page_told
     for name, mapping in mappings.items():
-        policy = WishPoster([Recorder()]).policy
+        policy = Player([Recorder()]).policy
         wanted = make_tables(mapping, Controls(), tuning=tuning, a4=STANDARD_A4, policy=policy)
         found = np.array([math.nan if x is None else x for x in tables[name]]).view(TABLES)
         for field in set(TABLES.names or ()) - UNUSED:

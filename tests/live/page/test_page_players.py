@@ -26,8 +26,9 @@ from yehu_server.core.player.wishes import (
 from yehu_server.live.page.players import PagePlayers
 from yehu_server.params.table import FINGERS
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import player_of
+from yehu_server.playing.player import Player
 
 PRESSURE, SPEED, VELOCITY = "/playing/pressure", "/playing/speed", "/playing/velocity"
 
@@ -41,10 +42,10 @@ def instrument():
 
 
 @pytest.fixture
-def player(instrument) -> LivePlayer:
+def player(instrument) -> Player:
     instrument.reset()
     instrument.report_wishes()
-    return LivePlayer(instrument, PlayingOptions(), delay_ms=0.0)
+    return player_of(0, PlayingOptions(), [instrument], delay_ms=0.0)
 
 
 @pytest.fixture
@@ -58,7 +59,7 @@ def pages(player) -> PagePlayers:
     return PagePlayers(seen, [0])
 
 
-def wished(player: LivePlayer) -> list[tuple[int, int, float, float]]:
+def wished(player: Player) -> list[tuple[int, int, float, float]]:
     """The wishes fulfilled in the next blocks: kind, index, value, other."""
     out = np.zeros((256, 1), np.float32)
     found = []
@@ -76,12 +77,12 @@ def wish(pages: PagePlayers, page: int, *wish: float, at: float = -1.0) -> None:
 def test_equal_keys_of_two_pages_are_two_and_one_holds_so_many_at_most(player, pages) -> None:
     for number in (0, 1):
         wish(pages, number, BEGIN, -1, 69.0, 69.0)
-    assert len(player._wishes.held()) == 2
+    assert len(player.held()) == 2
     pages.leave(0, 0)
-    assert len(player._wishes.held()) == 1
+    assert len(player.held()) == 1
     for number in range(MOST_HELD + 50):
         wish(pages, 1, BEGIN, number, 69.0, 69.0)
-    assert len(player._wishes.held()) == MOST_HELD
+    assert len(player.held()) == MOST_HELD
 
 
 def test_values_for_a_note_come_before_it_are_known_and_its_pitch_is_as_the_page_tuned_it(
@@ -108,7 +109,7 @@ def test_keys_that_end_together_do_so_also_here(player, pages) -> None:
     assert [(value, other) for _, _, value, other in ended + wished(player)] == [
         (72.0, 1.0), (69.0, 1.0), (65.0, 0.0),
     ]  # fmt: skip
-    assert not player._wishes.held()
+    assert not player.held()
     assert player.instrument.target("/bow/speed") == 0.0
 
 
@@ -126,10 +127,10 @@ def test_what_it_sets_all_know(player, pages) -> None:
     wish(pages, 0, WRITE, ROW[PRESSURE], 0.25)
     assert player.value(PRESSURE) == 0.25
     wish(pages, 0, HOLD, ROW[PRESSURE], 0.75)
-    player.write(PRESSURE, 0.5, frame=player.instrument.frame)
+    player.set(PRESSURE, 0.5, frame=player.instrument.frame)
     assert player.value(PRESSURE) == 0.75
     wish(pages, 0, RELEASE)
-    player.write(PRESSURE, 0.5, frame=player.instrument.frame)
+    player.set(PRESSURE, 0.5, frame=player.instrument.frame)
     assert player.value(PRESSURE) == 0.5
 
 
@@ -145,18 +146,18 @@ def test_what_it_moves_slowly_the_next_note_keeps(player, pages) -> None:
 
 
 def test_a_panic_ends_what_others_hold(player, pages) -> None:
-    player.note_on(69.0, 90.0, frame=player.instrument.frame)
+    player.key_on(69.0, 90.0, frame=player.instrument.frame)
     wish(pages, 0, STOP, 0, 0.0)
-    assert player._wishes.held()
+    assert player.held()
     wish(pages, 0, STOP, 0, 1.0)
-    assert not player._wishes.held()
+    assert not player.held()
 
 
 def test_a_note_asked_for_ahead_ends_though_the_page_has_left(player, pages) -> None:
     wish(pages, 0, BEGIN, 0, 69.0, 69.0, at=player.instrument.frame + 300)
     pages.leave(0, 0)
     assert [kind for kind, *_ in wished(player)] == [BEGIN, END]
-    assert not player._wishes.held()
+    assert not player.held()
 
 
 def test_frames_lie_at_most_some_seconds_ahead(player, pages) -> None:

@@ -29,9 +29,9 @@ class Stage:
         elif step in ("let go", "let go here"):
             until(lambda: player.pitch is None, step)
         elif step == "watches":
-            player.write(PRESSURE, 0.62, frame=player.frame_of())
+            player.set(PRESSURE, 0.62, frame=player.frame_of())
         elif step == "listens":
-            player.note_on(69.0, 100.0, frame=player.frame_of())
+            player.key_on(69.0, 100.0, frame=player.frame_of())
         elif step == "has listened":
             player.panic(frame=player.frame_of())
             until(lambda: player.pitch is None, step)
@@ -89,7 +89,7 @@ def test_a_page_that_sounds_here_takes_over_what_the_server_sounds_like_and_chan
         def reach(step: str) -> None:
             what, _, when = step.partition(" ")
             if what == "before":
-                player.write(BOW_POSITION, others[when], frame=player.frame_of())
+                player.set(BOW_POSITION, others[when], frame=player.frame_of())
                 until(lambda: abs(player.value(BOW_POSITION) - others[when]) < 1e-6, step)
                 return
             if what in ("plays", "played"):

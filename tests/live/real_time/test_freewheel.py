@@ -28,7 +28,7 @@ def stage_of(memory: object = None) -> Ensemble:
 
 def play(instrument: Instrument) -> None:
     """Schedule notes and controllers from frame FIRST on."""
-    midi = STYLE.midi(STYLE.wishes(instrument))
+    midi = STYLE.mapped(STYLE.player(instrument))
     score = [
         (0, mido.Message("note_on", note=67, velocity=90)),
         (9001, mido.Message("control_change", control=1, value=110)),

@@ -25,7 +25,8 @@ from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.wishes import Key, WishPoster
+from yehu_server.playing.part_state import Key
+from yehu_server.playing.player import Player
 from yehu_server.rendering.replay import blocks
 from yehu_server.scores.capture import read_capture
 from yehu_server.scores.capture_header import session_start_of
@@ -161,7 +162,7 @@ class Stopped:
         self.instrument = server.instrument
         self._until = until
         assert server.output.state.device == DEVICE
-        self.player.note_on(67.0, 90.0, frame=self.player.frame_of())
+        self.player.key_on(67.0, 90.0, frame=self.player.frame_of())
         until(lambda: self.player.pitch == 67.0, "the note", 5.0)
         self._audio = server.output._child._process.pid
         until(lambda: self._stop(in_block=in_block), "the audio process to be there", 60.0)
@@ -197,7 +198,7 @@ class Stopped:
     def keys(self) -> tuple[int, int]:
         """Number of keys that are held, by the audio side and by the server."""
         held = int(self.instrument._rig["player"]["held"][0])
-        return held, len(self.player._wishes.held())
+        return held, len(self.player.held())
 
 
 @pytest.fixture
@@ -231,15 +232,15 @@ def test_a_note_in_the_middle_of_which_the_audio_process_dies_does_not_hang(stop
     assert it.player.pitch is None
     assert it.player.value("/bow/speed") == it.player.value("/bow/side") == 0.0
     assert not it.server.ensemble.taped(gap[0])[1].any()
-    it.player.note_off(67.0, frame=it.player.frame_of())  # let go later
+    it.player.key_off(67.0, frame=it.player.frame_of())  # let go later
     it.wait(4800)
     assert not it.server.ensemble.taped(gap[0])[1].any()
-    it.player.note_on(69.0, 90.0, frame=it.player.frame_of())
+    it.player.key_on(69.0, 90.0, frame=it.player.frame_of())
     until(lambda: it.player.pitch == 69.0, "a new note", 5.0)
     it.wait(9600)
     assert peak(it.server.ensemble.taped(it.instrument.frame - 4800)[1]) > SOUNDS
     assert it.keys == (1, 1)
-    it.player.note_off(69.0, frame=it.player.frame_of())
+    it.player.key_off(69.0, frame=it.player.frame_of())
     until(lambda: it.player.pitch is None, "its end", 5.0)
     assert it.keys == (0, 0)
 
@@ -251,17 +252,17 @@ def test_a_note_goes_on_where_the_audio_process_dies_between_two_blocks(stopped,
     assert it.player.pitch == 67.0
     assert it.keys == (1, 1)
     assert peak(it.server.ensemble.taped(it.instrument.frame - 1000)[1]) > SOUNDS
-    it.player.note_off(67.0, frame=it.player.frame_of())
+    it.player.key_off(67.0, frame=it.player.frame_of())
     until(lambda: it.player.pitch is None, "its end", 5.0)
     assert it.keys == (0, 0)
 
 
-@pytest.mark.parametrize("end", ["note_off", pytest.param("panic", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("end", ["key_off", pytest.param("panic", marks=pytest.mark.slow)])
 def test_a_key_that_was_pressed_while_the_audio_process_died_can_be_let_go(stopped, until, end):
     it = stopped(in_block=True)
-    it.player.note_on(72.0, 90.0, frame=it.player.frame_of())
+    it.player.key_on(72.0, 90.0, frame=it.player.frame_of())
     it.kill()
-    words = (72.0,) if end == "note_off" else ()
+    words = (72.0,) if end == "key_off" else ()
     getattr(it.player, end)(*words, frame=it.player.frame_of())
     until(lambda: it.keys == (0, 0), "the key to be let go", 5.0)
     until(lambda: it.player.pitch is None, "its end", 5.0)
@@ -283,7 +284,7 @@ while True:
 """
 
 
-def play(instrument: Instrument, wishes: WishPoster) -> None:
+def play(instrument: Instrument, wishes: Player) -> None:
     """Play two notes, each varied in its own way; the second is held until the sound dies."""
     frame = instrument.frame + 100
     wishes.note_on(Key(0, 67), {"/playing/pressure": 0.5}, frame=frame)
@@ -298,7 +299,7 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
     calibration = calibration_for(48000.0)
     stage = Ensemble([playing.spec(48000.0, calibration)], memory=memory.buffer)
     live = stage.first
-    wishes = playing.wishes(live)
+    wishes = playing.player(live)
     live.report_wishes()
     capture = CaptureWriter(
         tmp_path / "take.jsonl", beginning=session_start_of([live], has_room=True)

@@ -500,7 +500,8 @@ def test_a_name_that_no_port_has_is_told_once_and_heard_when_it_comes():
     inputs.look()
     assert studio.told() == [("vanished", {"port": "breath"})]
     said = []
-    ports = MidiPorts([SimpleNamespace()], MidiOptions(), 0, [0], said.append)
+    player = SimpleNamespace(learning=SimpleNamespace())
+    ports = MidiPorts([player], MidiOptions(), 0, [0], said.append)
     for _ in range(2):  # the MIDI system begins anew
         ports.on_event({"event": "missing", **missing})
     assert said == ["MIDI: no input matches 'breath' yet (there are: keys, synth)"]

@@ -12,10 +12,10 @@ from yehu_server.core.physics.elementary import log2
 from yehu_server.core.voice.deciding import VOICE, VOICE_KEYS, ends_of
 from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.output import OutputOptions, SharedMemory
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.options import AS_IT_SINGS, PlayingOptions
+from yehu_server.playing.part_state import Key
+from yehu_server.playing.player import Player
 from yehu_server.playing.tuning import KEYS, STANDARD_A4
-from yehu_server.playing.wishes import Key
 from yehu_server.util.processes import Child, Message, Supervisor
 
 ADVICE = "wear headphones, or it follows itself"
@@ -48,7 +48,7 @@ class VoiceInput(Supervisor):
 
     def __init__(
         self,
-        player: LivePlayer,
+        player: Player,
         options: FollowOptions,
         playing: PlayingOptions,
         output: OutputOptions,
@@ -67,7 +67,7 @@ class VoiceInput(Supervisor):
     def start(self) -> None:
         """Start to follow."""
         for address, value in AS_IT_SINGS.items():
-            self._player.write(address, value, frame=self._player.frame_of())
+            self._player.set(address, value, frame=self._player.frame_of())
         super().start()
 
     def attend(self, child: Child, gone: threading.Event) -> None:
@@ -109,6 +109,7 @@ class VoiceInput(Supervisor):
         """End the note that the input has begun."""
         player, name = self._player, self._name
         self._child, self._name = None, ""
-        player.end_keys([Key(VOICE, key) for key in VOICE_KEYS], frame=player.frame_of())
+        keys = [Key(VOICE, key) for key in VOICE_KEYS]
+        player.end_keys(keys, frame=player.frame_of())
         if by_itself and name:
             self._on_message(f"{name} is gone; it is followed again once it is back")

@@ -14,7 +14,7 @@ from yehu_server.core.engine.mailbox import MIDI_INPUTS
 from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.live.midi.routes import Route, Router
-from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.player import Player
 from yehu_server.util.processes import Child, Message, Supervisor
 
 log = logging.getLogger(__name__)
@@ -44,7 +44,7 @@ class MidiPorts(Supervisor):
 
     def __init__(
         self,
-        players: Sequence[LivePlayer],
+        players: Sequence[Player],
         options: MidiOptions,
         memory: int,
         rigs: Sequence[int],
@@ -62,7 +62,7 @@ class MidiPorts(Supervisor):
         self._missing: set[str] = set()  # patterns reported as matching nothing
         self.problem = ""
         for player in players:
-            player.on_learning_changed = self._send_forwarding
+            player.learning.on_change = self._send_forwarding
 
     @property
     def connected(self) -> list[str]:
@@ -97,7 +97,7 @@ class MidiPorts(Supervisor):
     def _send_forwarding(self) -> None:
         """Have the process tell of messages while something is to be learned, and only then."""
         if self._child is not None:
-            self._child.send("hear", hear=any(player.listens for player in self._players))
+            self._child.send("hear", hear=any(player.learning.waits for player in self._players))
 
     def on_exit(self, *, by_itself: bool) -> None:
         """End the notes of all ports, whose process is gone."""
@@ -160,4 +160,4 @@ class MidiPorts(Supervisor):
         with contextlib.suppress(ValueError, IndexError):  # damaged
             message = mido.Message.from_bytes(data)
             for part in self._router.parts_of(port, getattr(message, "channel", None)):
-                self._players[part].learn_from_message(message, self._numbers[port])
+                self._players[part].learning.hear_message(message, self._numbers[port])

@@ -18,8 +18,8 @@ from yehu_server.live.osc.preset_calls import PRESETS, PresetCalls
 from yehu_server.live.osc.server_calls import ServerCalls
 from yehu_server.live.part_addresses import FIRST, group
 from yehu_server.params.table import PREFIX, UNIT
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.player import Player
 from yehu_server.playing.sources import is_address
 
 _KINDS: tuple[type[GroupCalls], ...] = (PartCalls, PresetCalls, LearnCalls, ServerCalls)
@@ -78,7 +78,7 @@ def own_calls(mapping: Mapping, addressed: str = FIRST, below: str = "") -> list
     ]
 
 
-def more_calls(players: Sequence[LivePlayer]) -> list[Call]:
+def more_calls(players: Sequence[Player]) -> list[Call]:
     """The calls with the presets there are, and the user's own addresses, of some parts."""
     names = tuple(players[0].presets.names())
     calls = preset_calls(names)

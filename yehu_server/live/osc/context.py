@@ -13,11 +13,12 @@ from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.schedule import Schedule
 from yehu_server.live.osc.status import Counts
 from yehu_server.live.part_addresses import FIRST, PART_PARAMS, group, part_of
 from yehu_server.params.table import PREFIX
-from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
+from yehu_server.playing.player import Player
 from yehu_server.util.token_bucket import TokenBucket
 
 Act = Callable[[Request], None]
@@ -31,7 +32,7 @@ class CallContext:
     part has one.
     """
 
-    players: Sequence[LivePlayer]  # those of all parts
+    players: Sequence[Player]  # those of all parts
     # Returns the status values of a group, by name; any thread may call.
     states: Callable[[str], Mapping[str, float | str]]
     # Record to a file of a plain name, or end that; return the file's name. Raise YehuError.
@@ -41,13 +42,11 @@ class CallContext:
     # Calls a function that may take long, such as one that writes a file, in another thread; those
     # that are given one after another in this order.
     run_in_background: Callable[[Callable[[], None]], object]
-    # Set by those who serve, as they are made.
     # Calls a function in the thread that handles packets; any thread may call.
-    call_soon: Callable[[Callable[[], None]], object] = lambda action: action()
-    # Announces that the tree of addresses has changed at a path or below.
-    tree_changed: Callable[[str], None] = lambda _path: None
-    # Drops the messages of a group that wait for their time; of `FIRST`, all.
-    drop_scheduled: Callable[[str], None] = lambda _addressed: None
+    call_soon: Callable[[Callable[[], None]], object]
+    # Called with a path where the tree of addresses has changed at it or below.
+    on_tree_change: list[Callable[[str], None]] = field(default_factory=list)
+    schedule: Schedule = field(default_factory=Schedule)
     counts: Counts = field(default_factory=Counts)
     writes: set[object] = field(default_factory=set)  # a mark for each file that is being written
     saves: TokenBucket = field(
@@ -70,12 +69,17 @@ class CallContext:
         self.counts.errors += 1
         self.clients.send_error(peer, address, reason)
 
+    def tree_changed(self, path: str) -> None:
+        """Announce that the tree has changed at a path or below."""
+        for listener in self.on_tree_change:
+            listener(path)
+
     def announce(self, path: str) -> None:
         """Announce that the tree has changed at a path below each group that it has."""
         for addressed in self.groups if len(self.players) > 1 else (FIRST,):
             self.tree_changed(PREFIX + addressed + path)
 
-    def remap(self, player: LivePlayer, mapping: ControllerMapping) -> None:
+    def remap(self, player: Player, mapping: ControllerMapping) -> None:
         """Give a mapping to a player, and to all others that had the same."""
         before = player.mapping
         for one in self.players:

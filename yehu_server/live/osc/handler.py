@@ -18,10 +18,10 @@ from yehu_server.live.osc.context import Act, CallContext
 from yehu_server.live.osc.osc_addresses import fitting, is_pattern, near
 from yehu_server.live.osc.packets import Message, PacketError, answer, steps
 from yehu_server.live.osc.part_calls import PartCalls, within_an_hour
-from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
-from yehu_server.live.part_addresses import PART, part_of, split_group
+from yehu_server.live.osc.schedule import AHEAD_S, TagClock
+from yehu_server.live.part_addresses import part_of, split_group
 from yehu_server.params.table import PREFIX
-from yehu_server.playing.live_player import Arrivals
+from yehu_server.playing.delay import Arrivals
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import is_own
 
@@ -41,8 +41,7 @@ class OscHandler:
         self.context = context
         self.counts, self.clients = context.counts, context.clients
         self._players, self._groups = context.players, context.groups
-        context.drop_scheduled = self._drop_scheduled
-        self._schedule = Schedule()
+        self._schedule = context.schedule
         self._tags = TagClock(self._players[0])
         self._arrivals = Arrivals(self._players[0].frame_of, self._players[0].instrument.rate)
         self._acts: dict[str, Act] = {}
@@ -174,24 +173,13 @@ class OscHandler:
         players = self._players
         if addressed:
             players = players[part_of(addressed) :][:1] if addressed in self._groups else ()
-        hearing = [player for player in players if player.listens and is_own(plain)]
+        hearing = [player for player in players if player.learning.waits and is_own(plain)]
         move = own.get(address)
 
         def hear(call: Request) -> None:
             for player in hearing:
-                player.hear(plain, call.numbers(1)[0])
+                player.learning.hear_address(plain, call.numbers(1)[0])
             if move is not None:
                 move(call)
 
         return {address: hear} if hearing else {}
-
-    def _drop_scheduled(self, addressed: str) -> None:
-        """Drop the messages of a part that wait for their time; without a part, all."""
-        own, parts = f"{PREFIX}{addressed}/".encode(), f"{PREFIX}{PART}".encode()
-
-        def is_of_part(packet: bytes) -> bool:
-            is_plain = not packet.startswith(parts)
-            is_of_first = is_plain and part_of(addressed) == 0
-            return not addressed or packet.startswith(own) or is_of_first
-
-        self._schedule.drop(is_of_part)

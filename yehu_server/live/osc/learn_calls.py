@@ -34,7 +34,7 @@ class LearnCalls(GroupCalls):
     )
     def _learn(self, call: Request) -> None:
         """``/learn [ADDRESS [SOFT]]``."""
-        self._player.listen(None)
+        self._player.learning.listen(None)
         if not call.arguments or list(call.arguments) == [None]:
             self._send(call.peer, "/learning", "")
             return
@@ -48,7 +48,7 @@ class LearnCalls(GroupCalls):
                 learned = partial(self._learned, call.peer, target, source, soft=soft)
                 self._write(call.peer, "/learn", learned)
 
-        self._player.listen(found)
+        self._player.learning.listen(found)
         self._send(call.peer, "/learning", self._prefix + target)
 
     def _learned(

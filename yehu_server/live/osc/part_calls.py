@@ -13,7 +13,7 @@ from yehu_server.live.part_addresses import PART_PARAMS
 from yehu_server.params.articulations import ARTICULATIONS, number_of
 from yehu_server.params.spec import Param
 from yehu_server.params.table import TABLE, UNIT
-from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.player import Player, within_midi
 
 SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
 CHOSEN = "/playing/articulation"
@@ -33,7 +33,7 @@ class PartCalls(GroupCalls):
         return PART_PARAMS if self._addressed else TABLE
 
     @property
-    def _players(self) -> Sequence[LivePlayer]:
+    def _players(self) -> Sequence[Player]:
         """Those that a call for all of the group is for."""
         return [self._player] if self._addressed else self._context.players
 
@@ -48,13 +48,13 @@ class PartCalls(GroupCalls):
     def set(self, call: Request, address: str) -> None:
         """Set a parameter."""
         (value,) = call.numbers(1)
-        self._player.write(address, value, frame=call.frame)
+        self._player.set(address, value, frame=call.frame)
         self._clients.echo(call.peer, [self._addressed + address])
 
     def set_unit(self, call: Request, param: Param) -> None:
         """Set a parameter by 0 to 1 of its range."""
         (unit,) = call.numbers(1)
-        self._player.write(param.address, param.from_unit(unit), frame=call.frame)
+        self._player.set(param.address, param.from_unit(unit), frame=call.frame)
         self._clients.echo(call.peer, [self._addressed + param.address + UNIT])
 
     def move(self, call: Request, address: str) -> None:
@@ -77,17 +77,18 @@ class PartCalls(GroupCalls):
     def _note(self, call: Request) -> None:
         note, velocity = call.numbers(2)
         if velocity == 0.0:
-            self._player.note_off(note, frame=call.frame)
+            self._player.key_off(note, frame=call.frame)
         else:
-            self._player.note_on(note, velocity, frame=call.frame)
+            self._player.key_on(note, velocity, frame=call.frame)
 
     @osc_call("/note/off", "Ends a note.", NOTE)
     def _note_off(self, call: Request) -> None:
-        self._player.note_off(call.numbers(1, 2)[0], frame=call.frame)
+        self._player.key_off(call.numbers(1, 2)[0], frame=call.frame)
 
     @osc_call("/pitch", "Slides the finger to a pitch: the sounding note's, or the next.", NOTE)
     def _pitch(self, call: Request) -> None:
-        self._player.slide(call.numbers(1)[0], frame=call.frame)
+        pitch = within_midi("pitch", call.numbers(1)[0])
+        self._player.slide(pitch, frame=call.frame)
 
     @osc_call(
         "/bow",
@@ -113,7 +114,7 @@ class PartCalls(GroupCalls):
     @osc_call("/articulation", "Chooses what both hands do in the next notes.", ARTICULATION)
     def _articulation(self, call: Request) -> None:
         number = number_of(call.word())
-        self._player.write(CHOSEN, number, frame=call.frame)
+        self._player.set(CHOSEN, number, frame=call.frame)
         self._clients.echo(call.peer, [self._addressed + CHOSEN])
 
     @osc_call(
@@ -127,13 +128,13 @@ class PartCalls(GroupCalls):
         "/panic", "Ends all notes and all sound, and drops messages that wait for their time."
     )
     def _panic(self, call: Request) -> None:
-        self._context.drop_scheduled(self._addressed)
+        self._context.schedule.drop_part(self._addressed)
         for player in self._players:
             player.panic(frame=call.frame)
 
     @osc_call("/reset", "The same, and sets every parameter to its default.")
     def _reset(self, call: Request) -> None:
-        self._context.drop_scheduled(self._addressed)
+        self._context.schedule.drop_part(self._addressed)
         for player in self._players:
             player.reset(frame=call.frame)
         self._echo(call.peer, [param.address for param in self.params])

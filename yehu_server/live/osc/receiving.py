@@ -14,8 +14,7 @@ import selectors
 import socket
 import threading
 import time
-from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import lru_cache, partial
 
 from yehu_server.live import limits
@@ -30,7 +29,7 @@ from yehu_server.live.osc.answering import (
 )
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.open_sockets import CONTROL_BYTES, open_both, prepare, stamp_and_drops
-from yehu_server.live.osc.work_queue import WorkQueue
+from yehu_server.live.osc.work_queue import Calls, WorkQueue
 
 log = logging.getLogger(__name__)
 
@@ -42,11 +41,21 @@ WARN_AGAIN_S = 1.0
 class OscPorts:
     """A UDP and a TCP port, and their thread; raises DeviceError where they cannot be opened."""
 
-    def __init__(self, host: str, port: int, allowed: Allowed, handler: OscHandler) -> None:
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        allowed: Allowed,
+        handler: OscHandler,
+        calls: Calls | None = None,
+    ) -> None:
+        self._udp, self._tcp = open_both(host, port)
         self.traffic = Traffic()
         self._allowed = allowed
         self._handler = handler
         self._queue = WorkQueue()
+        self._calls = Calls() if calls is None else calls
+        self.call_soon = self._calls.soon
         self._accepts_again: float | None = None  # monotonic s; None: it accepts
         self._warned = 0.0  # monotonic s
         self._peer = lru_cache(limits.PEERS)(self._new_peer)
@@ -56,20 +65,13 @@ class OscPorts:
         )
         self._streams: set[TcpPeer] = set()
         self._selector = selectors.DefaultSelector()
-        self._udp, self._tcp = open_both(host, port)
         self.port = int(self._udp.getsockname()[1])
         self.host = str(self._udp.getsockname()[0])
         self.traffic.buffer_bytes = prepare(self._udp)
-        self._wake_here, self._wake_there = socket.socketpair()
-        self._wake_there.setblocking(False)
-        self._calls: deque[Callable[[], object]] = deque()
-        for readable, read in (
-            (self._udp, self._read_datagrams),
-            (self._tcp, self._accept),
-            (self._wake_here, self._run_calls),
-        ):
-            readable.setblocking(False)
-            self._selector.register(readable, selectors.EVENT_READ, read)
+        for opened, read in ((self._udp, self._read_datagrams), (self._tcp, self._accept)):
+            opened.setblocking(False)
+            self._selector.register(opened, selectors.EVENT_READ, read)
+        self._selector.register(self._calls, selectors.EVENT_READ, lambda _: self._calls.run())
         self._ending = False
         self._thread = threading.Thread(target=self._run, name="OSC", daemon=True)
 
@@ -80,10 +82,10 @@ class OscPorts:
     def stop(self) -> None:
         """Stop serving and close all sockets."""
         self._ending = True
-        self._wake()
+        self._calls.wake()
         if self._thread.is_alive():
             self._thread.join()
-        for opened in (self._udp, self._tcp, self._wake_here, self._wake_there, self._selector):
+        for opened in (self._udp, self._tcp, self._calls, self._selector):
             opened.close()
         for peer in self._streams:
             peer.socket.close()
@@ -108,15 +110,6 @@ class OscPorts:
         too_many = len(self._calls) >= limits.CALLS_WAITING
         return too_many or self._queue.held(peer) >= limits.WEB_SOCKET_WAITING
 
-    def call_soon(self, action: Callable[[], object]) -> None:
-        """Call a function in the thread that serves; any thread may call."""
-        self._calls.append(action)
-        self._wake()
-
-    def _wake(self) -> None:
-        with contextlib.suppress(OSError):  # full: the thread will wake anyway
-            self._wake_there.send(b"!")
-
     def _run(self) -> None:
         """Read the sockets, handle packets for a while, and do what is due, until the end."""
         while not self._ending:
@@ -130,14 +123,6 @@ class OscPorts:
             except Exception:  # a defect of the server must not end the thread
                 self.traffic.failures += 1
                 log.exception("OSC: a message could not be handled")
-
-    def _run_calls(self, _events: int) -> None:
-        with contextlib.suppress(BlockingIOError):
-            self._wake_here.recv(limits.STREAM_READ)
-        for _ in range(len(self._calls)):  # what is added meanwhile waits for the next turn
-            self._calls.popleft()()
-        if self._calls:
-            self._wake()
 
     def _warn(self, what: str) -> None:
         """Log what a peer did wrong, as a warning once a second at most."""

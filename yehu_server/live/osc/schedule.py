@@ -11,12 +11,13 @@ from __future__ import annotations
 import heapq
 import itertools
 import time
-from collections.abc import Callable
 
 from yehu_server.live import limits
 from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.work_queue import Shares
-from yehu_server.playing.live_player import LivePlayer
+from yehu_server.live.part_addresses import PART, part_of
+from yehu_server.params.table import PREFIX
+from yehu_server.playing.player import Player
 
 AHEAD_S = 0.01  # scheduled messages are posted so long before they are due
 TOGETHER_NS, TRIES = 100_000, 10
@@ -36,7 +37,7 @@ def both_clocks() -> tuple[float, int]:
 class TagClock:
     """Converts time tags to frames."""
 
-    def __init__(self, player: LivePlayer) -> None:
+    def __init__(self, player: Player) -> None:
         self._player = player
         self._anchor: tuple[float, int] | None = None  # a time (s since 1970) and its frame
 
@@ -92,12 +93,15 @@ class Schedule:
             return None
         return max(0.0, self._waiting[0][0] - self.ahead_s - time.time())
 
-    def drop(self, which: Callable[[bytes], bool]) -> None:
-        """Drop some messages."""
+    def drop_part(self, addressed: str) -> None:
+        """Drop the messages of a group of addresses; of `FIRST`, all."""
+        own, parts = f"{PREFIX}{addressed}/".encode(), f"{PREFIX}{PART}".encode()
         remaining = []
         for entry in self._waiting:
-            if which(entry[2]):
-                self._shares.give_back(entry[3], entry[4])
+            _, _, packet, peer, size = entry
+            is_of_first = part_of(addressed) == 0 and not packet.startswith(parts)
+            if not addressed or packet.startswith(own) or is_of_first:
+                self._shares.give_back(peer, size)
             else:
                 remaining.append(entry)
         self._waiting = remaining

@@ -16,12 +16,11 @@ from yehu_server.core.midi.packing import unpacked
 
 if TYPE_CHECKING:
     from yehu_server.core.engine.ensemble import Ensemble
-    from yehu_server.core.engine.instrument import Instrument
     from yehu_server.live.audio.output import OutputState
     from yehu_server.live.midi.ports import MidiPorts
     from yehu_server.live.osc.answering import Traffic, WebTraffic
     from yehu_server.playing.delay import Delay
-    from yehu_server.playing.live_player import LivePlayer
+    from yehu_server.playing.player import Player
 
 STATUS_PREFIX = "/status/"  # before the names, in addresses
 INT_MAX = (1 << 31) - 1
@@ -51,9 +50,13 @@ class Counts:
 class PartSources:
     """What the status values of a part are read from."""
 
-    player: LivePlayer
-    instruments: Sequence[Instrument]  # one, or those of a section
-    meters: Sequence[Any]  # of each: a record of dtype telemetry.METERS
+    player: Player
+    meters: Sequence[Any]  # of each of its instruments: a record of dtype telemetry.METERS
+
+    @classmethod
+    def of(cls, player: Player) -> PartSources:
+        """What they are now."""
+        return cls(player, [instrument.meters() for instrument in player.instruments])
 
 
 @dataclass(frozen=True)
@@ -135,7 +138,7 @@ PART_STATUS: tuple[PartValue, ...] = (
     _part_counter("late_events", "Events that came after their frame.", _sum("late_events")),
     _part_counter("dropped_events",
         "Events dropped: the ring was full, or their time was too far ahead.",
-        lambda p: sum(one.dropped_events for one in p.instruments)),
+        lambda p: sum(one.dropped_events for one in p.player.instruments)),
     _part_gauge("waiting_events", "Events that wait for their frame.", _sum("waiting")),
     _part_counter("unconverged_solves", "Friction solves that did not converge.",
         _sum("unconverged")),
@@ -164,14 +167,14 @@ def _meter(name: str) -> Callable[[StatusSources], float]:
 
 def _count_of_midi(name: str) -> Callable[[StatusSources], int]:
     """Add up a count of what the parts were sent."""
-    return lambda s: sum(int(part.instruments[0].midi[name]) for part in s.parts)
+    return lambda s: sum(int(part.player.instrument.midi[name]) for part in s.parts)
 
 
 def _last_malformed(s: StatusSources) -> str:
     """The last damaged message of each part that has received one."""
     told: dict[str, None] = {}
     for part in s.parts:
-        midi = part.instruments[0].midi
+        midi = part.player.instrument.midi
         if midi["malformed"]:
             data, port = unpacked(int(midi["malformed_last"]))
             told[f"{data.hex(' ')} {s.midi.name_of(port) if s.midi else ''}".strip()] = None

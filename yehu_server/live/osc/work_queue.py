@@ -6,9 +6,11 @@ sends little is served within a few slices, however much others have waiting.
 
 from __future__ import annotations
 
+import contextlib
+import socket
 import time
 from collections import OrderedDict, deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from yehu_server.live import limits
 from yehu_server.live.osc.answering import Peer
@@ -94,3 +96,44 @@ class WorkQueue:
                         if not works:
                             del self._works[peer]
                 now = time.monotonic_ns()
+
+
+class Calls:
+    """Functions that other threads have called in one that waits for this as for a socket."""
+
+    def __init__(self) -> None:
+        self._waiting: deque[Callable[[], object]] = deque()
+        self._here, self._there = socket.socketpair()
+        for end in (self._here, self._there):
+            end.setblocking(False)
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def fileno(self) -> int:
+        """What becomes readable where something is to be called."""
+        return self._here.fileno()
+
+    def soon(self, action: Callable[[], object]) -> None:
+        """Call a function soon; any thread may call."""
+        self._waiting.append(action)
+        self.wake()
+
+    def wake(self) -> None:
+        """Wake the thread."""
+        with contextlib.suppress(OSError):  # full: the thread will wake anyway
+            self._there.send(b"!")
+
+    def run(self) -> None:
+        """Call what waits; what is added meanwhile waits for the next turn."""
+        with contextlib.suppress(BlockingIOError):
+            self._here.recv(limits.STREAM_READ)
+        for _ in range(len(self._waiting)):
+            self._waiting.popleft()()
+        if self._waiting:
+            self.wake()
+
+    def close(self) -> None:
+        """Close both sockets."""
+        self._here.close()
+        self._there.close()

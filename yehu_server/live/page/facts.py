@@ -28,11 +28,11 @@ from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.playing import learn, sources
 from yehu_server.playing.bind import Bind
-from yehu_server.playing.live_player import ELSEWHERE
 from yehu_server.playing.mapping import DEFAULT, load, shipped_mappings
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.options import AS_IT_SINGS
 from yehu_server.playing.pitch_and_level import NOTE_NAMES
+from yehu_server.playing.player import ELSEWHERE
 from yehu_server.playing.preset_folders import read_preset
 from yehu_server.playing.tables import CURVES, WORDS, Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, KEYS, STANDARD_A4, RangePolicy, Tuning, read_tuning

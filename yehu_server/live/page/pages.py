@@ -15,7 +15,7 @@ from yehu_server.live.network import Address
 from yehu_server.live.page.guests import Guests
 from yehu_server.live.page.players import CHANNELS, FIRST
 from yehu_server.live.web.server import listen
-from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.player import Player
 from yehu_server.playing.section_instruments import SECTION
 from yehu_server.util.processes import Child, Supervisor
 
@@ -48,7 +48,7 @@ class Pages(Supervisor):
 
     def __init__(
         self,
-        players: Sequence[LivePlayer],
+        players: Sequence[Player],
         options: PageOptions,
         memory: int,
         status: Callable[[], Mapping[str, Any]],

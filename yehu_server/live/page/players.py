@@ -17,7 +17,7 @@ from yehu_server.core.player.wishes import BEGIN, DRAW, END, EXPRESS, HOLD, LIFT
 from yehu_server.live.page.guests import LISTEN, OWN
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.params.table import TABLE
-from yehu_server.playing.live_player import Arrivals
+from yehu_server.playing.delay import Arrivals
 
 FIRST, CHANNELS = 1 << 16, 1 << 12  # channels of the first page, and of each
 LOWEST = -(CHANNELS // 2)  # of them, as a page numbers its own

@@ -1,0 +1,270 @@
+"""Reads the state of a part: values of parameters, held notes, positions of controllers, counts.
+
+What was posted is answered until the audio side has it; then its records are.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import Counter
+from collections.abc import Mapping as Values
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import uncompiled
+from yehu_server.compile.memory import with_fields
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.midi.channels import plays
+from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE
+from yehu_server.core.player.note_range import NoteRange
+from yehu_server.core.player.rows import ROW
+from yehu_server.params.spec import Param
+from yehu_server.params.table import TABLE, find
+from yehu_server.playing.bind import Bind
+from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.sources import NOTE, POLY_PRESSURE, STEPS, VELOCITY, is_address
+
+UNMAPPED = Mapping("", ())
+
+
+@dataclass(frozen=True)
+class Key:
+    """Identifies a held note by its channel and key.
+
+    `channel` is any number that distinguishes sources; `note` may be fractional.
+    """
+
+    channel: int
+    note: float
+
+
+@dataclass(frozen=True)
+class Pending:
+    """A direct write: its value, its number among all events, and its frame."""
+
+    value: float
+    number: int
+    frame: int
+    is_held: bool
+
+
+class PartState:
+    """The state of a part, as its instruments' records and what was posted have it.
+
+    `instruments`: who plays the part; those of a section lie one after another on the stage.
+    `part`: its number, counted from 0. What all parts share is the first one's.
+    """
+
+    def __init__(self, instruments: Sequence[Instrument], part: int = 0) -> None:
+        self.part = part
+        self.instruments = tuple(instruments)
+        self._instrument = instruments[0]
+        self.mapping = UNMAPPED
+        self.pending: dict[str, Pending] = {}
+
+    @property
+    def instrument(self) -> Instrument:
+        """The first instrument, which has the record of the part."""
+        return self._instrument
+
+    @property
+    def notes(self) -> NoteRange:
+        """The notes that the instrument has."""
+        return self._instrument.spec.notes
+
+    @property
+    def people(self) -> int:
+        """How many players there are, whether they play or rest."""
+        return len(self.instruments)
+
+    @property
+    def record(self) -> Any:
+        """The part's record (``midi.record.MIDI``), with all that is posted for now."""
+        self._instrument.interpret_events()
+        return self._instrument.midi
+
+    @property
+    def delay(self) -> int:
+        """Frames from the arrival of a message to its sound.
+
+        Constant, and long enough that the frame has not been played yet, so that messages keep
+        their rhythm.
+        """
+        return self._instrument.delay
+
+    def frame_of(self, arrived_ns: int | None = None) -> int:
+        """The frame for a message that arrived at this ``time.monotonic_ns()``; by default, now."""
+        moment = time.monotonic_ns() if arrived_ns is None else arrived_ns
+        return int(self._instrument.frame_at(moment)) + self.delay
+
+    # -- parameters --------------------------------------------------------------------------
+
+    @property
+    def pitch(self) -> float | None:
+        """The pitch (fractional MIDI note) while a note sounds or the bow is drawn by hand."""
+        pitches = (float(instrument.meters()["pitch"]) for instrument in self.instruments)
+        return next((pitch for pitch in pitches if not math.isnan(pitch)), None)
+
+    def value(self, address: str) -> float:
+        """The value that a parameter has or moves to; raises ParameterError where there is none."""
+        param = find(address)
+        pending = self._waiting(param)
+        if pending is not None:
+            return pending.value
+        if param.player_controlled:
+            return self._instrument.target(param.address)
+        return float(self.record["value"][ROW[param.address]])
+
+    def values(self) -> dict[str, float]:
+        """The values of all parameters, by address."""
+        return {param.address: self.value(param.address) for param in TABLE}
+
+    def keeps(self, address: str) -> bool:
+        """Whether a parameter was written with ``hold``."""
+        pending = self._waiting(find(address))
+        is_held = pending is not None and pending.is_held
+        return is_held or bool(self.record["is_held"][ROW[find(address).address]])
+
+    def expect(self, values: Values[str, float], frame: int | None) -> None:
+        """Answer with these values, but for held ones, until the audio side has what sets them."""
+        for address, value in values.items():
+            if not self.keeps(address):
+                self._note(address, value, frame)
+
+    def _note(
+        self, address: str, value: float, frame: int | None, *, is_held: bool = False
+    ) -> None:
+        at = self._instrument.frame if frame is None else frame
+        self.pending[address] = Pending(value, self._instrument.posted, at, is_held)
+
+    def _waiting(self, param: Param) -> Pending | None:
+        """The last direct write to a parameter, while the audio side does not have it."""
+        pending = self.pending.get(param.address)
+        if pending is None:
+            return None
+        meters = self._instrument.meters()
+        is_done = meters["drained"] > pending.number and meters["next_frame"] > pending.frame
+        # An instrument that is not live interprets due events whenever its record is read.
+        is_read = not self._instrument.is_live and pending.frame <= self._instrument.frame
+        if is_done or (is_read and not param.player_controlled):
+            self.pending.pop(param.address, None)  # another thread may have done so
+            return None
+        return pending
+
+    # -- notes -------------------------------------------------------------------------------
+
+    @property
+    def sounding(self) -> Key | None:
+        """The key whose note sounds, if any."""
+        record = self.record
+        return None if record["sounding"] == NONE else self._key(record, record["sounding"])
+
+    def held(self, channel: int | None = None) -> list[Key]:
+        """The held keys, of one channel or all, in the order pressed."""
+        record = self.record
+        keys = (self._key(record, number) for number in range(record["held"]))
+        return [key for key in keys if channel in (None, key.channel)]
+
+    @staticmethod
+    def _key(record: Any, number: int) -> Key:
+        return Key(int(record["held_channel"][number]), float(record["held_key"][number]))
+
+    @property
+    def keys(self) -> int:
+        """Number of keys that are held."""
+        return int(self.record["held"])
+
+    @property
+    def notes_played(self) -> int:
+        """Number of notes that were begun."""
+        return int(self.record["notes"])
+
+    @property
+    def notes_out_of_range(self) -> int:
+        """Number of notes that the instrument does not have, played or not."""
+        return int(self.record["out_of_range"])
+
+    @property
+    def notes_by_channel(self) -> Counter[int]:
+        """Number of notes played on each channel; -1 for those of no MIDI port."""
+        counts = self.record["notes_of"].tolist()
+        found = {channel: count for channel, count in enumerate(counts) if count}
+        return Counter({-1 if c == CHANNELS else c: count for c, count in found.items()})
+
+    @property
+    def percussion_notes(self) -> int:
+        """Number of notes of the percussion channel, which are not played."""
+        return int(self.record["percussion"])
+
+    @property
+    def unknown_programs(self) -> Counter[int]:
+        """How often programs, from 1, were asked for that no preset has."""
+        counts = self.record["unknown_program"].tolist()
+        return Counter({program: count for program, count in enumerate(counts, 1) if count})
+
+    def plays(self, channel: int) -> bool:
+        """Whether the notes of a channel, counted from 0 over all ports, are played."""
+        record = self.record
+        tables = self._instrument.tables[record["tables"]]
+        # As Python: compiling it would take longer than a short render.
+        return uncompiled(plays)(with_fields(record), with_fields(tables), channel)
+
+    # -- controllers -------------------------------------------------------------------------
+
+    def bindings(self) -> list[tuple[Bind, float | None, float]]:
+        """Each bind, the position (0 to 1) its source was last moved to, and the target's value."""
+        record = self.record
+        firsts: dict[str, int] = {}
+        found = []
+        for number, bind in enumerate(self.mapping.binds):
+            first = firsts.setdefault(bind.source, number)
+            position = _position(record, bind, number, first)
+            found.append((bind, position, self.value(bind.target)))
+        return found
+
+    def sound(self) -> dict[str, float]:
+        """The parameters that a preset keeps: all of the part that the player does not move.
+
+        They are without the velocity of one note.
+        """
+        free = [
+            param
+            for param in TABLE
+            if not (param.player_controlled or (self.part and param.is_shared))
+        ]
+        values = {param.address: self.value(param.address) for param in free}
+        record = self.record
+        for bind in self.mapping.of(VELOCITY):
+            row = ROW[find(bind.target).address]
+            if bind.target in values and record["is_target"][row]:
+                values[bind.target] = float(record["set_to"][row])
+        return values
+
+
+def _position(record: Any, bind: Bind, number: int, first: int) -> float | None:
+    """Where a bind's source was last moved to, on any channel that it receives."""
+    if is_address(bind.source):
+        return float(record["fader"][number]) if record["has_fader"][number] else None
+    channels = np.arange(CHANNELS)
+    if bind.channels:
+        channels = channels[np.isin(channels % IN_PORT + 1, bind.channels)]
+    if bind.source in (VELOCITY, NOTE):
+        places = channels if bind.channels else np.arange(CHANNELS + 1)
+        numbers = record["strike_number"][places]
+        name = "strike_velocity" if bind.source == VELOCITY else "strike_key"
+        positions = record[name][places] / (1.0 if bind.source == VELOCITY else STEPS)
+    elif bind.source == POLY_PRESSURE:
+        numbers, positions = (
+            record[name][channels].ravel() for name in ("pressure_number", "pressure")
+        )
+    else:
+        numbers, positions = (
+            record["move_number"][channels, first],
+            record["position"][channels, first],
+        )
+    latest = int(np.argmax(numbers)) if len(numbers) else 0
+    return float(positions[latest]) if len(numbers) and numbers[latest] else None

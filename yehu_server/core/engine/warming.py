@@ -31,7 +31,7 @@ CALLED = (
     taped,
 )  # fmt: skip
 
-COMPILING = "compiling for this machine, once, for half a minute"
+COMPILING = "compiling for this machine, once"
 
 
 @cache

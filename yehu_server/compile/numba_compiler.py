@@ -11,7 +11,7 @@ from functools import cache
 from typing import Any
 
 import numba
-from numba import extending, types
+from numba import types
 from numba.core.ccallback import CFunc
 from numba.core.cpu_options import FastMathOptions
 from numba.core.registry import cpu_target
@@ -88,13 +88,9 @@ class ColdPartCompiler(SourceCompiler):
     library = ColdPartLibrary
 
 
-@extending.typeof_impl.register(jit.Deferred)  # type: ignore[untyped-decorator]
-def _type_of(deferred: jit.Deferred, _context: Any) -> Any:
-    return _type_once(deferred)
-
-
 @cache
-def _type_once(deferred: jit.Deferred) -> Any:
+def type_of(deferred: jit.Deferred) -> Any:
+    """numba's type of what a deferred value stands for."""
     value, typing = deferred.value, cpu_target.typing_context
     typing.refresh()  # numba knows only then of an intrinsic that is new
     return typing.resolve_value_type(value)
@@ -130,8 +126,8 @@ def dispatcher(
     return made
 
 
-@extending.typeof_impl.register(jit.Native)  # type: ignore[untyped-decorator]
-def _type_of_native(native: jit.Native, _context: Any) -> Any:
+def type_of_native(native: jit.Native) -> Any:
+    """numba's type of a function that is called by its name."""
     returned, *arguments = _types(native)
     return types.ExternalFunction(native.name, returned(*arguments))
 

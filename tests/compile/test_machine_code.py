@@ -9,15 +9,18 @@ import subprocess
 import sys
 import tomllib
 import zlib
+from contextlib import nullcontext
 from functools import cache
 from pathlib import Path
 
 import pytest
 
+from yehu_server.cli import terminal
 from yehu_server.cli.terminal import warn_of_compiling
 from yehu_server.compile import cache_folder, levels, machine_code
 from yehu_server.compile.cache_folder import source_hash
 from yehu_server.compile.jit import Native
+from yehu_server.core.engine import warming
 from yehu_server.core.engine.warming import all_functions, warm_up
 from yehu_server.core.physics.time_loop import advance
 from yehu_server.lab import warming as lab
@@ -208,6 +211,20 @@ def test_commands_tell_that_something_is_compiled(monkeypatch, capsys):
             assert told(functions) == ""  # it is in the cache, function by function
             patched.setattr(Native, "is_cached", property(lambda self: self is not advance))
             assert "compiling for this machine, once" in told(functions)
+
+
+@pytest.mark.parametrize("is_study", [False, True])
+def test_commands_show_how_far_compiling_is(is_study, monkeypatch, capsys):
+    def warm_up(progress):
+        progress(1.0, 4.0)
+
+    shown = []
+    bar = nullcontext(lambda done, total: shown.append((done, total)))
+    monkeypatch.setattr(lab if is_study else warming, "warm_up", warm_up)
+    monkeypatch.setattr(terminal, "progress_bar", lambda *_: bar)
+    terminal.compile_all(argparse.Namespace(quiet=True), is_study=is_study)
+    assert shown == [(25.0, 100.0)]
+    assert capsys.readouterr().err == ""
 
 
 def test_a_release_takes_the_files_along():

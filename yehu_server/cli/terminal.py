@@ -109,13 +109,19 @@ def warn_of_compiling(arguments: argparse.Namespace, functions: Iterable[Native]
         warn(f"{COMPILING} ...")
 
 
-def compile_all(arguments: argparse.Namespace) -> None:
-    """Compile what playing needs, or load it; tell where it is compiled, and how far that is."""
-    from yehu_server.core.engine.warming import warm_up
+def compile_all(arguments: argparse.Namespace, *, is_study: bool = False) -> None:
+    """Compile what playing needs, or load it; tell where it is compiled, and how far that is.
 
-    warn_of_compiling(arguments)
+    `is_study`: also what simulations with their energy and sweeps need.
+    """
+    if is_study:
+        from yehu_server.lab import warming as needed
+    else:
+        from yehu_server.core.engine import warming as needed  # type: ignore[no-redef]
+
+    warn_of_compiling(arguments, needed.CALLED)
     with progress_bar(arguments, "compiling", "%") as progress, ending_at_once():
-        warm_up(progress=lambda done, total: progress(100.0 * done / total, 100.0))
+        needed.warm_up(progress=lambda done, total: progress(100.0 * done / total, 100.0))
 
 
 @contextlib.contextmanager

@@ -22,9 +22,9 @@ from yehu_server.util.checksummed import read_checksummed, write_checksummed
 COMPILE = """
 from yehu_server.compile import machine_code
 from yehu_server.compile.cache_folder import cache_folder
-from compile_all import CALLED, warm_up
+from compile_all import MORE, warm_up
 warm_up()
-for what in (machine_code.PLAYING, *CALLED):
+for what in (machine_code.PLAYING, *MORE):
     print(machine_code.file_in(cache_folder(), what))
 """
 

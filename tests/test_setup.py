@@ -48,9 +48,15 @@ def run(checkout: Path, code: str, **environment: str) -> str:
     return done.stdout
 
 
-def test_uv_installs_where_pip_would_look(checkout):
+@pytest.mark.parametrize("asked", ["$venv/bin/python", "false"], ids=["its own", "has none"])
+def test_uv_installs_where_pip_would_look(checkout, asked):
+    """Python's own pip is asked where it looks, or else one that comes into .venv for that."""
     write(checkout / ".venv" / "bin" / "uv", 'echo "$UV_INDEX|$UV_FIND_LINKS|$*"')
-    told = run(checkout, 'PATH=$venv/bin:$PATH; install_packages --require-hashes -r x; cat "$log"')
+    told = run(
+        checkout,
+        f'PATH=$venv/bin:$PATH; settings=$(settings_of_pip "{asked}")'
+        '; install_packages --require-hashes -r x; cat "$log"',
+    )
     indexes, links, call = told.strip().split("|")
     assert (indexes, links) == ("https://a.invalid https://b.invalid", "/w")
     assert call.startswith("pip install --python ")

@@ -67,13 +67,13 @@ setup() {
         if [ "$fresh" ]; then
             say "setting up .venv with Python $(python_version "$python"), once"
             empty_venv
-            logged "$python" -I -m venv --prompt yehu "$venv"
+            logged "$python" -I -m venv --without-pip --prompt yehu "$venv"
         elif is_set_up run; then
             say "adding what else is needed"
         else
             say "bringing .venv up to date"
         fi
-        install "$kind" || exit
+        install "$kind" "$python" || exit
     fi
     exec 9>&-
     trap - INT
@@ -158,6 +158,7 @@ install() (
     made_from=$(fingerprint)
     cd "$root" || exit
     bring_uv
+    settings=$(settings_of_pip "$2")
     if compiles "$venv/bin/python"; then # first the rest, which has the locked tools to do it
         locked -v python-rtmidi "$lock" >"$venv/rest.lock"
         install_packages --require-hashes -r "$venv/rest.lock"
@@ -166,7 +167,7 @@ install() (
     if ! is_set_up run; then # else it may be in use
         install_packages --no-deps --no-build-isolation --editable .
         # Loaded once, it leaves bytecode, which a start may not be allowed to.
-        logged "$venv/bin/python" -I -c 'import yehu_server.cli.render_one, yehu_server.live.server'
+        logged "$venv/bin/python" -I -c 'import numba, yehu_server.cli.render_one, yehu_server.live.server'
     fi
     # A stamp appears whole or not at all.
     for kind in "${kinds[@]}"; do
@@ -187,7 +188,7 @@ bring_uv() {
 install_packages() {
     if command -v uv >/dev/null; then
         (
-            eval "$(settings_of_pip)"
+            eval "$settings"
             # Hashes tell which file is right, whichever index has it.
             UV_INDEX_STRATEGY=unsafe-best-match uv pip install --python "$venv/bin/python" "$@"
         ) >"$log" 2>&1 </dev/null && return
@@ -196,13 +197,21 @@ install_packages() {
 }
 
 pip_install() {
-    "$venv/bin/python" -I -m pip --disable-pip-version-check --no-input install --no-compile \
-        --progress-bar off "$@"
+    venv_pip --disable-pip-version-check --no-input install --no-compile --progress-bar off "$@"
 }
 
-# Prints what pip is told of indexes, as exports for uv.
+# Runs .venv's pip. Where nothing else can install it, it comes of Python itself, which takes half
+# as long as all the rest.
+venv_pip() {
+    "$venv/bin/python" -I -c 'import pip' 2>/dev/null || "$venv/bin/python" -I -m ensurepip >&2
+    "$venv/bin/python" -I -m pip "$@"
+}
+
+# Prints what pip is told of indexes, as exports for uv. The Python that .venv was made with may have
+# a pip to ask.
 settings_of_pip() {
-    "$venv/bin/python" -I -m pip config list 2>/dev/null | "$venv/bin/python" -I -c '
+    { "$1" -I -m pip config list 2>/dev/null || venv_pip config list 2>/dev/null; } |
+        "$venv/bin/python" -I -c '
 import ast, shlex, sys
 names = {"index-url": "UV_DEFAULT_INDEX", "extra-index-url": "UV_INDEX", "find-links": "UV_FIND_LINKS"}
 for line in sys.stdin:

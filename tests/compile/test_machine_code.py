@@ -9,18 +9,22 @@ import subprocess
 import sys
 import tomllib
 import zlib
+from contextlib import nullcontext
 from functools import cache
 from pathlib import Path
 
 import compile_all
 import pytest
 
+from yehu_server.cli import terminal
 from yehu_server.cli.terminal import warn_of_compiling
 from yehu_server.compile import cache_folder, levels, machine_code
 from yehu_server.compile.cache_folder import source_hash
 from yehu_server.compile.jit import Native
+from yehu_server.core.engine import warming
 from yehu_server.core.engine.warming import all_functions, warm_up
-from yehu_server.core.physics.time_loop import advance
+from yehu_server.core.physics.time_loop import advance, advance_booked
+from yehu_server.simulation.run import COMPILED
 from yehu_server.util.checksummed import read_checksummed, write_checksummed
 
 ROOT = Path(__file__).parents[2]
@@ -123,8 +127,10 @@ def test_what_playing_needs_is_in_one_file_apart_from_what_studies_need_besides(
     compile_all.warm_up()
     found = set(written(tmp_path, kept))
     assert {function.name for function in all_functions()} <= found
-    besides = [call for what in compile_all.CALLED for call in compile_all.functions_of(what)]
-    assert len(besides) > len(compile_all.CALLED)
+    besides = [
+        call for some in compile_all.MORE.values() for call in warming.functions_beside(some)
+    ]
+    assert len(besides) > len(compile_all.MORE)
     assert not {function.name for function in besides} & found
     assert all(function.is_kept for function in besides)
     machine_code.file_in(tmp_path).unlink()
@@ -145,7 +151,7 @@ def test_no_mathematics_of_a_c_library_is_called():
     """It differs from system to system and by processor; see `core/physics/elementary.py`."""
     compile_all.warm_up()
     strange = {}
-    for what in (machine_code.PLAYING, *compile_all.CALLED):
+    for what in (machine_code.PLAYING, *compile_all.MORE):
         file = machine_code.file_in(cache_folder.cache_folder(), what)
         head, _, body = (read_checksummed(file) or b"").partition(b"\n")
         code, at = zlib.decompress(body), 0
@@ -199,18 +205,35 @@ def test_what_is_shipped_for_this_level_is_taken_where_nothing_is_kept(kept, tmp
 def test_commands_tell_that_something_is_compiled(monkeypatch, capsys):
     """Whether it is for playing, or for what else a command calls."""
 
-    def told(functions) -> str:
-        warn_of_compiling(argparse.Namespace(quiet=False), functions)
+    def warned(more) -> str:
+        warn_of_compiling(argparse.Namespace(quiet=False), more)
         return capsys.readouterr().err
 
     warm_up()
-    for functions in ((), (advance,)):
-        assert told(functions) == ""
+    for more, missing in (({}, advance), (COMPILED, advance_booked)):
+        assert warned(more) == ""
         with monkeypatch.context() as patched:
             patched.setattr(machine_code, "loaded", cache(lambda *_: {}))
-            assert told(functions) == ""  # it is in the cache, function by function
-            patched.setattr(Native, "is_cached", property(lambda self: self is not advance))
-            assert "compiling for this machine, once" in told(functions)
+            assert warned(more) == ""  # it is in the cache, function by function
+            patched.setattr(
+                Native, "is_cached", property(lambda self, missing=missing: self is not missing)
+            )
+            assert "compiling for this machine, once" in warned(more)
+
+
+@pytest.mark.parametrize("more", [{}, COMPILED])
+def test_commands_show_how_far_compiling_is(more, monkeypatch, capsys):
+    def warm_up(progress, more):
+        progress(1.0, 4.0)
+        asked.append(more)
+
+    shown, asked = [], []
+    bar = nullcontext(lambda done, total: shown.append((done, total)))
+    monkeypatch.setattr(warming, "warm_up", warm_up)
+    monkeypatch.setattr(terminal, "progress_bar", lambda *_: bar)
+    terminal.compile_all(argparse.Namespace(quiet=True), more)
+    assert (shown, asked) == ([(25.0, 100.0)], [more])
+    assert capsys.readouterr().err == ""
 
 
 def test_a_release_takes_the_files_along():
@@ -224,7 +247,7 @@ def test_a_release_takes_the_files_along():
 def test_code_for_a_level_of_processors_plays_without_numba(tmp_path):
     script = [sys.executable, ROOT / "scripts" / "machine_code.py", levels.level(), "-o", tmp_path]
     subprocess.run(script, check=True, stdout=subprocess.DEVNULL)
-    assert len(list(tmp_path.iterdir())) == 1 + len(compile_all.CALLED)
+    assert len(list(tmp_path.iterdir())) == 1 + len(compile_all.MORE)
     of_level = f"""
 from yehu_server.compile import machine_code
 machine_code.SHIPPED = machine_code.Path({str(tmp_path)!r})

@@ -30,7 +30,7 @@ from yehu_server.cli.arguments import (
     cluster_of,
 )
 from yehu_server.cli.converters import positive
-from yehu_server.cli.terminal import print_report, progress_bar, warn, warn_of_compiling
+from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn
 from yehu_server.errors import OutputError, ParameterError
 from yehu_server.rendering import build_records
 from yehu_server.rendering.build_records import HIDDEN, check_manifest
@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
     _check_folder(folder)
     setup = partial(making.set_up, description.rate)
     if arguments.dask is None:
-        warn_of_compiling(arguments)
+        compile_all(arguments)
         setup()
     with cluster_of(arguments, setup) as cluster, build_records.alone_in(folder):
         check_manifest(folder)

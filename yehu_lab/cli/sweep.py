@@ -29,7 +29,7 @@ from yehu_server.cli.arguments import (
     cluster_of,
 )
 from yehu_server.cli.converters import positive, target
-from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
+from yehu_server.cli.terminal import compile_all, print_report, progress_bar
 from yehu_server.errors import ParameterError
 from yehu_server.util.files import anything, check_free, check_target, nothing
 
@@ -68,7 +68,7 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_lab.regimes.strokes import bow_stroke
+    from yehu_lab.regimes import strokes
     from yehu_lab.sweeps.axes import axis_of
     from yehu_lab.sweeps.running import (
         check_free_result,
@@ -78,6 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
         warm_up,
     )
     from yehu_lab.sweeps.study import read_study
+    from yehu_server.simulation import run as simulation
 
     axes = [axis_of(text) for text in arguments.vary]
     study = read_study(arguments.study, axes, arguments.instrument)
@@ -85,7 +86,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.signals is not None:
         prepare_folder(study, arguments.signals, overwrite=arguments.overwrite)
     start = time.perf_counter()
-    warn_of_compiling(arguments, [bow_stroke])
+    if arguments.dask is None:
+        compile_all(arguments, {**simulation.COMPILED, **strokes.COMPILED})
     with (
         cluster_of(arguments, warm_up) as cluster,
         progress_bar(arguments, "sweeping", "strokes") as progress,

@@ -213,6 +213,10 @@ def bow_stroke(
     out.faults = min(MOST_FAULTS, s.unconverged + s.lost)
 
 
+# What sweeps call, but for what playing calls, by the file that its machine code is kept in.
+COMPILED = {"yehu_lab": (bow_stroke,)}
+
+
 def find(instruments: Instruments, strokes: Array, hands: ControlCurves) -> Array:
     """Bow strokes, and judge each: findings [shape=(strokes,), dtype=FINDING].
 

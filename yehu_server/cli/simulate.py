@@ -19,7 +19,7 @@ from yehu_server.cli.arguments import (
     add_reporting,
 )
 from yehu_server.cli.converters import positive, target
-from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
+from yehu_server.cli.terminal import compile_all, print_report, progress_bar
 from yehu_server.errors import OutputError
 from yehu_server.util.files import check_distinct, check_target
 
@@ -51,9 +51,8 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.cli.report import simulate_report
-    from yehu_server.core.physics.time_loop import advance, advance_booked
     from yehu_server.scores.gesture import read_gesture
-    from yehu_server.simulation.run import simulate
+    from yehu_server.simulation.run import COMPILED, simulate
 
     gesture = read_gesture(arguments.gesture, arguments.instrument)
     check_target(arguments.output)
@@ -63,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise OutputError(
             f"{arguments.output}: simulate writes arrays, not sound; name an .npz file"
         )
-    warn_of_compiling(arguments, [advance_booked if arguments.energy else advance])
+    compile_all(arguments, COMPILED if arguments.energy else {})
     with progress_bar(arguments, "simulating") as progress:
         result = simulate(
             gesture,

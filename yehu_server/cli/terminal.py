@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from yehu_server.errors import YehuError, one_line
 
 if TYPE_CHECKING:
-    from yehu_server.compile.jit import Native
+    from yehu_server.core.engine.warming import Compiled
 
 INTERRUPTED = 130  # exit code
 ENDING = (signal.SIGINT, signal.SIGTERM)
@@ -109,30 +109,34 @@ def ending_at_once() -> Iterator[None]:
         receiving.close()
 
 
-def warn_of_compiling(arguments: argparse.Namespace, functions: Iterable[Native] = ()) -> None:
-    """Warn where some functions will be compiled: at their first use, or always if none is cached.
+def warn_of_compiling(arguments: argparse.Namespace, more: Compiled | None = None) -> None:
+    """Warn where functions will be compiled: at their first use, or always if none is cached.
 
-    By default those that playing needs.
+    `more`: those beside playing's, by the file that their machine code is kept in.
     """
     from yehu_server.compile.cache_folder import WHY_NOT_CACHED, cache_folder
     from yehu_server.core.engine.warming import CALLED, COMPILING
 
     if arguments.quiet:
         return
-    is_ready = all(function.is_ready for function in functions or CALLED)
+    functions = (CALLED, *(more or {}).values())
+    is_ready = all(function.is_ready for called in functions for function in called)
     if WHY_NOT_CACHED and not is_ready:
         warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
     elif not is_ready:
         warn(f"{COMPILING} ...")
 
 
-def compile_all(arguments: argparse.Namespace) -> None:
-    """Compile what playing needs, or load it; tell where it is compiled, and how far that is."""
+def compile_all(arguments: argparse.Namespace, more: Compiled | None = None) -> None:
+    """Compile what playing needs, and more, or load it; show where it compiles, and how far it is.
+
+    `more`: see `warn_of_compiling`.
+    """
     from yehu_server.core.engine.warming import warm_up
 
-    warn_of_compiling(arguments)
+    warn_of_compiling(arguments, more)
     with progress_bar(arguments, "compiling", "%") as progress, ending_at_once():
-        warm_up(progress=lambda done, total: progress(100.0 * done / total, 100.0))
+        warm_up(progress=lambda done, total: progress(100.0 * done / total, 100.0), more=more)
 
 
 @contextlib.contextmanager

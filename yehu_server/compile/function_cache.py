@@ -1,10 +1,10 @@
 """Compiled code on disk, with a checksum; replaces numba's cache, which does not check its files.
 
-One file for each function, signature, level of processors and Python: so no index can name
-the wrong one, and processes that compile at once leave each other's files whole. Another one, for
-all levels, has what the function was made of, from which a process for another level makes it in a
-third of the time. What fails is reported in one line and compiled anew; what cannot be kept is
-played all the same.
+One file for each function, signature and Python has what the function was made of: so no index can
+name the wrong one, and processes that compile at once leave each other's files whole. A process for
+any level of processors makes machine code of it in a third of the time. Another file, for one
+level, has the machine code of a function that is called by address. What fails is reported in one
+line and compiled anew; what cannot be kept is played all the same.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import logging
 import pickle
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -23,15 +24,7 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 from yehu_server.compile import levels
-from yehu_server.compile.libraries import (
-    BITCODE_OF_PART,
-    SOURCE,
-    SOURCE_OF_COLD_PART,
-    SOURCE_OF_PART,
-    ColdPartLibrary,
-    PartLibrary,
-    SourceLibrary,
-)
+from yehu_server.compile.libraries import KINDS, PartLibrary, SourceLibrary
 from yehu_server.util.checksummed import ChecksumError, read_checksummed, write_checksummed
 
 log = logging.getLogger(__name__)
@@ -50,6 +43,12 @@ def _tell(trouble: str, line: str) -> None:
     if trouble not in _reported:
         _reported.add(trouble)
         log.warning("%s", line)
+
+
+@cache
+def _prepare(target_context: Any) -> None:
+    """Let it know its own functions; it looks for those that come later by itself."""
+    target_context.refresh()
 
 
 def parts_of(result: Any) -> tuple[Any, bytes]:
@@ -95,35 +94,26 @@ def _library(codegen: Any, source: Path, kept: tuple[str, str, Any]) -> Any:
     def part(name: str) -> PartLibrary:
         file = source.with_name(name)
         if file not in _parts:
-            payload = _read(_for_this_level(file)) or _read(file)
+            payload = _read(file)
             if payload is None:
                 raise ChecksumError(f"{name} is gone")
             _library(codegen, file, _unpickled(payload))
         return _parts[file]
 
-    kind = kept[1]
-    if kind in (BITCODE_OF_PART, SOURCE_OF_PART, SOURCE_OF_COLD_PART):
-        if source not in _parts:
-            if kind == BITCODE_OF_PART:
-                made = PartLibrary.kept_as(codegen, kept)
-            else:
-                library = PartLibrary if kind == SOURCE_OF_PART else ColdPartLibrary
-                made = library.made_of(codegen, kept, part)
-            _remember(source, made)
+    kind = KINDS.get(kept[1])
+    if kind is None:
+        return codegen.unserialize_library(kept)
+    if source in _parts:
         return _parts[source]
-    if kind == SOURCE:
-        return SourceLibrary.made_of(codegen, kept, part)
-    return codegen.unserialize_library(kept)
+    made = kind.made_of(codegen, kept, part)
+    _remember(source, made)
+    return made
 
 
-def _remember(source: Path, part: PartLibrary) -> None:
-    part.file = source.name
-    _parts[source] = part
-
-
-def _for_this_level(source: Path) -> Path:
-    """The file that has the code of a function for this level, by the one for all."""
-    return source.with_name(f"{source.stem}-{levels.level()}.code")
+def _remember(source: Path, library: Any) -> None:
+    if isinstance(library, PartLibrary):
+        library.file = source.name
+        _parts[source] = library
 
 
 def payload_of(code: Any, rest: bytes) -> bytes:
@@ -174,7 +164,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the code for a signature; None where it has to be compiled."""
-        target_context.refresh()
+        _prepare(target_context)
         source = self.source_path(sig)
         for path in (self.path(sig), source):
             try:
@@ -183,7 +173,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
                     made = _result(
                         target_context, _library(target_context.codegen(), source, kept), *rest
                     )
-                    if kept[1] == SOURCE:
+                    if path == source and not isinstance(made.library, PartLibrary):
                         self.save_overload(sig, made)
                     self._tell_ready()
                     return made
@@ -202,9 +192,9 @@ class CodeCache(NullCache):  # type: ignore[misc]
             code, rest = parts_of(data)
             if isinstance(library, SourceLibrary) and (source := library.source()) is not None:
                 write_checksummed(self.source_path(sig), payload_of(source, rest))
-                if isinstance(library, PartLibrary):
-                    _remember(self.source_path(sig), library)
-            write_checksummed(self.path(sig), payload_of(code, rest))
+                _remember(self.source_path(sig), library)
+            if code is not None:
+                write_checksummed(self.path(sig), payload_of(code, rest))
         except Exception as error:  # noqa: BLE001 - neither a full disk nor a numba unlike ours
             reason = getattr(error, "strerror", None) or repr(error)
             _tell(FULL, f"{self._folder}: {reason}; compiled code is not kept for the next start")
@@ -222,7 +212,8 @@ class CodeCache(NullCache):  # type: ignore[misc]
 
     def path(self, sig: Any) -> Path:
         """The file for a signature, for this level."""
-        return _for_this_level(self.source_path(sig))
+        source = self.source_path(sig)
+        return source.with_name(f"{source.stem}-{levels.level()}.code")
 
     def source_path(self, sig: Any) -> Path:
         """The file for a signature, for all levels."""

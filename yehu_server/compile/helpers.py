@@ -24,6 +24,7 @@ from yehu_server.util.processes import python_command
 Progress = Callable[[float, float], None]
 DONE, KEEP = "done", "keep"
 LLVM_FASTER = 3.0  # with a function than numba with all its parts, by the bytes of their bytecode
+DEARER_TWICE = 2.0  # what both processes make, than that one of them has less to do for a while
 # The compiler leaves little garbage, of which a third of its time went into looking for more.
 COLLECT_AFTER = 50_000, 20, 100
 
@@ -82,36 +83,54 @@ def _ask(helper: subprocess.Popen[str], order: str) -> Iterator[str]:
         yield line
 
 
-def weight(function: Native) -> float:
-    """How much there is to compile of a function, and of its parts, which it takes in."""
-    return _length(function.function) + sum(_length(part.py_func) for part in parts_of(function))
-
-
-def _length(function: Callable[..., Any]) -> int:
-    return len(function.__code__.co_code)
+def weights(function: Native) -> dict[Callable[..., Any], float]:
+    """How much there is to compile of a function and of each of its parts, which it takes in."""
+    parts = (part.py_func for part in parts_of(function))
+    return {each: float(len(each.__code__.co_code)) for each in (function.function, *parts)}
 
 
 class _Work:
-    """What is to be compiled, the heaviest last, and what is done."""
+    """What is to be compiled, and what is done."""
 
     def __init__(self, functions: Iterable[Native], progress: Progress | None) -> None:
-        self._queue, self._progress = sorted(functions, key=weight), progress
+        self._queue, self._progress = {each: weights(each) for each in functions}, progress
         self._turn = threading.Lock()
-        self._left = {function.name: weight(function) / LLVM_FASTER for function in self._queue}
-        for function in self._queue:
-            for part in (function.function, *(part.py_func for part in parts_of(function))):
-                self._left[part.__qualname__] = float(_length(part))
+        self._begun: set[Callable[..., Any]] = set()  # by any helper
+        self._left: dict[str, float] = {}
+        for function, own in self._queue.items():
+            self._left[function.name] = sum(own.values()) / LLVM_FASTER
+            self._left |= {part.__qualname__: length for part, length in own.items()}
         self._total = sum(self._left.values())
 
     def hand_out(self, helper: subprocess.Popen[str]) -> None:
         """Give a helper one function after another, for as long as it works."""
-        with contextlib.suppress(OSError, IndexError):
-            while True:
-                with self._turn:
-                    function = self._queue.pop()
+        own: set[Callable[..., Any]] = set()
+        with contextlib.suppress(OSError):
+            while (function := self._next(own)) is not None:
                 for name in _ask(helper, _name(function)):
                     self._tell(name)
                 self._tell(function.name)
+
+    def _next(self, own: set[Callable[..., Any]]) -> Native | None:
+        """Take the heaviest function of the queue whose parts no other helper has begun.
+
+        `own`: what the helper has begun.
+        """
+
+        def worth(function: Native) -> float:
+            parts, others = self._queue[function], self._begun - own
+            return sum(parts.values()) - DEARER_TWICE * sum(
+                parts[each] for each in others & {*parts}
+            )
+
+        with self._turn:
+            if not self._queue:
+                return None
+            function = max(self._queue, key=worth)
+            begun = self._queue.pop(function).keys()
+            own.update(begun)
+            self._begun.update(begun)
+            return function
 
     def _tell(self, name: str) -> None:
         with self._turn:

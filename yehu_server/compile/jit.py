@@ -63,6 +63,10 @@ class Deferred:
         """What it stands for."""
         return self._make()
 
+    @property
+    def _numba_type_(self) -> Any:  # which numba asks for
+        return imported("yehu_server.compile.numba_compiler").type_of(self)
+
     def __call__(self, *arguments: Any, **named: Any) -> Any:
         """Call what it stands for."""
         return self.value(*arguments, **named)
@@ -216,6 +220,10 @@ class Native:
         hints = get_type_hints(self.function, include_extras=True)
         hints = {"return": hints.pop("return"), **hints}
         return [C_TYPE_OF.get(hint) or get_args(hint)[1] for hint in hints.values()]
+
+    @property
+    def _numba_type_(self) -> Any:  # which numba asks for
+        return imported("yehu_server.compile.numba_compiler").type_of_native(self)
 
     @cached_property
     def calls(self) -> Sequence[Native]:

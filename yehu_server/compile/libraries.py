@@ -15,16 +15,11 @@ from llvmlite import binding
 from numba.core.codegen import JITCodeLibrary
 from numba.core.itanium_mangler import PREFIX as ITANIUM
 
-# What a library is kept as; numba has words for other kinds.
-BITCODE_OF_PART = "bitcode of a part"
-SOURCE = "source"
-SOURCE_OF_PART, SOURCE_OF_COLD_PART = "source of a part", "source of a cold part"
-
 
 class SourceLibrary(JITCodeLibrary):  # type: ignore[misc]
     """A function that knows what it was made of."""
 
-    kept_source_as = SOURCE
+    kind = "source"  # numba has words for others
 
     def __init__(self, codegen: Any, name: str) -> None:
         super().__init__(codegen, name)
@@ -53,7 +48,7 @@ class SourceLibrary(JITCodeLibrary):  # type: ignore[misc]
                 links.append(other.file)
             else:
                 return None
-        return self.name, self.kept_source_as, (self._modules, links)
+        return self.name, self.kind, (self._modules, links)
 
     @classmethod
     def made_of(
@@ -84,16 +79,7 @@ def _is_lost(function: Any) -> bool:
 class PartLibrary(SourceLibrary):
     """A function that others take in, optimised, and not callable by itself."""
 
-    kept_source_as = SOURCE_OF_PART
-
-    @classmethod
-    def kept_as(cls, codegen: Any, kept: tuple[str, str, bytes]) -> Self:
-        """Make it again of what `serialize_using_object_code` gave."""
-        name, _, bitcode = kept
-        part = cls(codegen, name)
-        part._final_module = binding.parse_bitcode(bitcode)
-        part._finalized = True
-        return part
+    kind = "source of a part"
 
     @property
     def codegen(self) -> Any:
@@ -108,9 +94,8 @@ class PartLibrary(SourceLibrary):
         self._ensure_finalized()
         return 0
 
-    def serialize_using_object_code(self) -> tuple[str, str, bytes]:
-        """What the cache keeps, in the place of machine code."""
-        return self.name, BITCODE_OF_PART, self._get_module_for_linking().as_bitcode()
+    def serialize_using_object_code(self) -> None:
+        """Do nothing: it has no machine code, and is made again of its source."""
 
     def _finalize_final_module(self) -> None:
         self._finalize_dynamic_globals()
@@ -124,7 +109,10 @@ class ColdPartLibrary(PartLibrary):
     For what decides: it is not called for each sample.
     """
 
-    kept_source_as = SOURCE_OF_COLD_PART
+    kind = "source of a cold part"
 
     def _optimize_final_module(self) -> None:
         """Leave this to what it becomes a part of."""
+
+
+KINDS = {library.kind: library for library in (SourceLibrary, PartLibrary, ColdPartLibrary)}

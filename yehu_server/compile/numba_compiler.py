@@ -11,8 +11,9 @@ from functools import cache
 from typing import Any
 
 import numba
-from numba import extending, types
+from numba import types
 from numba.core.ccallback import CFunc
+from numba.core.cpu_options import FastMathOptions
 from numba.core.registry import cpu_target
 
 from yehu_server.compile import jit, levels
@@ -67,6 +68,8 @@ class SourceCompiler(LeanCompiler):
 _hash_of = cache(short_hash)  # names of large records have thousands of letters
 # numba names a record's type by a number of this process, which would be in the names of functions.
 types.Record.mangling_args = property(lambda record: ("Record", (_hash_of(record.name),)))
+# These, too, are in the names of functions, and a set's text has another order in each process.
+FastMathOptions.encode = lambda options: str(sorted(options.flags))
 
 
 class PartCompiler(SourceCompiler):
@@ -85,8 +88,9 @@ class ColdPartCompiler(SourceCompiler):
     library = ColdPartLibrary
 
 
-@extending.typeof_impl.register(jit.Deferred)  # type: ignore[untyped-decorator]
-def _type_of(deferred: jit.Deferred, _context: Any) -> Any:
+@cache
+def type_of(deferred: jit.Deferred) -> Any:
+    """numba's type of what a deferred value stands for."""
     value, typing = deferred.value, cpu_target.typing_context
     typing.refresh()  # numba knows only then of an intrinsic that is new
     return typing.resolve_value_type(value)
@@ -112,7 +116,6 @@ def dispatcher(
         )
     elif no_alias:
         options["pipeline_class"] = NoAliasCompiler
-    # A set's text has another order in each process.
     how = {name: sorted(each) if isinstance(each, set) else each for name, each in options.items()}
     made = _cached(numba.njit(**OPTIONS, **options)(function), function, repr(how))
     if one_version:
@@ -123,8 +126,8 @@ def dispatcher(
     return made
 
 
-@extending.typeof_impl.register(jit.Native)  # type: ignore[untyped-decorator]
-def _type_of_native(native: jit.Native, _context: Any) -> Any:
+def type_of_native(native: jit.Native) -> Any:
+    """numba's type of a function that is called by its name."""
     returned, *arguments = _types(native)
     return types.ExternalFunction(native.name, returned(*arguments))
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from yehu_server.compile.machine_code import SIMULATING
 from yehu_server.core.physics import kernel, layout, refined, time_loop
 from yehu_server.core.physics.bow import friction_bound
 from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 MAX_BYTES = 8 * 2**30
+# What is called, but for what playing calls, by the file that its machine code is kept in.
+COMPILED = {SIMULATING: (time_loop.advance_refined, time_loop.advance_booked)}
 CHUNK = 1 << 14  # frames between two progress reports
 
 

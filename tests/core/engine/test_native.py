@@ -17,14 +17,14 @@ from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine.ensemble import TAPE_FRAMES, Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.engine.warming import all_functions
+from yehu_server.core.engine.warming import all_functions, functions_beside
 from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
 from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
 
 RATE = 22050
-FOR_STUDIES = [call for what in compile_all.CALLED for call in compile_all.functions_of(what)]
+FOR_STUDIES = [call for called in compile_all.MORE.values() for call in functions_beside(called)]
 CALLS = {call.function.__name__: call for call in (*all_functions(), *FOR_STUDIES)}
 
 # Everything that the audio thread may call: none of these waits or allocates.

@@ -45,6 +45,28 @@ def test_how_far_compiling_is_grows_to_all_of_it():
     code.unlink()
 
 
+def test_two_helpers_have_little_to_compile_in_common():
+    functions = warming.all_functions()
+    weights = {function: helpers.weights(function) for function in functions}
+    work = helpers._Work(functions, None)
+    helping = [set(), set()]  # what each has begun
+    busy_for, given = [0.0, 0.0], []
+    while True:
+        turn = busy_for.index(min(busy_for))
+        before = set(helping[turn])
+        if (function := work._next(helping[turn])) is None:
+            break
+        given.append(function)
+        own = weights[function]
+        busy_for[turn] += sum(own[part] for part in helping[turn] - before)
+        busy_for[turn] += sum(own.values()) / helpers.LLVM_FASTER
+    assert sorted(map(id, given)) == sorted(map(id, functions))
+    lengths = {part: length for own in weights.values() for part, length in own.items()}
+    twice = sum(lengths[part] for part in helping[0] & helping[1])
+    assert twice < 0.08 * sum(lengths.values())
+    assert max(busy_for) < 1.1 * min(busy_for)
+
+
 def test_what_a_helper_cannot_compile_is_compiled_at_its_first_use(monkeypatch):
     monkeypatch.setattr(helpers, "python_command", lambda _: [sys.executable, "-c", ""])
     monkeypatch.setattr(warming, "is_warm", lambda: False)

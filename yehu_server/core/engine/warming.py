@@ -6,7 +6,7 @@ compiled, by processes of their own, which leave it in the cache.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 
 from yehu_server.compile import machine_code
@@ -31,7 +31,8 @@ CALLED = (
     taped,
 )  # fmt: skip
 
-COMPILING = "compiling for this machine, once, for half a minute"
+Compiled = Mapping[str, Sequence[Native]]
+COMPILING = "compiling for this machine, once"
 
 
 @cache
@@ -40,16 +41,29 @@ def all_functions() -> tuple[Native, ...]:
     return tuple(with_called(CALLED))
 
 
-def warm_up(processes: int = 2, progress: Progress | None = None) -> None:
-    """Compile all functions that playing needs, or load them from the cache.
+def functions_beside(called: Sequence[Native]) -> tuple[Native, ...]:
+    """Some functions and those that they call, but for playing's; each after those it calls."""
+    return tuple(call for call in with_called(called) if call not in all_functions())
+
+
+def warm_up(
+    processes: int = 2, progress: Progress | None = None, more: Compiled | None = None
+) -> None:
+    """Compile all functions that playing needs, and more; or load them from the cache.
 
     `processes`: how many compile at a time. Two are sooner ready where nothing else is done
     meanwhile, and take some more of the processors' time.
-    `progress`: called with the weight of what is done, and of all, where something is compiled.
+    `progress`: called with the weight of what is done, and of all, where something is compiled;
+    for each file anew.
+    `more`: what else is called, by the file that its machine code is kept in.
     """
-    if IS_PLAIN or is_warm():
+    if IS_PLAIN:
         return
-    keep_all(all_functions(), machine_code.PLAYING, processes, progress)
+    if not is_warm():
+        keep_all(all_functions(), machine_code.PLAYING, processes, progress)
+    for what, called in (more or {}).items():
+        if not all(function.is_kept for function in called):
+            keep_all(functions_beside(called), what, processes, progress)
 
 
 def keep_all(

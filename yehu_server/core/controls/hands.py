@@ -63,6 +63,7 @@ ONSET_FROM = 0.4  # of /vibrato/onset, below which there is no vibrato
 # In tremolo the bow's speed is a sine times this, clipped to -1..1: mostly full speed. The deeper
 # a tremolo is, the nearer its speed is to a sine squared.
 TURN = 3.0
+MEETS_AT = 0.5  # of its speed, at which a bow meets the other string; tried at 0 to 1
 LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction when tremolo ends
 ARRIVED = 1e-6  # m; as near as this to where the sounding length ends, the bow's place is there
 # A contact that moves costs more than one that stands, so places drift every so many samples, by
@@ -123,7 +124,7 @@ def advance_tremolo(c: Any) -> None:
 
 
 @compiled_exactly
-def pass_still(c: Any, frames: int) -> None:
+def advance_phases(c: Any, frames: int) -> None:
     """Advance the controls by frames in which they stand still: phases go on. See `is_still`."""
     for _ in range(frames):
         advance_vibrato(c)
@@ -235,12 +236,13 @@ def is_still(c: Any) -> bool:
 
 
 @compiled
-def cross(c: Any, speed: float, side: float) -> tuple[float, float, float]:
+def cross_strings(c: Any, speed: float, side: float) -> tuple[float, float, float]:
     """Carry the bow from one string to the other.
 
     It comes to rest on the string that it leaves, which friction at a bow at rest soon damps, and
-    its weight leaves that slowly enough not to pluck it. It meets the other string at rest, so that
-    this begins by a bow that accelerates, while its force rises [Guettler].
+    its weight leaves that slowly enough not to pluck it. It meets the other string at a part of its
+    speed and accelerates, while its weight comes in half the time in which it left: with less force
+    for that speed a high note slips twice in a period, and is heard an octave up [Guettler].
 
     Returns
     -------
@@ -252,14 +254,16 @@ def cross(c: Any, speed: float, side: float) -> tuple[float, float, float]:
         Share of that force on the string, by its sign the inner (positive) or the outer one.
     """
     if side * c.target[SIDE] < 0.0:
-        if side * c.left_side <= 0.0:
-            c.left_side, c.left_speed = side, speed
-        left = side / c.left_side
-        return c.left_speed * max(0.0, 2.0 * left - 1.0), c.left_speed, side * left
-    if side * c.left_side < 0.0:
-        speed = c.value[SPEED] = 0.0
+        if side * c.side_before <= 0.0:
+            c.side_before, c.speed_before = side, speed
+        left = side / c.side_before
+        speed = c.speed_before * max(0.0, 2.0 * left - 1.0)
+        return speed, c.speed_before, side * left * (2.0 - left)
+    if side * c.side_before < 0.0:
+        c.value[SPEED] = MEETS_AT * c.target[SPEED]
         take(c, SPEED, c.target[SPEED], c.remaining[SPEED])
-    c.left_side, c.left_speed = side, speed
+        take(c, SIDE, c.target[SIDE], c.remaining[SIDE] // 2)
+    c.side_before, c.speed_before = side, speed
     return speed, speed, side
 
 
@@ -275,7 +279,7 @@ def write_controls(c: Any, control: Array) -> None:
     advance_drifts(c)
     stop = stop_strings(c, control)
     speed, side = c.value[SPEED] * turn_bow(c), c.value[SIDE]
-    speed, pressing, weight = cross(c, speed, side)
+    speed, pressing, weight = cross_strings(c, speed, side)
     beta, firmness = c.value[POSITION], 1.0
     if c.drifting != 0:
         speed *= 1.0 + c.drift[SPEED_DRIFT]

@@ -54,8 +54,8 @@ CONTROLS = np.dtype(
         ("tuning", np.float64, STRINGS),
         ("loss", np.float64, STRINGS),
         # Side and speed of the bow when it last did not go from one string to the other.
-        ("left_side", np.float64),
-        ("left_speed", np.float64),
+        ("side_before", np.float64),
+        ("speed_before", np.float64),
         ("place", np.float64),  # on the hair, of the string at rest (m)
         # The hands' drift, its change in a sample, whether there is any, and what follows of it:
         # factors on the sounding length and on the bow's distance from the bridge.

@@ -8,7 +8,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled, compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
-from yehu_server.core.controls.hands import is_still, pass_still, write_controls
+from yehu_server.core.controls.hands import advance_phases, is_still, write_controls
 from yehu_server.core.controls.ramps import (
     TO_BODY,
     TO_LIMITER,
@@ -169,7 +169,7 @@ def sleep(rig: Any, p: Any, c: Any, sounded: Any, begin: int, end: int) -> int:
         if p.ear.next > c.frame:
             until = min(until, p.ear.next)
         done += until - c.frame
-        pass_still(c, until - c.frame)
+        advance_phases(c, until - c.frame)
     write_stage_inputs(c, sounded, begin, done)
     sounded.dry[begin:done] = 0.0
     t = record_at(rig, METERS_AT, METERS)

@@ -169,6 +169,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
             beats = BEATS[p.gesture.row]
             shakes = not (beats or is_plucked(p)) and vibrato.is_sure(p)
             string, position = choose(p, pitch, beats, shakes, wished_speed(p))
+    crosses_strings = string != p.string
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
     begin_pressure_correction(p, pitch)
@@ -178,7 +179,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     set_assist(p, c)
     set_level(p, c)
     set_bow_pressure(p, c)
-    if not is_legato:
+    if not is_legato or crosses_strings:
         right_hand.bite(p, c)
     if is_plucked(p):
         right_hand.pluck(p, c, side_of(p))

@@ -52,8 +52,9 @@ from yehu_server.params.table import find
 
 Array = Any
 
-# Most time in which the bow changes to the other string; it meets that after half of it.
-CROSSING_MS = 36.0
+# Part of the time of an attack or a slur in which the bow changes to the other string, and the most
+# time; it meets that string half-way. Sooner, the string left rings on; later, there is a gap.
+CROSSING_PART, CROSSING_MS = 0.65, 36.0
 PUT_AWAY_MS = 20.0  # before a pluck
 SLURRED_MS = 25.0  # ramp of bow speed from one slurred note to the next
 # Bow speed at dynamics 0, as a fraction of that at full dynamics. By ear.
@@ -121,7 +122,10 @@ def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
 
 @compiled_exactly
 def bite(p: Any, c: Any) -> None:
-    """Begin a hard stroke with more pressure, and one on the inner string with less."""
+    """Begin a hard note with more pressure, and one on the inner string with less.
+
+    So begin strokes, and slurred notes on the other string, which was at rest.
+    """
     usual = p.sent[BOW_PRESSURE]
     begins, ms = struck_bite(p) * usual, BITE_MS
     if p.string == 0:
@@ -146,7 +150,7 @@ def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
     if p.side == 0.0:
         ramp_ms = attack_ms(p)
     is_on_string = c.value[SIDE] * side < 0.0 or p.side != 0.0
-    crossing_ms = min(ramp_ms, CROSSING_MS) if is_on_string else ramp_ms / 4.0
+    crossing_ms = min(CROSSING_PART * ramp_ms, CROSSING_MS) if is_on_string else ramp_ms / 4.0
     p.side = side
     move(p, c, BOW_SIDE, side, crossing_ms)
     move(p, c, BOW_TREMOLO, tremolo_of(p), USUAL_MS)

@@ -3,7 +3,7 @@
 A C program, or a page, gives the memory of an instrument (`size` bytes, aligned to 64), prepares
 it, posts events, and computes blocks; nothing is allocated. `post` may run beside `process`, on
 one other thread, and on that one `midi`, `control` and `use_tables`, which post too; so may
-`frame`, `value`, `pitch`, `look` and `lost`, which only read.
+`frame`, `value`, `pitch`, `snapshot` and `lost`, which only read.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from yehu_server.core.engine import native as engine
 from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine import voice_callback
 from yehu_server.core.engine.atomics import at, load_acquire, record_at
-from yehu_server.core.engine.look import look
 from yehu_server.core.engine.mailbox import SERVER
 from yehu_server.core.engine.native import post_to
 from yehu_server.core.engine.output import OUTPUT
+from yehu_server.core.engine.snapshot import snapshot
 from yehu_server.core.midi.events import CONTROL, MESSAGE, TABLES_TO
 from yehu_server.core.midi.packing import BYTE, LENGTH_AT
 from yehu_server.core.midi.record import MIDI, NONE
@@ -309,5 +309,5 @@ def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> 
     put, told = putting(rates, images), telling(sources)
     beginning = [Native(prepare, calls=[put]), Native(reset, calls=[put, find_values])]
     posting = [engine.post, midi, control, use_tables]
-    reading = [frame, value, pitch, look, lost]
+    reading = [frame, value, pitch, snapshot, lost]
     return [told, size, *beginning, *posting, process, *reading, *FOLLOWING]

@@ -22,20 +22,20 @@ constexpr float CHOOSERS_X = 12, CHOOSER_STEP = 220, CHOOSER_WIDTH = 216, CHOOSE
 constexpr float ARROW = 26, ZOOM_X = 628, ZOOM_Y = 20;
 
 constexpr int CHOSEN[] = {PRESET, MAPPING, TUNING};
-constexpr double LEAST_SWING = 0.15e-3, KEPT = 0.995; /* m, and of the swing from look to look */
+constexpr double LEAST_SWING = 0.15e-3, KEPT = 0.995; /* m, and of the swing from one snapshot to the next */
 constexpr float SWING = 26, HAIR_LENGTH = 108;
 constexpr double SILENT = 1e-4, CERTAIN = 0.8, TWICE = 1.5; /* as the page has them */
 constexpr int PERCENTS[] = {75, 100, 125, 150, 200, 250, 300};
 
 /* The string's motion, from what the ear hears, and its colour. */
-const char *regime_of(const struct yehu_look &look, double most, uint32_t *colour) {
+const char *regime_of(const struct yehu_snapshot &seen, double most, uint32_t *colour) {
     *colour = SOFT;
-    if (look.string < 0 || look.speed == 0.0) return look.rms > SILENT ? "rings by itself" : "at rest";
-    if (look.certainty == 0.0) return "not heard yet";
-    const bool slips = look.slips >= TWICE;
-    *colour = look.certainty >= CERTAIN && !slips ? GOOD : BAD;
-    if (look.certainty >= CERTAIN) return slips ? "slips too often" : "Helmholtz motion";
-    return look.force > most ? "raucous" : slips ? "slips too often" : "not settled";
+    if (seen.string < 0 || seen.speed == 0.0) return seen.rms > SILENT ? "rings by itself" : "at rest";
+    if (seen.certainty == 0.0) return "not heard yet";
+    const bool slips = seen.slips >= TWICE;
+    *colour = seen.certainty >= CERTAIN && !slips ? GOOD : BAD;
+    if (seen.certainty >= CERTAIN) return slips ? "slips too often" : "Helmholtz motion";
+    return seen.force > most ? "raucous" : slips ? "slips too often" : "not settled";
 }
 
 float share_of(double value, double lo, double hi) { return (float)fmin(fmax((value - lo) / (hi - lo), 0.0), 1.0); }
@@ -136,7 +136,7 @@ void Face::put() {
     is_stale = false;
 }
 
-/* Look at the instrument; whether what is shown has changed. */
+/* Take a snapshot; whether what is shown has changed. */
 bool Face::follow() {
     bool has_changed = false;
     for (int i = 0; i < CHOOSERS; i++) {
@@ -145,7 +145,7 @@ bool Face::follow() {
         chosen[i] = now;
     }
     const double before = seen.frame;
-    if (!instrument.look(&seen) || seen.frame == before) return has_changed;
+    if (!instrument.snapshot(&seen) || seen.frame == before) return has_changed;
     const bool rests = seen.string < 0 && !(seen.rms > SILENT);
     if (rests && is_at_rest) return has_changed;
     is_at_rest = rests;
@@ -192,7 +192,7 @@ void Face::draw_instrument() {
     if (seen.string >= 0) canvas.disc(LOOP_X + along * (float)seen.bow_x, LANES[string], 4, STRING_COLOURS[string]);
 }
 
-/* Its motion about the middle of the latest looks, which are seen behind the last one. */
+/* Its motion about the middle of the latest snapshots, which are seen behind the last one. */
 void Face::draw_string(int string) {
     float points[2 * POINTS], middle[POINTS] = {};
     const bool moves = seen.rms > SILENT && (seen.string < 0 || seen.string == string);

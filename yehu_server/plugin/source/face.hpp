@@ -1,5 +1,5 @@
 /* The plug-in's own window: strings, bow and fingers as they move, what is heard, and preset, mapping
- * and tuning to choose. It looks at the instrument from the host's main thread (`yehu_look`), and
+ * and tuning to choose. It takes snapshots of the instrument (`yehu_snapshot`) on the host's main thread, and
  * is nothing while it is closed: no memory, window or timer.
  */
 #ifndef YEHU_FACE_HPP
@@ -62,7 +62,7 @@ private:
     int wide = WIDTH, high = HEIGHT;
     bool is_stale = true, is_at_rest = false;
     int focus = 0, chosen[CHOOSERS] = {-1, -1, -1};
-    struct yehu_look seen = {};
+    struct yehu_snapshot seen = {};
     float shapes[STRINGS][SHAPES][POINTS] = {}; /* m; the latest at `latest` */
     int latest = 0;
     float swing = 0.0f; /* m, the greatest of late */

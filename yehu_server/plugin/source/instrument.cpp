@@ -112,8 +112,8 @@ void Instrument::edit(int parameter, double value) {
     flag(moved_bits, parameter);
 }
 
-bool Instrument::look(struct yehu_look *into) const {
-    if (rig) code.look(rig, into);
+bool Instrument::snapshot(struct yehu_snapshot *into) const {
+    if (rig) code.snapshot(rig, into);
     return rig != nullptr;
 }
 

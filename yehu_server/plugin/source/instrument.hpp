@@ -63,7 +63,7 @@ public:
     bool was_moved(int parameter);
 
     /* What is to be seen of it, from the main thread; false before `begin`. */
-    bool look(struct yehu_look *into) const;
+    bool snapshot(struct yehu_snapshot *into) const;
 
     /* State as text; `save` returns its length, which may be more than `size`. */
     size_t save(char *into, size_t size) const;

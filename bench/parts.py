@@ -4,7 +4,7 @@
 
 Each part of a step waits for the one before, so the time of a part by itself says little.
 The first table is of the whole kernel with ever more to do: nanoseconds (the fastest of many short
-runs), and instructions, counted by single steps (Linux on x86-64). The second tells how much faster
+runs), and instructions, counted by single steps (Linux on x86-64). The second shows how much faster
 the loop becomes when one part is replaced by next to nothing, each in its own process. The model
 still sounds there, more or less; a part that others wait for counts with their waiting. The third
 is of torsion and wide hair, whose kernel is another: by the fastest of many short runs of it and of

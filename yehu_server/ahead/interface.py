@@ -282,12 +282,12 @@ def reset(rig: Any) -> None:
             post_to(rig, SERVER, 0, WRITE, row, wished, 0.0)
 
 
-def telling(sources: str) -> Native:
-    """Make the function `sources`, which tells a hash of 16 hex digits as a number."""
+def sources_function(sources: str) -> Native:
+    """Make the function `sources`, which returns a hash of 16 hex digits as a number."""
     number = np.uint64(int(sources, 16)).astype(np.int64)
 
     def sources_number() -> int:
-        """Tell what it was made from: YEHU_SOURCES, as a number."""
+        """Return what it was made from: YEHU_SOURCES, as a number."""
         return int(number)
 
     made = native(sources_number)
@@ -306,8 +306,8 @@ FOLLOWING = [
 
 def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> list[Native]:
     """List all functions of the interface, for the images and the hash of sources given."""
-    put, told = putting(rates, images), telling(sources)
+    put, made_from = putting(rates, images), sources_function(sources)
     beginning = [Native(prepare, calls=[put]), Native(reset, calls=[put, find_values])]
     posting = [engine.post, midi, control, use_tables]
     reading = [frame, value, pitch, snapshot, lost]
-    return [told, size, *beginning, *posting, process, *reading, *FOLLOWING]
+    return [made_from, size, *beginning, *posting, process, *reading, *FOLLOWING]

@@ -26,7 +26,7 @@ VST3 = ("vst3.cpp", "vst3_processor.cpp", "vst3_controller.cpp")
 # Of the window, where a system has one (`System.window`).
 FACE = ("canvas.cpp", "face.cpp")
 HEADER_FILE = "carried.h"
-# Where the formats' headers may lie, what tells that they do, and the Debian package that has them.
+# Where headers of the formats may lie, a file by which they are known, and their Debian packages.
 SYSTEM, DPF = Path("/usr/include"), Path("/usr/share/dpf/distrho/src")
 XCB = Path("xcb/xcb.h")
 FLAGS = (

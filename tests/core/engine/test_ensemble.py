@@ -108,13 +108,13 @@ def test_after_a_process_died_all_go_on_at_one_frame_and_nothing_sounds():
     assert ensemble.lost_states == 0
 
 
-def test_all_tell_the_time_by_one_clock():
+def test_all_take_the_time_from_one_clock():
     ensemble = trio()
     both(ensemble, 4000, block=333)
     now_ns = time.monotonic_ns()
-    told = [instrument.frame_at(now_ns) for instrument in ensemble.instruments]
-    assert told == [ensemble.frame_at(now_ns)] * 3
-    assert told[0] > 0.0
+    frames = [instrument.frame_at(now_ns) for instrument in ensemble.instruments]
+    assert frames == [ensemble.frame_at(now_ns)] * 3
+    assert frames[0] > 0.0
 
 
 def test_one_channel_has_the_mean_of_both_and_further_ones_have_left_and_right_in_turn():

@@ -246,7 +246,7 @@ def come_to_rest(rig: Any, model: Array, state: Array) -> None:
 
 @compiled_with_aliasing
 def write_output(rig: Any, dry: Array, first: int, start: int, end: int) -> None:
-    """Make samples of some rows of the probes, which begin at frame `first`; tell the ear."""
+    """Make samples of some rows of the probes, the first of frame `first`; the ear has them too."""
     o = record_at(rig, OUTPUT_AT, OUTPUT)
     t = record_at(rig, METERS_AT, METERS)
     heard = carray(at(rig, EAR_BUFFER_AT), (2 * EAR_SAMPLES,), np.float64)

@@ -108,7 +108,7 @@ def receive(m: Any, t: Any, frame: int, index: int) -> None:
 
 @compiled_exactly
 def count_malformed(m: Any, index: int) -> None:
-    """Count what is no message, and keep it for `status` to tell."""
+    """Count what is no message, and keep it for `status` to report."""
     m.malformed += 1
     m.malformed_last = index
 

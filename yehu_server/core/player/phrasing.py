@@ -1,7 +1,7 @@
 """What the player adds to plain notes: vibrato, slides, and small differences by chance. Compiled.
 
 Vibrato and slides only as far as `/playing/phrasing` says, and where nothing else is wished.
-docs/playing.md tells the rules.
+docs/playing.md has the rules.
 """
 
 from __future__ import annotations

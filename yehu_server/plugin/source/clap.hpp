@@ -29,9 +29,9 @@ inline Plugin &of(const clap_plugin_t *plugin) { return *(Plugin *)plugin->plugi
 /* The extension of notes, by its name, or null. */
 const void *note_extension(const char *id);
 /* From the thread that changes parameters: see whether keys have other names. Then, on the main
- * thread, tell the host. */
+ * thread, report it to the host. */
 void watch_names(Plugin &plugin);
-void tell_names(const Plugin &plugin);
+void report_names(const Plugin &plugin);
 
 #ifdef YEHU_FACE
 /* The extension of a window, by its name, or null. */

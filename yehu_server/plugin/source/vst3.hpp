@@ -23,7 +23,7 @@ struct Vst3 {
     const void *tables[INTERFACES]; /* first: see `of` */
     std::atomic<uint32_t> references;
     double rate;
-    double shown[PARAMETERS]; /* 0 to 1: what the host told the controller */
+    double shown[PARAMETERS]; /* 0 to 1: what the host set the controller to */
     v3_component_handler **handler; /* of the host; or null */
     Instrument instrument;
 };

@@ -124,7 +124,7 @@ v3_result V3_API set_scale(void *self, float scale) {
 
 void V3_API on_timer(void *self) { viewed<TIMER>(self).face.tick(); }
 
-/* The host tells the processor, too; what else moves is told by that. */
+/* The host sets the processor, too, which reports what else moves. */
 void edit(void *owner, int parameter, double value) {
     Vst3 &plugin = *((View *)owner)->plugin;
     const double unit = to_unit(parameter, value);

@@ -82,12 +82,12 @@ class PlayingOptions:
         *,
         start_values: Values[str, float] | None = None,
         body: int = 0,
-        person: int = 0,
+        player_number: int = 0,
     ) -> InstrumentSpec:
         """An instrument at a rate (Hz), calibrated, with a player with these options.
 
         `quantities`: the instrument as it is before it is tuned.
-        `start_values`, `body`, `person`: see `InstrumentSpec`.
+        `start_values`, `body`, `player_number`: see `InstrumentSpec`.
         """
         return InstrumentSpec(
             rate,
@@ -98,7 +98,7 @@ class PlayingOptions:
             seed=self.seed,
             start_values=start_values or {},
             body=body,
-            person=person,
+            player_number=player_number,
         )
 
     def wishes(self, instruments: Instrument | Sequence[Instrument]) -> WishPoster:

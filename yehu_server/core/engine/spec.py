@@ -38,7 +38,7 @@ class InstrumentSpec:
         Values of parameters at the start, by address; others have their default.
     body : int
         Which of many bodies it has, for what differs to both sides.
-    person : int
+    player_number : int
         Which player of a section it is, counted from 0.
     """
 
@@ -50,7 +50,7 @@ class InstrumentSpec:
     bowing: Any = field(default_factory=default_recipes, compare=False)
     start_values: Mapping[str, float] = field(default_factory=dict)
     body: int = 0
-    person: int = 0
+    player_number: int = 0
 
     @property
     def notes(self) -> NoteRange:

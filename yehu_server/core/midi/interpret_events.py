@@ -150,7 +150,7 @@ def wish(m: Any, frame: int, kind: int, index: int, value: float, other: float) 
     is_right = math.isfinite(value) and math.isfinite(other)
     if kind in (WRITE, HOLD, EXPRESS):
         is_right = is_right and 0 <= index < ROWS
-    if m.people == 1:  # as it is: it may be one of a replay
+    if m.players == 1:  # as it is: it may be one of a replay
         if is_right:
             record_wish(m, kind, index, value, other)
         emit(m, 0, frame, kind, index, value, other)

@@ -107,7 +107,7 @@ PLAYER = np.dtype(
         ("speed_variation", np.float64),  # factor on the bow's speed
         ("weight", np.float64),  # factor on the bow's pressure
         ("detuned", np.float64),  # semitones, at full variation
-        ("person", np.int64),  # of a section, counted from 0
+        ("player_number", np.int64),  # of a section, counted from 0
         ("seed", np.int64),
         ("drawn", np.int64),
         ("drift_state", DRIFT_STATE),  # drift and tremor
@@ -142,7 +142,7 @@ def prepare_player(
     open_strings: OpenStrings = OpenStrings.ALWAYS,
     bowing: Any = None,
     seed: int = 0,
-    person: int = 0,
+    player_number: int = 0,
 ) -> Any:
     """Prepare the record of a player who holds nothing.
 
@@ -159,7 +159,7 @@ def prepare_player(
         By default `default_recipes`.
     seed : int
         Of the variation between notes.
-    person : int
+    player_number : int
         Which of a section it is; each but the first has a vibrato of their own.
 
     Returns
@@ -183,7 +183,7 @@ def prepare_player(
     prepare_ear(p["ear"], rate)
     p["gesture"] = RESTING
     p["speed_variation"] = p["weight"] = p["pace"] = 1.0
-    p["seed"], p["person"] = seed, person
+    p["seed"], p["player_number"] = seed, player_number
     p["bridge_x"] = quantities.bridge_x
     p["wave_speed"] = [wave_speed(quantities, string) for string in range(STRINGS)]
     p["a4"] = 440.0

@@ -39,7 +39,7 @@ HEARD_S = 0.6  # of a note, from which on one hears it
 # It is narrower near the nut [Pop]: its share there, and from where on it is whole.
 AT_NUT, WHOLE_FROM = 0.6, 6.0  # semitones above the open string
 FADING_MS = 600.0  # after the last note
-# How people of a section differ in rate, depth and delay of their vibrato, and its least factor.
+# How players of a section differ in rate, depth and delay of their vibrato, and its least factor.
 OTHER_RATE, OTHER_DEPTH, OTHER_DELAY = 0.3, 0.9, 1.2
 LEAST_OTHER = 0.4
 FRAMES_FROM = 3 << 30  # of the seed's numbers: those that frames have; `drift` has some before
@@ -65,10 +65,10 @@ def set_vibrato(p: Any, c: Any) -> None:
 
 @compiled_exactly
 def begin_vibrato(p: Any, c: Any) -> None:
-    """Fade in the vibrato of a new note; people of a section begin at other phases of it."""
+    """Fade in the vibrato of a new note; players of a section begin at other phases of it."""
     delay_ms = VIBRATOS[p.gesture.row, DELAY_MS] if has_vibrato(p) else wished_delay_ms(p)
     delay_ms *= other_factor(p, 2, OTHER_DELAY)
-    if p.person != 0 and p.value[VARIATION] > 0.0 and delay_ms > 0.0:
+    if p.player_number != 0 and p.value[VARIATION] > 0.0 and delay_ms > 0.0:
         c.vibrato = phase_of(p, c)
     move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
     if delay_ms > 0.0:
@@ -131,7 +131,7 @@ def steep_row(p: Any) -> int:
 
 @compiled_exactly
 def other_factor(p: Any, number: int, varied: float) -> float:
-    """A factor that a person of a section has for good; 1 for the first of them, or one alone.
+    """A factor that each player of a section has for good; 1 for the first of them, or one alone.
 
     Parameters
     ----------
@@ -140,9 +140,9 @@ def other_factor(p: Any, number: int, varied: float) -> float:
     varied : float
         Its standard deviation at full variation.
     """
-    if p.person == 0:
+    if p.player_number == 0:
         return 1.0
-    differs = math.sqrt(3.0) * chance((p.person << 32) + number)
+    differs = math.sqrt(3.0) * chance((p.player_number << 32) + number)
     return float(max(1.0 + p.value[VARIATION] * varied * differs, LEAST_OTHER))
 
 

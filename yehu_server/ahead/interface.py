@@ -38,7 +38,7 @@ from yehu_server.core.midi.values import NO_KEY, find_values
 from yehu_server.core.physics.layout import STATE
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import MOST_HELD, PLAYER
-from yehu_server.core.player.rows import IS_ENGINES, IS_OWNED, ROWS, SLOT_OF
+from yehu_server.core.player.rows import IS_ENGINES, IS_PLAYER_CONTROLLED, ROWS, SLOT_OF
 from yehu_server.core.player.wishes import HOLD, RAMP, WISH, WRITE
 from yehu_server.core.stage.late_field import LINES
 from yehu_server.core.stage.record import STAGE, TAPE_AT
@@ -276,7 +276,7 @@ def reset(rig: Any) -> None:
         wished, is_held = m.value[row], m.is_held[row] != 0
         if is_held:
             post_to(rig, SERVER, 0, HOLD, row, wished, 0.0)
-        elif not IS_OWNED[row] and wished != p.value[row]:
+        elif not IS_PLAYER_CONTROLLED[row] and wished != p.value[row]:
             if IS_ENGINES[row]:  # at once
                 post_to(rig, SERVER, 0, RAMP, SLOT_OF[row], wished, 0.0)
             post_to(rig, SERVER, 0, WRITE, row, wished, 0.0)

@@ -23,7 +23,14 @@ ROWS_MODULE, SLOTS_MODULE = "yehu_server.core.player.rows", "yehu_server.core.co
 ROW, SLOT = "a row", "a slot"
 OTHER = {ROW: SLOT, SLOT: ROW}
 MAPS = {"ROW": ROW, "SLOT": SLOT, "SLOT_OF": SLOT}  # from an address, or a row
-OF_ROWS = {"SLOT_OF", "IS_OWNED", "IS_ENGINES", "SMOOTH_MS", "LOWEST", "HIGHEST"}  # vectors
+OF_ROWS = {
+    "SLOT_OF",
+    "IS_PLAYER_CONTROLLED",
+    "IS_ENGINES",
+    "SMOOTH_MS",
+    "LOWEST",
+    "HIGHEST",
+}  # vectors
 POSTED = {"RAMP": SLOT, **dict.fromkeys(("WRITE", "HOLD", "EXPRESS", "SET", "LOAD"), ROW)}
 LISTS = ("target", "values_row", "values_value")  # of MIDI: indexed by place, not by row
 

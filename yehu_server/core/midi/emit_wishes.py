@@ -21,7 +21,7 @@ from yehu_server.core.midi.section import (
     set_playing_count,
 )
 from yehu_server.core.midi.section_players import DISTANCE_ROW, GAIN_ROW, PAN_ROW, begin_sequence
-from yehu_server.core.player.rows import HIGHEST, IS_OWNED, LOWEST, SEED
+from yehu_server.core.player.rows import HIGHEST, IS_PLAYER_CONTROLLED, LOWEST, SEED
 from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, HOLD, RELEASE, STOP, WRITE
 
 # -- parameters -----------------------------------------------------------------------------------
@@ -58,7 +58,7 @@ def write(
     value = in_range(row, value)
     if row == SECTION:
         value = min(np.rint(value), float(m.players))
-    if not IS_OWNED[row]:
+    if not IS_PLAYER_CONTROLLED[row]:
         if m.is_held[row] != 0 and not hold:
             value = m.value[row]
             if row == SEED and m.players > 1:
@@ -160,7 +160,7 @@ def record_wish(m: Any, kind: int, index: int, value: float, other: float) -> No
     if kind in (WRITE, HOLD, EXPRESS):
         if kind == HOLD:
             m.is_held[index] = 1
-        if not IS_OWNED[index] and (kind == HOLD or m.is_held[index] == 0):
+        if not IS_PLAYER_CONTROLLED[index] and (kind == HOLD or m.is_held[index] == 0):
             m.value[index] = in_range(index, value)
     elif kind == BEGIN:
         hold_key(m, index, value, 0.0, 0, NONE)

@@ -1,7 +1,7 @@
 """Which parameters of bow and fingers the player may move. Compiled.
 
-A direct write to a parameter marked ``owned`` takes it over until the next note begins. A
-parameter written with ``hold`` keeps its value, whatever notes and controllers do
+A direct write to a parameter marked ``owned`` takes it over until the next note begins.
+A parameter written with ``hold`` keeps its value, whatever notes and controllers do
 (decisions/0006).
 """
 

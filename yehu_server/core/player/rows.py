@@ -10,7 +10,7 @@ from yehu_server.params.table import FINGERS, SLOT, TABLE
 ROW = {param.address: row for row, param in enumerate(TABLE)}
 ROWS = len(TABLE)
 SLOT_OF = np.array([SLOT.get(param.address, -1) for param in TABLE])  # -1: not the engine's
-IS_OWNED = np.array([param.owned for param in TABLE])
+IS_PLAYER_CONTROLLED = np.array([param.owned for param in TABLE])
 IS_ENGINES = np.array([param.place is Place.ENGINE for param in TABLE])
 LOWEST, HIGHEST = np.array([param.lo for param in TABLE]), np.array([param.hi for param in TABLE])
 SMOOTH_MS = np.array([param.smooth_ms for param in TABLE])

@@ -41,7 +41,7 @@ from yehu_server.core.player.rows import (
     EXPRESSION,
     HIGHEST,
     IS_ENGINES,
-    IS_OWNED,
+    IS_PLAYER_CONTROLLED,
     LISTENING,
     LOWEST,
     PHRASING,
@@ -135,7 +135,7 @@ def in_range(row: int, value: float) -> float:
 @compiled_exactly
 def write(p: Any, c: Any, row: int, value: float, hold: bool, glide_ms: float) -> None:
     """Set a parameter; the moves of bow and fingers that follow take at least `glide_ms`."""
-    if IS_OWNED[row]:
+    if IS_PLAYER_CONTROLLED[row]:
         write_directly(p, c, row, value, hold)
         return
     if hold:

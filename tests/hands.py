@@ -25,7 +25,7 @@ DECIDED = (
     "value",
     "finger_pitch",
     "position",
-    "recipe",
+    "bowing",
     "balance",
     "speed_variation",
     "weight",

@@ -22,7 +22,7 @@ from yehu_server.core.player.bowing import (
     LAST,
     PLACES,
     TOP_SPEED,
-    default_recipes,
+    default_bowing_table,
 )
 from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.errors import ParameterError, ScoreError
@@ -60,7 +60,7 @@ NAN = float("nan")
 
 def practised() -> np.ndarray:
     """A table that somebody might have practised."""
-    table = default_recipes()
+    table = default_bowing_table()
     chance = np.random.default_rng(1)
     table[:, 1:, 3:20] *= chance.uniform(0.8, 1.25, table[:, 1:, 3:20].shape)
     table[1, :, -1, TOP_SPEED] = 0.11
@@ -108,7 +108,7 @@ def render(command, tmp_path, tune):
 
 def test_a_table_that_was_written_is_read_back(tmp_path):
     path = tmp_path / "mine.json"
-    for table in (practised(), default_recipes(), shipped_practice(RATE)):
+    for table in (practised(), default_bowing_table(), shipped_practice(RATE)):
         write_practice(path, table, RATE)
         np.testing.assert_allclose(read_practice(path), table, atol=1.1e-4)
     again = read_practice(path)
@@ -117,7 +117,7 @@ def test_a_table_that_was_written_is_read_back(tmp_path):
 
 
 def test_only_notes_that_are_bowed_otherwise_are_written():
-    table = default_recipes()
+    table = default_bowing_table()
     usual = as_data(table, RATE)["bowing"]
     assert not any(notes for places in usual.values() for notes in places.values())
     table[0, PLACE, 70 - FIRST, AT_LIGHT] = 0.7
@@ -205,7 +205,7 @@ def test_the_practice_beside_an_instrument_is_found_where_it_is_a_file(tmp_path)
 def test_what_is_shipped_is_within_bounds():
     for rate in (44100.0, 48000.0, 96000.0):
         table = shipped_practice(rate)
-        assert table.shape == default_recipes().shape
+        assert table.shape == default_bowing_table().shape
         assert np.all((table >= LOWEST) & (table <= HIGHEST))
         positions = table[..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
         assert 0.05 < positions.min() < positions.max() < 0.5
@@ -251,7 +251,7 @@ def test_a_mode_that_drowns_a_note_is_not_taken_for_it():
 
 
 def test_the_score_of_a_manner_is_always_the_same(practice):
-    manner = default_recipes()[0, PLACE, 70 - FIRST]
+    manner = default_bowing_table()[0, PLACE, 70 - FIRST]
     search = Search(0, 70, PLACE, manner)
     scores = {practice.score(search, manner, PASSAGES) for _ in range(3)}
     assert len(scores) == 1
@@ -274,7 +274,7 @@ def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late
     monkeypatch.setattr(practising, "_speaks", speaks)
     monkeypatch.setattr(practising, "has_pitch", lambda *_: True)
     practice = Practice(RATE, Quantities(), calibration_for(RATE), tuning=lambda key: key + 0.35)
-    manner = default_recipes()[0, PLACE, 70 - FIRST]
+    manner = default_bowing_table()[0, PLACE, 70 - FIRST]
     assert practice.score(Search(0, 70, PLACE, manner), manner, PASSAGES) == 1.0
     assert set(played) == {70.35}
     each_s = BEFORE_S + EACH_S

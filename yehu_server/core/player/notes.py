@@ -12,7 +12,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.slots import SILENCE, SPEED
 from yehu_server.core.player import left_hand, right_hand, velocity, vibrato
-from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
+from yehu_server.core.player.bowing import LEAST_PRESS, bowing_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import choose, choose_for_slide, stay
 from yehu_server.core.player.gestures import (
@@ -309,7 +309,7 @@ def least_press(p: Any, string: int) -> float:
     if p.sounding < 0:
         return 0.0
     stopped = in_tables(p, string, note_pitch(p))
-    return recipe_value(p.bowing, string, p.value[POSITION], stopped, LEAST_PRESS)
+    return bowing_value(p.bowing_table, string, p.value[POSITION], stopped, LEAST_PRESS)
 
 
 @compiled_exactly
@@ -352,7 +352,7 @@ def follow_pitch(p: Any, c: Any, slide_ms: float) -> None:
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     if string != before:
         begin_tuning(p, pitch)
-    if string != before or not right_hand.has_same_recipe(p, pitch):
+    if string != before or not right_hand.is_bowed_alike(p, pitch):
         set_bow_pressure(p, c)
         draw_on(p, c)
     if pitch != was:

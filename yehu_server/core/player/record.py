@@ -9,7 +9,7 @@ import numpy as np
 
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import DEFAULT_RECIPE, PLACES, RECIPE, default_recipes
+from yehu_server.core.player.bowing import BOWING_SIZE, DEFAULT_BOWING, PLACES, default_bowing_table
 from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
 from yehu_server.core.player.calibration import (
     GAINS,
@@ -83,7 +83,7 @@ PLAYER = np.dtype(
         (
             "corrects_pressure",
             np.int64,
-        ),  # 0 during practice: pitch is corrected, bow pressure is not
+        ),  # 0 while the bowing table is searched: pitch is corrected, bow pressure is not
         ("pressure_factor", np.float64),  # factor on the bow's pressure
         # The fault in the last hop, and for how many hops; below 0: before a correction is judged.
         ("fault", np.int64),
@@ -99,7 +99,7 @@ PLAYER = np.dtype(
         ("direction", np.float64),  # of the stroke
         ("pace", np.float64),  # factor on the bow's speed, so that its hair lasts
         ("side", np.float64),  # /bow/side; 0 where the bow is lifted
-        ("recipe", np.float64, RECIPE),  # how the sounding pitch is bowed
+        ("bowing", np.float64, BOWING_SIZE),  # how the sounding pitch is bowed
         ("hurry", np.float64),  # of a stroke soon after another: 0 to 1
         ("balance", np.float64),  # dB
         ("louder_by", np.float64),  # dB, by brilliance
@@ -121,7 +121,7 @@ PLAYER = np.dtype(
         ("levels", np.float64, (STRINGS, NOTES + 1, len(SPEEDS))),  # dB
         ("centroids", np.float64, (STRINGS, NOTES + 1, len(GAINS))),  # Hz
         ("louder", np.float64, (STRINGS, NOTES + 1, len(GAINS))),  # dB
-        ("bowing", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, RECIPE)),
+        ("bowing_table", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, BOWING_SIZE)),
         ("vibrato_table", np.float64, (STEPS, 2)),  # `steepness.vibrato_table`
         ("open_strings", np.int64),  # number of the OpenStrings
     ],
@@ -156,7 +156,7 @@ def prepare_player(
     calibration : Calibration, optional
         By default fingers stop where an ideal string is in tune, and no note is evened out.
     bowing : ndarray
-        By default `default_recipes`.
+        By default `default_bowing_table`.
     seed : int
         Of the variation between notes.
     player_number : int
@@ -178,7 +178,7 @@ def prepare_player(
     p["finger"] = FINGER_COUNT - 1  # so that the first finger comes first
     p["string"], p["position"] = -1, OPEN
     p["direction"] = UP
-    p["recipe"] = DEFAULT_RECIPE
+    p["bowing"] = DEFAULT_BOWING
     p["first_error"], p["pressure_factor"], p["corrects_pressure"] = np.nan, 1.0, 1
     prepare_ear(p["ear"], rate)
     p["gesture"] = RESTING
@@ -198,7 +198,7 @@ def prepare_player(
     p["vibrato_table"] = vibrato_table(
         quantities.body, float(p["a4"]), tuple(notes.open_notes), centroids
     )
-    p["bowing"] = default_recipes() if bowing is None else bowing
+    p["bowing_table"] = default_bowing_table() if bowing is None else bowing
     p["open_strings"] = list(OpenStrings).index(open_strings)
     return player
 

@@ -1,7 +1,8 @@
 """Whether tables that a program gives are right, so that compiled code may index by them. Compiled.
 
-The tables of ``midi.tables`` hold numbers of rows, binds and points. Those that Python writes are
-right; others could lead outside the arrays, or to values that are no numbers.
+The tables of ``midi.tables`` hold indices of parameters, and numbers of binds and points. Those
+that Python writes are right; others could lead outside the arrays, or to values that are no
+numbers.
 """
 
 from __future__ import annotations
@@ -107,8 +108,8 @@ def check_values(t: Tables) -> int:
         if not LOWEST[row] <= t.start_value[n] <= HIGHEST[row]:
             return 0
     for row in range(ROWS):
-        is_divisor = t.usual[row] > 0.0
-        if not LOWEST[row] <= t.usual[row] <= HIGHEST[row] or (is_divisor and t.usual[row] < TINY):
+        usual = t.usual[row]
+        if not LOWEST[row] <= usual <= HIGHEST[row] or 0.0 < usual < TINY:
             return 0
     return 1
 

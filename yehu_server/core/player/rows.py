@@ -17,7 +17,8 @@ SMOOTH_MS = np.array([param.smooth_ms for param in TABLE])
 
 # What the player moves.
 BOW_SPEED, BOW_SIDE = ROW["/bow/speed"], ROW["/bow/side"]
-BOW_FORCE, BOW_PRESSURE, BOW_ASSIST = ROW["/bow/force"], ROW["/bow/pressure"], ROW["/bow/assist"]
+BOW_FORCE, BOW_PRESSURE = ROW["/bow/force"], ROW["/bow/pressure"]
+BOW_ASSIST = ROW["/bow/assist"]
 BOW_POSITION, BOW_TREMOLO = ROW["/bow/position"], ROW["/bow/tremolo"]
 BOW_TREMOLO_DEPTH = ROW["/bow/tremolo_depth"]
 FINGER_COUNT = len(FINGERS)

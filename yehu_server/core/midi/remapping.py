@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.core.midi.controllers import set_directly
 from yehu_server.core.midi.emit_wishes import write
 from yehu_server.core.midi.record import NONE, Midi
 from yehu_server.core.midi.resets import restore_moves
+from yehu_server.core.midi.sources import set_directly
 from yehu_server.core.midi.tables import KEYS, MOST_BINDS, POLY_PRESSURE, Tables
 from yehu_server.core.midi.values import find_values, keep_target
 from yehu_server.core.player.rows import ROWS

@@ -1,7 +1,8 @@
-"""Lets the sounding note follow the controllers of its channel, as tables say. Compiled.
+"""Moves the sources of a mapping, and by its binds parameters of the sounding note. Compiled.
 
-Moves on a channel affect its notes, or all notes (``channels.moves_all``): while one of them
-sounds, and after it until a note of another channel begins.
+A source is a controller, a bend, an aftertouch or a named control. Moves on a channel affect its
+notes, or all notes (``channels.moves_all``): while one of them sounds, and after it until a note of
+another channel begins.
 """
 
 from __future__ import annotations

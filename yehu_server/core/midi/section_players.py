@@ -1,7 +1,7 @@
 """How the players of a section differ: in seed, gain and seat, and in when they begin.
 
 Each player corrects a share, the gain, of how far it was from each of the others at the note
-before [Wing]: A'_i = A_i - gain_i sum_j (A_i - A_j) + an error by chance. Their asynchronies are
+before [Wing]: A'_i = A_i - gain_i sum_j (A_i - A_j) + a random error. Their asynchronies are
 counted from the earliest, which is on time: nobody is early, and nobody later than `LATEST_MS`.
 Compiled.
 """
@@ -15,7 +15,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.record import ONSETS
-from yehu_server.core.physics.elementary import chance, log10
+from yehu_server.core.physics.elementary import log10, pseudorandom
 from yehu_server.core.player.rows import HIGHEST, LOWEST, ROW, SEED, VARIATION
 
 OWN_SEED, GAIN, PAN, DISTANCE = "/engine/seed", "/output/gain", "/room/pan", "/room/distance"
@@ -154,4 +154,4 @@ def draw_errors(m: Any) -> None:
 def uniform(m: Any, lo: float, hi: float) -> float:
     """The next random number of the sequence, within bounds."""
     m.drawn += 1
-    return float(lo + 0.5 * (hi - lo) * (1.0 + chance((m.stream << 32) + m.drawn)))
+    return float(lo + 0.5 * (hi - lo) * (1.0 + pseudorandom((m.stream << 32) + m.drawn)))

@@ -1,4 +1,4 @@
-"""Elementary functions by arithmetic alone, and numbers by chance.
+"""Elementary functions by arithmetic alone, and pseudorandom numbers.
 
 C libraries, and NumPy, differ in their last bits from system to system and from processor to
 processor, and a bowed string is chaotic. So whatever reaches a sample is computed by these. Those
@@ -19,8 +19,8 @@ from yehu_server.compile.jit import arithmetic, compiled
 
 
 @compiled
-def chance(number: int) -> float:
-    """A pseudorandom number in -1..1, the same for the same `number`.
+def pseudorandom(number: int) -> float:
+    """The pseudorandom number, -1 to 1, that belongs to an integer: a hash of it.
 
     Source: [SplitMix], its output function.
     """
@@ -51,7 +51,7 @@ P_7, P_8, P_9 = 1.5252733841556773e-05, 1.3215432535912375e-06, 1.01780570877339
 P_10, P_11 = 7.074194297288521e-09, 4.4558179083360645e-10
 
 
-def half_turn(half_turns: Any) -> tuple[Any, Any]:
+def sin_and_cos_pi(half_turns: Any) -> tuple[Any, Any]:
     """Sine (to 5e-16) and cosine (to 3e-15) of pi times an argument within -1/2 to 1/2.
 
     As Python it takes arrays, too. Real time: safe.
@@ -66,8 +66,8 @@ def half_turn(half_turns: Any) -> tuple[Any, Any]:
     return half_turns * sine, cosine
 
 
-sine_and_cosine = compiled(half_turn)  # for the kernel
-half_turn = arithmetic(half_turn)
+sine_and_cosine = compiled(sin_and_cos_pi)  # for the kernel
+sin_and_cos_pi = arithmetic(sin_and_cos_pi)
 
 
 def exp2(x: float) -> float:
@@ -78,14 +78,14 @@ def exp2(x: float) -> float:
     if math.isnan(x):  # which has no whole number beside it
         return x
     x = min(max(x, LEAST_EXPONENT), MOST_EXPONENT)
-    twos = np.rint(x)
-    t = x - twos
+    exponent = np.rint(x)
+    t = x - exponent
     t_2 = t * t
     t_4 = t_2 * t_2
     low = (P_0 + P_1 * t) + t_2 * (P_2 + P_3 * t)
     middle = (P_4 + P_5 * t) + t_2 * (P_6 + P_7 * t)
     high = (P_8 + P_9 * t) + t_2 * (P_10 + P_11 * t)
-    scale = np.int64((np.int64(twos) + EXPONENT_OF_1) << MANTISSA_BITS).view(np.float64)
+    scale = np.int64((np.int64(exponent) + EXPONENT_OF_1) << MANTISSA_BITS).view(np.float64)
     return float(scale * ((low + t_4 * middle) + (t_4 * t_4) * high))
 
 
@@ -132,8 +132,8 @@ ARC = (
 def exp(x: float) -> float:
     """Return e to the power of `x`, beyond -690 and 690 as there, to 6e-16. Real time: safe."""
     x = min(max(x, -MOST), MOST)
-    twos = np.rint(x / LN_2)
-    return float(exp2(twos) * exp2(((x - twos * LN_2_HIGH) - twos * LN_2_LOW) / LN_2))
+    exponent = np.rint(x / LN_2)
+    return float(exp2(exponent) * exp2(((x - exponent * LN_2_HIGH) - exponent * LN_2_LOW) / LN_2))
 
 
 @arithmetic
@@ -143,21 +143,21 @@ def exp10(x: float) -> float:
 
 
 @arithmetic
-def twos_and_log(x: Any) -> tuple[Any, Any]:
-    """How often 2 goes into a positive normal number, and the natural logarithm of what is left.
+def exponent_and_log(x: Any) -> tuple[Any, Any]:
+    """Binary exponent of a positive normal number, and the natural logarithm of its mantissa.
 
-    As Python it takes arrays, too.
+    The mantissa is between the square roots of 1/2 and of 2. As Python it takes arrays, too.
     """
     bits = np.float64(x).view(np.int64)
-    twos = (bits - BITS_OF_ROOT_HALF) >> MANTISSA_BITS
-    part = np.int64(bits - (twos << MANTISSA_BITS)).view(np.float64)  # root of 1/2 to root of 2
+    exponent = (bits - BITS_OF_ROOT_HALF) >> MANTISSA_BITS
+    part = np.int64(bits - (exponent << MANTISSA_BITS)).view(np.float64)
     # log((1 + s) / (1 - s)) = 2 (s + s^3/3 + s^5/5 + ...)
     s = (part - 1.0) / (part + 1.0)
     t = s * s
     series = 1.0 / 21.0
     for n in range(9, 0, -1):
         series = series * t + 1.0 / (2.0 * n + 1.0)
-    return twos, 2.0 * s + 2.0 * s * t * series
+    return exponent, 2.0 * s + 2.0 * s * t * series
 
 
 @arithmetic
@@ -168,8 +168,8 @@ def log(x: float) -> float:
     """
     if not 0.0 < x < math.inf:
         return -math.inf if x == 0.0 else (x if x > 0.0 else math.nan)
-    twos, rest = twos_and_log(x)
-    return float(twos * LN_2_HIGH + (rest + twos * LN_2_LOW))
+    exponent, rest = exponent_and_log(x)
+    return float(exponent * LN_2_HIGH + (rest + exponent * LN_2_LOW))
 
 
 @arithmetic
@@ -177,8 +177,8 @@ def log2(x: float) -> float:
     """Return the logarithm to base 2; see `log`. That of a power of two is exact."""
     if not 0.0 < x < math.inf:
         return log(x)
-    twos, rest = twos_and_log(x)
-    return float(twos + rest / LN_2)
+    exponent, rest = exponent_and_log(x)
+    return float(exponent + rest / LN_2)
 
 
 @arithmetic
@@ -198,7 +198,7 @@ def sin_and_cos(x: float) -> tuple[float, float]:
     """Sine and cosine of an angle (rad), to 4e-16 and that times `x`. Real time: safe."""
     turns = x / math.pi
     whole = np.rint(turns)
-    sine, half = half_turn(turns - whole)[0], half_turn(0.5 * (turns - whole))[0]
+    sine, half = sin_and_cos_pi(turns - whole)[0], sin_and_cos_pi(0.5 * (turns - whole))[0]
     sign = 1.0 - 2.0 * (whole - 2.0 * math.floor(0.5 * whole))
     return float(sign * sine), float(sign * (1.0 - 2.0 * half * half))
 
@@ -250,8 +250,8 @@ def tanh(x: float) -> float:
 
 def decibels(power: Any) -> Any:
     """Return ten times the logarithm to base 10 of each number of an array, as Python."""
-    twos, rest = twos_and_log(power)
-    return 10.0 / LN_10 * (twos * LN_2 + rest)
+    exponent, rest = exponent_and_log(power)
+    return 10.0 / LN_10 * (exponent * LN_2 + rest)
 
 
 def each(function: Callable[[float], float], values: Iterable[float]) -> Any:

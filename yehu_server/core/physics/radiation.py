@@ -19,9 +19,9 @@ from yehu_server.core.physics.elementary import (
     decibels,
     each,
     exp,
-    half_turn,
     log,
     power,
+    sin_and_cos_pi,
 )
 from yehu_server.core.physics.layout import MAX_SECTIONS, MAX_TAPS, USUAL_SECTIONS
 from yehu_server.core.physics.quantities import Body
@@ -59,7 +59,7 @@ def prepare_radiation(model: np.void, body: Body) -> None:
 
 def unit_delay(frequency_hz: Floats, rate: float) -> tuple[Floats, Floats]:
     """Real and imaginary part of z^-1 at some frequencies (Hz), up to half the rate (Hz)."""
-    minus_cosine, sine = half_turn(2.0 * frequency_hz / rate - 0.5)
+    minus_cosine, sine = sin_and_cos_pi(2.0 * frequency_hz / rate - 0.5)
     return -minus_cosine, -sine
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.elementary import exp10, half_turn, tan
+from yehu_server.core.physics.elementary import exp10, sin_and_cos_pi, tan
 
 Array = Any
 
@@ -74,7 +74,7 @@ def shelf_gain(frequencies: Array, rate: float, gain_db: float, frequency: float
     """Amplitude factor at some frequencies (Hz) up to half the sample rate (Hz), closed form."""
     half = exp10(gain_db / 40.0)
     middle = tan(math.pi * min(frequency / rate, HIGHEST))
-    sine, cosine = half_turn(np.asarray(frequencies) / rate)
+    sine, cosine = sin_and_cos_pi(np.asarray(frequencies) / rate)
     t = sine / cosine / middle
     t_2 = t * t
     damped = math.sqrt(half) / Q * t

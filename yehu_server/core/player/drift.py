@@ -22,7 +22,7 @@ from yehu_server.core.controls.record import (
     PRESS_DRIFT,
     SPEED_DRIFT,
 )
-from yehu_server.core.physics.elementary import chance, cos, each, exp
+from yehu_server.core.physics.elementary import cos, each, exp, pseudorandom
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.rows import (
     BOW_FORCE,
@@ -87,7 +87,7 @@ DRIFT_STATE = np.dtype(
 def draw(p: Any) -> float:
     """The next random number, -1 to 1."""
     p.drift_state.drawn += 1
-    return chance((p.seed << 32) + DRAWN_FROM + p.drift_state.drawn)
+    return pseudorandom((p.seed << 32) + DRAWN_FROM + p.drift_state.drawn)
 
 
 @compiled_exactly

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.physics.elementary import chance
+from yehu_server.core.physics.elementary import pseudorandom
 from yehu_server.core.player.gestures import CENTS, DELAY_MS, HAS_VIBRATO, HERTZ, VIBRATOS
 from yehu_server.core.player.gestures import PRESS as PRESS_SHARE
 from yehu_server.core.player.gestures import UPWARD as UPWARD_SHARE
@@ -142,11 +142,11 @@ def other_factor(p: Any, number: int, varied: float) -> float:
     """
     if p.player_number == 0:
         return 1.0
-    differs = math.sqrt(3.0) * chance((p.player_number << 32) + number)
+    differs = math.sqrt(3.0) * pseudorandom((p.player_number << 32) + number)
     return float(max(1.0 + p.value[VARIATION] * varied * differs, LEAST_OTHER))
 
 
 @compiled_exactly
 def phase_of(p: Any, c: Any) -> float:
     """Where the vibrato of a note that begins now starts, of one of a section (turns)."""
-    return float(0.5 + 0.5 * chance((p.seed << 32) + FRAMES_FROM + c.frame))
+    return float(0.5 + 0.5 * pseudorandom((p.seed << 32) + FRAMES_FROM + c.frame))

@@ -32,7 +32,7 @@ LEAST_S, MOST_S = 0.03, 0.11  # of the middle line; shorter ones have too few mo
 PATHS = 3.0  # mean free paths in the middle line
 INTO_LINES = 1.0 / math.sqrt(LINES)
 # When sound enters each line, and with which sign: the left in even lines, the right in odd ones.
-# By chance, one in each eighth of the time, and of those the ones with the evenest tail.
+# Drawn at random, one in each eighth of the time, and of those the ones with the evenest tail.
 ENTRY_S = 1e-3 * np.array([
     13.81, 13.26, 10.61, 9.69, 19.13, 6.56, 18.18, 29.21,
     1.18, 25.06, 4.17, 0.5, 22.98, 21.7, 27.15, 17.82,

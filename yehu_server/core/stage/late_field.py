@@ -22,7 +22,7 @@ from yehu_server.core.stage import absorption, image_sources
 Array = Any
 
 LINES = 16
-EVERY = 32  # frames between two looks at what is asked of a room
+EVERY = 32  # frames from one check of what is asked of a room to the next
 LENGTH = 1 << 15  # most frames of a line, and of the span that it is kept in
 # Frames between two lines: with a span of a power of two alone, all would fall into the same set of
 # the processor's cache.
@@ -239,8 +239,8 @@ def reverberate(r: Any, frame: int, level: Array, sound: Array, heard: Array) ->
             end = min(end, done + r.emptying)
         opened = r.opened[done:end]
         open_room(r, opened)
-        enter(r, frame + done, opened, sound[done:end])
-        go_round(r, frame + done, level[done:end], opened, heard[done:end])
+        diffuse_input(r, frame + done, opened, sound[done:end])
+        advance_lines(r, frame + done, level[done:end], opened, heard[done:end])
         if r.is_watched != 0:
             watch(r, sound[done:end])
         done = end
@@ -257,7 +257,7 @@ def begin_window(r: Any) -> None:
     """Begin a window of as many frames as lines are kept for; fall asleep after a silent one.
 
     Where nothing entered in a whole window, and all that lines were given in it is QUIET, all that
-    they keep is. It stays there: what enters later wakes the room, and goes round among it.
+    they keep is. It stays there: what enters later wakes the room, and mixes with it.
     """
     r.is_asleep = 1 if r.is_watched != 0 and r.loudest < QUIET and is_open(r) else 0
     r.is_watched, r.loudest = 1 - r.is_asleep, 0.0
@@ -265,7 +265,7 @@ def begin_window(r: Any) -> None:
 
 @compiled_exactly
 def watch(r: Any, sound: Array) -> None:
-    """Take frames into the window, after sound has entered and gone round."""
+    """Take frames into the window, after they have passed the lines."""
     for n in range(sound.shape[0]):
         if sound[n, 0] != 0.0 or sound[n, 1] != 0.0:
             r.is_watched = 0
@@ -290,7 +290,7 @@ def open_room(r: Any, opened: Array) -> None:
 
 
 @compiled_exactly
-def enter(r: Any, frame: int, opened: Array, sound: Array) -> None:
+def diffuse_input(r: Any, frame: int, opened: Array, sound: Array) -> None:
     """Let sound of both sides enter, through the all-pass filters."""
     for n in range(opened.shape[0]):
         for side in range(2):
@@ -307,7 +307,7 @@ def enter(r: Any, frame: int, opened: Array, sound: Array) -> None:
 
 
 @compiled_exactly
-def go_round(r: Any, frame: int, level: Array, opened: Array, heard: Array) -> None:
+def advance_lines(r: Any, frame: int, level: Array, opened: Array, heard: Array) -> None:
     """Take what leaves the lines, write what is heard of it, and let it enter them again.
 
     No line is as short as CHUNK frames, so nothing that enters leaves among the same frames.

@@ -1,4 +1,4 @@
-"""The hair of the bow: rosin whose friction varies along it.
+"""The texture of rosin on the hair: friction that varies along the bow.
 
 Both friction coefficients are multiplied by 1 + depth * texture(y), where y is the place on the
 hair that the string touches. It stands still while the string sticks and runs while it slips. So

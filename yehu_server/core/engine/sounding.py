@@ -72,7 +72,7 @@ from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.layout import MODEL, REFINED, RELATIVE_VELOCITY, STATE, STRINGS
 from yehu_server.core.physics.time_loop import advance_by
 from yehu_server.core.player.ear import EAR_SAMPLES, remember
-from yehu_server.core.player.listening import attend
+from yehu_server.core.player.listening import update_player
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.wishes import WISH, fulfil
 
@@ -162,7 +162,7 @@ def sleep(rig: Any, p: Any, c: Any, sounded: Any, begin: int, end: int) -> int:
         if mail.waiting > 0:
             until = min(until, heap[0].wish.frame)
         if until > c.frame == p.ear.next:
-            attend(p, c, at(rig, EAR_BUFFER_AT))
+            update_player(p, c, at(rig, EAR_BUFFER_AT))
         if until <= c.frame or not is_still(c):
             o.sleep.is_asleep = 0
             break
@@ -211,7 +211,7 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
         while done < wanted and not (silenced or retuned or ends):
             apply(rig, mail, p, c)
             if c.frame == p.ear.next:
-                attend(p, c, at(rig, EAR_BUFFER_AT))
+                update_player(p, c, at(rig, EAR_BUFFER_AT))
             silenced = write_row(c, o, done)
             write_stage_inputs(c, sounded, done, done + 1)
             retuned = has_new_strings(c)

@@ -58,8 +58,8 @@ def vibrato_semitones(p: Any, c: Any) -> float:
 
 
 @native
-def attend(p: Player, c: Controls, sound: Any) -> None:
-    """Do what is to be done at the frames of ``ear.next``.
+def update_player(p: Player, c: Controls, sound: Any) -> None:
+    """Do the player's work of one hop, at a frame of ``ear.next``.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ def begin_sequence(p: Any, seed: int) -> None:
     """Begin the sequence of a seed."""
     p.seed, p.drawn = seed, 0
     p.drift_state.slow[:], p.drift_state.tremor[:], p.drift_state.drawn = 0.0, 0.0, 0
-    p.drift_state.wander[:] = 0.0
+    p.drift_state.slow_deviate[:] = 0.0
 
 
 @compiled_exactly

@@ -32,7 +32,7 @@ from yehu_server.core.player.rows import (
     ROWS,
     SLOT_OF,
 )
-from yehu_server.core.player.steepness import STEPS, vibrato_table
+from yehu_server.core.player.vibrato_table import STEPS, vibrato_table
 from yehu_server.params.table import TABLE
 
 # Of what is learnt: half semitones, quarter octaves of bow position, half octaves of speed.
@@ -122,7 +122,7 @@ PLAYER = np.dtype(
         ("centroids", np.float64, (STRINGS, NOTES + 1, len(GAINS))),  # Hz
         ("louder", np.float64, (STRINGS, NOTES + 1, len(GAINS))),  # dB
         ("bowing_table", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, BOWING_SIZE)),
-        ("vibrato_table", np.float64, (STEPS, 2)),  # `steepness.vibrato_table`
+        ("vibrato_table", np.float64, (STEPS, 2)),  # `vibrato_table`
         ("open_strings", np.int64),  # number of the OpenStrings
     ],
     align=True,

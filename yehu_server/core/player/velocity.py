@@ -1,8 +1,9 @@
 """What velocity does to a note: its loudness, evened out, by bow and by gain; its attack. Compiled.
 
 At NEUTRAL all is as the other parameters say. A harder note is bowed faster and gets its force
-sooner than its speed; a softer one begins gently. With the force that mappings let velocity set,
-the level rises by some 18 dB from 1 to 127 (scripts/playability.py velocity).
+sooner than its speed; a softer one begins gently. Force is not set here: mappings bind velocity to
+/playing/pressure (mappings/keyboard.toml). With that, the level rises by some 18 dB from 1 to 127
+(scripts/playability.py velocity).
 """
 
 from __future__ import annotations

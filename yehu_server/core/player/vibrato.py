@@ -1,6 +1,7 @@
 """The vibrato of a note: as wished, as its articulation wants it, or the player's own. Compiled.
 
-It is narrower, and off the note's middle, where the body would swing its level (``steepness``).
+Styles of vibrato are articulations (``params.articulations``). A vibrato is narrower, and off the
+note's middle, where the body would swing its level (``vibrato_table``).
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from yehu_server.core.player.rows import (
     VIBRATO_RATE,
     VIBRATO_UPWARD,
 )
-from yehu_server.core.player.steepness import LEANING, NARROWED, STEPS, USUAL
+from yehu_server.core.player.vibrato_table import CENTRE, DEPTH_SHARE, STEPS, USUAL
 
 # The player's own, at full phrasing; by ear.
 OWN_CENTS, LATE_MS = 60.0, 750.0
@@ -52,9 +53,9 @@ def set_vibrato(p: Any, c: Any) -> None:
     own = has_vibrato(p)
     cents, upward = row[CENTS] if own else wished_cents(p), row[UPWARD_SHARE] if own else 0.0
     if upward == 0.0:
-        at = steep_row(p)
-        cents = min(cents, p.vibrato_table[at, NARROWED] * max(cents, USUAL))
-        upward = p.vibrato_table[at, LEANING]
+        at = vibrato_row(p)
+        cents = min(cents, p.vibrato_table[at, DEPTH_SHARE] * max(cents, USUAL))
+        upward = p.vibrato_table[at, CENTRE]
     hertz = row[HERTZ] if own else p.value[PLAYING_VIBRATO_RATE]
     press = row[PRESS_SHARE] if own else p.value[PLAYING_VIBRATO_PRESS]
     move(p, c, VIBRATO_DEPTH, cents * other_factor(p, 1, OTHER_DEPTH), USUAL_MS)
@@ -123,8 +124,8 @@ def vibrated_pitch(p: Any) -> float:
 
 
 @compiled_exactly
-def steep_row(p: Any) -> int:
-    """Row of ``steepness.vibrato_table`` for the note."""
+def vibrato_row(p: Any) -> int:
+    """Row of ``vibrato_table`` for the note."""
     row = int(np.rint(2.0 * (vibrated_pitch(p) - p.open_note[0])))
     return min(max(row, 0), STEPS - 1)
 

@@ -66,7 +66,7 @@ from yehu_server.core.engine.rig import (
     STATE_AT,
 )
 from yehu_server.core.engine.sleep import WINDOW, begin_window, watch
-from yehu_server.core.engine.telemetry import METERS, close_window, hear
+from yehu_server.core.engine.telemetry import METERS, add_to_level, close_window
 from yehu_server.core.physics import kernel, refined
 from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.layout import MODEL, REFINED, RELATIVE_VELOCITY, STATE, STRINGS
@@ -253,7 +253,7 @@ def write_output(rig: Any, dry: Array, first: int, start: int, end: int) -> None
     for n in range(start, end):
         remember(heard, first + n - start, o.probes[n, RELATIVE_VELOCITY])
         dry[n] = output_sample(o, n)
-        hear(t, dry[n])
+        add_to_level(t, dry[n])
         if o.sleep.is_watched != 0:
             watch(o.sleep, o.probes[n], abs(o.swing) + abs(o.ghost))
 

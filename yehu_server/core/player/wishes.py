@@ -35,7 +35,6 @@ from yehu_server.core.player.rows import (
     BOW_FORCE,
     BOW_SPEED,
     BRILLIANCE,
-    CALIBRATION,
     DYNAMICS,
     EVENNESS,
     EXPRESSION,
@@ -52,6 +51,7 @@ from yehu_server.core.player.rows import (
     PRESSURE,
     ROWS,
     SEED,
+    SHARPENING_CORRECTION,
     SMOOTH_MS,
     SPEED,
     TREMOLO,
@@ -165,7 +165,7 @@ def express(p: Any, c: Any, row: int, value: float) -> None:
 @compiled_exactly
 def follow(p: Any, c: Any, row: int) -> None:
     """Move what follows a parameter of the player while a note sounds."""
-    if row in (BEND, CALIBRATION):
+    if row in (BEND, SHARPENING_CORRECTION):
         notes.follow_bend(p, c)
     elif row == PRESS:
         left_hand.press(p, c, notes.least_press(p, max(p.string, 0)), left_hand.LANDING_MS)

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from aiohttp import WSMsgType, web
 
+from yehu_server.core.engine.telemetry import TELEMETRY_S
 from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitted
 from yehu_server.live.page.shared_view import SharedView
@@ -57,7 +58,7 @@ LOOK, WISHES = 0.0, 1.0
 WISH = 5  # numbers: frame or NOW, kind, index, value, other
 NOW = -1.0
 SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is the row of a parameter
-LOOK_S, SOUND_S, STATUS_S = 1 / 60, 0.001, 1.0
+SOUND_S, STATUS_S = 0.001, 1.0
 MOST_PAGES = MOST_WEB_SOCKETS
 MOST_UNSENT = 1 << 16  # bytes
 MOST_WISHES = 1024  # of a message
@@ -208,7 +209,7 @@ class PageSockets:
 
     async def send_looks(self) -> None:
         """Send looks, for ever."""
-        async for _ in every(LOOK_S, self._has_pages):
+        async for _ in every(TELEMETRY_S, self._has_pages):
             viewers = [page for page in self._pages.values() if page.looks]
             for part in {page.part for page in viewers}:
                 look = self._view.look(self._rigs[part], self._own.get(part, {}))

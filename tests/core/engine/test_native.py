@@ -324,7 +324,7 @@ def test_a_process_that_died_within_a_note_leaves_no_string_touched_and_no_key_h
     instrument._rig["meters"]["running"] = 1
     ensemble.recover()
     player = instrument._rig["player"][0]
-    assert (player["held"], player["sounding"], player["by_hand"]) == (0, SILENT, 0)
+    assert (player["held"], player["sounding"], player["is_direct"]) == (0, SILENT, 0)
     for _ in range(RATE // 10):
         ensemble.process(out[:1])
         assert not touched(instrument)

@@ -1,4 +1,4 @@
-"""Emits wishes for all players of a part: parameters, notes, a bow drawn by hand. Compiled.
+"""Emits wishes for all players of a part: parameters, notes, a bow drawn directly. Compiled.
 
 It knows what is held and kept, and passes each wish on to the one player of the part, or to those
 of a section.

@@ -89,7 +89,7 @@ def begin(p: Any, c: Any, frame: int, channel: int, key: float, pitch: float) ->
     Keys struck at one frame make one stroke.
     """
     take_all_back(p)
-    p.by_hand = 0
+    p.is_direct = 0
     before = find_key(p, channel, key)
     is_legato = p.sounding != SILENT and (before == NOT_HELD or p.sounding != before)
     at_once = is_legato and frame == p.began
@@ -130,7 +130,7 @@ def stop_sound(p: Any, c: Any, is_panic: bool) -> None:
         p.held, p.sounding = 0, SILENT
     if p.sounding != SILENT:
         return
-    p.by_hand = 0
+    p.is_direct = 0
     take_back(p, BOW_SPEED)
     take_back(p, BOW_SIDE)
     right_hand.lift(p, c, LIFTING_MS)
@@ -241,10 +241,10 @@ def note_pitch(p: Any) -> float:
 
 @compiled_exactly
 def sounding_pitch(p: Any) -> float:
-    """The pitch while a note sounds or the bow is drawn by hand, else NaN."""
+    """The pitch while a note sounds or the bow is drawn directly, else NaN."""
     if p.sounding >= 0:
         return note_pitch(p)
-    return float(p.finger_pitch if p.by_hand != 0 else math.nan)
+    return float(p.finger_pitch if p.is_direct != 0 else math.nan)
 
 
 @compiled_exactly
@@ -315,10 +315,10 @@ def least_press(p: Any, string: int) -> float:
 @compiled_exactly
 def even_out(p: Any, c: Any) -> None:
     """Set colour, and the gain that evens out the loudness of notes, as the bow is drawn."""
-    if p.sounding >= 0 or p.by_hand != 0:
+    if p.sounding >= 0 or p.is_direct != 0:
         pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
         speed, effort = wished_speed(p), wished_speed(p) * p.value[PRESSURE]
-        if p.by_hand != 0:
+        if p.is_direct != 0:
             speed, effort = p.speed, p.effort
         velocity.even_out(p, c, pitch, speed, effort)
 

@@ -59,8 +59,8 @@ PLAYER = np.dtype(
         ("sounding", np.int64),  # number of the held key that sounds, SILENT or ENDING
         ("began", np.int64),  # the frame at which the stroke of the bow began
         ("note_began", np.int64),  # the frame at which the note did
-        ("by_hand", np.int64),  # whether the bow is drawn by hand
-        ("speed", np.float64),  # of a bow drawn by hand (m/s)
+        ("is_direct", np.int64),  # whether the bow is drawn directly, not by notes
+        ("speed", np.float64),  # of a bow drawn directly (m/s)
         ("effort", np.float64),  # the same times its force, as a share of Schelleng's limit
         ("gesture", GESTURE),  # of the sounding note
         # The left hand.
@@ -210,7 +210,7 @@ def end_all(player: Any, controls: Any) -> None:
     ----------
     player, controls : records of dtype PLAYER and CONTROLS
     """
-    player["held"], player["sounding"], player["by_hand"] = 0, SILENT, 0
+    player["held"], player["sounding"], player["is_direct"] = 0, SILENT, 0
     player["side"], player["pressing"] = 0.0, 0.0
     player["string"], player["position"] = -1, OPEN
     player["taken"], player["sent"] = 0, np.nan

@@ -38,8 +38,8 @@ def even_out(p: Any, c: Any, pitch: float, speed: float, effort: float) -> None:
     set_brilliance(p, c, string, sounding_pitch, effort)
     balance = balance_db(p, string, sounding_pitch, speed) - p.louder_by
     balance *= p.value[EVENNESS]
-    balance += 0.0 if p.by_hand != 0 else struck_db(p) + p.gesture.gain_db
-    is_off = c.value[SIDE] == 0.0 and p.by_hand == 0
+    balance += 0.0 if p.is_direct != 0 else struck_db(p) + p.gesture.gain_db
+    is_off = c.value[SIDE] == 0.0 and p.is_direct == 0
     ramp_ms = RISING_MS if balance > p.balance and not is_off else FALLING_MS
     if p.gesture.gain_db != p.gesture.gain_to and has_risen(p, c):  # it goes on in small steps
         ramp_ms = 1e3 * HOP_S

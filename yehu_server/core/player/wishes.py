@@ -25,7 +25,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.record import Controls
-from yehu_server.core.player import by_hand, left_hand, notes, vibrato
+from yehu_server.core.player import direct_bowing, left_hand, notes, vibrato
 from yehu_server.core.player.ownership import forget, ramp_to, release, write_directly
 from yehu_server.core.player.phrasing import begin_sequence
 from yehu_server.core.player.record import Player
@@ -96,16 +96,16 @@ def fulfil(
     elif kind == END:
         notes.end(p, c, index, value, other != 0.0)
     elif kind == SLIDE:
-        by_hand.slide(p, c, playable(p, value))
+        direct_bowing.slide(p, c, playable(p, value))
     elif kind == DRAW:
-        by_hand.draw(p, c, in_range(BOW_SPEED, value), in_range(BOW_FORCE, other))
+        direct_bowing.draw(p, c, in_range(BOW_SPEED, value), in_range(BOW_FORCE, other))
     elif kind == LIFT:
-        by_hand.lift(p, c)
+        direct_bowing.lift(p, c)
     elif kind == STOP:
         notes.stop_sound(p, c, value != 0.0)
     elif kind == RELEASE:
         release(p)
-        p.by_hand = 0
+        p.is_direct = 0
     elif 0 <= index < ROWS:
         if kind in (WRITE, HOLD):
             glide_ms = bounded(other, 0.0, LONGEST)

@@ -1,4 +1,4 @@
-"""Whether tables that a program gives are right, so that compiled code may index by them. Compiled.
+"""Checks tables that a program gives, before compiled code indexes by them. Compiled.
 
 The tables of ``midi.tables`` hold indices of parameters, and numbers of binds and points. Those
 that Python writes are right; others could lead outside the arrays, or to values that are no

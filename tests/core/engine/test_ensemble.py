@@ -7,7 +7,7 @@ import pytest
 from sound import alone, run
 
 from yehu_server.core.controls.record import CHUNK
-from yehu_server.core.engine import intake, mixing, sounding
+from yehu_server.core.engine import event_dispatch, mixing, sounding
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.output import SOUNDED
 from yehu_server.core.engine.rig import MOST_PARTS
@@ -41,7 +41,7 @@ def apart(ensemble: Ensemble, frames: int) -> tuple[np.ndarray, np.ndarray, np.n
     parts = len(ensemble.instruments)
     sounded = np.zeros((parts, -(-frames // CHUNK)), SOUNDED)
     first = ensemble.frame
-    assert intake.interpret_events.call(ensemble.address, first + frames) == first + frames
+    assert event_dispatch.interpret_events.call(ensemble.address, first + frames) == first + frames
     for instrument, own in zip(ensemble.instruments, sounded, strict=True):
         sounding.sound_block.call(instrument.address, frames, own.ctypes.data)
     out = np.zeros((frames, ensemble.channels), np.float32)

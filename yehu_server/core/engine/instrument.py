@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.core.controls.record import prepare_controls, settle
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.engine import native
-from yehu_server.core.engine.intake import interpret_events
+from yehu_server.core.engine.event_dispatch import interpret_events
 from yehu_server.core.engine.mailbox import LIVE_BUDGET, RING, SERVER, repair
 from yehu_server.core.engine.output import prepare_output, rest_output
 from yehu_server.core.engine.rig import RIG, RIG_BYTES, memory_bytes

@@ -1,4 +1,4 @@
-"""When an instrument falls asleep: at rest it is not computed until something comes. Compiled.
+"""Sleep: an instrument at rest is not computed until something is asked of it. Compiled.
 
 Windows of frames begin at fixed frames, whatever the blocks are. An instrument whose controls stood
 still, and which was quiet for a whole window, falls asleep as the next one begins. Its model, its

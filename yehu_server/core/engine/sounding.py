@@ -255,7 +255,7 @@ def write_output(rig: Any, dry: Array, first: int, start: int, end: int) -> None
         dry[n] = output_sample(o, n)
         add_to_level(t, dry[n])
         if o.sleep.is_watched != 0:
-            watch(o.sleep, o.probes[n], abs(o.swing) + abs(o.ghost))
+            watch(o.sleep, o.probes[n], abs(o.dc_free) + abs(o.fading))
 
 
 @native

@@ -1,4 +1,4 @@
-"""How bright the bow makes a note, beyond what the model does. Compiled.
+"""The brightness that a heavier or a nearer bow adds to a note, beyond the model's. Compiled.
 
 A fiddle sounds brighter when it is bowed harder or nearer to the bridge: force sharpens the corner
 of the Helmholtz motion [Schoonderwaldt]. The model's corner stays as round at any force, by its

@@ -1,4 +1,4 @@
-"""The hands are not quite steady: slow drift and tremor of bow and finger. Compiled.
+"""Slow drift and tremor of the hands that hold bow and finger. Compiled.
 
 The drift of a hand has a spectrum of about 1/f ([Gilden]), from four random sequences whose times
 are two octaves apart; tremor is a resonance about 10 Hz, where that of hands is ([Elble]). What one

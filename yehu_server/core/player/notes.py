@@ -292,7 +292,7 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 @compiled_exactly
 def draw_on(p: Any, c: Any) -> None:
     """Draw as parameters wish by now, but let a move of the gesture take its time."""
-    left_ms = 1e3 * (p.gesture.there - (c.frame - p.note_began) / p.rate)
+    left_ms = 1e3 * (p.gesture.move_ends - (c.frame - p.note_began) / p.rate)
     draw(p, c, max(left_ms, SMOOTH_MS[BOW_SPEED]))
 
 

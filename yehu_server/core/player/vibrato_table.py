@@ -1,4 +1,4 @@
-"""Where a body radiates so unevenly that a vibrato would swing the level, and what to do there.
+"""The table of vibratos: narrower, and off the note's middle, where the level would swing.
 
 A body may radiate several decibels more at a pitch than some cents beside it. A vibrato about such
 a pitch is narrower, and its middle a little off, to the side where the body is more even.

@@ -1,6 +1,6 @@
 """The late field of a room: a feedback delay network, shared by all players. Compiled.
 
-Sound goes round in LINES delay lines of different lengths. What leaves them is mixed by an
+Sound circulates in LINES delay lines of different lengths. What leaves them is mixed by an
 orthogonal matrix, which keeps its energy, and enters them again; only the filters of
 ``absorption`` take some of it. So the decay is as asked, in each octave [Jot]. Sound enters each
 line after a time of its own, which makes the echoes dense early and, unlike all-pass filters in a

@@ -1,4 +1,4 @@
-"""Interprets posted events when they are due, and distributes their wishes. Compiled.
+"""Dispatches posted events: interprets each when it is due, and distributes its wishes. Compiled.
 
 The events of a part lie with its first instrument. Each is interpreted once, before the frames
 that it is for are computed (``midi.interpret_events``); its wishes go to the heaps of those who

@@ -47,7 +47,7 @@ from load import CARD, JACK, dummy_jack, helper
 from yehu_server.core.engine.voice_callback import OF_WISH, follow_voice, voice_pitch, voice_prepare
 from yehu_server.core.engine.warming import warm_up
 from yehu_server.core.player.wishes import BEGIN
-from yehu_server.core.voice.deciding import FOLLOWER
+from yehu_server.core.voice.note_detection import FOLLOWER
 from yehu_server.live.page.site import server_of, url_of, write_page
 
 Array = Any

@@ -30,8 +30,8 @@ def fastest_ns(parts: int, *, has_room: bool = True, **asked: Any) -> float:
     """Nanoseconds a frame of the whole mix."""
     stage = stages.Stage(RATE, parts, has_room=has_room)
     dry = 0.01 * np.random.default_rng(1).normal(size=(parts, FRAMES))
-    told = stages.told(FRAMES, **asked)
-    sounded = stages.as_sounded(dry, np.broadcast_to(told, (parts, *told.shape)))
+    inputs = stages.stage_inputs(FRAMES, **asked)
+    sounded = stages.as_sounded(dry, np.broadcast_to(inputs, (parts, *inputs.shape)))
     out = np.zeros((FRAMES, 2), np.float32)
 
     def mix() -> None:

@@ -17,7 +17,7 @@ import time
 from yehu_lab.practising.practice import Practice
 from yehu_lab.practising.recipes import DEFAULT
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import PLACES, default_recipes
+from yehu_server.core.player.bowing import PLACES, default_bowing_table
 from yehu_server.playing.calibration import calibrate
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.practice_files import SHIPPED, as_data, as_text, shipped_practice
@@ -35,7 +35,7 @@ def main() -> None:
     for rate in arguments.rates:
         start = time.perf_counter()
         quantities = Quantities()
-        known = default_recipes() if arguments.anew else shipped_practice(rate)
+        known = default_bowing_table() if arguments.anew else shipped_practice(rate)
         table = Practice(rate, quantities, calibration_for(rate)).learn(
             table=known, places=(DEFAULT,)
         )

@@ -26,7 +26,7 @@ DECIDED = (
     "value",
     "finger_pitch",
     "position",
-    "recipe",
+    "bowing",
     "balance",
     "speed_variation",
     "weight",

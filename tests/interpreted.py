@@ -37,9 +37,9 @@ class Leader:
     def midi(self) -> Any:
         return self._midi[0]
 
-    def begin_part(self, tables: Any, people: int = 1) -> None:
+    def begin_part(self, tables: Any, players: int = 1) -> None:
         is_mpe = bool(tables["mpe"][0])
-        prepare_midi(self._midi, self.rate, DEFAULTS, people=people, mpe=is_mpe)
+        prepare_midi(self._midi, self.rate, DEFAULTS, players=players, mpe=is_mpe)
         self.tables[0] = tables[0]
 
     def set_tables(self, tables: Any) -> None:

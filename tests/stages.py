@@ -30,7 +30,7 @@ COLUMNS = SILENCED + 1
 SMALL = 2.0**-10  # far below the limiter
 
 
-def told(frames: int, **asked: Any) -> Any:
+def stage_inputs(frames: int, **asked: Any) -> Any:
     """What a stage needs with each frame [shape=(frames, COLUMNS)]: values or arrays."""
     rows = np.zeros((frames, COLUMNS))
     for column, name in enumerate(NAMES):
@@ -40,7 +40,7 @@ def told(frames: int, **asked: Any) -> Any:
 
 
 def as_sounded(dry: Any, rows: Any) -> Any:
-    """Samples of all parts, and rows as `told`, as instruments give them to the stage."""
+    """Samples of all parts, and rows as `stage_inputs`, as instruments give them to the stage."""
     parts, frames = dry.shape
     sounded = np.zeros((parts, -(-frames // CHUNK)), SOUNDED)
     sounded["silenced_at"] = NOT_SILENCED
@@ -55,7 +55,7 @@ def as_sounded(dry: Any, rows: Any) -> Any:
 
 
 class Stage:
-    """A stage of players who sound as they are told."""
+    """A stage of players whose sounds are given."""
 
     def __init__(self, rate: float, parts: int = 1, *, has_room: bool = True) -> None:
         self.rate, self.parts, self.frame = rate, parts, 0
@@ -76,7 +76,7 @@ class Stage:
         ----------
         dry : ndarray [shape=(frames,) or (parts, frames)]
         rows : ndarray [shape=(frames, COLUMNS) or (parts, frames, COLUMNS)]
-            As `told`.
+            As `stage_inputs`.
 
         Returns
         -------
@@ -102,7 +102,7 @@ class Stage:
     def settle(self, seconds: float = 0.5, **asked: Any) -> None:
         """Let some silence pass, in which the room opens."""
         frames = round(seconds * self.rate)
-        self.play(np.zeros(frames), told(frames, **asked))
+        self.play(np.zeros(frames), stage_inputs(frames, **asked))
 
 
 def response(rate: float, seconds: float, **asked: Any) -> tuple[Any, Any]:
@@ -112,5 +112,5 @@ def response(rate: float, seconds: float, **asked: Any) -> tuple[Any, Any]:
     frames = round(seconds * rate)
     dry = np.zeros(frames)
     dry[0] = SMALL
-    stems = stage.play(dry, told(frames, **asked))[1] / SMALL
+    stems = stage.play(dry, stage_inputs(frames, **asked))[1] / SMALL
     return stems[:, 0], stems[:, 1]

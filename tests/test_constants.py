@@ -43,7 +43,7 @@ def here() -> list[str]:
 
 
 def test_there_are_constants(here):
-    assert any(line.startswith("yehu_server.core.player.drift RADIUS") for line in here)
+    assert any(line.startswith("yehu_server.core.player.drift TREMOR_RADIUS") for line in here)
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ class Together:
     def __init__(self, people: int, rate: float, seed: int) -> None:
         self._midi = np.zeros(1, MIDI)
         values = {param.address: param.default for param in TABLE}
-        prepare_midi(self._midi, rate, values, people=people)
+        prepare_midi(self._midi, rate, values, players=people)
         self._record = self._midi[0]
         self.begin(seed)
 
@@ -59,4 +59,4 @@ class Together:
         return self._late()
 
     def _late(self) -> tuple[int, ...]:
-        return tuple(self._record["late"][: self._record["people"]].tolist())
+        return tuple(self._record["late"][: self._record["players"]].tolist())

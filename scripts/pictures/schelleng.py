@@ -32,7 +32,7 @@ from yehu_server.core.player.bowing import (
     LEAST_PRESS,
     LIGHT,
     TOP_SPEED,
-    recipe_value,
+    bowing_value,
     share,
 )
 from yehu_server.params.table import find
@@ -67,7 +67,7 @@ class Player:
 
     def recipe(self, column: int) -> float:
         """A column of the practice; see player.bowing."""
-        return recipe_value(self.bowing, self.string, USUAL_BETA, float(self.note), column)
+        return bowing_value(self.bowing, self.string, USUAL_BETA, float(self.note), column)
 
     def force(self, speed: Array, beta: float, wish: float) -> Array:
         """The force (N) that the player's assist sets for a value of ``/playing/pressure``."""

@@ -23,7 +23,7 @@ int main(int count, char **words) {
     float out[2 * BLOCK];
     long own = allocations() - counted; /* it does count */
     long taken = 0;
-    struct yehu_look seen;
+    struct yehu_snapshot seen;
     if (!yehu) return 3;
     counted = allocations();
     if (!yehu_prepare(yehu, 48000.0, 2)) return 4;
@@ -38,7 +38,7 @@ int main(int count, char **words) {
         yehu_control(yehu, done, wish % 3, 0.5);
         taken += yehu_use_tables(yehu, done, &tables, sizeof tables) == 1;
         yehu_process(yehu, out, BLOCK);
-        yehu_look(yehu, &seen);
+        yehu_snapshot(yehu, &seen);
         yehu_value(yehu, wish % 40);
         yehu_pitch(yehu);
     }

@@ -7,7 +7,7 @@ import pytest
 from ahead.phrases import PHRASES, RATE, played
 
 from yehu_server.ahead.build import build, page_linker, page_module
-from yehu_server.ahead.interpreter import look_length
+from yehu_server.ahead.interpreter import snapshot_length
 from yehu_server.compile import levels
 
 HERE = Path(__file__).parent
@@ -41,7 +41,7 @@ def node(tmp_path, wasm):
 
     def run(script: str, **job):
         file = tmp_path / "job.json"
-        file.write_text(json.dumps({"wasm": str(wasm), "lookLength": look_length(), **job}))
+        file.write_text(json.dumps({"wasm": str(wasm), "snapshotLength": snapshot_length(), **job}))
         command = ["node", str(HERE / script), str(file)]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr

@@ -3,7 +3,7 @@
 //
 //   node fuzz.mjs JOB.json
 //
-// A job has: wasm, rate, lookLength, seed, count, rows, kinds.
+// A job has: wasm, rate, snapshotLength, seed, count, rows, kinds.
 
 import { readFileSync } from "node:fs";
 import { Kernel, NOW } from "../../web/sound/kernel.js";
@@ -32,7 +32,7 @@ function number() {
 }
 
 const module = new WebAssembly.Module(readFileSync(job.wasm));
-const kernel = new Kernel(module, job.rate, BLOCK, job.lookLength);
+const kernel = new Kernel(module, job.rate, BLOCK, job.snapshotLength);
 let [posted, finite, loudest, worst] = [0, true, 0, 0];
 while (posted < job.count) {
   for (let i = 0; i < AT_ONCE && posted < job.count; i += 1) {

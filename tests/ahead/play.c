@@ -31,8 +31,8 @@ int main(int count, char **words) {
         yehu_process(yehu, out, now);
         fwrite(out, channels * sizeof *out, now, samples);
     }
-    struct yehu_look seen;
-    yehu_look(yehu, &seen);
+    struct yehu_snapshot seen;
+    yehu_snapshot(yehu, &seen);
     printf("%llx %lld %lld %.17g %.17g\n", (unsigned long long)yehu_sources(),
            (long long)yehu_frame(yehu), (long long)yehu_lost(yehu), seen.rate,
            yehu_value(yehu, YEHU_PLAYING_BOW_POSITION));

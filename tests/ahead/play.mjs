@@ -3,7 +3,7 @@
 //
 //   node play.mjs JOB.json
 //
-// A job has: wasm, rate, lookLength, frames, block, wishes ([frame, kind, index, value, other]),
+// A job has: wasm, rate, snapshotLength, frames, block, wishes ([frame, kind, index, value, other]),
 // samples (file to write).
 
 import { readFileSync, writeFileSync } from "node:fs";
@@ -11,7 +11,7 @@ import { CHANNELS, Kernel } from "../../web/sound/kernel.js";
 
 const job = JSON.parse(readFileSync(process.argv[2], "utf8"));
 const module = new WebAssembly.Module(readFileSync(job.wasm));
-const kernel = new Kernel(module, job.rate, job.block, job.lookLength);
+const kernel = new Kernel(module, job.rate, job.block, job.snapshotLength);
 for (const wish of job.wishes) kernel.post(...wish);
 const samples = new Float32Array(CHANNELS * job.frames);
 const times = [];
@@ -30,7 +30,7 @@ process.stdout.write(
     frame: kernel.frame,
     lost: kernel.lost,
     finite: samples.every(Number.isFinite),
-    look: [...kernel.look()],
+    snapshot: [...kernel.snapshot()],
     values: Array.from({ length: job.rows ?? 0 }, (_, row) => kernel.value(row)),
     seconds: times.reduce((sum, time) => sum + time, 0) / 1e6,
     medianUs: sorted[sorted.length >> 1],

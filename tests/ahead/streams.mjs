@@ -3,7 +3,7 @@
 //
 //   node streams.mjs JOB.json
 //
-// A job has: wasm, rate, lookLength, steps and tables (files), blocks, reporting, memory and samples
+// A job has: wasm, rate, snapshotLength, steps and tables (files), blocks, reporting, memory and samples
 // (files to write).
 
 import { readFileSync, writeFileSync } from "node:fs";
@@ -17,7 +17,7 @@ const kernel = new Kernel(
   new WebAssembly.Module(readFileSync(job.wasm)),
   job.rate,
   ROOM,
-  job.lookLength,
+  job.snapshotLength,
 );
 const wasm = kernel.exported;
 const given = new Uint8Array(kernel.view.buffer, kernel.at.out, 8 * ROOM);

@@ -73,15 +73,15 @@ def message(chance: random.Random) -> int:
 
 def play(count: int) -> dict[str, int]:
     """Play messages through one after another of random tables; count what came of it."""
-    chance, leader, told = random.Random(2), Leader(), {"taken": 0, "refused": 0, "wishes": 0}
+    chance, leader, counts = random.Random(2), Leader(), {"taken": 0, "refused": 0, "wishes": 0}
     right = some_tables(3, 30)
     leader.begin_part(right[0])
     for _ in range(count):
         tables = spoilt(chance, chance.choice(right))
         if not are_right(tables):
-            told["refused"] += 1
+            counts["refused"] += 1
             continue
-        told["taken"] += 1
+        counts["taken"] += 1
         slot = (int(leader.midi["tables"]) + 1) % SLOTS
         leader.tables[slot] = tables[0]
         posted = [(events.TABLES_TO, slot, 0.0), (events.START, 0, float(chance.randrange(2)))]
@@ -91,9 +91,9 @@ def play(count: int) -> dict[str, int]:
         for frame, event in enumerate(posted):
             found = leader.interpret(frame, *event, 0.0)
             assert np.isfinite([wish[2:] for wish in found]).all(), (tables, event, found)
-            told["wishes"] += len(found)
+            counts["wishes"] += len(found)
         assert np.isfinite(leader.midi["value"]).all()
-    return told
+    return counts
 
 
 if __name__ == "__main__":

@@ -133,6 +133,6 @@ def test_an_image_begins_as_serve_does():
         if name != "program_row":  # not read, as there are no programs
             assert np.array_equal(rig["tables"][0][name], wanted[name], equal_nan=True), name
     assert rig["tables"][0]["binds"] > 0
-    assert (rig["midi"]["tables"], rig["midi"]["people"]) == (0, 1)
+    assert (rig["midi"]["tables"], rig["midi"]["players"]) == (0, 1)
     assert rig["ring"][0]["kind"] == START
     assert rig["mail"]["posted"][SERVER, 0] == 1

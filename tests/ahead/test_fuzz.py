@@ -24,16 +24,16 @@ def test_no_random_bytes_through_random_mappings_leave_a_note(library, tmp_path,
     program = compiled(library, tmp_path / "fuzz", "fuzz.c")
     count = MANY if everything else SOME
     command = [program, str(count), "1", tmp_path / "tables", str(HELD), str(SOUNDING)]
-    told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
-    posted, taken, refused, wrong, left, beyond, lost = map(int, told)
+    numbers = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    posted, taken, refused, wrong, left, beyond, lost = map(int, numbers)
     assert posted >= count
     assert min(taken, refused) >= count // 1000 // 10
     assert (wrong, left, beyond, lost) == (0, 0, 0, 0)
 
 
 def test_no_tables_that_are_taken_lead_outside_an_array_or_to_a_number_that_is_not_finite(tmp_path):
-    # Plain Python checks each index, and tells of a division by zero.
-    run_in_plain_python("tables.py", TABLES, tmp_path / "told")
-    told = json.loads((tmp_path / "told").read_text())
-    assert min(told["taken"], told["refused"]) > TABLES // 5
-    assert told["wishes"] > 10 * TABLES
+    # Plain Python checks each index, and raises at a division by zero.
+    run_in_plain_python("tables.py", TABLES, tmp_path / "counts")
+    counts = json.loads((tmp_path / "counts").read_text())
+    assert min(counts["taken"], counts["refused"]) > TABLES // 5
+    assert counts["wishes"] > 10 * TABLES

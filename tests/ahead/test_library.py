@@ -54,9 +54,9 @@ def test_one_channel_has_the_mean_of_left_and_right(by_c):
 
 
 def test_it_tells_sources_frame_losses_rate_and_values(by_c):
-    told = by_c(STOPPED, frames=1000)[1].stdout.split()
+    printed = by_c(STOPPED, frames=1000)[1].stdout.split()
     default = find("/playing/bow_position").default
-    assert told == [build_hash().lstrip("0"), "1000", "0", "48000", f"{default:.17g}"]
+    assert printed == [build_hash().lstrip("0"), "1000", "0", "48000", f"{default:.17g}"]
 
 
 def test_a_rate_that_it_was_not_built_for_is_refused(by_c):
@@ -77,8 +77,8 @@ def test_it_allocates_nothing_neither_as_it_is_prepared_nor_as_it_plays(library,
     (tmp_path / "tables").write_bytes(PlayingOptions().tables(Controls()).tobytes())
     kinds = len(KINDS) + len(EVENTS) - 1  # but for TABLES_TO, which `yehu_use_tables` posts
     command = [program, str(200_000), str(kinds), tmp_path / "tables"]
-    told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
-    own, preparing, playing, frames, taken = map(int, told)
+    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    own, preparing, playing, frames, taken = map(int, printed)
     assert own == 1  # of the program: it counts
     assert (preparing, playing) == (0, 0)
     assert frames >= 200_000

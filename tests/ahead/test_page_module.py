@@ -8,7 +8,7 @@ from ahead.likeness import apart, are_near, begins_alike
 from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED, played
 
 from yehu_server.ahead.build_hash import build_hash, section_of
-from yehu_server.core.engine.look import LOOK, look
+from yehu_server.core.engine.snapshot import SNAPSHOT, snapshot
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.player.wishes import KINDS
 from yehu_server.params.table import SLOT, TABLE
@@ -43,14 +43,14 @@ def test_blocks_of_any_size_give_the_same_samples(by_node):
         assert np.array_equal(by_node(STOPPED, frames=4800, block=block)[0], whole)
 
 
-def test_it_tells_values_and_looks_as_here(by_node):
+def test_it_reports_values_and_snapshots_as_here(by_node):
     frames = 4 * BLOCK  # so early that rounding has not grown
     report = by_node(STOPPED, frames=frames)[1]
     _, ensemble = played(STOPPED, frames=frames)
-    seen = np.zeros(1, LOOK)
-    look.call(ensemble.address, seen.ctypes.data)
+    seen = np.zeros(1, SNAPSHOT)
+    snapshot.call(ensemble.address, seen.ctypes.data)
     expected = np.frombuffer(seen.tobytes(), np.float64)
-    found = np.array([np.nan if number is None else number for number in report["look"]])
+    found = np.array([np.nan if number is None else number for number in report["snapshot"]])
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12)
     values = [
         ensemble.first.target(param.address) if param.address in SLOT else param.default

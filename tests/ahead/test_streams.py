@@ -101,12 +101,12 @@ def assert_near(found, wanted):
 
 
 def test_plain_python_gives_the_same(tmp_path):
-    run_in_plain_python("streams.py", tmp_path / "told", SHORT, *SEEDS)
-    told = json.loads((tmp_path / "told").read_text())
+    run_in_plain_python("streams.py", tmp_path / "results", SHORT, *SEEDS)
+    results = json.loads((tmp_path / "results").read_text())
     for seed in SEEDS:
         wanted = interpreted(stream_of(seed, SHORT))
         assert sum(map(len, wanted)) > 60
-        assert told[str(seed)] == [list(map(list, wished)) for wished in wanted]
+        assert results[str(seed)] == [list(map(list, wished)) for wished in wanted]
 
 
 # -- bytes ----------------------------------------------------------------------------------------

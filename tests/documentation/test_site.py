@@ -127,9 +127,9 @@ def test_links_out_of_the_docs_lead_to_pages_of_the_site(site, content):
     assert "mappings.html" in content("playing.html").all("a", "href")
     assert "begin.html#layers" in content("architecture.html").all("a", "href")
     assert "play/index.html" in content("index.html").all("a", "href")
-    source = "source/yehu_server/core/engine/look.py.html"
+    source = "source/yehu_server/core/engine/snapshot.py.html"
     assert source in content("page.html").all("a", "href")
-    code = (ROOT / "yehu_server" / "core" / "engine" / "look.py").read_text(encoding="utf-8")
+    code = (ROOT / "yehu_server" / "core" / "engine" / "snapshot.py").read_text(encoding="utf-8")
     assert "".join(code.split()) in "".join("".join(content(source).words).split())
     assert (site / "play" / "yehu.wasm").read_bytes()[:4] == b"\0asm"
     assert "references.html#smith" in content("physics.html").all("a", "href")

@@ -27,7 +27,7 @@ from yehu_server.core.player.bowing import (
     AT_FLAUTANDO,
     FIRST,
     PLACES,
-    default_recipes,
+    default_bowing_table,
 )
 from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.params.table import find
@@ -73,7 +73,7 @@ def test_a_mode_that_drowns_a_note_is_not_taken_for_it():
 
 
 def test_the_score_of_a_manner_is_always_the_same(practice):
-    manner = default_recipes()[0, PLACE, 70 - FIRST]
+    manner = default_bowing_table()[0, PLACE, 70 - FIRST]
     search = Search(0, 70, PLACE, manner)
     scores = {practice.score(search, manner, PASSAGES) for _ in range(3)}
     assert len(scores) == 1
@@ -96,7 +96,7 @@ def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late
     monkeypatch.setattr(practising, "_speaks", speaks)
     monkeypatch.setattr(practising, "has_pitch", lambda *_: True)
     practice = Practice(RATE, Quantities(), calibration_for(RATE), tuning=lambda key: key + 0.35)
-    manner = default_recipes()[0, PLACE, 70 - FIRST]
+    manner = default_bowing_table()[0, PLACE, 70 - FIRST]
     assert practice.score(Search(0, 70, PLACE, manner), manner, PASSAGES) == 1.0
     assert set(played) == {70.35}
     each_s = BEFORE_S + EACH_S
@@ -153,7 +153,7 @@ def test_what_practise_writes_render_takes(command, tmp_path):
 def test_practising_goes_on_from_what_lies_beside_the_instrument(command, tmp_path):
     instrument, beside = tmp_path / "mine.toml", tmp_path / "mine.practice.json"
     instrument.write_text("[string_1]\nreach = 6.0\n[string_2]\nreach = 3.0\n")  # tuned sooner
-    table = default_recipes()
+    table = default_bowing_table()
     write_practice(beside, table, RATE)
     code, _, error = command("practise", "--instrument", instrument, "-o", beside, "--quiet")
     assert code == 0, error

@@ -13,7 +13,8 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
-    DEFAULT_RECIPE,
+    BOWING_SIZE,
+    DEFAULT_BOWING,
     DISTANCE_FACTOR,
     FIRM,
     FIRST,
@@ -21,10 +22,9 @@ from yehu_server.core.player.bowing import (
     LEAST_PRESS,
     LIGHT,
     PLACES,
-    RECIPE,
     TOP_SPEED,
-    default_recipes,
-    recipe_value,
+    bowing_value,
+    default_bowing_table,
     share,
 )
 from yehu_server.playing.part_state import Key
@@ -42,7 +42,7 @@ def usual(string: int, note: int) -> list[float]:
 
 def bowed(string: int, pitch: float, place: float = PLACE) -> list[float]:
     """How a pitch is bowed."""
-    return [recipe_value(SHIPPED, string, place, pitch, column) for column in range(RECIPE)]
+    return [bowing_value(SHIPPED, string, place, pitch, column) for column in range(BOWING_SIZE)]
 
 
 def pressure(string: int, wish: float, pitch: float) -> float:
@@ -52,16 +52,16 @@ def pressure(string: int, wish: float, pitch: float) -> float:
 
 
 def test_ordinarily_notes_are_bowed_as_asked_and_on_the_f_string_not_near_the_bridge():
-    table = default_recipes()
-    assert np.all(table[1] == DEFAULT_RECIPE)
+    table = default_bowing_table()
+    assert np.all(table[1] == DEFAULT_BOWING)
     assert np.all(
-        np.delete(table[0], DISTANCE_FACTOR, axis=-1) == np.delete(DEFAULT_RECIPE, DISTANCE_FACTOR)
+        np.delete(table[0], DISTANCE_FACTOR, axis=-1) == np.delete(DEFAULT_BOWING, DISTANCE_FACTOR)
     )
     positions = table[0, ..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
     assert positions.min() == pytest.approx(0.17)
     assert np.all(table[0, PLACES.index(0.25), :, DISTANCE_FACTOR] == 1.0)
     for wish in (0.1, 0.2, 0.25, 0.3, 0.42, 0.55):
-        assert share(*DEFAULT_RECIPE[AT_FLAUTANDO : AT_FIRM + 1], wish, 0) == pytest.approx(wish)
+        assert share(*DEFAULT_BOWING[AT_FLAUTANDO : AT_FIRM + 1], wish, 0) == pytest.approx(wish)
 
 
 def test_a_note_is_bowed_as_its_table_says_and_leans_between_its_ends(subtests):
@@ -78,7 +78,7 @@ def test_a_note_is_bowed_as_its_table_says_and_leans_between_its_ends(subtests):
 
 
 def test_pressure_goes_from_flautando_to_scratch_without_a_step():
-    shares = DEFAULT_RECIPE[AT_FLAUTANDO : AT_FIRM + 1]
+    shares = DEFAULT_BOWING[AT_FLAUTANDO : AT_FIRM + 1]
     for string, edge in ((0, 1.3), (1, 4.0)):
         pressures = [share(*shares, 0.01 * wish, string) for wish in range(201)]
         assert (pressures[0], pressures[100]) == (0.0, pytest.approx(edge))
@@ -92,11 +92,11 @@ def test_between_two_notes_a_pitch_is_bowed_in_between():
 
 
 def test_between_two_places_a_note_is_bowed_in_between_and_beyond_them_as_at_the_last():
-    table = default_recipes()
+    table = default_bowing_table()
     table[0, :, :, DISTANCE_FACTOR] = np.arange(len(PLACES))[:, None]
 
     def farther(place: float) -> float:
-        return float(recipe_value(table, 0, place, 70.5, DISTANCE_FACTOR))
+        return float(bowing_value(table, 0, place, 70.5, DISTANCE_FACTOR))
 
     for row, (near, far) in enumerate(itertools.pairwise(PLACES)):
         assert farther(near) == pytest.approx(row, abs=1e-9)
@@ -112,7 +112,7 @@ SLOWEST, FARTHEST, HARDEST = 0.1, 1.7, 3.0
 @pytest.fixture
 def listener() -> Watched:
     """A player for whom A4 bears no fast bow; F sharp 4 wants one far away, and a firm finger."""
-    bowing = default_recipes()
+    bowing = default_bowing_table()
     bowing[0, :, 69 - FIRST, TOP_SPEED] = SLOWEST
     bowing[0, :, 66 - FIRST, DISTANCE_FACTOR] = FARTHEST
     bowing[0, :, 66 - FIRST, LEAST_PRESS] = HARDEST

@@ -8,7 +8,7 @@ import pytest
 from hands import Checked, Move, Watched, ideal
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import FIRST, TOP_SPEED, default_recipes
+from yehu_server.core.player.bowing import FIRST, TOP_SPEED, default_bowing_table
 from yehu_server.core.player.velocity import NEUTRAL
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.calibration_store import calibration_for
@@ -304,7 +304,7 @@ def test_a_bend_moves_the_finger_along_its_string_as_far_as_it_goes(subtests):
 
 
 def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string_as_that_is_bowed():
-    bowing = default_recipes()
+    bowing = default_bowing_table()
     bowing[0, :, 71 - FIRST, TOP_SPEED] = 0.11
     player, listener = hands(bowing=bowing)
     player.note_on(key(73))

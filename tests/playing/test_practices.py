@@ -21,7 +21,7 @@ from yehu_server.core.player.bowing import (
     LAST,
     PLACES,
     TOP_SPEED,
-    default_recipes,
+    default_bowing_table,
 )
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.playing.practice_files import (
@@ -43,7 +43,7 @@ NAN = float("nan")
 
 def practised() -> np.ndarray:
     """A table that somebody might have practised."""
-    table = default_recipes()
+    table = default_bowing_table()
     chance = np.random.default_rng(1)
     table[:, 1:, 3:20] *= chance.uniform(0.8, 1.25, table[:, 1:, 3:20].shape)
     table[1, :, -1, TOP_SPEED] = 0.11
@@ -91,7 +91,7 @@ def render(command, tmp_path, tune):
 
 def test_a_table_that_was_written_is_read_back(tmp_path):
     path = tmp_path / "mine.json"
-    for table in (practised(), default_recipes(), shipped_practice(RATE)):
+    for table in (practised(), default_bowing_table(), shipped_practice(RATE)):
         write_practice(path, table, RATE)
         np.testing.assert_allclose(read_practice(path), table, atol=1.1e-4)
     again = read_practice(path)
@@ -100,7 +100,7 @@ def test_a_table_that_was_written_is_read_back(tmp_path):
 
 
 def test_only_notes_that_are_bowed_otherwise_are_written():
-    table = default_recipes()
+    table = default_bowing_table()
     usual = as_data(table, RATE)["bowing"]
     assert not any(notes for places in usual.values() for notes in places.values())
     table[0, PLACE, 70 - FIRST, AT_LIGHT] = 0.7
@@ -188,7 +188,7 @@ def test_the_practice_beside_an_instrument_is_found_where_it_is_a_file(tmp_path)
 def test_what_is_shipped_is_within_bounds():
     for rate in (44100.0, 48000.0, 96000.0):
         table = shipped_practice(rate)
-        assert table.shape == default_recipes().shape
+        assert table.shape == default_bowing_table().shape
         assert np.all((table >= LOWEST) & (table <= HIGHEST))
         positions = table[..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
         assert 0.05 < positions.min() < positions.max() < 0.5

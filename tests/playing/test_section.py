@@ -58,10 +58,10 @@ class Told:
         self.all: list[Posted] = []
         self.sounding_pitch = np.nan
 
-    def begin_part(self, tables, people: int = 1) -> None:
+    def begin_part(self, tables, players: int = 1) -> None:
         defaults = {param.address: param.default for param in TABLE}
         is_mpe = bool(tables["mpe"][0])
-        prepare_midi(self._midi, RATE, defaults, people=people, mpe=is_mpe)
+        prepare_midi(self._midi, RATE, defaults, players=players, mpe=is_mpe)
         self.tables[0] = tables[0]
 
     def set_tables(self, tables) -> None:
@@ -78,7 +78,7 @@ class Told:
         interpret.call(*places, at, kind, index, value, other)
         for n in range(int(m["wishes"])):
             wish = (m[f"out_{what}"][n].item() for what in Posted.__annotations__)
-            self._part[m["out_person"][n]].all.append(Posted(*wish))
+            self._part[m["out_player"][n]].all.append(Posted(*wish))
         self.posted += 1
         return True
 

@@ -48,7 +48,7 @@ def host(tmp_path_factory, built):
 
 @pytest.fixture
 def play(tmp_path, built, host):
-    """Play lines of a script (see host.c) by the CLAP plug-in; return samples and what it told."""
+    """Play lines of a script (see host.c) by the CLAP plug-in; return samples and reports."""
 
     def run(script, frames, rate=48000, block=128):
         lines, samples = tmp_path / "script", tmp_path / "samples"
@@ -57,13 +57,13 @@ def play(tmp_path, built, host):
         command = [str(host), str(built / "Yehu.clap"), *numbers]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
-        told: dict[str, list[list[float]]] = {}
+        reports: dict[str, list[list[float]]] = {}
         for line in done.stdout.splitlines():
             word, *values = line.split()
-            told.setdefault(word, []).append([float(value) for value in values])
-        assert told["odd"] == [[0.0]]
-        assert "untrue" not in told
-        return np.fromfile(samples, np.float32).reshape(-1, 2), told
+            reports.setdefault(word, []).append([float(value) for value in values])
+        assert reports["odd"] == [[0.0]]
+        assert "untrue" not in reports
+        return np.fromfile(samples, np.float32).reshape(-1, 2), reports
 
     return run
 

@@ -1,4 +1,4 @@
-/* A small CLAP host: plays a script by a plug-in, and tells what happened.
+/* A small CLAP host: plays a script by a plug-in, and reports what happened.
  *
  *     host PLUGIN RATE BLOCK FRAMES SCRIPT SAMPLES
  *
@@ -12,7 +12,7 @@
  *     FRAME reset      FRAME save FILE      FRAME load FILE      FRAME rate HZ (0: as it is)
  *     FRAME flush NUMBER VALUE               FRAME idle NUMBER VALUE (flush, while it is not active)
  *
- * The first ten are events of a block, or told with it; the others happen between two blocks.
+ * The first ten are events of a block, or sent with it; the others happen between two blocks.
  * Prints lines: a word and numbers. "odd": samples that are not finite, denormal, not written, or
  * beyond the block; "names": of keys, the last of these keys, and how often they changed; "untrue": a parameter, and a value whose text does not lead back to itself.
  */
@@ -63,7 +63,7 @@ static union {
     clap_event_transport_t transport;
 } events[MOST];
 static uint32_t in_block;
-static long told;
+static long printed;
 
 static uint32_t CLAP_ABI size_of(const clap_input_events_t *list) { return (void)list, in_block; }
 static const clap_event_header_t *CLAP_ABI get(const clap_input_events_t *list, uint32_t i) {
@@ -73,7 +73,7 @@ static bool CLAP_ABI push(const clap_output_events_t *list, const clap_event_hea
     const clap_event_param_value_t *param = (const void *)event;
     (void)list;
     if (event->type == CLAP_EVENT_PARAM_VALUE) {
-        told++;
+        printed++;
         printf("moved %u %.17g\n", param->param_id, param->value);
     }
     return true;
@@ -269,7 +269,7 @@ int main(int words, char **word) {
         const double start = seconds(CLOCK_THREAD_CPUTIME_ID);
         if (plugin->process(plugin, &process) == CLAP_PROCESS_ERROR) return 6;
         const double one = seconds(CLOCK_THREAD_CPUTIME_ID) - start;
-        if (!told) allocated += allocations() - before; /* printing allocates once */
+        if (!printed) allocated += allocations() - before; /* printing allocates once */
         took += one, longest = one > longest ? one : longest;
         for (long n = 0; n < now; n++)
             sound[2 * (done + n)] = left[n], sound[2 * (done + n) + 1] = right[n],

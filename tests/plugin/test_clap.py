@@ -15,10 +15,10 @@ def test_it_plays_the_samples_of_the_library_in_blocks_of_any_size(play, library
     wanted = by_library(library, PHRASE, FRAMES)
     assert np.abs(wanted).max() > 0.1
     for block in (1, 32, 441, 4096, 0):
-        samples, told = play(PLAYS + script(PHRASE), FRAMES, block=block)
+        samples, reports = play(PLAYS + script(PHRASE), FRAMES, block=block)
         assert np.array_equal(samples, wanted), block
-        assert told["allocated"] == [[0.0]]
-        assert told["latency"] == [[0.0]]
+        assert reports["allocated"] == [[0.0]]
+        assert reports["latency"] == [[0.0]]
 
 
 def test_it_plays_at_any_rate_alike(play):
@@ -27,17 +27,19 @@ def test_it_plays_at_any_rate_alike(play):
     assert 1200.0 * abs(np.log2(pitch / 440.0)) < 12.0
     for rate in (22050, 32000, 44100, 88200, 96000, 176400, 192000, 37800):
         scale = rate / 48000
-        samples, told = play(PLAYS + script(PHRASE, scale), int(FRAMES * scale), rate=rate, block=0)
+        samples, reports = play(
+            PLAYS + script(PHRASE, scale), int(FRAMES * scale), rate=rate, block=0
+        )
         part = samples[int(12000 * scale) : int(26000 * scale)]
         assert 1200.0 * abs(np.log2(frequency(part, rate) / pitch)) < 3.0, rate
         assert abs(level_db(part) - level) < 1.0, rate
-        assert (told["latency"] == [[0.0]]) == (rate == 44100)
+        assert (reports["latency"] == [[0.0]]) == (rate == 44100)
 
 
 def test_resampled_sound_is_that_of_the_own_rate_but_late(play):
     usual, _ = play(PLAYS + script(PHRASE), FRAMES)
-    double, told = play(PLAYS + script(PHRASE, 2.0), 2 * FRAMES, rate=96000, block=0)
-    late = int(told["latency"][0][0])
+    double, reports = play(PLAYS + script(PHRASE, 2.0), 2 * FRAMES, rate=96000, block=0)
+    late = int(reports["latency"][0][0])
     begin = slice(0, 20000)  # before rounding of times can matter
     difference = double[late::2][begin] - usual[begin]
     assert level_db(difference) < level_db(usual[begin]) - 35.0
@@ -57,30 +59,30 @@ def test_a_parameter_moves_at_its_frame(play, shown):
 def test_keys_that_choose_articulations_have_names(play, shown):
     mapping = shown["/mapping"]
     switches = mapping.choices.index("keyboard-articulations")
-    _, told = play(PLAYS, 256)
-    assert told["names"] == [[0, -1, 0]]
-    _, told = play([*PLAYS, f"0 set {mapping.number} {switches}"], 1024)
+    _, reports = play(PLAYS, 256)
+    assert reports["names"] == [[0, -1, 0]]
+    _, reports = play([*PLAYS, f"0 set {mapping.number} {switches}"], 1024)
     last = 36 + len(ARTICULATIONS) - 1
-    assert told["names"] == [[len(ARTICULATIONS), last, 1]]
-    assert f"last-{ARTICULATIONS[-1].name}" in told
+    assert reports["names"] == [[len(ARTICULATIONS), last, 1]]
+    assert f"last-{ARTICULATIONS[-1].name}" in reports
 
 
 def test_a_preset_moves_what_it_names_and_tells_the_host(play, shown):
     hall = shown["/preset"].choices.index("hall")
-    _, told = play([*PLAYS, f"100 set {shown['/preset'].number} {hall}"], 2000)
-    moved = {int(number): value for number, value in told["moved"]}
+    _, reports = play([*PLAYS, f"100 set {shown['/preset'].number} {hall}"], 2000)
+    moved = {int(number): value for number, value in reports["moved"]}
     preset = Presets(user_first=False).find("hall").values
     assert moved[shown["/room/size"].number] == preset["/room/size"]
-    values = {int(number): value for number, value, _ in told["value"]}
+    values = {int(number): value for number, value, _ in reports["value"]}
     assert values[shown["/room/decay"].number] == preset["/room/decay"]
     assert values[shown["/playing/speed"].number] == shown["/playing/speed"].default
 
 
 def test_text_leads_back_to_the_value(play, shown):
-    _, told = play([], 64)
+    _, reports = play([], 64)
     by_number = {each.number: each for each in shown.values()}
-    assert len(told["value"]) == len(shown)
-    for number, value, back in told["value"]:
+    assert len(reports["value"]) == len(shown)
+    for number, value, back in reports["value"]:
         assert back == pytest.approx(value, abs=1e-3), by_number[int(number)].address
 
 
@@ -91,11 +93,11 @@ def test_state_opens_in_a_new_instance(play, shown, tmp_path):
     changed = [f"0 set {shown[address].number} {value}" for address, value in wanted.items()]
     # The phrase, with breath, after a reset.
     later = script([(frame + 2000, *rest) for frame, *rest in [(0, 0xB0, 2, 90), *PHRASE]])
-    first, told = play([*changed, f"2000 save {state}", "2000 reset", *later], FRAMES)
-    assert told["saved"] == [[1.0]]
+    first, reports = play([*changed, f"2000 save {state}", "2000 reset", *later], FRAMES)
+    assert reports["saved"] == [[1.0]]
     second, again = play([f"0 load {state}", "2000 reset", *later], FRAMES)
     assert again["loaded"] == [[1.0]]
-    assert again["value"] == told["value"]
+    assert again["value"] == reports["value"]
     assert np.array_equal(first[2000:], second[2000:])
     assert np.abs(first).max() > 0.01
     # One of another version opens as far as it is known.
@@ -155,7 +157,7 @@ def test_ten_minutes_of_random_messages_allocate_nothing_and_stay_finite(play, s
         f"{time} midi {kind} {one} {two}"
         for time, kind, (one, two) in zip(times, status, bytes_of, strict=True)
     ]
-    samples, told = play([*PLAYS, *lines], frames, block=0)
-    assert told["allocated"] == [[0.0]]
+    samples, reports = play([*PLAYS, *lines], frames, block=0)
+    assert reports["allocated"] == [[0.0]]
     assert np.isfinite(samples).all()
     assert 0.01 < np.abs(samples).max() <= 1.0

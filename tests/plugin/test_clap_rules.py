@@ -1,6 +1,6 @@
 """What free-audio's clap-validator checks of a plug-in, by the small host.
 
-The host itself looks at factory, features and texts, and at every sample that is written.
+The host itself checks factory, features and texts, and at every sample that is written.
 """
 
 import random
@@ -25,8 +25,8 @@ def some_values(chance, shown, *, bounds=False):
     return found
 
 
-def told_values(told):
-    return {int(number): value for number, value, _ in told["value"]}
+def reported_values(reports):
+    return {int(number): value for number, value, _ in reports["value"]}
 
 
 def some_events(chance, frames, count):
@@ -60,9 +60,9 @@ def test_unruly_events_do_no_harm_at_any_rate_and_in_any_block(play):
     chance = random.Random(1)
     cases = [(rate, 0) for rate in RATES] + [(48000, block) for block in BLOCKS]
     for rate, block in cases:
-        samples, told = play(["0 play 1", *some_events(chance, 20000, 400)], 20000, rate, block)
+        samples, reports = play(["0 play 1", *some_events(chance, 20000, 400)], 20000, rate, block)
         assert np.abs(samples).max() <= 1.0, (rate, block)
-        assert told["allocated"] == [[0.0]], (rate, block)
+        assert reports["allocated"] == [[0.0]], (rate, block)
 
 
 def test_any_values_do_no_harm(play, shown):
@@ -85,7 +85,7 @@ def test_a_value_is_the_same_by_an_event_and_by_a_flush(play, shown):
     usual = {each.number: each.default for each in shown.values()}
     for word, values in (("set", wanted), ("flush", wanted), ("idle", wanted), ("foreign", usual)):
         lines = [f"0 {word} {number} {value}" for number, value in wanted.items()]
-        found = told_values(play(lines, 64)[1])
+        found = reported_values(play(lines, 64)[1])
         assert found == pytest.approx(values, rel=1e-9), word
 
 
@@ -94,7 +94,7 @@ def test_a_state_comes_back_byte_by_byte(play, shown, tmp_path):
     values = some_values(random.Random(4), shown)
     own = play([f"0 flush {n} {v}" for n, v in values.items()] + [f"1 save {first}"], 64)[1]
     again = play([f"0 load {first}", f"1 save {second}"], 64)[1]
-    assert told_values(again) == told_values(own) == pytest.approx(values, rel=1e-9)
+    assert reported_values(again) == reported_values(own) == pytest.approx(values, rel=1e-9)
     assert first.read_bytes() == second.read_bytes()
 
 
@@ -103,13 +103,13 @@ def test_what_is_no_state_is_refused(play, shown, tmp_path):
     usual = {each.number: each.default for each in shown.values()}
     for size in (0, 1, 1 << 20):
         state.write_bytes(chance.randbytes(size))
-        told = play([f"0 load {state}"], 64)[1]
-        assert told["loaded"] == [[0.0]], size
-        assert told_values(told) == usual
+        reports = play([f"0 load {state}"], 64)[1]
+        assert reports["loaded"] == [[0.0]], size
+        assert reported_values(reports) == usual
 
 
 def test_values_that_are_so_already_change_nothing(play, shown):
-    """Hosts tell all of them as they begin."""
+    """Hosts send all of them as they begin."""
     all_values = [f"0 set {each.number} {each.default}" for each in shown.values()]
-    told_first, _ = play(["0 play 1", *all_values, *script(PHRASE)], FRAMES)
-    assert np.array_equal(told_first, play(["0 play 1", *script(PHRASE)], FRAMES)[0])
+    after_all, _ = play(["0 play 1", *all_values, *script(PHRASE)], FRAMES)
+    assert np.array_equal(after_all, play(["0 play 1", *script(PHRASE)], FRAMES)[0])

@@ -42,7 +42,7 @@ def messages(file):
 
 
 def by_render(file, monkeypatch):
-    """Samples and wishes of `render`, which is told the lengths of notes by the score else."""
+    """Samples and wishes of `render`, which takes the lengths of notes from the score otherwise."""
     monkeypatch.setattr(performance, "notes_of", lambda _score: ())
     options = Options(rate=int(RATE), tail_s=0.0)
     playing = performance.Performance([Part(read_score(file))], options, reports=True)
@@ -71,7 +71,7 @@ def by_page(node, messages, folder):
 def test_a_file_comes_to_the_same_wishes_and_samples(
     file, messages, library, node, play, tmp_path, monkeypatch
 ):
-    """Nothing tells a plug-in's wishes; its samples are the library's, to the last bit."""
+    """A plug-in reports no wishes; its samples are the library's, to the last bit."""
     assert messages == [(frame, *data) for frame, *data in PHRASE]
     rendered, wanted = by_render(file, monkeypatch)
     in_c, found = by_library(library, messages)

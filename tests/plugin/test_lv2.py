@@ -1,4 +1,4 @@
-"""The LV2 bundle: what it tells, and what it plays."""
+"""The LV2 bundle: what it declares, and what it plays."""
 
 import os
 import shutil
@@ -65,16 +65,16 @@ def test_the_validator_finds_nothing(built):
 @pytest.mark.skipif(shutil.which("lv2info") is None, reason="there is no lilv")
 def test_lilv_finds_plug_in_and_presets(built, tmp_path):
     (tmp_path / "Yehu.lv2").symlink_to(built / "Yehu.lv2")
-    told = subprocess.run(
+    printed = subprocess.run(
         [shutil.which("lv2info"), "urn:yehu-server:yehu"],
         env={**os.environ, "LV2_PATH": str(tmp_path)},
         capture_output=True,
         text=True,
         check=True,
     )
-    assert not told.stderr
-    assert "sul-ponticello" in told.stdout
-    assert "Finger 4 press by hand" in told.stdout
+    assert not printed.stderr
+    assert "sul-ponticello" in printed.stdout
+    assert "Finger 4 press by hand" in printed.stdout
 
 
 def test_texts_name_each_parameter_and_preset(shown):

@@ -61,10 +61,10 @@ def test_on_arm_it_plays_the_same(everywhere, library, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["Yehu.clap", "Yehu.vst3"])
-def test_a_bundle_of_macos_has_both_processors_and_tells_what_it_is(everywhere, name):
+def test_a_bundle_of_macos_has_both_processors_and_declares_what_it_is(everywhere, name):
     inside = everywhere / "macos" / name / "Contents"
-    told = plistlib.loads((inside / "Info.plist").read_bytes())
-    binary = (inside / "MacOS" / told["CFBundleExecutable"]).read_bytes()
+    declared = plistlib.loads((inside / "Info.plist").read_bytes())
+    binary = (inside / "MacOS" / declared["CFBundleExecutable"]).read_bytes()
     assert struct.unpack_from(">II", binary) == (0xCAFEBABE, 2)
     for number, processor in enumerate((0x01000007, 0x0100000C)):
         kind, _, at, size, power = struct.unpack_from(">IIIII", binary, 8 + 20 * number)

@@ -28,15 +28,15 @@ def display():
     command = [shutil.which("Xvfb"), "-displayfd", str(writing), "-screen", "0", "1600x900x24"]
     server = subprocess.Popen(command, pass_fds=[writing], stderr=subprocess.DEVNULL)
     os.close(writing)
-    with os.fdopen(reading) as told:
-        yield f":{told.readline().strip()}"
+    with os.fdopen(reading) as printed:
+        yield f":{printed.readline().strip()}"
     server.terminate()
     server.wait()
 
 
 @pytest.fixture
 def watched(tmp_path, monkeypatch):
-    """A folder with a plug-in whose C++ tells of races."""
+    """A folder with a plug-in whose C++ reports races."""
     options = ("-g", "-fsanitize=thread")
     monkeypatch.setattr(building, "FLAGS", (*building.FLAGS, *options))
     monkeypatch.setattr(building, "LINKING", ("-shared", *options))
@@ -47,7 +47,7 @@ def watched(tmp_path, monkeypatch):
 
 @pytest.fixture
 def window(request, tmp_path, built, display):
-    """Say a line to the host; what it answers: value, timers, told, size asked for, size.
+    """Say a line to the host; what it answers: value, timers, edits, size asked for, size.
 
     Parametrized by options of the compilers, for the host and for a plug-in of its own.
     """

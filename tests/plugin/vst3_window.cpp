@@ -2,7 +2,7 @@
  *
  *     vst3_window LIBRARY X Y     where to press
  *
- * Prints timers while it is open and after, edits that it was told of, the number and the value of the
+ * Prints timers while it is open and after, edits that were reported to it, the number and the value of the
  * last, the value that the controller shows, and the width of the inner window.
  */
 #include <dlfcn.h>

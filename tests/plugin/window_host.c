@@ -34,7 +34,7 @@
 
 static const clap_plugin_t *plugin;
 static int timers, asked[2];
-static _Atomic int told;
+static _Atomic int edits;
 static xcb_connection_t *x;
 static xcb_window_t window;
 
@@ -67,7 +67,7 @@ static const clap_event_header_t *CLAP_ABI get(const clap_input_events_t *list, 
     return (void)list, (void)i, &note.header;
 }
 static bool CLAP_ABI push(const clap_output_events_t *list, const clap_event_header_t *event) {
-    if (event->type == CLAP_EVENT_PARAM_VALUE) told++;
+    if (event->type == CLAP_EVENT_PARAM_VALUE) edits++;
     return (void)list, true;
 }
 
@@ -139,7 +139,7 @@ int main(int words, char **word) {
         unsigned a = 0, b = 0;
         double value = 0.0;
         if (sscanf(line, "%*s %255s", text) == 1) sscanf(text, "%u", &a), sscanf(line, "%*s %*s %u", &b);
-        told = asked[0] = asked[1] = 0;
+        edits = asked[0] = asked[1] = 0;
         if (!strncmp(line, "open", 4)) {
             if (!gui->create(plugin, CLAP_WINDOW_API_X11, false) || !gui->get_size(plugin, &width, &height)) return 6;
             window = xcb_generate_id(x);
@@ -173,7 +173,7 @@ int main(int words, char **word) {
             free(xcb_get_input_focus_reply(x, xcb_get_input_focus(x), NULL));
         } else if (!strncmp(line, "shot", 4)) shot(text, (int)width, (int)height);
         else if (!strncmp(line, "value", 5)) params->get_value(plugin, a, &value);
-        printf("%g %d %d %d %d %u %u\n", value, timers, told, asked[0], asked[1], width, height);
+        printf("%g %d %d %d %d %u %u\n", value, timers, edits, asked[0], asked[1], width, height);
         fflush(stdout);
     }
     plugin->deactivate(plugin), plugin->destroy(plugin), entry->deinit();

@@ -19,7 +19,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, override
-from yehu_server.core.player.bowing import default_recipes
+from yehu_server.core.player.bowing import default_bowing_table
 from yehu_server.core.player.calibration import PITCHES, ROWS_OF_A_YEHU, SPEEDS, Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.rows import ROW
@@ -166,7 +166,7 @@ def measured(seed: int = 1) -> Calibration:
 
 def test_an_instrument_is_read_as_it_began(tmp_path):
     """With strings, hair and body of its own, such as those of a section."""
-    bowing = default_recipes() * 1.01
+    bowing = default_bowing_table() * 1.01
     calibration, usual = measured(), Quantities()
     body = replace(usual.body, mass=tuple(1.01 * mass for mass in usual.body.mass))
     own = replace(usual, body=body, bow=replace(usual.bow, hair=7.0, xi=(0.6, 0.5)))
@@ -346,7 +346,9 @@ def test_what_players_have_in_common_is_written_once(tmp_path):
     of, apart = measured(), range(MOST_PARTS - 2)
     players = [InstrumentSpec(RATE, calibration=of, seed=seed, body=seed) for seed in range(3)]
     players += [
-        InstrumentSpec(RATE, calibration=measured(i), bowing=default_recipes() * (1.01 + i / 97.0))
+        InstrumentSpec(
+            RATE, calibration=measured(i), bowing=default_bowing_table() * (1.01 + i / 97.0)
+        )
         for i in apart[1:]
     ]
     CaptureWriter(tmp_path / "c", beginning=SessionStart(tuple(players), has_room=True)).close(9)
@@ -579,13 +581,13 @@ CALIBRATION = {
     "sharpening": measured().sharpening,
     "levels": measured().levels,
 }
-BOWING = default_recipes().tolist()
+BOWING = default_bowing_table().tolist()
 USUAL = Quantities().body
 
 
 def bowing_with(value: object) -> list:
     """A table with something else in one place."""
-    table = default_recipes().astype(object)
+    table = default_bowing_table().astype(object)
     table[-1, -1, -1, -1] = value
     return table.tolist()
 
@@ -687,7 +689,7 @@ def second_version(path, lines=(), **changes):
     """A file as the second version wrote it: of one player, without a room."""
     header = {"format": "yehu-server capture", "version": 2, "rate": RATE, "seed": 3}
     header |= {"open_strings": "always", "tensions": list(TENSIONS), "build": build()}
-    header |= {"calibration": None, "bowing": default_recipes().tolist(), "values": {}}
+    header |= {"calibration": None, "bowing": default_bowing_table().tolist(), "values": {}}
     header |= changes
     path.write_text("".join(json.dumps(line) + "\n" for line in [header, *lines]))
     return path

@@ -5,23 +5,23 @@
 
 import { CHANNELS, Kernel, NOW, VOICE_WISH, WISH } from "./kernel.js";
 
-const LOOKS_A_SECOND = 60;
+const SNAPSHOTS_A_SECOND = 60;
 const CHUNK = 4096; // recorded frames that are told at a time
 const FAINT = 1e-3; // of full scale; what is fainter dies away within the time that follows
 const SLEEPS_AFTER_S = 4; // without a wish or a sound
-const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
+const MOST_SNAPSHOTS = 4; // that nobody has given back yet; then nobody is looking
 
 /**
  * @typedef {object} Take
  * @property {Float64Array} [wishes] WISH numbers each
  * @property {boolean} [record] begins or ends a recording
  * @property {boolean} [keep] begins or ends keeping the wishes that are fulfilled
- * @property {Float64Array} [seen] a look, given back
+ * @property {Float64Array} [seen] a snapshot, given back
  * @property {number[] | null} [voice] begins following a voice, moved to these pitches if there are
  *   any; null ends it
  *
  * @typedef {object} Told
- * @property {Float64Array} [seen] a look
+ * @property {Float64Array} [seen] a snapshot
  * @property {number} [heard] pitch of the voice, where one is followed; NaN for none
  * @property {boolean} [sleeps] whether it has just gone to sleep
  * @property {number} [load] share of the time that computing takes
@@ -35,16 +35,16 @@ export class Engine {
    * @param {BufferSource} bytes of the WebAssembly module
    * @param {number} rate in Hz
    * @param {number} most frames of a block
-   * @param {number} lookLength numbers of a look
+   * @param {number} snapshotLength numbers of a snapshot
    * @param {(told: Told, buffers: ArrayBufferLike[]) => void} tell
    */
-  constructor(bytes, rate, most, lookLength, tell) {
-    this.kernel = new Kernel(new WebAssembly.Module(bytes), rate, most, lookLength);
+  constructor(bytes, rate, most, snapshotLength, tell) {
+    this.kernel = new Kernel(new WebAssembly.Module(bytes), rate, most, snapshotLength);
     this.rate = rate;
     this.tell = tell;
     /** @type {Float64Array[]} */
-    this.free = Array.from({ length: MOST_LOOKS }, () => new Float64Array(lookLength));
-    this.nextLook = 0;
+    this.free = Array.from({ length: MOST_SNAPSHOTS }, () => new Float64Array(snapshotLength));
+    this.nextSnapshot = 0;
     this.frame = 0;
     this.restless = 0; // frame until which something was asked for, or sounded
     this.sleeps = true; // nobody has asked for anything
@@ -135,7 +135,7 @@ export class Engine {
     this.frame += frames;
     if (this.frame > this.restless + SLEEPS_AFTER_S * this.rate && !this.sleeps) this.#sleep();
     if (this.chunk) this.#record(frames);
-    if (this.frame >= this.nextLook) this.#look();
+    if (this.frame >= this.nextSnapshot) this.#snapshot();
     this.busyMs += Date.now() - began;
   }
 
@@ -146,11 +146,11 @@ export class Engine {
     this.tell({ sleeps: true }, []);
   }
 
-  #look() {
-    this.nextLook = this.frame + this.rate / LOOKS_A_SECOND;
+  #snapshot() {
+    this.nextSnapshot = this.frame + this.rate / SNAPSHOTS_A_SECOND;
     const seen = this.free.pop();
     if (!seen) return;
-    seen.set(this.kernel.look());
+    seen.set(this.kernel.snapshot());
     /** @type {Told} */
     const told = { seen };
     if (this.follows) told.heard = this.kernel.voicePitch;

@@ -1,5 +1,5 @@
 /**
- * The instrument in WebAssembly: post wishes, compute samples, look at it.
+ * The instrument in WebAssembly: post wishes, compute samples, take snapshots.
  *
  * It is the very callback of the server, compiled ahead of time. It runs in an audio worklet, on the
  * page's own thread, and in Node.
@@ -90,29 +90,29 @@ export class Kernel {
    * @param {WebAssembly.Module} module
    * @param {number} rate in Hz; one that the module was built for
    * @param {number} most frames of a block
-   * @param {number} lookLength numbers of a look
+   * @param {number} snapshotLength numbers of a snapshot
    */
-  constructor(module, rate, most, lookLength) {
+  constructor(module, rate, most, snapshotLength) {
     /** @type {any} */
     const exported = new WebAssembly.Instance(module, {
       env: wasmImports(() => this.view),
     }).exports;
     this.exported = exported;
     this.most = most;
-    const [rig, out, look, voice, sung, wishes] = room(
+    const [rig, out, snapshot, voice, sung, wishes] = room(
       exported,
       Number(exported.yehu_size()),
       4 * CHANNELS * most,
-      8 * lookLength,
+      8 * snapshotLength,
       Number(exported.yehu_voice_size()),
       4 * most,
       8 * VOICE_WISH * VOICE_WISHES,
     );
-    this.at = { rig, out, look, voice, sung, wishes };
+    this.at = { rig, out, snapshot, voice, sung, wishes };
     const memory = exported.memory.buffer; // it grows no more
     this.view = new DataView(memory);
     this.out = new Float32Array(memory, out, CHANNELS * most);
-    this.seen = new Float64Array(memory, look, lookLength);
+    this.seen = new Float64Array(memory, snapshot, snapshotLength);
     this.sung = new Float32Array(memory, sung, most);
     this.sungWishes = new Float64Array(memory, wishes, VOICE_WISH * VOICE_WISHES);
     this.lengths = Array.from({ length: most + 1 }, (_, frames) => BigInt(frames));
@@ -197,9 +197,9 @@ export class Kernel {
     return this.exported.yehu_voice_pitch(this.at.voice);
   }
 
-  /** Look at the instrument: fills `seen`. */
-  look() {
-    this.exported.yehu_look(this.at.rig, this.at.look);
+  /** Take a snapshot: fills `seen`. */
+  snapshot() {
+    this.exported.yehu_snapshot(this.at.rig, this.at.snapshot);
     return this.seen;
   }
 }

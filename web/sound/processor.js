@@ -7,10 +7,10 @@ const MOST_FRAMES = 128;
 /* global AudioWorkletProcessor, registerProcessor, sampleRate */
 
 class Processor extends AudioWorkletProcessor {
-  /** @param {{processorOptions: {bytes: ArrayBuffer, lookLength: number}}} options */
-  constructor({ processorOptions: { bytes, lookLength } }) {
+  /** @param {{processorOptions: {bytes: ArrayBuffer, snapshotLength: number}}} options */
+  constructor({ processorOptions: { bytes, snapshotLength } }) {
     super();
-    this.engine = new Engine(bytes, sampleRate, MOST_FRAMES, lookLength, (told, buffers) =>
+    this.engine = new Engine(bytes, sampleRate, MOST_FRAMES, snapshotLength, (told, buffers) =>
       this.port.postMessage(told, /** @type {Transferable[]} */ (buffers)),
     );
     this.isOpen = true;

@@ -30,7 +30,7 @@ export class Remote extends EventTarget {
     super();
     this.line = line;
     this.listener = listener;
-    this.seen = new Float64Array(facts.lookLength + 2 * facts.parameters.length);
+    this.seen = new Float64Array(facts.snapshotLength + 2 * facts.parameters.length);
     this.isSeen = false;
     this.people = Infinity; // the server knows how many there are
     this.state = snapshotOf(this.seen);
@@ -58,7 +58,7 @@ export class Remote extends EventTarget {
   /** The value of any other parameter, whoever set it. @param {string} address */
   reported(address) {
     const { row, playerControlled } = find(address);
-    return playerControlled || !this.isSeen ? undefined : this.seen[facts.lookLength + row];
+    return playerControlled || !this.isSeen ? undefined : this.seen[facts.snapshotLength + row];
   }
 
   /** @returns {Status} */

@@ -90,7 +90,7 @@ export class ServerConnection extends EventTarget {
    * @param {string} address
    */
   wasSet(address) {
-    return this.seen?.[facts.lookLength + facts.parameters.length + find(address).row];
+    return this.seen?.[facts.snapshotLength + facts.parameters.length + find(address).row];
   }
 
   /** Fulfilled by the first look. @returns {Promise<void>} */

@@ -1,4 +1,4 @@
-/** Reads a look at the instrument, numbers in the order of `facts.look`; and names the motion of its string. */
+/** Reads a snapshot, numbers in the order of `facts.snapshot`; and names the motion of its string. */
 
 import facts from "../facts.js";
 import { find } from "../playing/table.js";
@@ -6,67 +6,72 @@ import { find } from "../playing/table.js";
 /** @typedef {import('../interfaces.js').Snapshot} Snapshot */
 
 /** Points of a string's shape. */
-export const POINTS = facts.look.shapes[1] / 2;
+export const POINTS = facts.snapshot.shapes[1] / 2;
 const LEAST_DB = -160;
 
 /** Where each field begins. @type {Record<string, number>} */
-const AT = Object.fromEntries(Object.entries(facts.look).map(([name, [at]]) => [name, at]));
-const FINGERS = facts.look.finger_x[1];
+const AT = Object.fromEntries(Object.entries(facts.snapshot).map(([name, [at]]) => [name, at]));
+const FINGERS = facts.snapshot.finger_x[1];
 
 /**
- * @param {Float64Array} look
+ * @param {Float64Array} numbers
  * @returns {Snapshot}
  */
-export function snapshotOf(look) {
-  const speed = Math.abs(look[AT.speed]);
-  const beta = look[AT.beta];
-  const string = /** @type {0 | 1 | -1} */ (look[AT.string]);
-  const heard = look[AT.frequency] * 2 ** (look[AT.error] / 1200);
+export function snapshotOf(numbers) {
+  const speed = Math.abs(numbers[AT.speed]);
+  const beta = numbers[AT.beta];
+  const string = /** @type {0 | 1 | -1} */ (numbers[AT.string]);
+  const heard = numbers[AT.frequency] * 2 ** (numbers[AT.error] / 1200);
   return {
-    frame: look[AT.frame],
-    time: look[AT.frame] / look[AT.rate],
-    pitch: look[AT.pitch],
-    heard: { certainty: look[AT.certainty], errorCents: look[AT.error], slips: look[AT.slips] },
-    level: look[AT.rms] > 0 ? Math.max(20 * Math.log10(look[AT.rms]), LEAST_DB) : LEAST_DB,
-    shape: [shapeOf(look, 0), shapeOf(look, 1)],
-    bow: { string, speed: look[AT.speed], force: look[AT.force], beta, x: look[AT.bow_x] },
-    hair: { place: look[AT.hair_place], length: look[AT.hair_length] },
-    fingers: fingersOf(look, string),
+    frame: numbers[AT.frame],
+    time: numbers[AT.frame] / numbers[AT.rate],
+    pitch: numbers[AT.pitch],
+    heard: {
+      certainty: numbers[AT.certainty],
+      errorCents: numbers[AT.error],
+      slips: numbers[AT.slips],
+    },
+    level: numbers[AT.rms] > 0 ? Math.max(20 * Math.log10(numbers[AT.rms]), LEAST_DB) : LEAST_DB,
+    shape: [shapeOf(numbers, 0), shapeOf(numbers, 1)],
+    bow: { string, speed: numbers[AT.speed], force: numbers[AT.force], beta, x: numbers[AT.bow_x] },
+    hair: { place: numbers[AT.hair_place], length: numbers[AT.hair_length] },
+    fingers: fingersOf(numbers, string),
     period: 1 / heard,
-    string: { length: look[AT.length] },
+    string: { length: numbers[AT.length] },
     schelleng: {
-      min: (look[AT.lower] * speed) / beta ** 2,
-      max: (look[AT.upper] * speed) / beta,
+      min: (numbers[AT.lower] * speed) / beta ** 2,
+      max: (numbers[AT.upper] * speed) / beta,
     },
   };
 }
 
 /**
  * The value that a parameter of bow and fingers has or moves to.
- * @param {Float64Array} look
+ * @param {Float64Array} numbers
  * @param {string} address
  */
-export function targetOf(look, address) {
+export function targetOf(numbers, address) {
   const { slot } = find(address);
-  return slot === null ? undefined : look[AT.targets + slot];
+  return slot === null ? undefined : numbers[AT.targets + slot];
 }
 
-/** @param {Float64Array} look @param {number} string */
-function shapeOf(look, string) {
+/** @param {Float64Array} numbers @param {number} string */
+function shapeOf(numbers, string) {
   const start = AT.shapes + string * POINTS;
-  return Float32Array.from(look.subarray(start, start + POINTS));
+  return Float32Array.from(numbers.subarray(start, start + POINTS));
 }
 
 /**
  * The fingers that press; they stop both strings.
- * @param {Float64Array} look
+ * @param {Float64Array} numbers
  * @param {number} string
  */
-function fingersOf(look, string) {
+function fingersOf(numbers, string) {
   const fingers = [];
   for (let i = 0; i < FINGERS; i++) {
-    const press = look[AT.finger_press + i];
-    if (press > 0) fingers.push({ x: look[AT.finger_x + i], press, string: Math.max(string, 0) });
+    const press = numbers[AT.finger_press + i];
+    if (press > 0)
+      fingers.push({ x: numbers[AT.finger_x + i], press, string: Math.max(string, 0) });
   }
   return fingers;
 }

@@ -40,7 +40,7 @@ export class Sound extends EventTarget {
   constructor(context) {
     super();
     this.context = context;
-    this.seen = new Float64Array(facts.lookLength);
+    this.seen = new Float64Array(facts.snapshotLength);
     this.state = snapshotOf(this.seen);
     this.output = new Output(context);
     this.analyser = this.output.analyser;
@@ -75,16 +75,16 @@ export class Sound extends EventTarget {
 
   /** @param {ArrayBuffer} bytes */
   async #connect(bytes) {
-    const { lookLength } = facts;
+    const { snapshotLength } = facts;
     const { sampleRate } = this.context;
     await this.output.connect({
       name: "yehu",
       file: "processor.js",
       inputs: 1, // a voice
-      options: { bytes, lookLength },
+      options: { bytes, snapshotLength },
       make: (frames) => {
         const hear = (/** @type {Told} */ told) => this.#hear(told);
-        const engine = (this.engine = new Engine(bytes, sampleRate, frames, lookLength, hear));
+        const engine = (this.engine = new Engine(bytes, sampleRate, frames, snapshotLength, hear));
         return (left, right) => engine.fill(left, right);
       },
     });

@@ -33,7 +33,7 @@ from yehu_server.core.player.bowing import (
     FIRST,
     FLAUTANDO,
     PLACES,
-    default_recipes,
+    default_bowing_table,
 )
 from yehu_server.core.player.calibration import Calibration, frequency_hz
 from yehu_server.core.player.note_range import LOWEST_NOTE, NoteRange
@@ -105,13 +105,13 @@ class Practice:
         table: Array | None = None,
         places: Iterable[int] = range(len(PLACES)),
     ) -> Array:
-        """Practise all notes; return a table as `default_recipes` does.
+        """Practise all notes; return a table as `default_bowing_table` does.
 
         `progress`: called with the number of notes done and of all notes.
         `table` (ndarray, optional): how notes are bowed to begin with; by default all alike.
         `places`: indices of PLACES to practise.
         """
-        table = default_recipes() if table is None else table.copy()
+        table = default_bowing_table() if table is None else table.copy()
         asked = [place for place in places if place in self._places]
         with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
             stops = stops_of(self._notes)
@@ -185,7 +185,7 @@ class Practice:
 
     def score(self, search: Search, recipe: Array, passages: Iterable[Passage]) -> float:
         """How well a note speaks in some passages: at best 1."""
-        table = default_recipes()
+        table = default_bowing_table()
         stopped = self._pitches[search.sounds] - search.above
         for row in {math.floor(stopped), math.ceil(stopped)}:
             table[search.string, :, row - FIRST] = recipe

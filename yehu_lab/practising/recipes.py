@@ -15,7 +15,7 @@ from yehu_server.core.player.bowing import (
     LEAST_PRESS,
     PLACES,
     TOP_SPEED,
-    default_recipes,
+    default_bowing_table,
 )
 from yehu_server.params.table import find
 
@@ -77,7 +77,7 @@ def moved(table: Array, string: int, note: int, place: int) -> Array:
     On the F string it moves as far as ordinarily.
     """
     recipe = table[string, DEFAULT, note - FIRST].copy()
-    ordinary = default_recipes()[string, :, note - FIRST, DISTANCE_FACTOR]
+    ordinary = default_bowing_table()[string, :, note - FIRST, DISTANCE_FACTOR]
     recipe[DISTANCE_FACTOR] *= ordinary[place] / ordinary[DEFAULT]
     farthest = FARTHEST / PLACES[place]
     recipe[DISTANCE_FACTOR] = min(max(recipe[DISTANCE_FACTOR], NEAREST / PLACES[place]), farthest)

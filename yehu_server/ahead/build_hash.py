@@ -12,7 +12,7 @@ from yehu_server.util.source_key import key_of
 
 @cache
 def build_hash() -> str:
-    """Hash of the sources, calibrations and practice that builds are made from (16 hex digits)."""
+    """Hash of the sources, calibrations and bowing tables that builds are made of (16 digits)."""
     learnt = [
         (PACKAGE / "playing" / name).read_text(encoding="utf-8")
         for name in ("calibrations.json", "practices.json")

@@ -1,4 +1,4 @@
-"""Write the C header of the library: functions, events, parameters, tables, what `look` sees."""
+"""Write the C header of the library: functions, events, parameters, tables, snapshots."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from yehu_server.compile.jit import Native
-from yehu_server.core.engine.look import LOOK
+from yehu_server.core.engine.snapshot import SNAPSHOT
 from yehu_server.core.midi import events, packing, tables
 from yehu_server.core.midi.record import PORTS
 from yehu_server.core.player import wishes
@@ -83,10 +83,11 @@ struct yehu_tables {{
 {tables}
 }};
 
-/* What yehu_look sees. */
-struct yehu_look {{
-{look}
+/* What yehu_snapshot copies. */
+struct yehu_snapshot {{
+{snapshot}
 }};
+#define yehu_look yehu_snapshot /* its name in earlier versions */
 
 {functions}
 
@@ -127,7 +128,7 @@ def header(
         ),
         table_bytes=tables.TABLES.itemsize,
         tables="\n".join(_members(tables.TABLES, _comments(tables, "TABLES"))),
-        look="\n".join(_members(LOOK)),
+        snapshot="\n".join(_members(SNAPSHOT)),
         functions="\n\n".join(map(_prototype, functions)),
     )
 

@@ -3,7 +3,7 @@
 A C program, or a page, gives the memory of an instrument (`size` bytes, aligned to 64), prepares
 it, posts events, and computes blocks; nothing is allocated. `post` may run beside `process`, on
 one other thread, and on that one `midi`, `control` and `use_tables`, which post too; so may
-`frame`, `value`, `pitch`, `look` and `lost`, which only read.
+`frame`, `value`, `pitch`, `snapshot` and `lost`, which only read.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from yehu_server.core.engine import native as engine
 from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine import voice_callback
 from yehu_server.core.engine.atomics import at, load_acquire, record_at
-from yehu_server.core.engine.look import look
 from yehu_server.core.engine.mailbox import SERVER
 from yehu_server.core.engine.native import post_to
 from yehu_server.core.engine.output import OUTPUT
+from yehu_server.core.engine.snapshot import snapshot
 from yehu_server.core.midi.events import CONTROL, MESSAGE, TABLES_TO
 from yehu_server.core.midi.packing import BYTE, LENGTH_AT
 from yehu_server.core.midi.record import MIDI, NONE
@@ -38,7 +38,7 @@ from yehu_server.core.midi.values import NO_KEY, find_values
 from yehu_server.core.physics.layout import STATE
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import MOST_HELD, PLAYER
-from yehu_server.core.player.rows import IS_ENGINES, IS_OWNED, ROWS, SLOT_OF
+from yehu_server.core.player.rows import IS_ENGINES, IS_PLAYER_CONTROLLED, ROWS, SLOT_OF
 from yehu_server.core.player.wishes import HOLD, RAMP, WISH, WRITE
 from yehu_server.core.stage.delay_lines import LINES
 from yehu_server.core.stage.record import STAGE, TAPE_AT
@@ -276,18 +276,18 @@ def reset(rig: Any) -> None:
         wished, is_held = m.value[row], m.is_held[row] != 0
         if is_held:
             post_to(rig, SERVER, 0, HOLD, row, wished, 0.0)
-        elif not IS_OWNED[row] and wished != p.value[row]:
+        elif not IS_PLAYER_CONTROLLED[row] and wished != p.value[row]:
             if IS_ENGINES[row]:  # at once
                 post_to(rig, SERVER, 0, RAMP, SLOT_OF[row], wished, 0.0)
             post_to(rig, SERVER, 0, WRITE, row, wished, 0.0)
 
 
-def telling(sources: str) -> Native:
-    """Make the function `sources`, which tells a hash of 16 hex digits as a number."""
+def sources_function(sources: str) -> Native:
+    """Make the function `sources`, which returns a hash of 16 hex digits as a number."""
     number = np.uint64(int(sources, 16)).astype(np.int64)
 
     def sources_number() -> int:
-        """Tell what it was made from: YEHU_SOURCES, as a number."""
+        """Return what it was made from: YEHU_SOURCES, as a number."""
         return int(number)
 
     made = native(sources_number)
@@ -306,8 +306,8 @@ FOLLOWING = [
 
 def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> list[Native]:
     """List all functions of the interface, for the images and the hash of sources given."""
-    put, told = putting(rates, images), telling(sources)
+    put, made_from = putting(rates, images), sources_function(sources)
     beginning = [Native(prepare, calls=[put]), Native(reset, calls=[put, find_values])]
     posting = [engine.post, midi, control, use_tables]
-    reading = [frame, value, pitch, look, lost]
-    return [told, size, *beginning, *posting, process, *reading, *FOLLOWING]
+    reading = [frame, value, pitch, snapshot, lost]
+    return [made_from, size, *beginning, *posting, process, *reading, *FOLLOWING]

@@ -16,7 +16,7 @@ from yehu_server.ahead.memory_images import runs
 from yehu_server.compile.jit import Native, native
 from yehu_server.compile.memory import WORD, carray
 from yehu_server.core.engine.atomics import at
-from yehu_server.core.engine.look import LOOK
+from yehu_server.core.engine.snapshot import SNAPSHOT
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import MIDI, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
@@ -79,18 +79,18 @@ OF_RECORD = (
 )  # fmt: skip
 
 
-def look_layout() -> dict[str, list[int]]:
-    """Tell where each field of a look begins and how long it is, in float64 numbers."""
-    return _layout(LOOK, LOOK.names or ())
+def snapshot_layout() -> dict[str, list[int]]:
+    """Where each field of a snapshot begins and how long it is, in float64 numbers."""
+    return _layout(SNAPSHOT, SNAPSHOT.names or ())
 
 
-def look_length() -> int:
-    """Length of a look, in float64 numbers."""
-    return LOOK.itemsize // WORD
+def snapshot_length() -> int:
+    """Length of a snapshot, in float64 numbers."""
+    return SNAPSHOT.itemsize // WORD
 
 
 def interpreter_layout() -> dict[str, Any]:
-    """Tell the same of an interpreter's record, and of its tables.
+    """The same of an interpreter's record, and of its tables.
 
     There are `slots` of them, one after another from `tablesAt`, each of `length` words.
     """

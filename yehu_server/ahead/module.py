@@ -1,6 +1,6 @@
 """Join compiled functions into one LLVM module that holds no Python, for one of several machines.
 
-numba's functions call Python only to tell of an exception. These raise none, so what would call it
+numba's functions call Python only to report an exception. These raise none, so what would call it
 stops the program instead, and falls away where LLVM sees that it is never reached.
 """
 
@@ -62,7 +62,7 @@ PAGE = Target("wasm32-unknown-unknown", "", PAGE_FEATURES, reloc="static")
 
 
 def here() -> Target:
-    """Tell this machine, with the instructions of the level that this process compiles for."""
+    """The machine that runs this, with the instructions of the level that it compiles for."""
     return Target(levels.triple(), levels.cpu(levels.level()))
 
 

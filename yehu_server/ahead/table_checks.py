@@ -1,7 +1,8 @@
-"""Whether tables that a program gives are right, so that compiled code may index by them. Compiled.
+"""Checks tables that a program gives, before compiled code indexes by them. Compiled.
 
-The tables of ``midi.tables`` hold numbers of rows, binds and points. Those that Python writes are
-right; others could lead outside the arrays, or to values that are no numbers.
+The tables of ``midi.tables`` hold indices of parameters, and numbers of binds and points. Those
+that Python writes are right; others could lead outside the arrays, or to values that are no
+numbers.
 """
 
 from __future__ import annotations
@@ -82,7 +83,7 @@ def checking_fields(rules: dict[str, tuple[int, float, float]]) -> Any:
     words = TABLES.itemsize // WORD
 
     def check_fields(tables: Any) -> int:
-        """Tell whether each number of some tables may be where it is."""
+        """Return whether each number of some tables may be where it is."""
         numbers = carray(tables, (words,), np.float64)
         for field in range(len(begin)):
             is_whole = kind[field] in (WHOLE, WHOLE_OR_NONE)
@@ -101,21 +102,21 @@ def checking_fields(rules: dict[str, tuple[int, float, float]]) -> Any:
 
 @native
 def check_values(t: Tables) -> int:
-    """Tell whether values are within the ranges of their parameters, once each field is right."""
+    """Return whether values are within the ranges of their parameters, once each field is right."""
     for n in range(int(t.starts)):
         row = int(t.start_row[n])
         if not LOWEST[row] <= t.start_value[n] <= HIGHEST[row]:
             return 0
     for row in range(ROWS):
-        is_divisor = t.usual[row] > 0.0
-        if not LOWEST[row] <= t.usual[row] <= HIGHEST[row] or (is_divisor and t.usual[row] < TINY):
+        usual = t.usual[row]
+        if not LOWEST[row] <= usual <= HIGHEST[row] or 0.0 < usual < TINY:
             return 0
     return 1
 
 
 @native
 def check_binds(t: Tables) -> int:
-    """Tell whether sources and targets of binds are right, once each field is."""
+    """Return whether sources and targets of binds are right, once each field is."""
     for n in range(int(t.binds)):
         source, row = int(t.source[n]), int(t.target[n])
         is_change = source < KEYS or PAIR <= source < PAIR + PAIRS
@@ -132,7 +133,7 @@ def check_binds(t: Tables) -> int:
 
 @native
 def check_curves(t: Tables) -> int:
-    """Tell whether the curves of binds are right, once each field is."""
+    """Return whether the curves of binds are right, once each field is."""
     for n in range(int(t.binds)):
         curve = int(t.curve[n])
         if curve == EXPONENTIAL and (min(t.lo[n], t.hi[n]) < TINY or t.by_range[n] != 0.0):

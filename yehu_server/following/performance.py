@@ -15,7 +15,7 @@ import numpy as np
 
 from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.note_range import YEHU, NoteRange
-from yehu_server.core.voice.deciding import dynamics_of
+from yehu_server.core.voice.note_detection import dynamics_of
 from yehu_server.errors import ScoreError
 from yehu_server.following.frames import HOP_S
 from yehu_server.following.heard import Heard

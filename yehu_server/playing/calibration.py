@@ -79,14 +79,14 @@ class _Setup:
     rate: float
     quantities: Quantities
     a4: float
-    bowing: Array  # ndarray [shape=(STRINGS, NOTES, RECIPE)], at DEFAULT_PLACE
+    bowing: Array  # ndarray [shape=(STRINGS, NOTES, BOWING_SIZE)], at DEFAULT_PLACE
     open_notes: tuple[int, int]
 
     def above(self, string: int) -> int:
         """Semitones by which a string is tuned higher than a yehu's, for which tables are."""
         return self.open_notes[string] - OPEN_NOTES[string]
 
-    def recipe_value(self, string: int, pitch: float, column: int) -> float:
+    def bowing_value(self, string: int, pitch: float, column: int) -> float:
         """One value of how a pitch is bowed on a string."""
         return at_pitch(self.bowing[string], float(pitch - self.above(string)), column)
 
@@ -178,11 +178,11 @@ def _steady(setup: _Setup, string: int, pitch: float, speed: float, x_f: float |
     if x_f is not None:
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
         instrument.write(
-            "/finger/1/press", max(PRESS, setup.recipe_value(string, pitch, LEAST_PRESS))
+            "/finger/1/press", max(PRESS, setup.bowing_value(string, pitch, LEAST_PRESS))
         )
     columns = (AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, TOP_SPEED)
     flautando, light, firm, farther, fastest = (
-        setup.recipe_value(string, pitch, c) for c in columns
+        setup.bowing_value(string, pitch, c) for c in columns
     )
     pressure = share(flautando, light, firm, 0.5 * (LIGHT + FIRM), string)
     beta = farther * DEFAULT_PLACE
@@ -224,7 +224,7 @@ def _colours(setup: _Setup, string: int, pitch: float, sharp: float | None) -> t
     if sharp is not None:
         flat = frequency_hz(pitch - sharp / 100.0, setup.a4)
         x_f = ideal_position(setup.quantities, string, flat)
-    speed = min(USUAL_SPEED, setup.recipe_value(string, pitch, TOP_SPEED))
+    speed = min(USUAL_SPEED, setup.bowing_value(string, pitch, TOP_SPEED))
     steady = _steady(setup, string, pitch, speed, x_f)
     spectrum = np.fft.rfft(steady * np.hanning(len(steady)))
     frequencies = np.fft.rfftfreq(len(steady), 1.0 / setup.rate)[:-1]  # the shelf has no last one
@@ -269,7 +269,7 @@ def _stopped_note(setup: _Setup, string: int, note: float) -> list[tuple[float, 
     guess = USUAL_CENTS[string]
     bowed_at = 0.0
     for speed in SPEEDS:
-        slowed = min(speed, setup.recipe_value(string, note, TOP_SPEED))
+        slowed = min(speed, setup.bowing_value(string, note, TOP_SPEED))
         if slowed != bowed_at:
             sharp, level = _search(setup, string, note, slowed, guess)
             guess = sharp if math.isfinite(sharp) else guess

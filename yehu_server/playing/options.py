@@ -116,11 +116,11 @@ class PlayingOptions:
         *,
         start_values: Values[str, float] | None = None,
         body: int = 0,
-        person: int = 0,
+        player_number: int = 0,
     ) -> InstrumentSpec:
         """The instrument at a rate (Hz), calibrated, with a player with these options.
 
-        `start_values`, `body`, `person`: see `InstrumentSpec`.
+        `start_values`, `body`, `player_number`: see `InstrumentSpec`.
         """
         return InstrumentSpec(
             rate,
@@ -131,7 +131,7 @@ class PlayingOptions:
             seed=self.seed,
             start_values=start_values or {},
             body=body,
-            person=person,
+            player_number=player_number,
         )
 
     def player(self, instruments: Instrument | Sequence[Instrument], part: int = 0) -> Player:

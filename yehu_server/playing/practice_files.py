@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.physics.elementary import log
-from yehu_server.core.player.bowing import FIRST, LAST, PLACES, RECIPE, default_recipes
+from yehu_server.core.player.bowing import BOWING_SIZE, FIRST, LAST, PLACES, default_bowing_table
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import STRING_NAMES
 from yehu_server.util.files import read_text, write_bytes
@@ -47,8 +47,8 @@ def as_text(data: Any) -> str:
 
 
 def as_data(table: Array, rate: float) -> dict[str, Any]:
-    """A table of bowing as JSON values: what is bowed otherwise than in `default_recipes`."""
-    ordinary = default_recipes()
+    """A table of bowing as JSON values: what is bowed otherwise than in `default_bowing_table`."""
+    ordinary = default_bowing_table()
     bowing = {
         name: {
             str(place): {
@@ -65,7 +65,7 @@ def as_data(table: Array, rate: float) -> dict[str, Any]:
 
 def table_of(data: Any) -> Array:
     """The table of bowing of JSON values that `as_data` made; raises ParameterError."""
-    table = default_recipes()
+    table = default_bowing_table()
     try:
         if data["format"] != FORMAT or data["version"] != VERSION:
             raise ParameterError("is not a practice that this version knows; practise anew")
@@ -81,8 +81,8 @@ def table_of(data: Any) -> Array:
 
 def _recipe(note: str, values: Any) -> Array:
     row = np.array(values, np.float64)
-    if row.shape != (RECIPE,) or not FIRST <= int(note) <= LAST:
-        raise ParameterError(f"note {note}: expected {RECIPE} numbers")
+    if row.shape != (BOWING_SIZE,) or not FIRST <= int(note) <= LAST:
+        raise ParameterError(f"note {note}: expected {BOWING_SIZE} numbers")
     if not np.all((row >= LOWEST) & (row <= HIGHEST)):  # also refuses NaN
         raise ParameterError(f"note {note}: a value is out of range")
     return row

@@ -78,7 +78,7 @@ def section_specs(
             for address in (GAIN, PAN, DISTANCE)
         }
         player, body = replace(playing, seed=seed, quantities=own), seed if number else 0
-        return player.spec(rate, tuned, start_values=values, body=body, person=number)
+        return player.spec(rate, tuned, start_values=values, body=body, player_number=number)
 
     return [spec(number) for number in range(people)]
 

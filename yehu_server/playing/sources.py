@@ -14,7 +14,7 @@ BEND, PRESSURE, POLY_PRESSURE = "bend", "pressure", "poly-pressure"
 VELOCITY, NOTE = "velocity", "note"
 WORDS = (BEND, PRESSURE, POLY_PRESSURE, VELOCITY, NOTE)
 OF_ONE_NOTE = (POLY_PRESSURE, VELOCITY, NOTE)
-# Data entry, RPN and NRPN, channel mode messages: see core/midi/channel_messages.py.
+# Data entry, RPN and NRPN, channel mode messages: see core/midi/control_changes.py.
 # Sustain (64) holds notes unless a mapping binds it.
 RESERVED = {6, 38, *range(96, 102), *range(120, 128)}
 COARSE = range(32)  # controllers with a fine half, FINE_ABOVE higher

@@ -69,7 +69,7 @@ def _put_mac(path: Path, libraries: Mapping[System, Path]) -> None:
     binary = path / "Contents" / "MacOS" / NAME
     binary.parent.mkdir(parents=True, exist_ok=True)
     binary.write_bytes(_joined(libraries))
-    told = {
+    properties = {
         "CFBundleExecutable": NAME,
         "CFBundleIdentifier": f"{IDENTITY}{path.suffix}",
         "CFBundleName": NAME,
@@ -80,7 +80,7 @@ def _put_mac(path: Path, libraries: Mapping[System, Path]) -> None:
         "CFBundleInfoDictionaryVersion": "6.0",
         "LSMinimumSystemVersion": "11.0",
     }
-    (path / "Contents" / "Info.plist").write_bytes(plistlib.dumps(told))
+    (path / "Contents" / "Info.plist").write_bytes(plistlib.dumps(properties))
     (path / "Contents" / "PkgInfo").write_text("BNDL????")
 
 

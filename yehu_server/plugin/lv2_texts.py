@@ -1,4 +1,4 @@
-"""Write what an LV2 bundle tells of itself, in Turtle: ports, parameters, presets."""
+"""Write what an LV2 bundle declares, in Turtle: ports, parameters, presets."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.engine.ensemble import Ensemble
-from yehu_server.core.engine.intake import interpret_events
+from yehu_server.core.engine.event_dispatch import interpret_events
 from yehu_server.core.engine.mixing import mix_block
 from yehu_server.core.engine.output import SOUNDED
 from yehu_server.core.engine.sounding import sound_block

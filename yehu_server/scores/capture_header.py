@@ -20,7 +20,7 @@ from yehu_server.core.physics.quantities import (
     measured_body,
     override,
 )
-from yehu_server.core.player.bowing import NOTES, default_recipes
+from yehu_server.core.player.bowing import NOTES, default_bowing_table
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.errors import ParameterError
@@ -171,7 +171,7 @@ def _bowing(data: Any, before: Sequence[InstrumentSpec]) -> Any:
     if bowing.ndim == 4 and bowing.shape[2] == FORMER_NOTES:
         highest = np.repeat(bowing[:, :, -1:], NOTES - FORMER_NOTES, axis=2)
         bowing = np.concatenate([bowing, highest], axis=2)
-    if bowing.shape != default_recipes().shape or not np.all(np.isfinite(bowing)):
+    if bowing.shape != default_bowing_table().shape or not np.all(np.isfinite(bowing)):
         raise ParameterError("expected finite numbers for each string, place and note")
     return bowing
 

@@ -7,7 +7,7 @@ import pytest
 from sound import alone, run
 
 from yehu_server.core.controls.record import CHUNK
-from yehu_server.core.engine import intake, mixing, sounding
+from yehu_server.core.engine import event_dispatch, mixing, sounding
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.output import SOUNDED
 from yehu_server.core.engine.rig import MOST_PARTS
@@ -41,7 +41,7 @@ def apart(ensemble: Ensemble, frames: int) -> tuple[np.ndarray, np.ndarray, np.n
     parts = len(ensemble.instruments)
     sounded = np.zeros((parts, -(-frames // CHUNK)), SOUNDED)
     first = ensemble.frame
-    assert intake.interpret_events.call(ensemble.address, first + frames) == first + frames
+    assert event_dispatch.interpret_events.call(ensemble.address, first + frames) == first + frames
     for instrument, own in zip(ensemble.instruments, sounded, strict=True):
         sounding.sound_block.call(instrument.address, frames, own.ctypes.data)
     out = np.zeros((frames, ensemble.channels), np.float32)
@@ -108,13 +108,13 @@ def test_after_a_process_died_all_go_on_at_one_frame_and_nothing_sounds():
     assert ensemble.lost_states == 0
 
 
-def test_all_tell_the_time_by_one_clock():
+def test_all_take_the_time_from_one_clock():
     ensemble = trio()
     both(ensemble, 4000, block=333)
     now_ns = time.monotonic_ns()
-    told = [instrument.frame_at(now_ns) for instrument in ensemble.instruments]
-    assert told == [ensemble.frame_at(now_ns)] * 3
-    assert told[0] > 0.0
+    frames = [instrument.frame_at(now_ns) for instrument in ensemble.instruments]
+    assert frames == [ensemble.frame_at(now_ns)] * 3
+    assert frames[0] > 0.0
 
 
 def test_one_channel_has_the_mean_of_both_and_further_ones_have_left_and_right_in_turn():

@@ -196,7 +196,7 @@ def test_a_state_lost_again_and_again_never_breaks_the_output():
     assert instrument.lost_states == 50
 
 
-# ---------------------------------------------------------------- what it is told
+# ---------------------------------------------------------------- what it accepts
 
 
 def test_every_parameter_of_the_engine_answers_and_is_clamped():

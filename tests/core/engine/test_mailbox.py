@@ -411,7 +411,7 @@ def test_a_wish_of_no_kind_or_for_no_parameter_changes_nothing():
             assert same, (stage, kind, index)
 
 
-def test_a_reset_leaves_nothing_to_apply_or_to_tell_of():
+def test_a_reset_leaves_nothing_to_apply_or_to_report():
     instrument = reporting(offline())
     post_numbered(instrument, 1, 200)
     run(instrument, 100)

@@ -141,7 +141,7 @@ def own_statuses(code: str) -> set[str]:
 
 
 def test_no_call_raises_anything():
-    # Where the status is not 0, numba's wrapper takes the GIL to tell Python of it.
+    # Where the status is not 0, numba's wrapper takes the GIL to report it to Python.
     for name in CALLS:
         for part in inside(name):
             assert "ret i32 " in parts(name)[part], part
@@ -203,7 +203,7 @@ def test_the_other_calls_do_so_too(name, expected):
     assert [step for block in atomics(name) for step in block] == expected
 
 
-def test_a_frame_is_told_from_what_was_read_between_two_looks_at_the_version():
+def test_a_frame_is_computed_from_what_was_read_between_two_reads_of_the_version():
     found = lines("frame_at")
     where = offsets("frame_at")
     published = range(memory.PUBLISHED_AT, memory.TAPED_AT)
@@ -325,7 +325,7 @@ def test_a_process_that_died_within_a_note_leaves_no_string_touched_and_no_key_h
     instrument._rig["meters"]["running"] = 1
     ensemble.recover()
     player = instrument._rig["player"][0]
-    assert (player["held"], player["sounding"], player["by_hand"]) == (0, SILENT, 0)
+    assert (player["held"], player["sounding"], player["is_direct"]) == (0, SILENT, 0)
     for _ in range(RATE // 10):
         ensemble.process(out[:1])
         assert not touched(instrument)

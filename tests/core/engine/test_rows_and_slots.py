@@ -1,7 +1,7 @@
 """No row of a parameter stands where a slot of the engine does, nor the reverse.
 
-Both are plain whole numbers to compiled code, and many have one name in ``player.rows`` and another
-meaning in ``controls.slots``; so what the sources say is checked here.
+Both are plain whole numbers to compiled code, and many have one name in
+``player.rows`` and another meaning in ``controls.slots``; so sources are checked here.
 """
 
 import ast
@@ -19,11 +19,19 @@ PACKAGE = Path(__file__).parents[3] / "yehu_server"
 SOURCES = [
     path for folder in (*SOURCE_FOLDERS, "playing") for path in (PACKAGE / folder).rglob("*.py")
 ]
-ROWS_MODULE, SLOTS_MODULE = "yehu_server.core.player.rows", "yehu_server.core.controls.slots"
+ROWS_MODULE = "yehu_server.core.player.rows"
+SLOTS_MODULE = "yehu_server.core.controls.slots"
 ROW, SLOT = "a row", "a slot"
 OTHER = {ROW: SLOT, SLOT: ROW}
 MAPS = {"ROW": ROW, "SLOT": SLOT, "SLOT_OF": SLOT}  # from an address, or a row
-OF_ROWS = {"SLOT_OF", "IS_OWNED", "IS_ENGINES", "SMOOTH_MS", "LOWEST", "HIGHEST"}  # vectors
+OF_ROWS = {
+    "SLOT_OF",
+    "IS_PLAYER_CONTROLLED",
+    "IS_ENGINES",
+    "SMOOTH_MS",
+    "LOWEST",
+    "HIGHEST",
+}  # vectors
 POSTED = {"RAMP": SLOT, **dict.fromkeys(("WRITE", "HOLD", "EXPRESS", "SET", "LOAD"), ROW)}
 LISTS = ("target", "values_row", "values_value")  # of MIDI: indexed by place, not by row
 
@@ -152,13 +160,12 @@ def all_modules() -> dict[str, Module]:
 @cache
 def functions() -> dict[tuple[str, str], list[str]]:
     """The parameters of each function of all modules."""
-    found = {
+    return {
         (name, node.name): [argument.arg for argument in node.args.args]
         for name, module in all_modules().items()
         for node in module.nodes
         if isinstance(node, ast.FunctionDef)
     }
-    return found | {("yehu_server.core.controls.ramps", "take"): ["c", "slot"]}
 
 
 def mixed(module: Module, own: str = "") -> list[str]:

@@ -9,7 +9,7 @@ import pytest
 from sound import alone, run
 
 from yehu_server.core.controls.record import CHUNK
-from yehu_server.core.engine import intake, mixing, sounding
+from yehu_server.core.engine import event_dispatch, mixing, sounding
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.output import SOUNDED
@@ -108,7 +108,8 @@ def test_parts_that_are_computed_apart_sleep_as_in_the_callback():
     ensemble = two_notes(parts)
     for n in range(pieces):
         first = ensemble.frame
-        assert intake.interpret_events.call(ensemble.address, first + piece) == first + piece
+        end = first + piece
+        assert event_dispatch.interpret_events.call(ensemble.address, end) == end
         sounded = np.zeros((parts, -(-piece // CHUNK)), SOUNDED)
         for instrument, own in zip(ensemble.instruments, sounded, strict=True):
             sounding.sound_block.call(instrument.address, piece, own.ctypes.data)

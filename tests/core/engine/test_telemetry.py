@@ -255,7 +255,7 @@ class Host(Clock):
 
     def frame_at(self, moment_ns: float) -> float:
         """The frame stamped on an arrival at some time, without the delay."""
-        return told(self._instrument, self.meters).frame_at(round(moment_ns))
+        return publishing(self._instrument, self.meters).frame_at(round(moment_ns))
 
     def ask(self, late_ns: float = 0.0, takes_ns: float = 50e3) -> None:
         """Let one period pass."""
@@ -277,7 +277,7 @@ class Host(Clock):
 
 @pytest.mark.parametrize("takes_ns", [20e3, 500e3])
 @pytest.mark.parametrize(("period", "block"), [(64, 64), (64, 128), (1024, 128), (8192, 128)])
-def test_how_much_a_device_asks_for_at_once_is_told(period, block, takes_ns):
+def test_how_much_a_device_asks_for_at_once_is_reported(period, block, takes_ns):
     host = Host(period, block)
     for _ in range(4 * 48000 // period):
         host.ask(takes_ns=takes_ns)
@@ -287,7 +287,7 @@ def test_how_much_a_device_asks_for_at_once_is_told(period, block, takes_ns):
 
 
 @pytest.mark.parametrize(("period", "block"), [(96, 128), (127, 128), (1024, 100), (1024, 1000)])
-def test_where_its_period_is_no_number_of_blocks_all_it_plays_ahead_is_told(period, block):
+def test_where_its_period_is_no_number_of_blocks_all_it_plays_ahead_is_reported(period, block):
     host = Host(period, block)
     host.ask_for(4.0)
     host.ahead.clear()
@@ -341,7 +341,7 @@ def test_what_catches_up_after_a_stall_is_not_taken_for_a_longer_period_for_long
 # ---------------------------------------------------------------- the frame of a moment
 
 
-def told(instrument: Instrument, meters: np.ndarray) -> Instrument:
+def publishing(instrument: Instrument, meters: np.ndarray) -> Instrument:
     """Let an instrument publish a record."""
     instrument._rig["published"] = meters
     return instrument
@@ -368,7 +368,7 @@ def test_what_comes_at_a_steady_pace_is_stamped_at_a_steady_pace():
     for _ in range(1000):
         moment = clock.exact_ns + 3.1e6  # the same moment of each block
         clock.tick()
-        stamps.append(told(instrument, clock.meters).frame_at(round(moment)))
+        stamps.append(publishing(instrument, clock.meters).frame_at(round(moment)))
     pace = np.diff(stamps)
     assert np.mean(pace) == pytest.approx(256.0, rel=1e-4)
     assert np.std(pace) < 0.5  # frames; the callbacks' own starts vary by 20
@@ -377,7 +377,7 @@ def test_what_comes_at_a_steady_pace_is_stamped_at_a_steady_pace():
 def test_time_goes_on_evenly_and_in_a_stall_stands_still_a_little_after_the_last_block():
     clock = Clock(48000.0, 480, 0.9999)
     clock.follow(8.0)
-    instrument = told(Instrument(InstrumentSpec(48000.0)), clock.meters)
+    instrument = publishing(Instrument(InstrumentSpec(48000.0)), clock.meters)
     first, due = int(clock.meters["frame"][0]), int(clock.meters["loop"]["due_ns"][0])
     end = first + 480 + native.STALL_NS / clock.ns_per_frame
     moments = [due + round(1e6 * ms) for ms in np.linspace(0.0, 100.0, 301)]
@@ -400,7 +400,7 @@ _read_meters = numba.njit(native.read_meters.function)
 _publish = numba.njit(native.publish.function)
 
 
-def tell(rig, times):
+def write(rig, times):
     """Publish records that hold one number in all their fields."""
     t = numba.carray(at(rig, METERS_AT), (1,), METERS)[0]
     for number in range(times):
@@ -413,7 +413,7 @@ def tell(rig, times):
     return times
 
 
-def listen(rig, into, times):
+def read(rig, into, times):
     """Read records; return the number of whole ones, or minus the number of torn ones."""
     t = numba.carray(into, (1,), METERS)[0]
     whole, torn = 0, 0
@@ -429,20 +429,20 @@ def listen(rig, into, times):
 
 def test_a_reader_never_sees_half_of_a_record():
     instrument, into, times = Instrument(InstrumentSpec(RATE)), np.zeros(1, METERS), 200_000
-    telling = numba.cfunc("int64(voidptr, int64)")(tell).ctypes
-    listening = numba.cfunc("int64(voidptr, voidptr, int64)")(listen).ctypes
-    teller = threading.Thread(target=lambda: telling(instrument.address, times))
-    teller.start()
+    writing = numba.cfunc("int64(voidptr, int64)")(write).ctypes
+    reading = numba.cfunc("int64(voidptr, voidptr, int64)")(read).ctypes
+    writer = threading.Thread(target=lambda: writing(instrument.address, times))
+    writer.start()
     found = []
-    while teller.is_alive():
-        found.append(listening(instrument.address, into.ctypes.data, 10_000))
-    teller.join()
+    while writer.is_alive():
+        found.append(reading(instrument.address, into.ctypes.data, 10_000))
+    writer.join()
     assert min(found) >= 0
     assert sum(found) > 1000
     assert instrument.meters()["frame"] == times - 1
 
 
-def test_while_a_block_is_being_told_of_the_one_before_is_read():
+def test_while_a_block_is_being_published_the_one_before_is_read():
     instrument = Instrument(InstrumentSpec(RATE))
     run(instrument, 64)
     before = instrument.meters().copy()
@@ -461,7 +461,7 @@ def test_meters_of_a_new_instrument_are_empty():
     assert loop == {"due_ns": 0, "error_ns": 0, "ns_per_frame": 1e9 / RATE}
 
 
-def test_lost_states_and_wishes_are_told():
+def test_lost_states_and_wishes_are_reported():
     instrument = bowed()
     run(instrument, 4096)
     instrument._rig["state"]["motion"]["u"] = np.nan

@@ -32,11 +32,11 @@ def test_what_is_not_kept_is_compiled_by_a_process_for_each_of_two_processors(
 
 
 def test_how_far_compiling_is_grows_to_all_of_it():
-    told = []
+    reported = []
     functions = [post_from, read_reports]
     warming.warm_up()
-    helpers.compile_apart(functions, "-test", 2, lambda done, total: told.append((done, total)))
-    shares = [done / total for done, total in told]
+    helpers.compile_apart(functions, "-test", 2, lambda done, total: reported.append((done, total)))
+    shares = [done / total for done, total in reported]
     assert len(shares) >= len(functions)  # what is kept already has its parts in it
     assert shares == sorted(shares)
     assert 0.0 < shares[0] < shares[-1] <= 1.0

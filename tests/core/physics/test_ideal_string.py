@@ -1,6 +1,6 @@
 """An ideal string against closed forms: Helmholtz's motion, and Schelleng's least force.
 
-The instrument and its limits are those of scripts/validation, of which docs/validation.md tells.
+The instrument and its limits are those of scripts/validation; docs/validation.md describes them.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""The plain C++ loop that bench/run.py tells speeds by computes the same physics."""
+"""The plain C++ loop that bench/run.py compares speeds with computes the same physics."""
 
 from dataclasses import replace
 

@@ -12,7 +12,7 @@ from yehu_server.core.controls.record import (
     SPEED_DRIFT,
 )
 from yehu_server.core.controls.slots import SLOT
-from yehu_server.core.player.drift import DRIFT, TOGETHER, TREMOR, TREMOR_HZ
+from yehu_server.core.player.drift import CORRELATION, DRIFT, TREMOR, TREMOR_HZ
 
 LONG_S = 30.0
 
@@ -54,13 +54,13 @@ def test_the_drift_is_the_stronger_the_slower_and_the_tremor_is_about_ten_hertz(
 
 def test_what_one_hand_does_goes_together(drifts):
     together = np.corrcoef(drifts.T)
-    # Of the drifts TOGETHER, and the tremor is one; the tremor alone would make 0.25 to 0.36.
+    # Of the drifts CORRELATION, and the tremor is one; the tremor alone would make 0.25 to 0.36.
     for one, other in (
         (SPEED_DRIFT, FORCE_DRIFT),
         (SPEED_DRIFT, PLACE_DRIFT),
         (CENTS_DRIFT, PRESS_DRIFT),
     ):
-        parts = TOGETHER * DRIFT[one] * DRIFT[other] + TREMOR[one] * TREMOR[other]
+        parts = CORRELATION * DRIFT[one] * DRIFT[other] + TREMOR[one] * TREMOR[other]
         sizes = np.hypot(DRIFT, TREMOR)
         assert together[one, other] == pytest.approx(parts / (sizes[one] * sizes[other]), abs=0.2)
     assert abs(together[SPEED_DRIFT, CENTS_DRIFT]) < 0.35

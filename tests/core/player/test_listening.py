@@ -194,7 +194,7 @@ def test_a_panic_ends_what_sounds_even_if_the_part_has_forgotten_it(is_panic):
     assert rms(play.note(70, 0.4)[RATE // 5 :]) > 1e-3  # and the next note speaks
 
 
-def test_a_pitch_that_jumps_over_its_place_is_told_from_one_that_swings_about_it():
+def test_a_pitch_that_jumps_over_its_place_is_distinguished_from_one_that_swings():
     values = {spec.address: spec.default for spec in TABLE}
     player = prepare_player(Quantities(), 44100.0, values)[0]
     begin_tuning(player, 88.0)

@@ -9,7 +9,7 @@ from held_notes import Playing
 
 from yehu_server.core.controls.slots import DEPTH, UPWARD
 from yehu_server.core.physics.quantities import measured_body
-from yehu_server.core.player.steepness import LEANING, LEAST, NARROWED, USUAL, vibrato_table
+from yehu_server.core.player.vibrato_table import CENTRE, DEPTH_SHARE, LEAST, USUAL, vibrato_table
 from yehu_server.params.articulations import NUMBER
 
 A4, OPEN_NOTES = 440.0, (65, 72)
@@ -33,17 +33,17 @@ def with_peak() -> np.ndarray:
 def test_a_body_that_radiates_evenly_leaves_a_vibrato_alone():
     body = replace(measured_body(), sections=measured_body().sections[:1], direct_gain=1e6)
     table = vibrato_table(body, A4, OPEN_NOTES)
-    assert (table[:, NARROWED] == 1.0).all()
-    assert (table[:, LEANING] == 0.0).all()
+    assert (table[:, DEPTH_SHARE] == 1.0).all()
+    assert (table[:, CENTRE] == 0.0).all()
 
 
 def test_on_the_flanks_of_a_peak_it_is_narrower_and_off_to_where_it_is_flatter():
     table = with_peak()
     below, above = table[row_of(80.0)], table[row_of(81.0)]
-    assert below[NARROWED] < 0.8
-    assert above[NARROWED] < 0.8
-    assert below[LEANING] < 0.0 < above[LEANING]
-    assert table[:, NARROWED].min() >= LEAST / USUAL
+    assert below[DEPTH_SHARE] < 0.8
+    assert above[DEPTH_SHARE] < 0.8
+    assert below[CENTRE] < 0.0 < above[CENTRE]
+    assert table[:, DEPTH_SHARE].min() >= LEAST / USUAL
 
 
 def played(note: int, **values: float) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from stages import SMALL, Stage, response, told
+from stages import SMALL, Stage, response, stage_inputs
 
 RATES = [22050.0, 44100.0, 48000.0, 96000.0, 192000.0]
 
@@ -31,7 +31,7 @@ def test_both_sides_sum_to_the_measured_sound(rate):
     stage = Stage(rate)
     asked = {"width": 1.0, "level": 0.0}
     stage.settle(0.1, **asked)
-    out = stage.play(dry, told(len(dry), **asked))[0].astype(np.float64)
+    out = stage.play(dry, stage_inputs(len(dry), **asked))[0].astype(np.float64)
     for fraction in (1, 12):
         heard = levels(out.mean(axis=1), rate, fraction)
         assert np.allclose(heard, levels(dry, rate, fraction), atol=0.1)
@@ -65,14 +65,14 @@ def test_two_bodies_differ_in_their_sides():
     stage = Stage(rate, 2)
     dry = np.zeros((2, frames))
     dry[:, 0] = SMALL
-    stems = stage.play(dry, told(frames, level=0.0))[1]
+    stems = stage.play(dry, stage_inputs(frames, level=0.0))[1]
     assert np.allclose(stems[:, 0].sum(axis=1), stems[:, 1].sum(axis=1), atol=1e-12)
     assert np.abs(stems[:, 0] - stems[:, 1]).max() > 0.01 * SMALL
 
 
 def test_the_room_answers_to_all_players():
     rate, frames = 48000.0, 9600
-    rows = np.array([told(frames, level=0.5, pan=pan) for pan in (-0.5, 0.6)])
+    rows = np.array([stage_inputs(frames, level=0.5, pan=pan) for pan in (-0.5, 0.6)])
 
     def room(*loud: float) -> np.ndarray:
         stage = Stage(rate, 2)
@@ -96,10 +96,10 @@ def test_the_room_answers_to_all_players():
 def test_the_room_is_the_first_players_for_all():
     rate, frames = 48000.0, 9600
     dry = SMALL * np.random.default_rng(5).normal(size=(2, frames))
-    theirs = told(frames, level=0.5, pan=0.6)
-    other = told(frames, level=0.0, size=30.0, decay=4.0, damping=1.0, pan=0.6)
+    theirs = stage_inputs(frames, level=0.5, pan=0.6)
+    other = stage_inputs(frames, level=0.0, size=30.0, decay=4.0, damping=1.0, pan=0.6)
     heard = [
-        Stage(rate, 2).play(dry, np.array([told(frames, level=0.5), own]))[1]
+        Stage(rate, 2).play(dry, np.array([stage_inputs(frames, level=0.5), own]))[1]
         for own in (theirs, other)
     ]
     assert np.array_equal(*heard)
@@ -109,7 +109,7 @@ def test_without_a_room_all_directions_hear_the_measured_sound():
     rate = 48000.0
     stage = Stage(rate, has_room=False)
     dry = 0.1 * np.random.default_rng(2).normal(size=4800).astype(np.float32).astype(np.float64)
-    out = stage.play(dry, told(len(dry), level=1.0, width=1.0))[0]
+    out = stage.play(dry, stage_inputs(len(dry), level=1.0, width=1.0))[0]
     assert np.array_equal(out, np.repeat(dry[:, None].astype(np.float32), 2, axis=1))
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from acoustics import clarity_db
-from stages import Stage, response, told
+from stages import Stage, response, stage_inputs
 
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.rendering.options import Options, Part
@@ -38,14 +38,14 @@ def air() -> np.ndarray:
 
 
 def test_the_default_room_changes_the_loudness_of_a_tune_by_less_than_a_decibel(air):
-    heard = Stage(RATE).play(air, told(len(air)))[0]
+    heard = Stage(RATE).play(air, stage_inputs(len(air)))[0]
     power = np.mean(10.0 ** (loudness_db(heard) / 10.0))
     change = 10.0 * np.log10(power) - loudness_db(air[:, None])[0]
     assert 0.0 < change < 1.0
 
 
 def test_a_tune_in_the_middle_is_as_loud_to_both_sides(air):
-    left, right = loudness_db(Stage(RATE).play(air, told(len(air)))[0])
+    left, right = loudness_db(Stage(RATE).play(air, stage_inputs(len(air)))[0])
     assert left == pytest.approx(right, abs=1.5)
 
 

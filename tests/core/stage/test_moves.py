@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import scipy
-from stages import NAMES, RANGES, SILENCED, SMALL, Stage, told
+from stages import NAMES, RANGES, SILENCED, SMALL, Stage, stage_inputs
 
 RATE = 48000.0
 RAMP = np.clip(np.linspace(-5.0, 6.0, round(1.1 * RATE)), 0.0, 1.0)  # 0.5 s, 0.1 s, 0.5 s
@@ -43,8 +43,8 @@ def test_a_move_while_a_note_sounds_makes_no_click(name):
     stage = Stage(RATE)
     asked = {"level": 0.5, name: here}
     lead = round(0.5 * RATE)
-    stage.play(tone(frames + lead)[:lead], told(lead, **asked))
-    stems = stage.play(tone(frames + lead)[lead:], told(frames, **asked | {name: way}))[1]
+    stage.play(tone(frames + lead)[:lead], stage_inputs(lead, **asked))
+    stems = stage.play(tone(frames + lead)[lead:], stage_inputs(frames, **asked | {name: way}))[1]
     out = stems.sum(axis=1)
     note = np.sum(np.square(out)) / len(out) * round(0.005 * RATE)
     # A click that is 60 dB below the note, in 5 ms of it, is not heard under it.
@@ -59,7 +59,7 @@ def moving(rng: np.random.Generator, parts: int, frames: int) -> tuple[np.ndarra
         jumps = {name: rng.uniform(*RANGES[name], 1 + frames // 997) for name in NAMES}
         values = {name: np.repeat(each, 997)[:frames] for name, each in jumps.items()}
         values["level"][rng.integers(frames) :][:500] = 0.0
-        rows[part] = told(frames, **values)
+        rows[part] = stage_inputs(frames, **values)
         rows[part, rng.integers(frames), SILENCED] = 1.0
     return dry, rows
 
@@ -91,7 +91,7 @@ def test_the_mix_is_finite_at_all_extremes(rate):
     for corner in range(24):
         asked = {name: RANGES[name][rng.integers(2)] for name in NAMES}
         dry = rng.choice([0.0, 1.0, 900.0]) * rng.normal(size=(2, frames))
-        out, stems = stage.play(dry, told(frames, **asked))
+        out, stems = stage.play(dry, stage_inputs(frames, **asked))
         assert np.isfinite(out).all(), corner
         assert np.isfinite(stems).all(), corner
         assert np.abs(out).max() <= 1.0
@@ -104,10 +104,10 @@ def test_a_room_whose_size_swings_does_not_grow_louder(asked):
     stage.settle(**asked, level=1.0, damping=0.0)
     frames = round(0.1 * RATE)
     dry = SMALL * np.random.default_rng(1).normal(size=frames)
-    stage.play(dry, told(frames, **asked, level=1.0, damping=0.0))
+    stage.play(dry, stage_inputs(frames, **asked, level=1.0, damping=0.0))
     peaks = []
     for k in range(40):
-        rows = told(frames, **asked | {"size": (2.0, 40.0)[k % 2]}, level=1.0, damping=0.0)
+        rows = stage_inputs(frames, **asked | {"size": (2.0, 40.0)[k % 2]}, level=1.0, damping=0.0)
         peaks.append(np.abs(stage.play(np.zeros(frames), rows)[1]).max())
     assert max(peaks[10:]) < 10.0 * max(peaks[:10])
     assert max(peaks) < 1.0
@@ -119,7 +119,7 @@ def test_a_panic_empties_the_room(size):
     asked = {"level": 1.0, "decay": 5.0, "size": size, "distance": 1.0}
     stage.settle(**asked)
     frames = round(0.5 * RATE)
-    rows = told(frames, **asked)
+    rows = stage_inputs(frames, **asked)
     dry = tone(frames)
     dry[frames // 2 :] = 0.0
     rows[frames // 2, SILENCED] = 1.0
@@ -127,9 +127,9 @@ def test_a_panic_empties_the_room(size):
     assert np.abs(out[frames // 2 - 100 : frames // 2]).max() > 1e-3
     after = out[frames // 2 :]
     assert not after[round(0.006 * RATE) :].any()
-    quiet = stage.play(np.zeros(frames), told(frames, **asked))[1]
+    quiet = stage.play(np.zeros(frames), stage_inputs(frames, **asked))[1]
     assert not quiet.any()
-    again = stage.play(tone(frames), told(frames, **asked))[1][:, 1]
+    again = stage.play(tone(frames), stage_inputs(frames, **asked))[1][:, 1]
     assert np.abs(again[frames // 2 :]).max() > 1e-3  # and it opens again
 
 
@@ -139,7 +139,7 @@ def test_a_panic_is_no_click_in_the_room():
     stage.settle(**asked)
     frames = round(0.5 * RATE)
     middle = frames // 2
-    rows = told(frames, **asked)
+    rows = stage_inputs(frames, **asked)
     dry = tone(frames)
     for begin, ms, ends in ((0, 50.0, (np.pi, 0.0)), (middle, 5.0, (0.0, np.pi))):  # soft ends
         fade = round(1e-3 * ms * RATE)
@@ -157,9 +157,9 @@ def test_a_room_that_was_turned_off_is_empty_when_it_is_heard_again():
     asked = {"level": 1.0, "decay": 5.0}
     stage.settle(**asked)
     frames = round(0.3 * RATE)
-    stage.play(tone(frames), told(frames, **asked))
-    stage.play(np.zeros(frames), told(frames, **asked | {"level": 0.0}))
-    assert not stage.play(np.zeros(frames), told(frames, **asked))[1].any()
+    stage.play(tone(frames), stage_inputs(frames, **asked))
+    stage.play(np.zeros(frames), stage_inputs(frames, **asked | {"level": 0.0}))
+    assert not stage.play(np.zeros(frames), stage_inputs(frames, **asked))[1].any()
 
 
 def test_silence_ends_in_no_denormal_numbers():
@@ -167,9 +167,9 @@ def test_silence_ends_in_no_denormal_numbers():
     asked = {"level": 1.0, "decay": 0.1, "size": 3.0, "damping": 1.0}
     stage.settle(**asked)
     frames = round(RATE)
-    stage.play(tone(frames), told(frames, **asked))
+    stage.play(tone(frames), stage_inputs(frames, **asked))
     for _ in range(12):
-        stage.play(np.zeros(frames), told(frames, **asked))
+        stage.play(np.zeros(frames), stage_inputs(frames, **asked))
     tiny = np.finfo(np.float64).tiny
     room, seat = stage.record["room"], stage.rigs[0]["seat"]
     for held in (room["line"], room["state"], room["entered"], room["diffuser"], seat["kept"]):
@@ -179,5 +179,5 @@ def test_silence_ends_in_no_denormal_numbers():
 def test_the_mean_of_what_a_player_gives_stays_zero():
     stage = Stage(RATE)
     frames = round(2.0 * RATE)
-    out = stage.play(tone(frames), told(frames, level=0.5))[0].astype(np.float64)
+    out = stage.play(tone(frames), stage_inputs(frames, level=0.5))[0].astype(np.float64)
     assert np.abs(out[frames // 2 :].mean(axis=0)).max() < 1e-4 * np.abs(out).max()

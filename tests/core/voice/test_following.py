@@ -12,7 +12,7 @@ from yehu_server.core.engine.voice_callback import OF_WISH, follow_voice, voice_
 from yehu_server.core.player.note_range import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.core.player.rows import DYNAMICS
 from yehu_server.core.player.wishes import BEGIN, END, SLIDE, WRITE
-from yehu_server.core.voice.deciding import FOLLOWER
+from yehu_server.core.voice.note_detection import FOLLOWER
 
 RATE = 48000.0
 BLOCK = 128

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from yehu_server.core.player.note_range import YEHU
-from yehu_server.core.voice.deciding import FOLLOWER, ends_of
+from yehu_server.core.voice.note_detection import FOLLOWER, ends_of
 from yehu_server.live.audio import stream
 from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.voice_input import tuned_as

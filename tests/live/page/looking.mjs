@@ -1,7 +1,7 @@
 /**
- * Reads looks at the instrument as the page does, and prints what it reads.
+ * Reads snapshots of an instrument as the page does, and prints what it reads.
  *
- * The argument is the page's folder; each line of the input is a look, each of the output a snapshot.
+ * The argument is the page's folder; each line of the input is a snapshot, each of the output what it reads.
  */
 
 import { createInterface } from "node:readline";

@@ -128,7 +128,7 @@ test("a note that is to begin is silent where its end is for now", async () => {
     [() => {}, false],
     [({ player }) => player.midi([0x80, 70, 0]), true],
   ]) {
-    const kernel = new Kernel(new WebAssembly.Module(module), RATE, 4800, facts.lookLength);
+    const kernel = new Kernel(new WebAssembly.Module(module), RATE, 4800, facts.snapshotLength);
     const made = await playing();
     made.player.midi([0x90, 70, 90], 960);
     ended(made);
@@ -143,7 +143,7 @@ test("a note that is to begin is silent where its end is for now", async () => {
 test("a touch is heard within 100 ms: what comes to it is the browser's own latency", async () => {
   const late = [];
   for (let pitch = 65; pitch <= 89; pitch += EVERYTHING ? 1 : 6) {
-    const kernel = new Kernel(new WebAssembly.Module(module), RATE, 128, facts.lookLength);
+    const kernel = new Kernel(new WebAssembly.Module(module), RATE, 128, facts.snapshotLength);
     const post = (frame, ...wish) => kernel.post(frame ?? NOW, ...wish);
     const { player } = await playing({ post });
     for (const preset of ["vibrato", "courtyard"]) player.applyPreset(preset); // as the page begins

@@ -22,7 +22,7 @@ from midi_input import receive
 from waiting import PATIENCE_S, until
 from web_client import Refused, WebSocket, ask
 
-from yehu_server.ahead.interpreter import look_layout, look_length
+from yehu_server.ahead.interpreter import snapshot_layout, snapshot_length
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
 from yehu_server.live import limits
@@ -112,7 +112,7 @@ class Page:
         while True:
             kind, *look = await self.numbers()
             assert kind == LOOK
-            if expected(look[look_length() + ROW[address]]):
+            if expected(look[snapshot_length() + ROW[address]]):
                 return look
 
     async def end(self) -> tuple[int, str]:
@@ -241,8 +241,9 @@ def test_looks_come_sixty_times_a_second_to_pages_that_want_them(server) -> None
         return looks
 
     looks = with_pages(server, watch, 1, 1)
-    assert {(look[0], len(look)) for look in looks} == {(LOOK, 1 + look_length() + 2 * len(TABLE))}
-    frames = np.array([look[1 + look_layout()["frame"][0]] for look in looks])
+    length = 1 + snapshot_length() + 2 * len(TABLE)
+    assert {(look[0], len(look)) for look in looks} == {(LOOK, length)}
+    frames = np.array([look[1 + snapshot_layout()["frame"][0]] for look in looks])
     assert (np.diff(frames) >= 0).all()
     assert 40 < 59 / ((frames[-1] - frames[0]) / server.instrument.rate) < 70
 
@@ -370,7 +371,7 @@ def test_a_look_is_at_the_parts_own_instrument_and_the_level_that_of_the_mix(ser
     server.player.key_on(69.0, 90.0, frame=server.player.frame_of())
 
     async def look(page: Page, value: float) -> None:
-        while (await page.look(VIBRATO, value.__eq__))[look_layout()["rms"][0]] < 1e-3:
+        while (await page.look(VIBRATO, value.__eq__))[snapshot_layout()["rms"][0]] < 1e-3:
             pass
 
     for part, value in ((1, 25.0), (2, 75.0)):

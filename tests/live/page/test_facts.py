@@ -16,7 +16,7 @@ import pytest
 from yehu_server.core.midi import events
 from yehu_server.core.midi.record import MIDI
 from yehu_server.core.midi.tables import MOST_BINDS, TABLES
-from yehu_server.core.player.rows import IS_ENGINES, IS_OWNED, ROW
+from yehu_server.core.player.rows import IS_ENGINES, IS_PLAYER_CONTROLLED, ROW
 from yehu_server.core.player.wishes import KINDS
 from yehu_server.errors import ParameterError
 from yehu_server.live.page import examples, facts
@@ -62,7 +62,7 @@ def test_each_parameter_is_there_with_its_numbers(known):
         param = find(row["address"])
         assert row["row"] == ROW[param.address]
         assert row["slot"] == SLOT.get(param.address)
-        assert row["playerControlled"] == IS_OWNED[row["row"]]
+        assert row["playerControlled"] == IS_PLAYER_CONTROLLED[row["row"]]
         assert (row["slot"] is not None) == IS_ENGINES[row["row"]]
         assert Curve(row["curve"]) is param.curve
         assert (row["lo"], row["hi"], row["default"]) == (param.lo, param.hi, param.default)

@@ -1,4 +1,4 @@
-"""What the page reads of a look is what the instrument does."""
+"""What the page reads of a snapshot is what the instrument does."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.look import LOOK, look
+from yehu_server.core.engine.snapshot import SNAPSHOT, snapshot
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
 from yehu_server.core.player.wishes import BEGIN
@@ -30,17 +30,17 @@ def instrument() -> Instrument:
 
 @pytest.fixture(scope="module")
 def seen(instrument) -> Any:
-    into = np.zeros(1, LOOK)
-    look.call(instrument.address, into.ctypes.data)
+    into = np.zeros(1, SNAPSHOT)
+    snapshot.call(instrument.address, into.ctypes.data)
     return into[0]
 
 
 @pytest.fixture(scope="module")
 def snapshots(run_node, seen, page) -> Any:
     """What the page makes of it, and of an instrument at rest."""
-    at_rest = np.zeros(1, LOOK)
+    at_rest = np.zeros(1, SNAPSHOT)
     silent = Instrument(InstrumentSpec(RATE))
-    look.call(silent.address, at_rest.ctypes.data)
+    snapshot.call(silent.address, at_rest.ctypes.data)
     rows = [np.frombuffer(record.tobytes(), np.float64) for record in (seen, at_rest[0])]
     lines = [[None if math.isnan(x) else x for x in row.tolist()] for row in rows]
     return [*map(json.loads, run_node("looking.mjs", page, lines=lines).splitlines())]

@@ -47,35 +47,35 @@ def one_pole(y: float, x: float, a: float) -> float:
 
 
 @compiled
-def take(c: Any, index: int, target: float, ramp: int) -> None:
+def take(c: Any, slot: int, target: float, ramp: int) -> None:
     """Begin a parameter's ramp to a target, clamped to its range.
 
     A target that is not a number is ignored. Real time: safe.
 
     Parameters
     ----------
-    index : int
+    slot : int
         Slot of the parameter, or SILENCE.
     ramp : int
         Length of the ramp (frames).
     """
-    if index == SILENCE:
+    if slot == SILENCE:
         if c.silence_in == 0:
             c.silence_in = c.fade
         return
-    if index < 0 or index >= SLOTS or math.isnan(target):
+    if slot < 0 or slot >= SLOTS or math.isnan(target):
         return
-    target = min(max(target, LOWEST[index]), c.highest[index])
-    c.target[index] = target
+    target = min(max(target, LOWEST[slot]), c.highest[slot])
+    c.target[slot] = target
     if ramp <= 0:
-        c.value[index] = target
-        c.remaining[index] = 0
+        c.value[slot] = target
+        c.remaining[slot] = 0
         return
-    c.slope[index] = (target - c.value[index]) / ramp
-    c.remaining[index] = ramp
-    if c.is_moving[index] == 0:
-        c.is_moving[index] = 1
-        c.moving[np.uint64(c.moving_count)] = index
+    c.slope[slot] = (target - c.value[slot]) / ramp
+    c.remaining[slot] = ramp
+    if c.is_moving[slot] == 0:
+        c.is_moving[slot] = 1
+        c.moving[np.uint64(c.moving_count)] = slot
         c.moving_count += 1
 
 
@@ -84,16 +84,16 @@ def move(c: Any) -> None:
     """Advance all ramps by one sample; each ends exactly on its target. Real time: safe."""
     place = np.uint64(0)
     while place < np.uint64(c.moving_count):
-        index = np.uint64(c.moving[place])
-        left = c.remaining[index] - 1
+        slot = np.uint64(c.moving[place])
+        left = c.remaining[slot] - 1
         if left > 0:
-            c.remaining[index] = left
-            c.value[index] += c.slope[index]
+            c.remaining[slot] = left
+            c.value[slot] += c.slope[slot]
             place += np.uint64(1)
             continue
         if left == 0:  # else a jump ended the ramp
-            c.value[index] = c.target[index]
-        c.remaining[index], c.is_moving[index] = 0, 0
+            c.value[slot] = c.target[slot]
+        c.remaining[slot], c.is_moving[slot] = 0, 0
         c.moving_count -= 1
         c.moving[place] = c.moving[np.uint64(c.moving_count)]
 

@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.core.controls.record import prepare_controls, settle
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.engine import native
-from yehu_server.core.engine.intake import interpret_events
+from yehu_server.core.engine.event_dispatch import interpret_events
 from yehu_server.core.engine.mailbox import LIVE_BUDGET, RING, SERVER, repair
 from yehu_server.core.engine.output import prepare_output, rest_output
 from yehu_server.core.engine.rig import RIG, RIG_BYTES, memory_bytes
@@ -106,7 +106,7 @@ class Instrument:
             open_strings=spec.open_strings,
             bowing=spec.bowing,
             seed=spec.seed,
-            person=spec.person,
+            player_number=spec.player_number,
         )
         rig["ear_buffer"] = 0.0
         prepare_output(rig["output"], self.rate)
@@ -133,7 +133,7 @@ class Instrument:
         """
         self.begin_part(plain_tables())
 
-    def begin_part(self, tables: Array, people: int = 1) -> None:
+    def begin_part(self, tables: Array, players: int = 1) -> None:
         """Begin a part anew, as the first of the instruments that play it: the next on the stage.
 
         Nothing may post or compute meanwhile.
@@ -141,13 +141,13 @@ class Instrument:
         Parameters
         ----------
         tables : ndarray [shape=(1,), dtype=``midi.tables.TABLES``]
-        people : int
+        players : int
             Number of instruments; 0 where another one is the first of this one's part.
         """
         defaults = {param.address: param.default for param in TABLE}
         defaults["/engine/seed"] = find("/engine/seed").clamped(self.seed)
         is_mpe = bool(tables["mpe"][0])
-        prepare_midi(self._rig["midi"], self.rate, defaults, people=people, mpe=is_mpe)
+        prepare_midi(self._rig["midi"], self.rate, defaults, players=players, mpe=is_mpe)
         self._rig["tables"][0, 0] = tables[0]
 
     def set_tables(self, tables: Array) -> None:

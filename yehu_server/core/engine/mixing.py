@@ -24,7 +24,7 @@ from yehu_server.core.engine.limiter import is_valid, limit
 from yehu_server.core.engine.output import SOUNDED, SOUNDED_BYTES
 from yehu_server.core.engine.processor import flush_denormals, restore_denormals
 from yehu_server.core.engine.rig import METERS_AT, RIG_BYTES, SEAT_AT, count_parts
-from yehu_server.core.engine.telemetry import METERS, WINDOW_S
+from yehu_server.core.engine.telemetry import METERS, TELEMETRY_S
 from yehu_server.core.stage import late_field, seat
 from yehu_server.core.stage.directivity import side_signal
 from yehu_server.core.stage.image_sources import EARS
@@ -235,7 +235,7 @@ def add_to_level(rigs: Any, stage: Any, left: float, right: float) -> None:
     stage.window_peak = max(stage.window_peak, abs(left), abs(right))
     stage.window_power += 0.5 * (left * left + right * right)
     stage.window_frames += 1
-    if stage.window_frames >= WINDOW_S * record_at(rigs, METERS_AT, METERS).rate:
+    if stage.window_frames >= TELEMETRY_S * record_at(rigs, METERS_AT, METERS).rate:
         stage.peak = stage.window_peak
         stage.rms = math.sqrt(stage.window_power / stage.window_frames)
         stage.window_peak, stage.window_power, stage.window_frames = 0.0, 0.0, 0

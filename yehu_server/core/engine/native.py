@@ -22,7 +22,7 @@ from yehu_server.core.engine.atomics import (
     record_at,
     store_release,
 )
-from yehu_server.core.engine.intake import interpret_events
+from yehu_server.core.engine.event_dispatch import interpret_events
 from yehu_server.core.engine.mailbox import MAIL, RING, SERVER, WRITERS
 from yehu_server.core.engine.mixing import mix
 from yehu_server.core.engine.output import OUTPUT

@@ -48,10 +48,10 @@ OUTPUT = np.dtype(
             "invalid_samples",
             np.int64,
         ),  # number of samples that were not numbers, replaced by silence
-        ("ghost", np.float64),  # decays from the last sample before a lost state
+        ("fading", np.float64),  # decays from the last sample before a lost state
         ("decay", np.float64),
         ("pressure", np.float64),  # input and output of the DC blocker (Pa)
-        ("swing", np.float64),
+        ("dc_free", np.float64),
         ("blocker", np.float64),
         ("shelf", SHELF),
         ("sleep", SLEEP),
@@ -79,7 +79,7 @@ def prepare_output(output: Any, rate: float) -> None:
 
 def rest_output(output: Any) -> None:
     """Clear the filters' states of a record of dtype OUTPUT, in place."""
-    for name in ("last", "ghost", "pressure", "swing"):
+    for name in ("last", "fading", "pressure", "dc_free"):
         output[name] = 0.0
     output["shelf"]["held"] = 0.0
     wake_up(output["sleep"])
@@ -88,7 +88,7 @@ def rest_output(output: Any) -> None:
 @compiled
 def clear_filters(o: Any) -> None:
     """Clear the filters' states, when the model is put to rest. Real time: safe."""
-    o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0
+    o.pressure, o.dc_free, o.fading = 0.0, 0.0, 0.0
     o.shelf.held[0], o.shelf.held[1] = 0.0, 0.0
 
 
@@ -100,16 +100,16 @@ def output_sample(o: Any, n: int) -> float:
     """
     probe = o.probes[n]
     if probe[ITERATIONS] < 0:
-        o.ghost = o.last
-        o.pressure, o.swing = 0.0, 0.0
-    o.ghost *= o.decay
+        o.fading = o.last
+        o.pressure, o.dc_free = 0.0, 0.0
+    o.fading *= o.decay
     # The DC blocker also removes the static pull of a finger at the bridge.
     radiated = o.body[n] * probe[PRESSURE]
     source = radiated + o.blend[n] * (BRIDGE_PRESSURE * probe[BRIDGE_FORCE] - radiated)
-    o.swing = source - o.pressure + o.blocker * o.swing
+    o.dc_free = source - o.pressure + o.blocker * o.dc_free
     o.pressure = source
-    coloured = shelved(o.shelf, o.swing, o.brilliance[n], o.brilliance_frequency[n])
-    sample = coloured * o.gain[n] + o.ghost
+    coloured = shelved(o.shelf, o.dc_free, o.brilliance[n], o.brilliance_frequency[n])
+    sample = coloured * o.gain[n] + o.fading
     if not abs(sample) <= LARGEST:  # true for NaN too
         sample = 0.0
         o.invalid_samples += 1

@@ -92,7 +92,7 @@ REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")
 
 @compiled_with_aliasing
 def count_parts(rigs: Any) -> int:
-    """The number of rigs that play together, told by the first of them."""
+    """The number of rigs that play together, as the first of them has it."""
     return int(carray(at(rigs, PARTS_AT), (1,), np.int64)[0])
 
 

@@ -1,10 +1,10 @@
-"""When an instrument falls asleep: at rest it is not computed until something comes. Compiled.
+"""Sleep: an instrument at rest is not computed until something is asked of it. Compiled.
 
 Windows of frames begin at fixed frames, whatever the blocks are. An instrument whose controls stood
 still, and which was quiet for a whole window, falls asleep as the next one begins. Its model, its
 controls and its filters stay as they are then, and its samples are zeros; a wish wakes it at the
-very frame that it is due, and it goes on from there. The player goes on meanwhile: the numbers that
-are drawn by chance are the same whether the instrument slept or not.
+very frame that it is due, and it goes on from there. The player goes on meanwhile: its random
+numbers are the same whether the instrument slept or not.
 """
 
 from __future__ import annotations

@@ -66,13 +66,13 @@ from yehu_server.core.engine.rig import (
     STATE_AT,
 )
 from yehu_server.core.engine.sleep import WINDOW, begin_window, watch
-from yehu_server.core.engine.telemetry import METERS, close_window, hear
+from yehu_server.core.engine.telemetry import METERS, add_to_level, close_window
 from yehu_server.core.physics import kernel, refined
 from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.layout import MODEL, REFINED, RELATIVE_VELOCITY, STATE, STRINGS
 from yehu_server.core.physics.time_loop import advance_by
 from yehu_server.core.player.ear import EAR_SAMPLES, remember
-from yehu_server.core.player.listening import attend
+from yehu_server.core.player.listening import update_player
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.wishes import WISH, fulfil
 
@@ -162,7 +162,7 @@ def sleep(rig: Any, p: Any, c: Any, sounded: Any, begin: int, end: int) -> int:
         if mail.waiting > 0:
             until = min(until, heap[0].wish.frame)
         if until > c.frame == p.ear.next:
-            attend(p, c, at(rig, EAR_BUFFER_AT))
+            update_player(p, c, at(rig, EAR_BUFFER_AT))
         if until <= c.frame or not is_still(c):
             o.sleep.is_asleep = 0
             break
@@ -211,7 +211,7 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
         while done < wanted and not (silenced or retuned or ends):
             apply(rig, mail, p, c)
             if c.frame == p.ear.next:
-                attend(p, c, at(rig, EAR_BUFFER_AT))
+                update_player(p, c, at(rig, EAR_BUFFER_AT))
             silenced = write_row(c, o, done)
             write_stage_inputs(c, sounded, done, done + 1)
             retuned = has_new_strings(c)
@@ -246,16 +246,16 @@ def come_to_rest(rig: Any, model: Array, state: Array) -> None:
 
 @compiled_with_aliasing
 def write_output(rig: Any, dry: Array, first: int, start: int, end: int) -> None:
-    """Make samples of some rows of the probes, which begin at frame `first`; tell the ear."""
+    """Make samples of some rows of the probes, the first of frame `first`; the ear has them too."""
     o = record_at(rig, OUTPUT_AT, OUTPUT)
     t = record_at(rig, METERS_AT, METERS)
     heard = carray(at(rig, EAR_BUFFER_AT), (2 * EAR_SAMPLES,), np.float64)
     for n in range(start, end):
         remember(heard, first + n - start, o.probes[n, RELATIVE_VELOCITY])
         dry[n] = output_sample(o, n)
-        hear(t, dry[n])
+        add_to_level(t, dry[n])
         if o.sleep.is_watched != 0:
-            watch(o.sleep, o.probes[n], abs(o.swing) + abs(o.ghost))
+            watch(o.sleep, o.probes[n], abs(o.dc_free) + abs(o.fading))
 
 
 @native

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import default_recipes
+from yehu_server.core.player.bowing import default_bowing_table
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.note_range import NoteRange
@@ -33,12 +33,12 @@ class InstrumentSpec:
     seed : int
         Seed of the variation between notes.
     bowing : ndarray
-        How each note is bowed; by default ``player.bowing.default_recipes``.
+        How each note is bowed; by default ``player.bowing.default_bowing_table``.
     start_values : mapping
         Values of parameters at the start, by address; others have their default.
     body : int
         Which of many bodies it has, for what differs to both sides.
-    person : int
+    player_number : int
         Which player of a section it is, counted from 0.
     """
 
@@ -47,10 +47,10 @@ class InstrumentSpec:
     calibration: Calibration | None = None
     open_strings: OpenStrings = OpenStrings.ALWAYS
     seed: int = 0
-    bowing: Any = field(default_factory=default_recipes, compare=False)
+    bowing: Any = field(default_factory=default_bowing_table, compare=False)
     start_values: Mapping[str, float] = field(default_factory=dict)
     body: int = 0
-    person: int = 0
+    player_number: int = 0
 
     @property
     def notes(self) -> NoteRange:

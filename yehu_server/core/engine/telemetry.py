@@ -25,7 +25,8 @@ from yehu_server.core.physics.layout import STRINGS
 Array = Any
 
 SHAPE_POINTS = 64
-WINDOW_S = 1.0 / 60.0
+# From one value to the next of what is only shown: levels, shapes of strings, snapshots for pages.
+TELEMETRY_S = 1.0 / 60.0
 LOAD_BINS = 128  # of a sixty-fourth of the deadline each
 BINS_PER_DEADLINE = 64
 ASTRAY_NS = 50_000_000  # an error this large starts the loop anew at once,
@@ -89,7 +90,7 @@ METERS = np.dtype(
 
 
 @compiled
-def hear(t: Any, sample: float) -> None:
+def add_to_level(t: Any, sample: float) -> None:
     """Add a sample to the level of this window. Real time: safe."""
     t.window_peak = max(t.window_peak, abs(sample))
     t.window_power += sample * sample
@@ -99,7 +100,7 @@ def hear(t: Any, sample: float) -> None:
 @compiled
 def close_window(t: Any, m: Any, s: Any) -> None:
     """Take level and string shapes at the end of a window. Real time: safe."""
-    if t.window_frames < WINDOW_S * t.rate:
+    if t.window_frames < TELEMETRY_S * t.rate:
         return
     t.peak, t.rms = t.window_peak, math.sqrt(t.window_power / t.window_frames)
     t.window_peak, t.window_power, t.window_frames = 0.0, 0.0, 0

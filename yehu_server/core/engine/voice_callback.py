@@ -16,8 +16,8 @@ from yehu_server.core.engine.mailbox import SOUND_INPUT
 from yehu_server.core.engine.native import post_to
 from yehu_server.core.engine.processor import flush_denormals, monotonic_ns, restore_denormals
 from yehu_server.core.midi.tables import KEYS
-from yehu_server.core.voice.deciding import FOLLOWER, decide, end, prepare_follower
-from yehu_server.core.voice.hearing import take
+from yehu_server.core.voice.note_detection import FOLLOWER, decide, end, prepare_follower
+from yehu_server.core.voice.pitch_detection import take
 
 FOLLOWER_BYTES = FOLLOWER.itemsize
 OF_WISH = 4  # numbers of a wish for others: kind, index, value, other

@@ -1,6 +1,7 @@
-"""Acts on MIDI messages: notes at once, controllers through tables. Compiled.
+"""Acts on MIDI channel messages: notes, programs, and moves of controllers. Compiled.
 
-Notes of the percussion channel are played only if it is chosen, or a member of an MPE zone.
+What each controller does is in ``control_changes``. Notes of the percussion channel are played
+only if it is chosen, or a member of an MPE zone.
 """
 
 from __future__ import annotations
@@ -9,60 +10,21 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.core.midi.channels import (
-    begin_port,
-    forget_channel,
-    is_in_zone,
-    plays,
-)
-from yehu_server.core.midi.controllers import (
-    move,
-    move_coarse,
-    move_fine,
-    press_key,
-    set_directly,
-)
-from yehu_server.core.midi.emit_wishes import stop_sound
-from yehu_server.core.midi.note_ends import (
-    SUSTAIN,
-    end_all,
-    end_notes,
-    hold_by_pedal,
-    lift_pedal,
-    list_channel,
-)
+from yehu_server.core.midi.channels import begin_port, forget_channel, plays
+from yehu_server.core.midi.control_changes import change_control
+from yehu_server.core.midi.note_ends import end_all
 from yehu_server.core.midi.notes import end_channel, note_off, note_on
 from yehu_server.core.midi.packing import BYTE, LENGTH_AT, PORT_AT
-from yehu_server.core.midi.part_keys import list_key
-from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE, PORTS, Midi
-from yehu_server.core.midi.registered_parameters import (
-    DATA_ENTRY,
-    DATA_ENTRY_FINE,
-    DECREMENT,
-    INCREMENT,
-    NRPN_COARSE,
-    NRPN_FINE,
-    RPN_COARSE,
-    RPN_FINE,
-    enter_data,
-    select,
-)
-from yehu_server.core.midi.resets import (
-    disconnect_channel,
-    forget_all_moves,
-    reset_controllers,
-)
-from yehu_server.core.midi.tables import BEND, PAIR, PRESSURE, Tables
+from yehu_server.core.midi.record import CHANNELS, IN_PORT, PORTS, Midi
+from yehu_server.core.midi.resets import disconnect_channel, forget_all_moves
+from yehu_server.core.midi.sources import move, press_key, set_directly
+from yehu_server.core.midi.tables import BEND, PRESSURE, Tables
 from yehu_server.core.player.rows import ROWS
 
 # High halves of status bytes.
 NOTE_OFF, NOTE_ON, POLY_PRESSURE, CONTROL_CHANGE = 0x80, 0x90, 0xA0, 0xB0
 PROGRAM_CHANGE, CHANNEL_PRESSURE, PITCH_BEND, SYSTEM = 0xC0, 0xD0, 0xE0, 0xF0
 SYSTEM_RESET = 0xFF
-# Control changes with a meaning of their own.
-BANK, BANK_FINE = 0, 32
-ALL_SOUND_OFF, RESET_CONTROLLERS, ALL_NOTES_OFF = 120, 121, 123
-PAIRS = 32  # controllers with a fine half, as many higher
 
 
 @compiled_exactly
@@ -108,7 +70,7 @@ def receive(m: Any, t: Any, frame: int, index: int) -> None:
 
 @compiled_exactly
 def count_malformed(m: Any, index: int) -> None:
-    """Count what is no message, and keep it for `status` to tell."""
+    """Count what is no message, and keep it for `status` to report."""
     m.malformed += 1
     m.malformed_last = index
 
@@ -122,101 +84,6 @@ def passes(t: Any, kind: int) -> bool:
         if t.for_all[bind] != 0.0:
             return True
     return False
-
-
-# -- control changes ------------------------------------------------------------------------------
-
-
-@native
-def change_control(m: Midi, t: Tables, frame: int, channel: int, control: int, value: int) -> None:
-    """Act on a control change."""
-    if control >= ALL_SOUND_OFF and not plays(m, t, channel):
-        return
-    if control == BANK:
-        m.bank[channel] = value
-    elif control == BANK_FINE:
-        m.bank_fine[channel] = value
-    if control == SUSTAIN and not is_bound(t, SUSTAIN):
-        m.sustain[channel] = 1 if value >= 64 else 0
-        if value < 64:
-            lift_pedal(m, t, frame, channel)
-    elif control == ALL_SOUND_OFF:
-        all_sound_off(m, t, frame, channel)
-    elif control >= ALL_NOTES_OFF:  # the mode messages 124-127 include it
-        all_notes_off(m, t, frame, channel)
-    elif control == RESET_CONTROLLERS:
-        reset_sustain(m, t, frame, channel)
-        m.is_registered[channel] = 1
-        m.coarse[channel] = m.fine[channel] = NONE
-        reset_controllers(m, t, frame, channel)
-    elif control in (RPN_COARSE, RPN_FINE, NRPN_COARSE, NRPN_FINE):
-        select(m, channel, control, value)
-    elif control in (DATA_ENTRY, DATA_ENTRY_FINE, INCREMENT, DECREMENT):
-        enter_data(m, t, frame, channel, control, value)
-    else:
-        move_both(m, t, frame, channel, control, value)
-
-
-@compiled_exactly
-def reset_sustain(m: Any, t: Any, frame: int, channel: int) -> None:
-    """Lift the sustain pedal, or what is bound to it."""
-    if is_bound(t, SUSTAIN):
-        move_both(m, t, frame, channel, SUSTAIN, 0)
-    else:
-        lift_pedal(m, t, frame, channel)
-
-
-@compiled_exactly
-def move_both(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
-    """Move the sources of a control change: the 7-bit one, then the 14-bit pair."""
-    move(m, t, frame, control, channel, value / 127.0)
-    if control < PAIRS:
-        move_coarse(m, t, frame, PAIR + control, channel, value)
-    elif control < 2 * PAIRS:
-        move_fine(m, t, frame, PAIR + control - PAIRS, channel, value)
-
-
-@compiled_exactly
-def is_bound(t: Any, source: int) -> bool:
-    """Whether a source moves anything."""
-    for bind in range(int(t.binds)):
-        if int(t.source[bind]) == source:
-            return True
-    return False
-
-
-@compiled_exactly
-def all_sound_off(m: Any, t: Any, frame: int, channel: int) -> None:
-    """End the notes of a channel, of its zone, and of its pedal, and the sound."""
-    for n in range(m.held):
-        if m.held_by[n] == channel and not is_in_zone(m, m.held_channel[n], channel):
-            list_key(m, n)
-    list_zone(m, channel)
-    end_notes(m, t, frame)
-    stop_sound(m, frame, False)
-
-
-@compiled_exactly
-def list_zone(m: Any, channel: int) -> None:
-    """List the keys of a channel and, where it is a master, of its members."""
-    first = IN_PORT * (channel // IN_PORT)
-    list_channel(m, channel)
-    for member in range(first, first + IN_PORT):
-        if member != channel and is_in_zone(m, member, channel):
-            list_channel(m, member)
-
-
-@compiled_exactly
-def all_notes_off(m: Any, t: Any, frame: int, channel: int) -> None:
-    """End the notes of a channel and of its zone, as if their keys were released."""
-    list_zone(m, channel)
-    if m.sustain[channel] == 0:
-        end_notes(m, t, frame)
-        return
-    for i in range(m.listed):
-        hold_by_pedal(m, m.list[i], channel)
-        m.is_listed[m.list[i]] = 0
-    m.listed = 0
 
 
 @compiled_exactly

@@ -1,4 +1,4 @@
-"""Emits wishes for all players of a part: parameters, notes, a bow drawn by hand. Compiled.
+"""Emits wishes for all players of a part: parameters, notes, a bow drawn directly. Compiled.
 
 It knows what is held and kept, and passes each wish on to the one player of the part, or to those
 of a section.
@@ -21,7 +21,7 @@ from yehu_server.core.midi.section import (
     set_playing_count,
 )
 from yehu_server.core.midi.section_players import DISTANCE_ROW, GAIN_ROW, PAN_ROW, begin_sequence
-from yehu_server.core.player.rows import HIGHEST, IS_OWNED, LOWEST, SEED
+from yehu_server.core.player.rows import HIGHEST, IS_PLAYER_CONTROLLED, LOWEST, SEED
 from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, HOLD, RELEASE, STOP, WRITE
 
 # -- parameters -----------------------------------------------------------------------------------
@@ -36,7 +36,7 @@ def in_range(row: int, value: float) -> float:
 @compiled_exactly
 def pass_on(m: Any, frame: int, kind: int, index: int, value: float, other: float) -> None:
     """Wish something of all who play the part."""
-    if m.people == 1:
+    if m.players == 1:
         emit(m, 0, frame, kind, index, value, other)
     else:
         emit_to_all(m, frame, kind, index, value, other, False, 0, 0.0)
@@ -57,18 +57,18 @@ def write(
     """
     value = in_range(row, value)
     if row == SECTION:
-        value = min(np.rint(value), float(m.people))
-    if not IS_OWNED[row]:
+        value = min(np.rint(value), float(m.players))
+    if not IS_PLAYER_CONTROLLED[row]:
         if m.is_held[row] != 0 and not hold:
             value = m.value[row]
-            if row == SEED and m.people > 1:
+            if row == SEED and m.players > 1:
                 begin_sequence(m, int(np.rint(value)))
             return value
         m.value[row] = value
     if hold:
         m.is_held[row] = 1
     kind = HOLD if hold else WRITE
-    if m.people == 1:
+    if m.players == 1:
         emit(m, 0, frame, kind, row, value, glide_ms)
         return value
     if of_key == NONE:
@@ -92,7 +92,7 @@ def express(m: Any, frame: int, row: int, value: float) -> None:
     if m.is_held[row] != 0:
         return
     m.value[row] = in_range(row, value)
-    if m.people == 1:
+    if m.players == 1:
         emit(m, 0, frame, EXPRESS, row, m.value[row], 0.0)
     else:
         add_value(m, row, m.value[row])
@@ -119,7 +119,7 @@ def begin_key(
         again = m.held_again[before]
     hold_key(m, channel, key, velocity, strike_number, again)
     m.notes += 1
-    if m.people == 1:
+    if m.players == 1:
         emit(m, 0, frame, BEGIN, channel, key, pitch)
     else:
         begin_together(m, frame, channel, key, pitch)
@@ -133,7 +133,7 @@ def end_listed(m: Midi, frame: int) -> None:
     """
     if m.listed == 0:
         return
-    if m.people == 1:
+    if m.players == 1:
         for i in range(m.listed):
             n = m.list[i]
             more = 1.0 if i < m.listed - 1 else 0.0
@@ -160,7 +160,7 @@ def record_wish(m: Any, kind: int, index: int, value: float, other: float) -> No
     if kind in (WRITE, HOLD, EXPRESS):
         if kind == HOLD:
             m.is_held[index] = 1
-        if not IS_OWNED[index] and (kind == HOLD or m.is_held[index] == 0):
+        if not IS_PLAYER_CONTROLLED[index] and (kind == HOLD or m.is_held[index] == 0):
             m.value[index] = in_range(index, value)
     elif kind == BEGIN:
         hold_key(m, index, value, 0.0, 0, NONE)
@@ -189,5 +189,5 @@ def hold_nothing(m: Any) -> None:
     """Forget all held keys, whose sound ends."""
     m.held, m.sounding, m.listed, m.values = 0, NONE, 0, 0
     m.chord, m.is_divided = 0, 0
-    for who in range(m.people):
+    for who in range(m.players):
         m.holds[who] = m.has_note[who] = 0

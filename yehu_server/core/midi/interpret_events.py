@@ -9,16 +9,8 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
-from yehu_server.core.midi.channel_messages import (
-    disconnect,
-    is_bound,
-    receive,
-    system_reset,
-)
-from yehu_server.core.midi.controllers import (
-    move_control,
-    set_directly,
-)
+from yehu_server.core.midi.channel_messages import disconnect, receive, system_reset
+from yehu_server.core.midi.control_changes import is_bound
 from yehu_server.core.midi.emit_wishes import (
     begin_key,
     end_key,
@@ -49,6 +41,7 @@ from yehu_server.core.midi.part_keys import list_key
 from yehu_server.core.midi.record import CHANNELS, NONE, Midi, emit
 from yehu_server.core.midi.remapping import change_binds, start
 from yehu_server.core.midi.section import slide_players
+from yehu_server.core.midi.sources import move_control, set_directly
 from yehu_server.core.midi.tables import CONTROL as CONTROL_SOURCE
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.player.rows import ROW, ROWS
@@ -150,7 +143,7 @@ def wish(m: Any, frame: int, kind: int, index: int, value: float, other: float) 
     is_right = math.isfinite(value) and math.isfinite(other)
     if kind in (WRITE, HOLD, EXPRESS):
         is_right = is_right and 0 <= index < ROWS
-    if m.people == 1:  # as it is: it may be one of a replay
+    if m.players == 1:  # as it is: it may be one of a replay
         if is_right:
             record_wish(m, kind, index, value, other)
         emit(m, 0, frame, kind, index, value, other)

@@ -9,7 +9,6 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import forget_channel, is_midi
-from yehu_server.core.midi.controllers import set_directly
 from yehu_server.core.midi.emit_wishes import begin_key
 from yehu_server.core.midi.note_ends import (
     end_notes,
@@ -20,6 +19,7 @@ from yehu_server.core.midi.note_ends import (
 )
 from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE, Midi
+from yehu_server.core.midi.sources import set_directly
 from yehu_server.core.midi.tables import CLAMP, KEYS, NOTE, SKIP, VELOCITY, Tables
 from yehu_server.core.midi.values import keep_targets_of
 from yehu_server.core.player.fingering import OPEN_WITHIN

@@ -15,7 +15,7 @@ from yehu_server.params.table import TABLE
 
 PORTS, IN_PORT = 16, 16
 CHANNELS = PORTS * IN_PORT
-PEOPLE = 16  # players of a section, at most
+MAX_PLAYERS = 16  # players of a section, at most
 MOST_CHORD = 32  # notes that a section divides
 ONSETS = 64  # that a section remembers
 MOST_WISHES = 8192  # that one event comes to
@@ -103,18 +103,18 @@ MIDI = np.dtype(
         ("unknown_program", np.int64, KEYS),
         # Who plays: instruments of the part, and how many of them play.
         ("rate", np.float64),
-        ("people", np.int64),
+        ("players", np.int64),
         ("playing", np.int64),
         # Each player of a section: its held keys, its note of the last chord, its clock.
-        ("holds", np.int64, PEOPLE),
-        ("holds_channel", np.int64, (PEOPLE, MOST_HELD)),
-        ("holds_key", np.float64, (PEOPLE, MOST_HELD)),
-        ("holds_from", np.int64, (PEOPLE, MOST_HELD)),
-        ("has_note", np.int64, PEOPLE),
-        ("note_channel", np.int64, PEOPLE),
-        ("note_key", np.float64, PEOPLE),
-        ("wished", np.int64, PEOPLE),
-        ("waits", np.int64, PEOPLE),
+        ("holds", np.int64, MAX_PLAYERS),
+        ("holds_channel", np.int64, (MAX_PLAYERS, MOST_HELD)),
+        ("holds_key", np.float64, (MAX_PLAYERS, MOST_HELD)),
+        ("holds_from", np.int64, (MAX_PLAYERS, MOST_HELD)),
+        ("has_note", np.int64, MAX_PLAYERS),
+        ("note_channel", np.int64, MAX_PLAYERS),
+        ("note_key", np.float64, MAX_PLAYERS),
+        ("wished", np.int64, MAX_PLAYERS),
+        ("waits", np.int64, MAX_PLAYERS),
         # The last chord: its keys, their pitches, and the values of each.
         ("chord", np.int64),
         ("chord_at", np.int64),
@@ -126,7 +126,7 @@ MIDI = np.dtype(
         ("chord_value", np.float64, (MOST_CHORD, ROWS)),
         ("is_divided", np.int64),
         ("assigned", np.int64),
-        ("assigned_player", np.int64, PEOPLE),
+        ("assigned_player", np.int64, MAX_PLAYERS),
         ("order", np.int64, MOST_CHORD),
         # Values for the note that begins next, or sounds again.
         ("values", np.int64),
@@ -135,13 +135,13 @@ MIDI = np.dtype(
         # Onsets: see ``section_players``.
         ("stream", np.int64),  # of random numbers; 0: not begun
         ("drawn", np.int64),
-        ("share", np.float64, PEOPLE),
-        ("error", np.float64, PEOPLE),
+        ("share", np.float64, MAX_PLAYERS),
+        ("error", np.float64, MAX_PLAYERS),
         ("onsets", np.int64),
         ("onset_at", np.int64, ONSETS),
-        ("onset_late", np.int64, (ONSETS, PEOPLE)),
-        ("late", np.int64, PEOPLE),
-        ("before", np.float64, PEOPLE),
+        ("onset_late", np.int64, (ONSETS, MAX_PLAYERS)),
+        ("late", np.int64, MAX_PLAYERS),
+        ("before", np.float64, MAX_PLAYERS),
         # Wishes that the event comes to.
         ("wishes", np.int64),
         ("lost", np.int64),  # of those that there was no room for
@@ -150,7 +150,7 @@ MIDI = np.dtype(
         ("out_index", np.int64, MOST_WISHES),
         ("out_value", np.float64, MOST_WISHES),
         ("out_other", np.float64, MOST_WISHES),
-        ("out_person", np.int64, MOST_WISHES),
+        ("out_player", np.int64, MOST_WISHES),
         # Where moves go while tables change.
         ("saved_move_number", np.int64, MOST_BINDS),
         ("saved_position", np.float64, MOST_BINDS),
@@ -167,7 +167,7 @@ def prepare_midi(
     rate: float,
     values: Mapping[str, float],
     *,
-    people: int = 1,
+    players: int = 1,
     mpe: bool = False,
 ) -> None:
     """Prepare a record of dtype MIDI [shape=(1,)], in place, for a part that was sent nothing.
@@ -177,7 +177,7 @@ def prepare_midi(
     rate : float, Hz
     values : mapping
         The value of every parameter, by address.
-    people : int
+    players : int
         Number of instruments that play the part.
     mpe : bool
         Whether ports start as MPE zones of all channels.
@@ -186,8 +186,8 @@ def prepare_midi(
     m = midi[0]
     m["rate"] = rate
     m["value"] = [values[param.address] for param in TABLE]
-    m["people"] = m["playing"] = people
-    m["value"][SECTION] = people
+    m["players"] = m["playing"] = players
+    m["value"][SECTION] = players
     m["bend_range"] = np.nan
     m["lower"] = IN_PORT - 1 if mpe else 0
     m["is_registered"] = 1
@@ -205,13 +205,13 @@ def clear_held(m: Any) -> None:
 
 @compiled_exactly
 def emit(
-    m: Any, person: int, frame: int, kind: int, index: int, value: float, other: float
+    m: Any, player: int, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
     """Wish something of one player at a frame (``player.wishes``)."""
     if m.wishes >= MOST_WISHES:
         m.lost += 1
         return
     n = m.wishes
-    m.out_person[n], m.out_frame[n], m.out_kind[n] = person, frame, kind
+    m.out_player[n], m.out_frame[n], m.out_kind[n] = player, frame, kind
     m.out_index[n], m.out_value[n], m.out_other[n] = index, value, other
     m.wishes += 1

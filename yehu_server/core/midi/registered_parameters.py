@@ -18,10 +18,10 @@ from yehu_server.core.midi.channels import (
     is_in_zone,
     master_of,
 )
-from yehu_server.core.midi.controllers import follow, move_coarse, move_fine, step
 from yehu_server.core.midi.emit_wishes import in_range
 from yehu_server.core.midi.notes import end_channel
 from yehu_server.core.midi.record import IN_PORT, NONE
+from yehu_server.core.midi.sources import follow, move_coarse, move_fine, step
 from yehu_server.core.midi.tables import BEND, NRPN
 from yehu_server.core.player.rows import ROW
 

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.core.midi.controllers import set_directly
 from yehu_server.core.midi.emit_wishes import write
 from yehu_server.core.midi.record import NONE, Midi
 from yehu_server.core.midi.resets import restore_moves
+from yehu_server.core.midi.sources import set_directly
 from yehu_server.core.midi.tables import KEYS, MOST_BINDS, POLY_PRESSURE, Tables
 from yehu_server.core.midi.values import find_values, keep_target
 from yehu_server.core.player.rows import ROWS
@@ -49,7 +49,7 @@ def change_binds(m: Midi, before: Tables, t: Tables, frame: int) -> None:
     for bind in range(int(t.binds)):
         keep_target(m, int(t.target[bind]))
     for row in range(ROWS):
-        m.found_number[row] = 0  # until its start value has been looked at
+        m.found_number[row] = 0  # until its start value has been checked
     for i in range(int(before.starts)):
         change_start(m, before, t, frame, int(before.start_row[i]))
     for i in range(int(t.starts)):

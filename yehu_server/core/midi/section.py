@@ -1,4 +1,4 @@
-"""A section: several people who play one part, each an instrument of their own. Compiled.
+"""A section: several players who play one part, each an instrument of their own. Compiled.
 
 Wishes are passed on to the players: notes at the frame at which each of them begins, which is at
 most ``section_players.LATEST_MS`` after the planned one; all else as it is wished, but not before
@@ -59,7 +59,7 @@ def emit_to_all(
     key: float,
 ) -> None:
     """Wish something of all players; where `of_key`, of those who play a key, or rest."""
-    for who in range(m.people):
+    for who in range(m.players):
         last = m.holds[who] - 1
         if of_key and last >= 0:
             is_theirs = m.holds_channel[who, last] == channel and m.holds_key[who, last] == key
@@ -85,7 +85,7 @@ def sounds(m: Any, number: int) -> bool:
     """Whether a held key sounds: of a section, whether anybody plays it."""
     if number == m.sounding:
         return True
-    if m.people == 1:
+    if m.players == 1:
         return False
     for who in range(m.playing):
         last = m.holds[who] - 1
@@ -110,14 +110,14 @@ def add_value(m: Any, row: int, value: float) -> None:
 
 
 @compiled_exactly
-def set_playing_count(m: Any, people: int, frame: int) -> None:
+def set_playing_count(m: Any, players: int, frame: int) -> None:
     """Let so many play; the others end their notes and rest."""
-    for who in range(people, m.people):
+    for who in range(players, m.players):
         at = act(m, who, frame, 0)
         for _ in range(m.holds[who]):
             n = m.holds[who] - 1
             end_hold(m, who, 0, at, 1.0 if n > 0 else 0.0)
-    m.playing = people
+    m.playing = players
 
 
 @compiled_exactly
@@ -278,7 +278,7 @@ def end_together(m: Any, frame: int) -> None:
     last = m.held - 1
     while last >= 0 and m.is_listed[last] != 0:
         last -= 1
-    for who in range(m.people):
+    for who in range(m.players):
         own, begun = 0, 0
         for i in range(m.listed):
             n = m.list[i]

@@ -1,7 +1,7 @@
 """How the players of a section differ: in seed, gain and seat, and in when they begin.
 
 Each player corrects a share, the gain, of how far it was from each of the others at the note
-before [Wing]: A'_i = A_i - gain_i sum_j (A_i - A_j) + an error by chance. Their asynchronies are
+before [Wing]: A'_i = A_i - gain_i sum_j (A_i - A_j) + a random error. Their asynchronies are
 counted from the earliest, which is on time: nobody is early, and nobody later than `LATEST_MS`.
 Compiled.
 """
@@ -15,7 +15,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.record import ONSETS
-from yehu_server.core.physics.elementary import chance, log10
+from yehu_server.core.physics.elementary import log10, pseudorandom
 from yehu_server.core.player.rows import HIGHEST, LOWEST, ROW, SEED, VARIATION
 
 OWN_SEED, GAIN, PAN, DISTANCE = "/engine/seed", "/output/gain", "/room/pan", "/room/distance"
@@ -32,7 +32,7 @@ NEIGHBOUR, TO_EITHER_SIDE = 0.12, 0.35
 
 
 @compiled_exactly
-def own_value(row: int, value: float, number: int, people: int) -> float:
+def own_value(row: int, value: float, number: int, players: int) -> float:
     """The value that a player has of a parameter, of what their part has.
 
     All of them together are as loud as one alone.
@@ -43,25 +43,25 @@ def own_value(row: int, value: float, number: int, people: int) -> float:
         Of the parameter; -1 for none.
     number : int
         The player, counted from 0.
-    people : int
+    players : int
         How many of them play.
     """
     if row == SEED_ROW:
         return float((int(np.rint(value)) + APART * number) % SEEDS)
-    if people == 1:
+    if players == 1:
         return value
     if row == GAIN_ROW:
-        own = value - 10.0 * log10(people)
+        own = value - 10.0 * log10(players)
         return float(min(max(own, LOWEST[GAIN_ROW]), HIGHEST[GAIN_ROW]))
     if row == DISTANCE_ROW:
-        from_outside = min(number, people - 1 - number)
+        from_outside = min(number, players - 1 - number)
         factor = BACK if from_outside % 2 != 0 else FRONT
-        own = value * (factor if people > 2 else 1.0)
+        own = value * (factor if players > 2 else 1.0)
         return float(min(max(own, LOWEST[DISTANCE_ROW]), HIGHEST[DISTANCE_ROW]))
     if row == PAN_ROW:
-        side = min(0.5 * NEIGHBOUR * (people - 1), TO_EITHER_SIDE)
+        side = min(0.5 * NEIGHBOUR * (players - 1), TO_EITHER_SIDE)
         middle = min(max(value, side - 1.0), 1.0 - side)
-        return float(middle + side * (2.0 * min(number, people - 1) / (people - 1) - 1.0))
+        return float(middle + side * (2.0 * min(number, players - 1) / (players - 1) - 1.0))
     return value
 
 
@@ -82,7 +82,7 @@ FIRST_STREAM = 1 << 20  # of random numbers; those of the players' variation com
 def begin_sequence(m: Any, seed: int) -> None:
     """Begin the sequence of a seed; all are together."""
     m.stream, m.drawn = FIRST_STREAM + seed, 0
-    for i in range(m.people):
+    for i in range(m.players):
         m.share[i] = uniform(m, GAIN_LO, GAIN_HI)
     m.onsets = 0
     draw_errors(m)
@@ -96,7 +96,7 @@ def plan_onset(m: Any, frame: int) -> None:
     find_lateness(m, frame)
     n = m.onsets % ONSETS
     m.onset_at[n] = frame
-    for i in range(m.people):
+    for i in range(m.players):
         m.onset_late[n, i] = m.late[i]
     m.onsets += 1
     draw_errors(m)
@@ -110,7 +110,7 @@ def plan_release(m: Any, frame: int) -> None:
     for onset in range(max(0, m.onsets - ONSETS), m.onsets):
         n = onset % ONSETS
         if m.onset_at[n] >= frame:
-            for i in range(m.people):
+            for i in range(m.players):
                 m.late[i] = m.onset_late[n, i]
             return
     find_lateness(m, frame)
@@ -133,7 +133,7 @@ def find_lateness(m: Any, frame: int) -> None:
         gain = m.share[i] / m.playing
         m.before[i] = own - gain * (m.playing * own - total) + error * m.error[i]
         first = min(first, m.before[i])
-    for i in range(m.people):
+    for i in range(m.players):
         m.late[i] = 0
         if i < m.playing:
             m.late[i] = int(1e-3 * min(m.before[i] - first, most) * m.rate)
@@ -142,7 +142,7 @@ def find_lateness(m: Any, frame: int) -> None:
 @compiled_exactly
 def draw_errors(m: Any) -> None:
     """Draw the errors of the next onset."""
-    for i in range(m.people):
+    for i in range(m.players):
         # A number of mean 0 and variance 1; each of the uniform ones has a variance of 1/3.
         total = 0.0
         for _ in range(ADDED):
@@ -154,4 +154,4 @@ def draw_errors(m: Any) -> None:
 def uniform(m: Any, lo: float, hi: float) -> float:
     """The next random number of the sequence, within bounds."""
     m.drawn += 1
-    return float(lo + 0.5 * (hi - lo) * (1.0 + chance((m.stream << 32) + m.drawn)))
+    return float(lo + 0.5 * (hi - lo) * (1.0 + pseudorandom((m.stream << 32) + m.drawn)))

@@ -1,4 +1,4 @@
-"""Elementary functions by arithmetic alone, and numbers by chance.
+"""Elementary functions by arithmetic alone, and pseudorandom numbers.
 
 C libraries, and NumPy, differ in their last bits from system to system and from processor to
 processor, and a bowed string is chaotic. So whatever reaches a sample is computed by these. Those
@@ -19,8 +19,8 @@ from yehu_server.compile.jit import arithmetic, compiled
 
 
 @compiled
-def chance(number: int) -> float:
-    """A pseudorandom number in -1..1, the same for the same `number`.
+def pseudorandom(number: int) -> float:
+    """The pseudorandom number, -1 to 1, that belongs to an integer: a hash of it.
 
     Source: [SplitMix], its output function.
     """

@@ -47,7 +47,6 @@ from yehu_server.core.physics.elimination import (
 from yehu_server.core.physics.finger import advance_fingers, limit_gradients, prepare_fingers
 from yehu_server.core.physics.friction import Tangent, solve_friction
 from yehu_server.core.physics.grid import read
-from yehu_server.core.physics.hair import grip
 from yehu_server.core.physics.layout import (
     BOW,
     BRIDGE_FORCE,
@@ -75,6 +74,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.radiation import prepare_radiation, radiate
 from yehu_server.core.physics.records import Array, Model, Records, State
 from yehu_server.core.physics.rosin_heat import prepare_heat, static_coefficient, warm
+from yehu_server.core.physics.rosin_texture import grip
 from yehu_server.core.physics.string import (
     advance_strings,
     max_stable_sigma_1,

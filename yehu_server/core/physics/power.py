@@ -27,7 +27,7 @@ EXTREME = 400  # a power of two that no number of the model comes near
 TABLES = np.dtype(
     [
         ("series", np.float64, TERMS),
-        ("of_twos", np.float64, EXPONENTS),
+        ("of_exponent", np.float64, EXPONENTS),
         ("per_midpoint", np.float64, INTERVALS),
         ("of_midpoint", np.float64, INTERVALS),
     ],
@@ -39,9 +39,9 @@ def prepare_power(tables: np.void, factor: float, exponent: float) -> None:
     """Write the tables by which `power` finds `factor` x^`exponent` (0 to 2)."""
     twos = np.arange(-EXTREME, EXTREME + 1)
     coarse = float(np.float32(exponent))  # a product with this is not rounded
-    of_twos = each(exp2, coarse * twos) * each(exp2, (exponent - coarse) * twos)
+    of_exponent = each(exp2, coarse * twos) * each(exp2, (exponent - coarse) * twos)
     known = np.clip(np.arange(EXPONENTS) - EXPONENT_OF_1, -EXTREME, EXTREME) + EXTREME
-    tables["of_twos"] = factor * of_twos[known]
+    tables["of_exponent"] = factor * of_exponent[known]
     per_midpoint = 1.0 / (1.0 + (np.arange(INTERVALS) + 0.5) / INTERVALS)
     tables["per_midpoint"] = per_midpoint
     tables["of_midpoint"] = [power_of(x, -exponent) for x in per_midpoint.tolist()]
@@ -64,5 +64,5 @@ def power(tables: Tables, x: float) -> float:
     t = part_bits.view(np.float64) * tables.per_midpoint[interval] - 1.0
     c = tables.series
     series = (c[0] + c[1] * t) + (t * t) * ((c[2] + c[3] * t) + (t * t) * c[4])
-    nearby = tables.of_twos[exponent] * tables.of_midpoint[interval]
+    nearby = tables.of_exponent[exponent] * tables.of_midpoint[interval]
     return float(nearby + (nearby * t) * series)

@@ -20,7 +20,7 @@ class Tables(Protocol):
     """Tables of one power, power.py."""
 
     series: Array
-    of_twos: Array
+    of_exponent: Array
     per_midpoint: Array
     of_midpoint: Array
 

@@ -40,7 +40,6 @@ from yehu_server.core.physics.elimination import (
 from yehu_server.core.physics.finger import advance_fingers, limit_gradients
 from yehu_server.core.physics.friction_curve import prepare_friction
 from yehu_server.core.physics.grid import read, spread
-from yehu_server.core.physics.hair import grip
 from yehu_server.core.physics.hair_width import (
     hair_energy,
     hair_loss,
@@ -74,6 +73,7 @@ from yehu_server.core.physics.layout import (
 from yehu_server.core.physics.pluck import pluck
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Model, Records, Refined, State
+from yehu_server.core.physics.rosin_texture import grip
 from yehu_server.core.physics.string import advance_strings, support
 from yehu_server.core.physics.torsion import (
     advance_torsion,

@@ -1,4 +1,4 @@
-"""Schelleng's limits of the bow force: between them the string can move as Helmholtz saw. Compiled.
+"""Schelleng's limits of the bow force: between them Helmholtz motion is possible. Compiled.
 
 Source: [Schelleng].
 """

@@ -30,7 +30,7 @@ from yehu_server.core.player.gestures import (
     gain_of,
     note_length,
     scaled,
-    slid,
+    slide_position,
     within_reach,
 )
 from yehu_server.core.player.notes import BEND_RAMP_MS
@@ -87,7 +87,7 @@ def move_bow(p: Any, c: Any, now: float, length: float) -> None:
             return
         g.bow.step += 1
         ramp_ms = g.pace * step[RAMP] + 1e3 * step[RAMP_SHARE] * length
-        g.there = now + 1e-3 * ramp_ms
+        g.move_ends = now + 1e-3 * ramp_ms
         g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
         g.is_off = 0 if step[IS_ON] != 0.0 else 1
         if step[TURNS] != 0.0:
@@ -132,7 +132,7 @@ def move_finger(p: Any, c: Any, now: float, length: float) -> None:
             g.bend, g.slide_s = semitones, 0.0
             notes.follow_pitch(p, c, STEP_MS)
     if g.slide_s > 0.0:
-        g.bend = slid(g, now)
+        g.bend = slide_position(g, now)
         if now >= g.slide_at + g.slide_s:
             g.slide_s = 0.0
         notes.follow_pitch(p, c, BEND_RAMP_MS)

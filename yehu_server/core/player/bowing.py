@@ -1,8 +1,8 @@
-"""Bow speed, force and position for each note, so that it speaks in its own register. Compiled.
+"""The bowing table: bow speed, force and position for each note, so that it speaks. Compiled.
 
 Notes near the body's modes (A4 at 439 Hz above all) and the open F string jump to other
-registers under a fast or a heavy bow. How each note is bowed on each string is found by practising
-(`yehu_lab.practising.practice`); `default_recipes` is what practising starts from.
+registers under a fast or a heavy bow. The table for each string is found by playing the model
+(`yehu_lab.practising.practice`); `default_bowing_table` is what that search starts from.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from yehu_server.core.physics.layout import STRINGS
 
 Array = Any
 
-# Values of /playing/pressure: those for which a recipe has a share of Schelleng's limit, and where
+# Values of /playing/pressure: those for which the table has a share of Schelleng's limit, and where
 # notes begin to scratch.
 FLAUTANDO, LIGHT, FIRM, SCRATCHY = 0.2, 0.3, 0.55, 1.0
 # Fractions of Schelleng's limit at which notes begin to scratch, on each string;
 # measured at 0.12 and 0.2 m/s on eight notes: 1 to 2, and 3 to 6.
 EDGES = np.array((1.3, 4.0))
 
-# A bowing recipe says how a note is bowed: the highest bow speed (m/s) at which it speaks; values
-# of /bow/pressure for FLAUTANDO, LIGHT and FIRM; a factor on the distance of the bow from the
-# bridge; the least finger force (N).
+# A bowing is an entry of the table, for one note at one place of the bow: the highest bow speed
+# (m/s) at which it speaks; values of /bow/pressure for FLAUTANDO, LIGHT and FIRM; a factor on the
+# distance of the bow from the bridge; the least finger force (N).
 TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, LEAST_PRESS = range(6)
-RECIPE = 6
-DEFAULT_RECIPE = (0.6, FLAUTANDO, LIGHT, FIRM, 1.0, 0.0)
+BOWING_SIZE = 6
+DEFAULT_BOWING = (0.6, FLAUTANDO, LIGHT, FIRM, 1.0, 0.0)
 # The notes of the table, as a yehu's strings have them, up to two octaves above the outer one.
 # Beyond them all are bowed as these.
 FIRST, LAST = 64, 96
@@ -43,20 +43,20 @@ NOTES = LAST - FIRST + 1
 NEAREST_ON_F = 0.17
 
 
-def default_recipes() -> Array:
-    """All notes bowed alike: ndarray [shape=(STRINGS, len(PLACES), NOTES, RECIPE)]."""
-    table = np.tile(np.array(DEFAULT_RECIPE), (STRINGS, len(PLACES), NOTES, 1))
+def default_bowing_table() -> Array:
+    """All notes bowed alike: ndarray [shape=(STRINGS, len(PLACES), NOTES, BOWING_SIZE)]."""
+    table = np.tile(np.array(DEFAULT_BOWING), (STRINGS, len(PLACES), NOTES, 1))
     table[0, :, :, DISTANCE_FACTOR] = np.maximum(NEAREST_ON_F / np.array(PLACES), 1.0)[:, None]
     return table
 
 
 @compiled_exactly
-def recipe_value(table: Array, string: int, place: float, pitch: float, column: int) -> float:
+def bowing_value(table: Array, string: int, place: float, pitch: float, column: int) -> float:
     """One value of how a pitch (fractional MIDI note) is bowed on a string; interpolated.
 
     Parameters
     ----------
-    table : ndarray [shape=(STRINGS, len(PLACES), NOTES, RECIPE)]
+    table : ndarray [shape=(STRINGS, len(PLACES), NOTES, BOWING_SIZE)]
     string : int
         0 or 1.
     place : float
@@ -75,11 +75,11 @@ def recipe_value(table: Array, string: int, place: float, pitch: float, column: 
 
 
 @compiled_exactly
-def at_pitch(recipes: Array, pitch: float, column: int) -> float:
-    """The same at one of PLACES; `recipes` has shape (NOTES, RECIPE)."""
+def at_pitch(bowings: Array, pitch: float, column: int) -> float:
+    """The same at one of PLACES; `bowings` has shape (NOTES, BOWING_SIZE)."""
     pitch = min(max(pitch, FIRST), LAST)
     row = min(math.floor(pitch), LAST - 1)
-    low, high = recipes[row - FIRST, column], recipes[row + 1 - FIRST, column]
+    low, high = bowings[row - FIRST, column], bowings[row + 1 - FIRST, column]
     return float(low + (pitch - row) * (high - low))
 
 

@@ -1,8 +1,8 @@
-"""How bright the bow makes a note, beyond what the model does. Compiled.
+"""The brightness that a heavier or a nearer bow adds to a note, beyond the model's. Compiled.
 
 A fiddle sounds brighter when it is bowed harder or nearer to the bridge: force sharpens the corner
 of the Helmholtz motion [Schoonderwaldt]. The model's corner stays as round at any force, by its
-losses, its hair and its friction (docs/playing.md tells what was tried). What is missing is added
+losses, its hair and its friction (docs/playing.md lists what was tried). What is missing is added
 by a law: the spectral centroid of a note follows speed and pressure of the bow, and its place. A
 shelf at the output raises what lies above the centroid, as far as the calibration found that it
 has to.

@@ -1,4 +1,4 @@
-"""The hands are not quite steady: slow drift and tremor of bow and finger. Compiled.
+"""Slow drift and tremor of the hands that hold bow and finger. Compiled.
 
 The drift of a hand has a spectrum of about 1/f ([Gilden]), from four random sequences whose times
 are two octaves apart; tremor is a resonance about 10 Hz, where that of hands is ([Elble]). What one
@@ -22,7 +22,7 @@ from yehu_server.core.controls.record import (
     PRESS_DRIFT,
     SPEED_DRIFT,
 )
-from yehu_server.core.physics.elementary import chance, cos, each, exp
+from yehu_server.core.physics.elementary import cos, each, exp, pseudorandom
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.rows import (
     BOW_FORCE,
@@ -39,15 +39,15 @@ DRIFT = np.array((0.06, 0.06, 0.04, 4.8, 0.06))
 TREMOR = np.array((0.04, 0.05, 0.02, 2.5, 0.04))
 RIGHT, LEFT = 0, 1
 HAND = np.array((RIGHT, RIGHT, RIGHT, LEFT, LEFT))
-# What the rest of each hand goes with.
-LEADER = np.array((SPEED_DRIFT, SPEED_DRIFT, SPEED_DRIFT, CENTS_DRIFT, CENTS_DRIFT))
-TOGETHER = 0.6  # correlation with it
+# The drift that the others of each hand go with.
+LEADING = np.array((SPEED_DRIFT, SPEED_DRIFT, SPEED_DRIFT, CENTS_DRIFT, CENTS_DRIFT))
+CORRELATION = 0.6  # with it
 
 # A vibrato's turns differ: standard deviations of rate and width at full variation, by ear less
-# than violinists' [Seashore]. Half of the variance wanders: it keeps this much from turn to turn.
+# than violinists' [Seashore]. Half of the variance is slow: its correlation from turn to turn.
 UNEVEN_PACE, UNEVEN_WIDTH = 0.4, 0.4
-WANDERING = 0.85
-WANDERED = math.sqrt(3.0 * (1.0 - WANDERING * WANDERING))
+TURN_CORRELATION = 0.85
+TURN_NOISE = math.sqrt(3.0 * (1.0 - TURN_CORRELATION * TURN_CORRELATION))
 MOST_UNEVEN = 0.5  # of rate and width, up or down
 FOLLOW = 0.15  # of the way to those of the next turn, in a hop
 
@@ -55,16 +55,19 @@ TIMES_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is th
 TIMES = 4
 KEPT = each(exp, -HOP_S / TIMES_S)
 # Uniform numbers in -1..1 have a variance of 1/3; the sums have one of 1.
-ADDED = np.sqrt(3.0 * (1.0 - KEPT**2) / TIMES)
+NOISE = np.sqrt(3.0 * (1.0 - KEPT**2) / TIMES)
 TREMOR_HZ, WIDTH_HZ = 10.0, 3.0
-RADIUS = exp(-math.pi * WIDTH_HZ * HOP_S)
-TURN = 2.0 * RADIUS * cos(2.0 * math.pi * TREMOR_HZ * HOP_S)
-SQUARE = RADIUS * RADIUS
-KICK = math.sqrt(
-    3.0 * (1.0 - SQUARE) * ((1.0 + SQUARE) * (1.0 + SQUARE) - TURN * TURN) / (1.0 + SQUARE)
+TREMOR_RADIUS = exp(-math.pi * WIDTH_HZ * HOP_S)
+TREMOR_A_1 = 2.0 * TREMOR_RADIUS * cos(2.0 * math.pi * TREMOR_HZ * HOP_S)
+TREMOR_A_2 = TREMOR_RADIUS * TREMOR_RADIUS
+TREMOR_NOISE = math.sqrt(
+    3.0
+    * (1.0 - TREMOR_A_2)
+    * ((1.0 + TREMOR_A_2) * (1.0 + TREMOR_A_2) - TREMOR_A_1 * TREMOR_A_1)
+    / (1.0 + TREMOR_A_2)
 )
 HANDS = 2
-CALMING, STEADY = 0.8, 1e-6  # a hand that does not play comes to rest, by so much in a hop
+SETTLING, STEADY = 0.8, 1e-6  # a hand that does not play comes to rest, by so much in a hop
 LATE = 2  # hops after which what a finger did is heard
 DRAWN_FROM = 1 << 31  # of the seed's numbers; those before are the notes' (``phrasing``)
 
@@ -74,7 +77,11 @@ DRIFT_STATE = np.dtype(
         ("tremor", np.float64, (HANDS, 2)),  # of each hand, now and one hop ago
         ("cents", np.float64, LATE + 1),  # of the finger, now and at the last hops
         ("phase", np.float64),  # of the vibrato, one hop ago (turns)
-        ("wander", np.float64, 2),  # slow deviates of the vibrato's rate and width
+        (
+            "slow_deviate",
+            np.float64,
+            2,
+        ),  # of the vibrato's rate and width, which changes from turn to turn
         ("pace", np.float64),  # deviates of this turn of the vibrato
         ("width", np.float64),
         ("drawn", np.int64),  # random numbers so far
@@ -84,10 +91,10 @@ DRIFT_STATE = np.dtype(
 
 
 @compiled_exactly
-def draw(p: Any) -> float:
+def next_random(p: Any) -> float:
     """The next random number, -1 to 1."""
     p.drift_state.drawn += 1
-    return chance((p.seed << 32) + DRAWN_FROM + p.drift_state.drawn)
+    return pseudorandom((p.seed << 32) + DRAWN_FROM + p.drift_state.drawn)
 
 
 @compiled_exactly
@@ -96,19 +103,21 @@ def advance_drift(p: Any, c: Any) -> None:
     u, amount = p.drift_state, p.value[VARIATION]
     for hand in range(HANDS):
         now, before = u.tremor[hand, 0], u.tremor[hand, 1]
-        u.tremor[hand, 0] = TURN * now - SQUARE * before + KICK * draw(p)
+        u.tremor[hand, 0] = TREMOR_A_1 * now - TREMOR_A_2 * before + TREMOR_NOISE * next_random(p)
         u.tremor[hand, 1] = now
     for i in range(DRIFTS):
         for k in range(TIMES):
-            u.slow[i, k] = KEPT[k] * u.slow[i, k] + ADDED[k] * draw(p)
+            u.slow[i, k] = KEPT[k] * u.slow[i, k] + NOISE[k] * next_random(p)
     c.drifting = 0
     for i in range(DRIFTS):
         drift = total(u.slow[i])
-        if i != LEADER[i]:
-            drift = TOGETHER * total(u.slow[LEADER[i]]) + math.sqrt(1.0 - TOGETHER**2) * drift
+        if i != LEADING[i]:
+            drift = (
+                CORRELATION * total(u.slow[LEADING[i]]) + math.sqrt(1.0 - CORRELATION**2) * drift
+            )
         wanted = amount * (DRIFT[i] * drift + TREMOR[i] * u.tremor[HAND[i], 0])
         if amount == 0.0 or not is_playing(p, i):
-            wanted = CALMING * c.drift[i] if abs(c.drift[i]) > STEADY else 0.0
+            wanted = SETTLING * c.drift[i] if abs(c.drift[i]) > STEADY else 0.0
         c.drift_slope[i] = (wanted - c.drift[i]) / p.ear.hop
         if wanted == 0.0 and abs(c.drift[i]) <= STEADY:
             c.drift[i] = c.drift_slope[i] = 0.0
@@ -125,24 +134,24 @@ def vary_vibrato(p: Any, c: Any) -> None:
     """Let the vibrato's rate and width follow the deviates of its turn."""
     u, amount = p.drift_state, p.value[VARIATION] if p.sounding >= 0 else 0.0
     if c.vibrato < u.phase:
-        u.pace, u.width = next_turn(p, 0), next_turn(p, 1)
+        u.pace, u.width = next_turn_deviate(p, 0), next_turn_deviate(p, 1)
     u.phase = c.vibrato
-    c.vibrato_pace += FOLLOW * (uneven(amount * UNEVEN_PACE * u.pace) - c.vibrato_pace)
-    c.vibrato_width += FOLLOW * (uneven(amount * UNEVEN_WIDTH * u.width) - c.vibrato_width)
+    c.vibrato_pace += FOLLOW * (turn_factor(amount * UNEVEN_PACE * u.pace) - c.vibrato_pace)
+    c.vibrato_width += FOLLOW * (turn_factor(amount * UNEVEN_WIDTH * u.width) - c.vibrato_width)
     if amount == 0.0 and max(abs(c.vibrato_pace - 1.0), abs(c.vibrato_width - 1.0)) < STEADY:
         c.vibrato_pace = c.vibrato_width = 1.0
 
 
 @compiled_exactly
-def next_turn(p: Any, which: int) -> float:
+def next_turn_deviate(p: Any, which: int) -> float:
     """The deviate of the vibrato's next turn, of variance 1: of its rate (0) or its width (1)."""
-    wander = p.drift_state.wander
-    wander[which] = WANDERING * wander[which] + WANDERED * draw(p)
-    return float(math.sqrt(0.5) * (wander[which] + math.sqrt(3.0) * draw(p)))
+    slow_deviate = p.drift_state.slow_deviate
+    slow_deviate[which] = TURN_CORRELATION * slow_deviate[which] + TURN_NOISE * next_random(p)
+    return float(math.sqrt(0.5) * (slow_deviate[which] + math.sqrt(3.0) * next_random(p)))
 
 
 @compiled_exactly
-def uneven(by: float) -> float:
+def turn_factor(by: float) -> float:
     """The factor of a turn that differs by so much, within what a hand does."""
     return 1.0 + min(max(by, -MOST_UNEVEN), MOST_UNEVEN)
 

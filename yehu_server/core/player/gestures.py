@@ -1,7 +1,7 @@
 """The gesture of a note: the steps of both hands that its articulation asks for. Compiled.
 
 The steps are those of ``params.articulations``. A note's gesture begins with it; each 5 ms
-``articulating`` looks which steps are due. An ordinary note is shaped too, as far as phrasing says.
+``articulating`` checks which steps are due. An ordinary note is shaped as phrasing says.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ GESTURE = np.dtype(
         ("gain_db", np.float64),  # of the level, that follows the bow's speed
         ("gain_to", np.float64),  # where it goes (dB)
         ("gain_step", np.float64),  # by so much in each 5 ms
-        ("there", np.float64),  # when the bow's move ends (s after the note's beginning)
+        ("move_ends", np.float64),  # when the bow's move ends (s after the note's beginning)
         ("is_off", np.int64),  # whether the hair is lifted
         ("node", np.int64),  # of `harmonics.NODES`, that the finger touches; else NONE
         ("finger", TRACK),
@@ -167,7 +167,7 @@ def rest(g: Any) -> None:
     g.bow.begins = g.finger.begins = 0.0
     g.speed = g.weight = g.pace = 1.0
     g.gain_db = g.gain_to = g.gain_step = 0.0
-    g.there, g.is_off, g.bend, g.slide_s, g.node = 0.0, 0, 0.0, 0.0, NONE
+    g.move_ends, g.is_off, g.bend, g.slide_s, g.node = 0.0, 0, 0.0, 0.0, NONE
 
 
 @compiled_exactly
@@ -321,7 +321,7 @@ STEEP = 3.0  # of the logistic curve that slides follow
 
 
 @compiled_exactly
-def slid(g: Any, at_s: float) -> float:
+def slide_position(g: Any, at_s: float) -> float:
     """Where a slide is (semitones) at a time; logistic in time, as huqin players' are [Yang]."""
     part = min(max((at_s - g.slide_at) / g.slide_s, 0.0), 1.0)
     end = 1.0 / (1.0 + exp(-STEEP))

@@ -10,7 +10,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.elementary import exp2, log
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, ROWS_OF_A_YEHU, SPEEDS
-from yehu_server.core.player.rows import CALIBRATION
+from yehu_server.core.player.rows import SHARPENING_CORRECTION
 
 Array = Any
 
@@ -35,7 +35,7 @@ def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float)
     measured sharpening.
     """
     stopped = in_tables(p, string, pitch)
-    sharp = sharper + p.value[CALIBRATION] * read(
+    sharp = sharper + p.value[SHARPENING_CORRECTION] * read(
         p.sharpening[string], STOPPED[string], stopped, speed
     )
     frequency = p.a4 * exp2((pitch - sharp / 100.0 - 69.0) / 12.0)

@@ -26,15 +26,15 @@ from yehu_server.core.player.tuning_by_ear import tune
 def listen(p: Any, c: Any, heard: Any) -> None:
     """Listen to the bowed string, and act on what is heard.
 
-    While the bow is drawn by hand, the string is analysed but nothing is corrected.
+    While the bow is drawn directly, the string is analysed but nothing is corrected.
 
     Parameters
     ----------
     heard : ndarray
         What `ear.remember` keeps.
     """
-    by_hand = p.by_hand != 0
-    is_bowed = c.value[SIDE] != 0.0 if by_hand else p.sounding >= 0 and p.side != 0.0
+    is_direct = p.is_direct != 0
+    is_bowed = c.value[SIDE] != 0.0 if is_direct else p.sounding >= 0 and p.side != 0.0
     is_bowed = is_bowed and not is_touched(p)  # a harmonic is where its node is
     if p.value[LISTENING] == 0.0 or not is_bowed or c.frame < p.settled_at:
         p.ear.certainty = 0.0
@@ -42,7 +42,7 @@ def listen(p: Any, c: Any, heard: Any) -> None:
     pitch = sounding_pitch(p)
     aim = pitch + vibrato_semitones(p, c) + heard_semitones(p)
     hear(p.ear, heard, c.frame, p.rate / (p.a4 * exp2((aim - 69.0) / 12.0)))
-    if not by_hand:  # who draws the bow corrects it
+    if not is_direct:  # who draws the bow corrects it
         tune(p, c, pitch)
         correct_pressure(p, c, pitch)
 
@@ -58,8 +58,8 @@ def vibrato_semitones(p: Any, c: Any) -> float:
 
 
 @native
-def attend(p: Player, c: Controls, sound: Any) -> None:
-    """Do what is to be done at the frames of ``ear.next``.
+def update_player(p: Player, c: Controls, sound: Any) -> None:
+    """Do the player's work of one hop, at a frame of ``ear.next``.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.slots import SILENCE, SPEED
 from yehu_server.core.player import left_hand, right_hand, velocity, vibrato
-from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
+from yehu_server.core.player.bowing import LEAST_PRESS, bowing_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import choose, choose_for_slide, stay
 from yehu_server.core.player.gestures import (
@@ -89,7 +89,7 @@ def begin(p: Any, c: Any, frame: int, channel: int, key: float, pitch: float) ->
     Keys struck at one frame make one stroke.
     """
     take_all_back(p)
-    p.by_hand = 0
+    p.is_direct = 0
     before = find_key(p, channel, key)
     is_legato = p.sounding != SILENT and (before == NOT_HELD or p.sounding != before)
     at_once = is_legato and frame == p.began
@@ -130,7 +130,7 @@ def stop_sound(p: Any, c: Any, is_panic: bool) -> None:
         p.held, p.sounding = 0, SILENT
     if p.sounding != SILENT:
         return
-    p.by_hand = 0
+    p.is_direct = 0
     take_back(p, BOW_SPEED)
     take_back(p, BOW_SIDE)
     right_hand.lift(p, c, LIFTING_MS)
@@ -242,10 +242,10 @@ def note_pitch(p: Any) -> float:
 
 @compiled_exactly
 def sounding_pitch(p: Any) -> float:
-    """The pitch while a note sounds or the bow is drawn by hand, else NaN."""
+    """The pitch while a note sounds or the bow is drawn directly, else NaN."""
     if p.sounding >= 0:
         return note_pitch(p)
-    return float(p.finger_pitch if p.by_hand != 0 else math.nan)
+    return float(p.finger_pitch if p.is_direct != 0 else math.nan)
 
 
 @compiled_exactly
@@ -293,7 +293,7 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 @compiled_exactly
 def draw_on(p: Any, c: Any) -> None:
     """Draw as parameters wish by now, but let a move of the gesture take its time."""
-    left_ms = 1e3 * (p.gesture.there - (c.frame - p.note_began) / p.rate)
+    left_ms = 1e3 * (p.gesture.move_ends - (c.frame - p.note_began) / p.rate)
     draw(p, c, max(left_ms, SMOOTH_MS[BOW_SPEED]))
 
 
@@ -310,16 +310,16 @@ def least_press(p: Any, string: int) -> float:
     if p.sounding < 0:
         return 0.0
     stopped = in_tables(p, string, note_pitch(p))
-    return recipe_value(p.bowing, string, p.value[POSITION], stopped, LEAST_PRESS)
+    return bowing_value(p.bowing_table, string, p.value[POSITION], stopped, LEAST_PRESS)
 
 
 @compiled_exactly
 def even_out(p: Any, c: Any) -> None:
     """Set colour, and the gain that evens out the loudness of notes, as the bow is drawn."""
-    if p.sounding >= 0 or p.by_hand != 0:
+    if p.sounding >= 0 or p.is_direct != 0:
         pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
         speed, effort = wished_speed(p), wished_speed(p) * p.value[PRESSURE]
-        if p.by_hand != 0:
+        if p.is_direct != 0:
             speed, effort = p.speed, p.effort
         velocity.even_out(p, c, pitch, speed, effort)
 
@@ -353,7 +353,7 @@ def follow_pitch(p: Any, c: Any, slide_ms: float) -> None:
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     if string != before:
         begin_tuning(p, pitch)
-    if string != before or not right_hand.has_same_recipe(p, pitch):
+    if string != before or not right_hand.is_bowed_alike(p, pitch):
         set_bow_pressure(p, c)
         draw_on(p, c)
     if pitch != was:

@@ -1,7 +1,7 @@
-"""What the player adds to plain notes: vibrato, slides, and small differences by chance. Compiled.
+"""What the player adds to plain notes: vibrato, slides, and small random differences. Compiled.
 
 Vibrato and slides only as far as `/playing/phrasing` says, and where nothing else is wished.
-docs/playing.md tells the rules.
+docs/playing.md has the rules.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SIDE
-from yehu_server.core.physics.elementary import chance
+from yehu_server.core.physics.elementary import pseudorandom
 from yehu_server.core.player.rows import (
     NOTE_LENGTH,
     PHRASING,
@@ -31,7 +31,7 @@ def begin_sequence(p: Any, seed: int) -> None:
     """Begin the sequence of a seed."""
     p.seed, p.drawn = seed, 0
     p.drift_state.slow[:], p.drift_state.tremor[:], p.drift_state.drawn = 0.0, 0.0, 0
-    p.drift_state.wander[:] = 0.0
+    p.drift_state.slow_deviate[:] = 0.0
 
 
 @compiled_exactly
@@ -48,7 +48,7 @@ def deviate(p: Any) -> float:
     """A number of mean 0 and variance 1; each of the uniform ones has a variance of 1/3."""
     total = 0.0
     for _ in range(ADDED):
-        total += chance((p.seed << 32) + p.drawn)
+        total += pseudorandom((p.seed << 32) + p.drawn)
         p.drawn += 1
     return total / math.sqrt(ADDED / 3.0)
 

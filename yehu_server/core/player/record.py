@@ -9,7 +9,7 @@ import numpy as np
 
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import DEFAULT_RECIPE, PLACES, RECIPE, default_recipes
+from yehu_server.core.player.bowing import BOWING_SIZE, DEFAULT_BOWING, PLACES, default_bowing_table
 from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
 from yehu_server.core.player.calibration import (
     GAINS,
@@ -32,7 +32,7 @@ from yehu_server.core.player.rows import (
     ROWS,
     SLOT_OF,
 )
-from yehu_server.core.player.steepness import STEPS, vibrato_table
+from yehu_server.core.player.vibrato_table import STEPS, vibrato_table
 from yehu_server.params.table import TABLE
 
 # Of what is learnt: half semitones, quarter octaves of bow position, half octaves of speed.
@@ -59,8 +59,8 @@ PLAYER = np.dtype(
         ("sounding", np.int64),  # number of the held key that sounds, SILENT or ENDING
         ("began", np.int64),  # the frame at which the stroke of the bow began
         ("note_began", np.int64),  # the frame at which the note did
-        ("by_hand", np.int64),  # whether the bow is drawn by hand
-        ("speed", np.float64),  # of a bow drawn by hand (m/s)
+        ("is_direct", np.int64),  # whether the bow is drawn directly, not by notes
+        ("speed", np.float64),  # of a bow drawn directly (m/s)
         ("effort", np.float64),  # the same times its force, as a share of Schelleng's limit
         ("gesture", GESTURE),  # of the sounding note
         # The left hand.
@@ -83,7 +83,7 @@ PLAYER = np.dtype(
         (
             "corrects_pressure",
             np.int64,
-        ),  # 0 during practice: pitch is corrected, bow pressure is not
+        ),  # 0 while the bowing table is searched: pitch is corrected, bow pressure is not
         ("pressure_factor", np.float64),  # factor on the bow's pressure
         # The fault in the last hop, and for how many hops; below 0: before a correction is judged.
         ("fault", np.int64),
@@ -99,7 +99,7 @@ PLAYER = np.dtype(
         ("direction", np.float64),  # of the stroke
         ("pace", np.float64),  # factor on the bow's speed, so that its hair lasts
         ("side", np.float64),  # /bow/side; 0 where the bow is lifted
-        ("recipe", np.float64, RECIPE),  # how the sounding pitch is bowed
+        ("bowing", np.float64, BOWING_SIZE),  # how the sounding pitch is bowed
         ("hurry", np.float64),  # of a stroke soon after another: 0 to 1
         ("balance", np.float64),  # dB
         ("louder_by", np.float64),  # dB, by brilliance
@@ -107,7 +107,7 @@ PLAYER = np.dtype(
         ("speed_variation", np.float64),  # factor on the bow's speed
         ("weight", np.float64),  # factor on the bow's pressure
         ("detuned", np.float64),  # semitones, at full variation
-        ("person", np.int64),  # of a section, counted from 0
+        ("player_number", np.int64),  # of a section, counted from 0
         ("seed", np.int64),
         ("drawn", np.int64),
         ("drift_state", DRIFT_STATE),  # drift and tremor
@@ -121,8 +121,8 @@ PLAYER = np.dtype(
         ("levels", np.float64, (STRINGS, NOTES + 1, len(SPEEDS))),  # dB
         ("centroids", np.float64, (STRINGS, NOTES + 1, len(GAINS))),  # Hz
         ("louder", np.float64, (STRINGS, NOTES + 1, len(GAINS))),  # dB
-        ("bowing", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, RECIPE)),
-        ("vibrato_table", np.float64, (STEPS, 2)),  # `steepness.vibrato_table`
+        ("bowing_table", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, BOWING_SIZE)),
+        ("vibrato_table", np.float64, (STEPS, 2)),  # `vibrato_table`
         ("open_strings", np.int64),  # number of the OpenStrings
     ],
     align=True,
@@ -142,7 +142,7 @@ def prepare_player(
     open_strings: OpenStrings = OpenStrings.ALWAYS,
     bowing: Any = None,
     seed: int = 0,
-    person: int = 0,
+    player_number: int = 0,
 ) -> Any:
     """Prepare the record of a player who holds nothing.
 
@@ -156,10 +156,10 @@ def prepare_player(
     calibration : Calibration, optional
         By default fingers stop where an ideal string is in tune, and no note is evened out.
     bowing : ndarray
-        By default `default_recipes`.
+        By default `default_bowing_table`.
     seed : int
         Of the variation between notes.
-    person : int
+    player_number : int
         Which of a section it is; each but the first has a vibrato of their own.
 
     Returns
@@ -178,12 +178,12 @@ def prepare_player(
     p["finger"] = FINGER_COUNT - 1  # so that the first finger comes first
     p["string"], p["position"] = -1, OPEN
     p["direction"] = UP
-    p["recipe"] = DEFAULT_RECIPE
+    p["bowing"] = DEFAULT_BOWING
     p["first_error"], p["pressure_factor"], p["corrects_pressure"] = np.nan, 1.0, 1
     prepare_ear(p["ear"], rate)
     p["gesture"] = RESTING
     p["speed_variation"] = p["weight"] = p["pace"] = 1.0
-    p["seed"], p["person"] = seed, person
+    p["seed"], p["player_number"] = seed, player_number
     p["bridge_x"] = quantities.bridge_x
     p["wave_speed"] = [wave_speed(quantities, string) for string in range(STRINGS)]
     p["a4"] = 440.0
@@ -198,7 +198,7 @@ def prepare_player(
     p["vibrato_table"] = vibrato_table(
         quantities.body, float(p["a4"]), tuple(notes.open_notes), centroids
     )
-    p["bowing"] = default_recipes() if bowing is None else bowing
+    p["bowing_table"] = default_bowing_table() if bowing is None else bowing
     p["open_strings"] = list(OpenStrings).index(open_strings)
     return player
 
@@ -210,7 +210,7 @@ def end_all(player: Any, controls: Any) -> None:
     ----------
     player, controls : records of dtype PLAYER and CONTROLS
     """
-    player["held"], player["sounding"], player["by_hand"] = 0, SILENT, 0
+    player["held"], player["sounding"], player["is_direct"] = 0, SILENT, 0
     player["side"], player["pressing"] = 0.0, 0.0
     player["string"], player["position"] = -1, OPEN
     player["taken"], player["sent"] = 0, np.nan

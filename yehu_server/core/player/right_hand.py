@@ -11,10 +11,10 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
+    BOWING_SIZE,
     DISTANCE_FACTOR,
-    RECIPE,
     TOP_SPEED,
-    recipe_value,
+    bowing_value,
     share,
 )
 from yehu_server.core.player.fingering import OPEN
@@ -78,11 +78,11 @@ def wished_speed(p: Any) -> float:
 
 
 @compiled_exactly
-def recipe_of(p: Any, pitch: float, column: int) -> float:
-    """One value of how a pitch is bowed on the string of the fingering; see `recipe_value`."""
+def bowing_of(p: Any, pitch: float, column: int) -> float:
+    """One value of how a pitch is bowed on the string of the fingering; see `bowing_value`."""
     string = max(p.string, 0)
     stopped = in_tables(p, string, pitch)
-    return recipe_value(p.bowing, string, wished_place(p), stopped, column)
+    return bowing_value(p.bowing_table, string, wished_place(p), stopped, column)
 
 
 @compiled_exactly
@@ -94,14 +94,14 @@ def wished_place(p: Any) -> float:
 @compiled_exactly
 def speed_at(p: Any, pitch: float) -> float:
     """Bow speed (m/s) for a pitch: as wished and moved, up to the highest at which it speaks."""
-    return float(min(wished_speed(p) * p.gesture.speed, recipe_of(p, pitch, TOP_SPEED)))
+    return float(min(wished_speed(p) * p.gesture.speed, bowing_of(p, pitch, TOP_SPEED)))
 
 
 @compiled_exactly
-def has_same_recipe(p: Any, pitch: float) -> bool:
+def is_bowed_alike(p: Any, pitch: float) -> bool:
     """Whether a pitch is bowed as the present one is."""
-    for column in range(RECIPE):
-        if recipe_of(p, pitch, column) != p.recipe[column]:
+    for column in range(BOWING_SIZE):
+        if bowing_of(p, pitch, column) != p.bowing[column]:
             return False
     return True
 
@@ -111,13 +111,13 @@ def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
     """Set bow pressure and position, as wished and adapted to the sounding pitch, if any."""
     pressure = p.value[PRESSURE] * p.weight * p.gesture.weight * hurried(p, HURRIED_WEIGHT)
     if is_sounding:
-        for column in range(RECIPE):
-            p.recipe[column] = recipe_of(p, pitch, column)
-        m = p.recipe
+        for column in range(BOWING_SIZE):
+            p.bowing[column] = bowing_of(p, pitch, column)
+        m = p.bowing
         pressure = share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, max(p.string, 0))
         pressure *= p.pressure_factor
     move(p, c, BOW_PRESSURE, pressure, USUAL_MS)
-    move(p, c, BOW_POSITION, wished_place(p) * p.recipe[DISTANCE_FACTOR], USUAL_MS)
+    move(p, c, BOW_POSITION, wished_place(p) * p.bowing[DISTANCE_FACTOR], USUAL_MS)
 
 
 @compiled_exactly

@@ -10,14 +10,15 @@ from yehu_server.params.table import FINGERS, SLOT, TABLE
 ROW = {param.address: row for row, param in enumerate(TABLE)}
 ROWS = len(TABLE)
 SLOT_OF = np.array([SLOT.get(param.address, -1) for param in TABLE])  # -1: not the engine's
-IS_OWNED = np.array([param.player_controlled for param in TABLE])
+IS_PLAYER_CONTROLLED = np.array([param.player_controlled for param in TABLE])
 IS_ENGINES = np.array([param.place is Place.ENGINE for param in TABLE])
 LOWEST, HIGHEST = np.array([param.lo for param in TABLE]), np.array([param.hi for param in TABLE])
 SMOOTH_MS = np.array([param.smooth_ms for param in TABLE])
 
 # What the player moves.
 BOW_SPEED, BOW_SIDE = ROW["/bow/speed"], ROW["/bow/side"]
-BOW_FORCE, BOW_PRESSURE, BOW_ASSIST = ROW["/bow/force"], ROW["/bow/pressure"], ROW["/bow/assist"]
+BOW_FORCE, BOW_PRESSURE = ROW["/bow/force"], ROW["/bow/pressure"]
+BOW_ASSIST = ROW["/bow/assist"]
 BOW_POSITION, BOW_TREMOLO = ROW["/bow/position"], ROW["/bow/tremolo"]
 BOW_TREMOLO_DEPTH = ROW["/bow/tremolo_depth"]
 FINGER_COUNT = len(FINGERS)
@@ -53,4 +54,4 @@ ATTACK, RELEASE = ROW["/playing/attack"], ROW["/playing/release"]
 PORTAMENTO, PORTAMENTO_TIME = ROW["/playing/portamento"], ROW["/playing/portamento_time"]
 VELOCITY = ROW["/playing/velocity"]
 LISTENING = ROW["/playing/listening"]
-CALIBRATION, SEED = ROW["/engine/calibration"], ROW["/engine/seed"]
+SHARPENING_CORRECTION, SEED = ROW["/engine/calibration"], ROW["/engine/seed"]

@@ -1,4 +1,4 @@
-"""The left hand corrects the finger by what it hears, and remembers it. Compiled.
+"""Corrects the finger's place by the pitch that is heard, and remembers the correction. Compiled.
 
 What is corrected is the sharpening: how much sharper the string sounds than the tables say. It is
 learnt for each string, pitch, place and speed of the bow, as long as the program runs.

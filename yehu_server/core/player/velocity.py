@@ -1,8 +1,9 @@
 """What velocity does to a note: its loudness, evened out, by bow and by gain; its attack. Compiled.
 
 At NEUTRAL all is as the other parameters say. A harder note is bowed faster and gets its force
-sooner than its speed; a softer one begins gently. With the force that mappings let velocity set,
-the level rises by some 18 dB from 1 to 127 (scripts/playability.py velocity).
+sooner than its speed; a softer one begins gently. Force is not set here: mappings bind velocity to
+/playing/pressure (mappings/keyboard.toml). With that, the level rises by some 18 dB from 1 to 127
+(scripts/playability.py velocity).
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ def even_out(p: Any, c: Any, pitch: float, speed: float, effort: float) -> None:
     set_brilliance(p, c, string, sounding_pitch, effort)
     balance = balance_db(p, string, sounding_pitch, speed) - p.louder_by
     balance *= p.value[EVENNESS]
-    balance += 0.0 if p.by_hand != 0 else struck_db(p) + p.gesture.gain_db
-    is_off = c.value[SIDE] == 0.0 and p.by_hand == 0
+    balance += 0.0 if p.is_direct != 0 else struck_db(p) + p.gesture.gain_db
+    is_off = c.value[SIDE] == 0.0 and p.is_direct == 0
     ramp_ms = RISING_MS if balance > p.balance and not is_off else FALLING_MS
     if p.gesture.gain_db != p.gesture.gain_to and has_risen(p, c):  # it goes on in small steps
         ramp_ms = 1e3 * HOP_S

@@ -1,6 +1,7 @@
 """The vibrato of a note: as wished, as its articulation wants it, or the player's own. Compiled.
 
-It is narrower, and off the note's middle, where the body would swing its level (``steepness``).
+Styles of vibrato are articulations (``params.articulations``). A vibrato is narrower, and off the
+note's middle, where the body would swing its level (``vibrato_table``).
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.physics.elementary import chance
+from yehu_server.core.physics.elementary import pseudorandom
 from yehu_server.core.player.gestures import CENTS, DELAY_MS, HAS_VIBRATO, HERTZ, VIBRATOS
 from yehu_server.core.player.gestures import PRESS as PRESS_SHARE
 from yehu_server.core.player.gestures import UPWARD as UPWARD_SHARE
@@ -31,7 +32,7 @@ from yehu_server.core.player.rows import (
     VIBRATO_RATE,
     VIBRATO_UPWARD,
 )
-from yehu_server.core.player.steepness import LEANING, NARROWED, STEPS, USUAL
+from yehu_server.core.player.vibrato_table import CENTRE, DEPTH_SHARE, STEPS, USUAL
 
 # The player's own, at full phrasing; by ear.
 OWN_CENTS, LATE_MS = 60.0, 750.0
@@ -39,7 +40,7 @@ HEARD_S = 0.6  # of a note, from which on one hears it
 # It is narrower near the nut [Pop]: its share there, and from where on it is whole.
 AT_NUT, WHOLE_FROM = 0.6, 6.0  # semitones above the open string
 FADING_MS = 600.0  # after the last note
-# How people of a section differ in rate, depth and delay of their vibrato, and its least factor.
+# How players of a section differ in rate, depth and delay of their vibrato, and its least factor.
 OTHER_RATE, OTHER_DEPTH, OTHER_DELAY = 0.3, 0.9, 1.2
 LEAST_OTHER = 0.4
 FRAMES_FROM = 3 << 30  # of the seed's numbers: those that frames have; `drift` has some before
@@ -52,9 +53,9 @@ def set_vibrato(p: Any, c: Any) -> None:
     own = has_vibrato(p)
     cents, upward = row[CENTS] if own else wished_cents(p), row[UPWARD_SHARE] if own else 0.0
     if upward == 0.0:
-        at = steep_row(p)
-        cents = min(cents, p.vibrato_table[at, NARROWED] * max(cents, USUAL))
-        upward = p.vibrato_table[at, LEANING]
+        at = vibrato_row(p)
+        cents = min(cents, p.vibrato_table[at, DEPTH_SHARE] * max(cents, USUAL))
+        upward = p.vibrato_table[at, CENTRE]
     hertz = row[HERTZ] if own else p.value[PLAYING_VIBRATO_RATE]
     press = row[PRESS_SHARE] if own else p.value[PLAYING_VIBRATO_PRESS]
     move(p, c, VIBRATO_DEPTH, cents * other_factor(p, 1, OTHER_DEPTH), USUAL_MS)
@@ -65,10 +66,10 @@ def set_vibrato(p: Any, c: Any) -> None:
 
 @compiled_exactly
 def begin_vibrato(p: Any, c: Any) -> None:
-    """Fade in the vibrato of a new note; people of a section begin at other phases of it."""
+    """Fade in the vibrato of a new note; players of a section begin at other phases of it."""
     delay_ms = VIBRATOS[p.gesture.row, DELAY_MS] if has_vibrato(p) else wished_delay_ms(p)
     delay_ms *= other_factor(p, 2, OTHER_DELAY)
-    if p.person != 0 and p.value[VARIATION] > 0.0 and delay_ms > 0.0:
+    if p.player_number != 0 and p.value[VARIATION] > 0.0 and delay_ms > 0.0:
         c.vibrato = phase_of(p, c)
     move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
     if delay_ms > 0.0:
@@ -123,15 +124,15 @@ def vibrated_pitch(p: Any) -> float:
 
 
 @compiled_exactly
-def steep_row(p: Any) -> int:
-    """Row of ``steepness.vibrato_table`` for the note."""
+def vibrato_row(p: Any) -> int:
+    """Row of ``vibrato_table`` for the note."""
     row = int(np.rint(2.0 * (vibrated_pitch(p) - p.open_note[0])))
     return min(max(row, 0), STEPS - 1)
 
 
 @compiled_exactly
 def other_factor(p: Any, number: int, varied: float) -> float:
-    """A factor that a person of a section has for good; 1 for the first of them, or one alone.
+    """A factor that each player of a section has for good; 1 for the first of them, or one alone.
 
     Parameters
     ----------
@@ -140,13 +141,13 @@ def other_factor(p: Any, number: int, varied: float) -> float:
     varied : float
         Its standard deviation at full variation.
     """
-    if p.person == 0:
+    if p.player_number == 0:
         return 1.0
-    differs = math.sqrt(3.0) * chance((p.person << 32) + number)
+    differs = math.sqrt(3.0) * pseudorandom((p.player_number << 32) + number)
     return float(max(1.0 + p.value[VARIATION] * varied * differs, LEAST_OTHER))
 
 
 @compiled_exactly
 def phase_of(p: Any, c: Any) -> float:
     """Where the vibrato of a note that begins now starts, of one of a section (turns)."""
-    return float(0.5 + 0.5 * chance((p.seed << 32) + FRAMES_FROM + c.frame))
+    return float(0.5 + 0.5 * pseudorandom((p.seed << 32) + FRAMES_FROM + c.frame))

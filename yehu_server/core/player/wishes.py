@@ -25,7 +25,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.record import Controls
-from yehu_server.core.player import by_hand, left_hand, notes, vibrato
+from yehu_server.core.player import direct_bowing, left_hand, notes, vibrato
 from yehu_server.core.player.ownership import forget, ramp_to, release, write_directly
 from yehu_server.core.player.phrasing import begin_sequence
 from yehu_server.core.player.record import Player
@@ -35,13 +35,12 @@ from yehu_server.core.player.rows import (
     BOW_FORCE,
     BOW_SPEED,
     BRILLIANCE,
-    CALIBRATION,
     DYNAMICS,
     EVENNESS,
     EXPRESSION,
     HIGHEST,
     IS_ENGINES,
-    IS_OWNED,
+    IS_PLAYER_CONTROLLED,
     LISTENING,
     LOWEST,
     PHRASING,
@@ -52,6 +51,7 @@ from yehu_server.core.player.rows import (
     PRESSURE,
     ROWS,
     SEED,
+    SHARPENING_CORRECTION,
     SMOOTH_MS,
     SPEED,
     TREMOLO,
@@ -96,16 +96,16 @@ def fulfil(
     elif kind == END:
         notes.end(p, c, index, value, other != 0.0)
     elif kind == SLIDE:
-        by_hand.slide(p, c, playable(p, value))
+        direct_bowing.slide(p, c, playable(p, value))
     elif kind == DRAW:
-        by_hand.draw(p, c, in_range(BOW_SPEED, value), in_range(BOW_FORCE, other))
+        direct_bowing.draw(p, c, in_range(BOW_SPEED, value), in_range(BOW_FORCE, other))
     elif kind == LIFT:
-        by_hand.lift(p, c)
+        direct_bowing.lift(p, c)
     elif kind == STOP:
         notes.stop_sound(p, c, value != 0.0)
     elif kind == RELEASE:
         release(p)
-        p.by_hand = 0
+        p.is_direct = 0
     elif 0 <= index < ROWS:
         if kind in (WRITE, HOLD):
             glide_ms = bounded(other, 0.0, LONGEST)
@@ -135,7 +135,7 @@ def in_range(row: int, value: float) -> float:
 @compiled_exactly
 def write(p: Any, c: Any, row: int, value: float, hold: bool, glide_ms: float) -> None:
     """Set a parameter; the moves of bow and fingers that follow take at least `glide_ms`."""
-    if IS_OWNED[row]:
+    if IS_PLAYER_CONTROLLED[row]:
         write_directly(p, c, row, value, hold)
         return
     if hold:
@@ -165,7 +165,7 @@ def express(p: Any, c: Any, row: int, value: float) -> None:
 @compiled_exactly
 def follow(p: Any, c: Any, row: int) -> None:
     """Move what follows a parameter of the player while a note sounds."""
-    if row in (BEND, CALIBRATION):
+    if row in (BEND, SHARPENING_CORRECTION):
         notes.follow_bend(p, c)
     elif row == PRESS:
         left_hand.press(p, c, notes.least_press(p, max(p.string, 0)), left_hand.LANDING_MS)

@@ -1,4 +1,4 @@
-"""A body that does not sound alike to both sides, from some 1 kHz up. Compiled.
+"""Directivity: from some 1 kHz up a body sounds otherwise to the left than to the right. Compiled.
 
 Below, a body of this size radiates alike in all directions; above, each of its modes sends lobes
 of either sign. What is measured is the sound straight ahead. To the left this is added, to the
@@ -87,7 +87,7 @@ def side_signal(s: Any, x: float) -> float:
 
 
 @compiled_exactly
-def fall_still(s: Any) -> None:
+def clear_sides(s: Any) -> None:
     """Clear the filters while sound runs. Real time: safe."""
     for k in range(PASSES):
         s.passed[k], s.before[k] = 0.0, 0.0

@@ -1,6 +1,6 @@
 """The late field of a room: a feedback delay network, shared by all players. Compiled.
 
-Sound goes round in LINES delay lines of different lengths. What leaves them is mixed by an
+Sound circulates in LINES delay lines of different lengths. What leaves them is mixed by an
 orthogonal matrix, which keeps its energy, and enters them again; only the filters of
 ``absorption`` take some of it. So the decay is as asked, in each octave [Jot]. Sound enters each
 line after a time of its own, which makes the echoes dense early and, unlike all-pass filters in a
@@ -31,7 +31,7 @@ from yehu_server.core.stage.delay_lines import (
 
 Array = Any
 
-EVERY = 32  # frames after which a room follows again what is asked of it
+EVERY = 32  # frames from one check of what is asked of a room to the next
 LENGTH = 1 << 15  # most frames of a line, and of the span that it is kept in
 # Frames between two lines: with a span of a power of two alone, all would fall into the same set of
 # the processor's cache.
@@ -41,7 +41,7 @@ LEAST_S, MOST_S = 0.03, 0.11  # of the middle line; shorter ones have too few mo
 PATHS = 3.0  # mean free paths in the middle line
 INTO_LINES = 1.0 / math.sqrt(LINES)
 # When sound enters each line, and with which sign: the left in even lines, the right in odd ones.
-# By chance, one in each eighth of the time, and of those the ones with the evenest tail.
+# Drawn at random, one in each eighth of the time, and of those the ones with the evenest tail.
 ENTRY_S = 1e-3 * np.array([
     13.81, 13.26, 10.61, 9.69, 19.13, 6.56, 18.18, 29.21,
     1.18, 25.06, 4.17, 0.5, 22.98, 21.7, 27.15, 17.82,
@@ -248,8 +248,8 @@ def reverberate(r: Any, frame: int, level: Array, sound: Array, heard: Array) ->
             end = min(end, done + r.emptying)
         opened = r.opened[done:end]
         open_room(r, opened)
-        enter(r, frame + done, opened, sound[done:end])
-        go_round(r, frame + done, level[done:end], opened, heard[done:end])
+        diffuse_input(r, frame + done, opened, sound[done:end])
+        advance_lines(r, frame + done, level[done:end], opened, heard[done:end])
         if r.is_watched != 0:
             watch(r, sound[done:end])
         done = end
@@ -266,7 +266,7 @@ def begin_window(r: Any) -> None:
     """Begin a window of as many frames as lines are kept for; fall asleep after a silent one.
 
     Where nothing entered in a whole window, and all that lines were given in it is QUIET, all that
-    they keep is. It stays there: what enters later wakes the room, and goes round among it.
+    they keep is. It stays there: what enters later wakes the room, and mixes with it.
     """
     r.is_asleep = 1 if r.is_watched != 0 and r.loudest < QUIET and is_open(r) else 0
     r.is_watched, r.loudest = 1 - r.is_asleep, 0.0
@@ -274,7 +274,7 @@ def begin_window(r: Any) -> None:
 
 @compiled_exactly
 def watch(r: Any, sound: Array) -> None:
-    """Take frames into the window, after sound has entered and gone round."""
+    """Take frames into the window, after they have passed the lines."""
     for n in range(sound.shape[0]):
         if sound[n, 0] != 0.0 or sound[n, 1] != 0.0:
             r.is_watched = 0
@@ -299,7 +299,7 @@ def open_room(r: Any, opened: Array) -> None:
 
 
 @compiled_exactly
-def enter(r: Any, frame: int, opened: Array, sound: Array) -> None:
+def diffuse_input(r: Any, frame: int, opened: Array, sound: Array) -> None:
     """Let sound of both sides enter, through the all-pass filters."""
     for n in range(opened.shape[0]):
         for side in range(2):
@@ -316,7 +316,7 @@ def enter(r: Any, frame: int, opened: Array, sound: Array) -> None:
 
 
 @compiled_exactly
-def go_round(r: Any, frame: int, level: Array, opened: Array, heard: Array) -> None:
+def advance_lines(r: Any, frame: int, level: Array, opened: Array, heard: Array) -> None:
     """Take what leaves the lines, write what is heard of it, and let it enter them again.
 
     No line is as short as CHUNK frames, so nothing that enters leaves among the same frames.

@@ -9,7 +9,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.stage import absorption, image_sources
-from yehu_server.core.stage.directivity import SIDES, fall_still, prepare_sides, rest_sides
+from yehu_server.core.stage.directivity import SIDES, clear_sides, prepare_sides, rest_sides
 from yehu_server.core.stage.image_sources import EARS, REFERENCE, WALLS
 from yehu_server.core.stage.late_field import CLOSE_S
 
@@ -197,4 +197,4 @@ def reset_state(s: Any) -> None:
     s.before, s.filtered, s.size, s.moved = 0.0, 0.0, 0.0, 1.0
     for ear in range(EARS):
         s.early[ear], s.direct[ear] = 0.0, math.nan
-    fall_still(s.sides)
+    clear_sides(s.sides)

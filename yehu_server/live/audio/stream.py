@@ -91,7 +91,7 @@ def _following(address: int, order: Message) -> tuple[Any, Any]:
     import numpy as np
 
     from yehu_server.core.engine.voice_callback import follow_input, voice_prepare
-    from yehu_server.core.voice.deciding import FOLLOWER
+    from yehu_server.core.voice.note_detection import FOLLOWER
 
     voice = np.zeros(1, FOLLOWER)
     voice_prepare.call(voice.ctypes.data, order["rate"], order["transpose"], order["correct"])

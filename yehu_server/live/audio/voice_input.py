@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from yehu_server.core.physics.elementary import log2
-from yehu_server.core.voice.deciding import VOICE, VOICE_KEYS, ends_of
+from yehu_server.core.voice.note_detection import VOICE, VOICE_KEYS, ends_of
 from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.output import OutputOptions, SharedMemory
 from yehu_server.playing.options import AS_IT_SINGS, PlayingOptions

@@ -12,7 +12,7 @@ from typing import Any
 
 from yehu_server.ahead.build import RATES
 from yehu_server.ahead.build_hash import build_hash
-from yehu_server.ahead.interpreter import interpreter_layout, look_layout, look_length
+from yehu_server.ahead.interpreter import interpreter_layout, snapshot_layout, snapshot_length
 from yehu_server.core.midi import registered_parameters, tables
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.midi.tables import MOST_BINDS, TABLES
@@ -163,8 +163,8 @@ def facts(notes: NoteRange = YEHU) -> dict[str, Any]:
         "asItSings": AS_IT_SINGS,
         "presets": {"shipped": {one.name: preset(one) for one in shipped}, "saved": list(SAVED)},
         "tunings": tunings(),
-        "look": look_layout(),
-        "lookLength": look_length(),
+        "snapshot": snapshot_layout(),
+        "snapshotLength": snapshot_length(),
         "rates": list(RATES),
         "builtFrom": build_hash(),
     }

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.engine import native
-from yehu_server.core.engine.look import LOOK, look
 from yehu_server.core.engine.mailbox import PAGES
 from yehu_server.core.engine.rig import RIG, RIG_BYTES
+from yehu_server.core.engine.snapshot import SNAPSHOT, snapshot
 from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.stage.record import STAGE, TAPE
@@ -39,7 +39,7 @@ class SharedView:
         self._rigs = np.frombuffer(self._memory, RIG, count=count)
         self._stage = np.frombuffer(self._memory, STAGE, offset=count * RIG_BYTES, count=1)[0]
         self._address = self._rigs.ctypes.data
-        self._look = np.zeros(1, LOOK)
+        self._record = np.zeros(1, SNAPSHOT)
         self._meters = np.zeros(1, METERS)
 
     @property
@@ -66,7 +66,7 @@ class SharedView:
         return bool(native.post_from.call(address, PAGES, frame, kind, index, value, other))
 
     def look(self, rig: int = 0, own: Mapping[int, float] = _NOTHING) -> bytes:
-        """A look at an instrument (``engine.look``) and, twice, the values of the table's rows.
+        """A snapshot of an instrument (``engine.snapshot``) and, twice, the values of parameters.
 
         First come those that they have, then those that were set, from which controllers move them.
         Its level is that of the mix, and what all share is as the first instrument has it.
@@ -75,15 +75,15 @@ class SharedView:
         """
         midi = self._rigs["midi"][rig]
         is_moved = (midi["is_target"] != 0) & (midi["is_held"] == 0)
-        record, values = self._look[0], self._rigs["player"]["value"][rig].copy()
-        look.call(self._address + rig * RIG_BYTES, self._look.ctypes.data)
+        record, values = self._record[0], self._rigs["player"]["value"][rig].copy()
+        snapshot.call(self._address + rig * RIG_BYTES, self._record.ctypes.data)
         if rig:
             record["peak"], record["rms"] = self._stage["peak"], self._stage["rms"]
             values[SHARED_ROWS] = self._rigs["player"]["value"][0, SHARED_ROWS]
         for row, value in own.items():
             values[row] = value
         was_set = np.where(is_moved, midi["set_to"], values)
-        return self._look.tobytes() + bytes(values.tobytes()) + bytes(was_set.tobytes())
+        return self._record.tobytes() + bytes(values.tobytes()) + bytes(was_set.tobytes())
 
     def load(self) -> tuple[float, int]:
         """The share of the time that computing takes, and the number of drop-outs so far."""

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from aiohttp import WSMsgType, web
 
+from yehu_server.core.engine.telemetry import TELEMETRY_S
 from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
 from yehu_server.live import limits
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitted
@@ -57,7 +58,7 @@ LOOK, WISHES = 0.0, 1.0
 WISH = 5  # numbers: frame or NOW, kind, index, value, other
 NOW = -1.0
 SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is the row of a parameter
-LOOK_S, SOUND_S, STATUS_S = 1 / 60, 0.001, 1.0
+SOUND_S, STATUS_S = 0.001, 1.0
 MESSAGE_BYTES = 8 * WISH * limits.PAGE_EVENTS
 HEARTBEAT_S, CLOSING_S = 10.0, 0.3
 # Close codes: against the rules; the PIN is missing or wrong; there is no such part.
@@ -204,7 +205,7 @@ class PageSockets:
 
     async def send_looks(self) -> None:
         """Send looks, for ever."""
-        async for _ in every(LOOK_S, self._has_pages):
+        async for _ in every(TELEMETRY_S, self._has_pages):
             viewers = [page for page in self._pages.values() if page.looks]
             for part in {page.part for page in viewers}:
                 look = self._view.look(self._rigs[part], self._own.get(part, {}))

@@ -63,8 +63,8 @@ bool CLAP_ABI from_text(const clap_plugin_t *, clap_id number, const char *text,
     return parameter >= 0 && read_value(parameter, text, value);
 }
 
-/* Tell the host of parameters that moved as another one did. */
-void tell_moved(Instrument &instrument, const clap_output_events_t *out) {
+/* Report to the host parameters that moved as another one did. */
+void report_moved(Instrument &instrument, const clap_output_events_t *out) {
     for (int i = 0; out && i < PARAMETERS; i++) {
         if (!instrument.was_moved(i)) continue;
         clap_event_param_value_t event = {};
@@ -103,7 +103,7 @@ void take(Instrument &instrument, const clap_event_header_t *event) {
         break;
     }
     case CLAP_EVENT_TRANSPORT:
-        break; /* the block's own transport has told */
+        break; /* the block's own transport says it */
     case CLAP_EVENT_MIDI:
         instrument.midi(at, ((const clap_event_midi_t *)event)->data, 3);
         break;
@@ -119,7 +119,7 @@ void CLAP_ABI flush(const clap_plugin_t *plugin, const clap_input_events_t *in, 
         const int parameter = parameter_of(changed->param_id);
         if (parameter >= 0) instrument.set(parameter, changed->value);
     }
-    tell_moved(instrument, out);
+    report_moved(instrument, out);
     watch_names(of(plugin));
 }
 
@@ -179,12 +179,12 @@ const clap_plugin_latency_t latency = {get_latency};
 bool CLAP_ABI init(const clap_plugin_t *) { return true; }
 bool CLAP_ABI start(const clap_plugin_t *) { return true; }
 void CLAP_ABI nothing(const clap_plugin_t *) {}
-void CLAP_ABI on_main_thread(const clap_plugin_t *plugin) { tell_names(of(plugin)); }
+void CLAP_ABI on_main_thread(const clap_plugin_t *plugin) { report_names(of(plugin)); }
 void CLAP_ABI reset(const clap_plugin_t *plugin) { of(plugin).instrument.reset(); }
 
 void CLAP_ABI destroy(const clap_plugin_t *plugin) {
     Plugin *made = &of(plugin);
-    close_face(*made);
+    close_editor(*made);
     made->~Plugin();
     free(made);
 }
@@ -206,7 +206,7 @@ clap_process_status CLAP_ABI process(const clap_plugin_t *plugin, const clap_pro
     for (uint32_t i = 0, count = in ? in->size(in) : 0; i < count; i++) take(instrument, in->get(in, i));
     float **out = block->audio_outputs[0].data32;
     instrument.process(out[0], out[1], block->frames_count);
-    tell_moved(instrument, block->out_events);
+    report_moved(instrument, block->out_events);
     watch_names(of(plugin));
     return CLAP_PROCESS_CONTINUE;
 }
@@ -217,7 +217,7 @@ const void *CLAP_ABI get_extension(const clap_plugin_t *, const char *id) {
         {CLAP_EXT_LATENCY, &latency},         {"clap.tail", &tail},
     };
     if (const void *extension = note_extension(id)) return extension;
-    if (const void *extension = face_extension(id)) return extension;
+    if (const void *extension = editor_extension(id)) return extension;
     for (const auto &each : known)
         if (!strcmp(id, each.id)) return each.extension;
     return nullptr;

@@ -54,9 +54,9 @@ void watch_names(Plugin &plugin) {
     if (plugin.named.exchange(mapping) != mapping) plugin.host->request_callback(plugin.host);
 }
 
-void tell_names(const Plugin &plugin) {
-    const auto *told = (const HostNames *)plugin.host->get_extension(plugin.host, NAMES);
-    if (told && told->changed) told->changed(plugin.host);
+void report_names(const Plugin &plugin) {
+    const auto *listener = (const HostNames *)plugin.host->get_extension(plugin.host, NAMES);
+    if (listener && listener->changed) listener->changed(plugin.host);
 }
 
 } /* namespace yehu */

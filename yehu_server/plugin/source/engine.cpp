@@ -6,7 +6,7 @@
 #define VERSION_OF(prefix)                                                                         \
     {prefix##yehu_size, prefix##yehu_prepare,    prefix##yehu_reset,   prefix##yehu_post,           \
      prefix##yehu_midi, prefix##yehu_use_tables, prefix##yehu_process, prefix##yehu_frame,          \
-     prefix##yehu_value, prefix##yehu_pitch,     prefix##yehu_look}
+     prefix##yehu_value, prefix##yehu_pitch,     prefix##yehu_snapshot}
 
 #ifdef __x86_64__
 #include <cpuid.h>
@@ -22,7 +22,7 @@ decltype(yehu_process) wide_yehu_process;
 decltype(yehu_frame) wide_yehu_frame;
 decltype(yehu_value) wide_yehu_value;
 decltype(yehu_pitch) wide_yehu_pitch;
-decltype(yehu_look) wide_yehu_look;
+decltype(yehu_snapshot) wide_yehu_snapshot;
 }
 
 namespace {

@@ -17,7 +17,7 @@ struct Engine {
     decltype(&yehu_frame) frame;
     decltype(&yehu_value) value;
     decltype(&yehu_pitch) pitch;
-    decltype(&yehu_look) look;
+    decltype(&yehu_snapshot) snapshot;
 };
 
 const Engine &engine();

@@ -112,14 +112,14 @@ void Instrument::edit(int parameter, double value) {
     flag(moved_bits, parameter);
 }
 
-bool Instrument::look(struct yehu_look *into) const {
-    if (rig) code.look(rig, into);
+bool Instrument::snapshot(struct yehu_snapshot *into) const {
+    if (rig) code.snapshot(rig, into);
     return rig != nullptr;
 }
 
 void Instrument::parameter(uint32_t offset, int parameter, double value) {
     const int64_t frame = frame_at(offset);
-    /* Hosts tell all values as they begin or load: what is so already is not taken from the player. */
+    /* Hosts send all values as they begin or load: what is so already is not taken from the player. */
     const int row = parameters[parameter].row;
     if (rig && row >= 0 && value == this->value(parameter) && value == code.value(rig, row)) return;
     change(parameter, value, [=](int each) { apply(frame, each); });

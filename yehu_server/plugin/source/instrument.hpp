@@ -38,7 +38,7 @@ public:
     int latency() const { return resampler.latency(); }
     double tail_seconds() const;
 
-    /* From the audio thread; in each block first `transport`, if the host tells, and
+    /* From the audio thread; in each block first `transport`, if the host has one, and
      * `begin_block`, then what happens in it, and at last `process`. The transport does not play yet
      * where a host counts in, before the song: how long that takes may differ from time to time. */
     void reset();
@@ -57,13 +57,13 @@ public:
     /* From any thread. A parameter that is set is heard from the next block on. */
     double value(int parameter) const { return values[parameter].load(std::memory_order_relaxed); }
     void set(int parameter, double value);
-    /* As `set`, where the host is to be told that it changed. */
+    /* As `set`, where the change is to be reported to the host. */
     void edit(int parameter, double value);
     /* Whether a parameter was changed by another one since this was asked. */
     bool was_moved(int parameter);
 
     /* What is to be seen of it, from the main thread; false before `begin`. */
-    bool look(struct yehu_look *into) const;
+    bool snapshot(struct yehu_snapshot *into) const;
 
     /* State as text; `save` returns its length, which may be more than `size`. */
     size_t save(char *into, size_t size) const;

@@ -23,7 +23,7 @@ struct Vst3 {
     const void *tables[INTERFACES]; /* first: see `of` */
     std::atomic<uint32_t> references;
     double rate;
-    double shown[PARAMETERS]; /* 0 to 1: what the host told the controller */
+    double shown[PARAMETERS]; /* 0 to 1: what the host set the controller to */
     v3_component_handler **handler; /* of the host; or null */
     Instrument instrument;
 };
@@ -55,7 +55,7 @@ template <int place> constexpr v3_funknown unknown() {
 /* Controllers of MIDI are parameters, too: by channel, the 128 control changes, pressure, bend. */
 enum { PRESSURE = 128, BEND = 129, OF_CHANNEL = 130, CHANNELS = 16, OF_MIDI = OF_CHANNEL * CHANNELS };
 
-#ifdef YEHU_FACE
+#ifdef YEHU_EDITOR
 v3_plugin_view **make_view(Vst3 &plugin);
 #else
 inline v3_plugin_view **make_view(Vst3 &) { return nullptr; }

@@ -106,7 +106,7 @@ double V3_API get(void *self, v3_param_id number) {
     return number % OF_CHANNEL == BEND ? 0.5 : 0.0;
 }
 
-/* Only what is shown: the processor is told by the host, at the frame. */
+/* Only what is shown: the host sets the processor, at the frame. */
 v3_result V3_API set(void *self, v3_param_id number, double unit) {
     const int parameter = parameter_of(number);
     if (parameter >= 0) of<CONTROLLER>(self).shown[parameter] = unit;

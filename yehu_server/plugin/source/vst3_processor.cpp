@@ -145,8 +145,8 @@ void take_events(Instrument &instrument, v3_event_list **events) {
     }
 }
 
-/* Tell the host of parameters that moved as another one did. */
-void tell_moved(Instrument &instrument, v3_param_changes **changes) {
+/* Report to the host parameters that moved as another one did. */
+void report_moved(Instrument &instrument, v3_param_changes **changes) {
     if (!changes) return;
     for (int i = 0; i < PARAMETERS; i++) {
         if (!instrument.was_moved(i)) continue;
@@ -170,7 +170,7 @@ v3_result V3_API process(void *self, v3_process_data *data) {
         instrument.process(out[0], out[1], (uint32_t)data->nframes);
         data->outputs[0].channel_silence_bitset = 0;
     }
-    tell_moved(instrument, data->output_params);
+    report_moved(instrument, data->output_params);
     return V3_OK;
 }
 

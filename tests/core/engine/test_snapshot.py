@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.look import LOOK, NO_STRING, look
+from yehu_server.core.engine.snapshot import NO_STRING, SNAPSHOT, snapshot
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.layout import V_B, X_B
 from yehu_server.core.player.rows import ROW
@@ -16,8 +16,8 @@ RATE = 44100.0
 
 
 def seen(instrument: Instrument):
-    into = np.zeros(1, LOOK)
-    look.call(instrument.address, into.ctypes.data)
+    into = np.zeros(1, SNAPSHOT)
+    snapshot.call(instrument.address, into.ctypes.data)
     return into[0]
 
 
@@ -85,12 +85,12 @@ def test_the_string_is_at_its_place_on_the_hair_and_goes_as_the_bow_is_drawn(len
     instrument = Instrument(InstrumentSpec(RATE))
     instrument.post(HOLD, index=ROW["/playing/bow_length"], value=length)
     instrument.post(BEGIN, value=69.0, other=69.0)
-    looks = np.zeros(200, LOOK)
-    for number in range(len(looks)):
+    snapshots = np.zeros(200, SNAPSHOT)
+    for number in range(len(snapshots)):
         play(instrument, 1102)
-        looks[number] = seen(instrument)
-    places, speeds = looks["hair_place"], looks["speed"]
-    assert set(looks["hair_length"]) == {length}
+        snapshots[number] = seen(instrument)
+    places, speeds = snapshots["hair_place"], snapshots["speed"]
+    assert set(snapshots["hair_length"]) == {length}
     assert 0.0 < places.min() < 0.25 * length
     assert 0.75 * length < places.max() < length
     steady = np.abs(np.diff(speeds)) < 0.01

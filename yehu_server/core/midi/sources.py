@@ -1,7 +1,8 @@
-"""Lets the sounding note follow the controllers of its channel, as tables say. Compiled.
+"""Moves the sources of a mapping, and by its binds parameters of the sounding note. Compiled.
 
-Moves on a channel affect its notes, or all notes (``channels.moves_all``): while one of them
-sounds, and after it until a note of another channel begins.
+A source is a controller, a bend, an aftertouch or a named control. Moves on a channel affect its
+notes, or all notes (``channels.moves_all``): while one of them sounds, and after it until a note of
+another channel begins.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from yehu_server.core.midi.values import (
     receives,
     set_target,
 )
-from yehu_server.core.player.rows import IS_OWNED
+from yehu_server.core.player.rows import IS_PLAYER_CONTROLLED
 
 FINE_BITS, FINEST = 7, 16383.0
 
@@ -264,6 +265,6 @@ def move_control(m: Any, t: Any, frame: int, source: int, argument: float) -> No
 def set_directly(m: Any, frame: int, row: int, value: float, glide_ms: float) -> float:
     """Set a parameter for all channels, until a controller moves it; return the value it has."""
     accepted = write(m, frame, row, value, False, glide_ms, NONE)
-    if not IS_OWNED[row]:
+    if not IS_PLAYER_CONTROLLED[row]:
         set_target(m, row, accepted)
     return float(accepted)

@@ -1,4 +1,4 @@
-"""The hair of the bow: rosin whose friction varies along it.
+"""The texture of rosin on the hair: friction that varies along the bow.
 
 Both friction coefficients are multiplied by 1 + depth * texture(y), where y is the place on the
 hair that the string touches. It stands still while the string sticks and runs while it slips. So
@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.elementary import chance
+from yehu_server.core.physics.elementary import pseudorandom
 from yehu_server.core.physics.grid import read
 from yehu_server.core.physics.layout import BOW, STRINGS, TEXTURE, Y_B
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion
@@ -37,7 +37,7 @@ def texture(s: Motion, place: float, hair: int) -> float:
     first = (int(hair) << 32) + int(cell)
     if s.grain != first + 1:
         s.grain = first + 1
-        s.rough[0], s.rough[1] = chance(first), chance(first + 1)
+        s.rough[0], s.rough[1] = pseudorandom(first), pseudorandom(first + 1)
     return float(s.rough[0] + (s.rough[1] - s.rough[0]) * (part * part * (3.0 - 2.0 * part)))
 
 

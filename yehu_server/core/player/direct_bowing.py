@@ -1,4 +1,4 @@
-"""The bow drawn and the finger slid by hand, without a player's notes. Compiled."""
+"""Direct bowing: whoever plays draws the bow and slides the finger, without notes. Compiled."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def slide(p: Any, c: Any, pitch: float) -> None:
     p.finger_pitch = pitch
     string, position = choose(p, pitch, False, False, wished_speed(p))
     left_hand.stop(p, c, string, position, 0.0, BEND_RAMP_MS)
-    if p.by_hand != 0:
+    if p.is_direct != 0:
         ramp_to(p, c, BOW_SIDE, side_of(p), USUAL_MS)
         even_out(p, c)
 
@@ -40,9 +40,9 @@ def draw(p: Any, c: Any, speed: float, force: float) -> None:
     """
     write_directly(p, c, BOW_SPEED, speed, False)
     write_directly(p, c, BOW_FORCE, force, False)
-    p.by_hand = 1 if speed != 0.0 or force != 0.0 else 0
+    p.is_direct = 1 if speed != 0.0 or force != 0.0 else 0
     side = 0.0
-    if p.by_hand != 0:
+    if p.is_direct != 0:
         side = 1.0 if p.string < 0 else side_of(p)
     write_directly(p, c, BOW_SIDE, side, False)
     p.speed = abs(speed)
@@ -52,9 +52,9 @@ def draw(p: Any, c: Any, speed: float, force: float) -> None:
 
 @compiled_exactly
 def lift(p: Any, c: Any) -> None:
-    """Lift a bow drawn by hand, and return it to the player."""
-    if p.by_hand != 0:
+    """Lift a bow drawn directly, and return it to the player."""
+    if p.is_direct != 0:
         ramp_to(p, c, BOW_SPEED, 0.0, USUAL_MS)
         ramp_to(p, c, BOW_SIDE, 0.0, USUAL_MS)
     take_all_back(p)
-    p.by_hand = 0
+    p.is_direct = 0

@@ -1,4 +1,4 @@
-"""Where a body radiates so unevenly that a vibrato would swing the level, and what to do there.
+"""The table of vibratos: narrower, and off the note's middle, where the level would swing.
 
 A body may radiate several decibels more at a pitch than some cents beside it. A vibrato about such
 a pitch is narrower, and its middle a little off, to the side where the body is more even.
@@ -23,7 +23,7 @@ from yehu_server.util.loudness import a_weighting
 Array = Any
 
 STEPS = 53  # half semitones from the lowest note up
-NARROWED, LEANING = range(2)  # columns of the table
+DEPTH_SHARE, CENTRE = range(2)  # columns of the table
 # Depths to either side (cents): the usual; the narrowest that people play [Pop]; and what is left
 # where even that swings too far.
 USUAL, NARROW, LEAST = 30, 20, 15
@@ -47,7 +47,7 @@ def vibrato_table(
     Returns
     -------
     ndarray [shape=(STEPS, 2)]
-        NARROWED is the depth, as a share of USUAL, and of a wider one; LEANING how far the middle
+        DEPTH_SHARE is the depth, as a share of USUAL, and of a wider one; CENTRE how far the middle
         is above the note, as a share of the depth.
     """
     margin = USUAL + STRAY + MOST_OFF

@@ -1,6 +1,6 @@
-"""A look at the instrument, for pictures: strings, bow, fingers, what the player hears. Compiled.
+"""Snapshots of an instrument, for pictures: strings, bow, fingers, what the ear hears. Compiled.
 
-It only reads. Beside a callback on another thread a look may be blurred: half of it a block older.
+Taking one only reads. Beside a callback on another thread, half of it may be a block older.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from yehu_server.core.stage.record import STAGE
 NO_STRING = -1
 LEAST_PRESS = 1e-6  # N; below, a finger is lifted
 
-LOOK = np.dtype(
+SNAPSHOT = np.dtype(
     [
         ("frame", np.float64),  # of the next sample
         ("rate", np.float64),  # Hz
@@ -79,13 +79,13 @@ LOOK = np.dtype(
 
 
 @native
-def look(rig: Any, into: Any) -> None:
-    """Look at an instrument.
+def snapshot(rig: Any, into: Any) -> None:
+    """Copy the present state of an instrument.
 
     Parameters
     ----------
     rig : pointer to a record of dtype ``rig.RIG``
-    into : pointer to a record of dtype LOOK
+    into : pointer to a record of dtype SNAPSHOT
 
     Real time: safe.
     """
@@ -94,7 +94,7 @@ def look(rig: Any, into: Any) -> None:
     c = record_at(rig, CONTROLS_AT, CONTROLS)
     p = record_at(rig, PLAYER_AT, PLAYER)
     t = record_at(rig, METERS_AT, METERS)
-    out = carray(into, (1,), LOOK)[0]
+    out = carray(into, (1,), SNAPSHOT)[0]
     out.frame, out.rate = c.frame, m.rate
     out.pitch = sounding_pitch(p)
     out.frequency = p.a4 * exp2((out.pitch - 69.0) / 12.0)

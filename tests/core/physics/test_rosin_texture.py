@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from core.physics.runs import play
 
-from yehu_server.core.physics.hair import texture
 from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.rosin_texture import texture
 
 YEHU = Quantities()
 BOWED = {"F_N": 0.5, "v_b": 0.2, "x_f": [0.1], "press": [1.5]}

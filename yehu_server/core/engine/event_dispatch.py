@@ -1,4 +1,4 @@
-"""Interprets posted events when they are due, and distributes their wishes. Compiled.
+"""Dispatches posted events: interprets each when it is due, and distributes its wishes. Compiled.
 
 The events of a part lie with its first instrument. Each is interpreted once, before the frames
 that it is for are computed (``midi.interpret_events``); its wishes go to the heaps of those who
@@ -71,7 +71,7 @@ def interpret_events(rigs: Any, end: int) -> int:
     now = record_at(rigs, CONTROLS_AT, CONTROLS).frame
     done = end
     for part in range(count_parts(rigs)):
-        if record_at(rigs, part * RIG_BYTES + MIDI_AT, MIDI).people > 0:
+        if record_at(rigs, part * RIG_BYTES + MIDI_AT, MIDI).players > 0:
             done = min(done, interpret_part_events(rigs, part, now, end))
     return int(max(done, now + 1))
 
@@ -85,7 +85,7 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
     events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
     drain(rigs, rig, mail, now)
     while mail.pending_events > 0 and events[0].wish.frame < end:
-        if not have_room(rigs, part, m.people):
+        if not have_room(rigs, part, m.players):
             return int(max(events[0].wish.frame, now))
         is_full = mail.pending_events == HEAP
         event, order = events[0].wish, events[0].order
@@ -162,9 +162,9 @@ def frame_of_arrival(rigs: Any, mail: Any, time_ns: int) -> int:
 
 
 @compiled_with_aliasing
-def have_room(rigs: Any, part: int, people: int) -> bool:
+def have_room(rigs: Any, part: int, players: int) -> bool:
     """Whether all who play a part have room for the wishes of another event."""
-    for who in range(people):
+    for who in range(players):
         rig = at(rigs, (part + who) * RIG_BYTES)
         if HEAP - record_at(rig, MAIL_AT, MAIL).waiting < ROOM:
             return False
@@ -175,7 +175,7 @@ def have_room(rigs: Any, part: int, people: int) -> bool:
 def hand_over(rigs: Any, part: int, m: Any) -> None:
     """Give those who play a part the wishes that an event came to."""
     for n in range(m.wishes):
-        rig = at(rigs, (part + m.out_person[n]) * RIG_BYTES)
+        rig = at(rigs, (part + m.out_player[n]) * RIG_BYTES)
         mail = record_at(rig, MAIL_AT, MAIL)
         if mail.waiting == HEAP:
             mail.dropped[0, 0] += 1

@@ -1,4 +1,4 @@
-"""Decides what a voice that is heard comes to: notes, slides and dynamics, as wishes. Compiled.
+"""Detects notes, slides and dynamics in the pitch and level of a voice, as wishes. Compiled.
 
 A note begins where two hearings agree, goes on through a short doubt, and ends with the voice. Its
 pitch slides with the voice; a leap is another note, slurred; a level that falls and rises again is
@@ -20,7 +20,7 @@ from yehu_server.core.player.notes import DYNAMICS_EXPONENT
 from yehu_server.core.player.right_hand import SOFTEST
 from yehu_server.core.player.rows import DYNAMICS, STRING
 from yehu_server.core.player.wishes import BEGIN, END, SLIDE, WRITE
-from yehu_server.core.voice.hearing import HEARING, HOP_S, prepare_hearing
+from yehu_server.core.voice.pitch_detection import HEARING, HOP_S, prepare_hearing
 
 # -- when it is sure ------------------------------------------------------------------------------
 SURE, UNSURE = 0.88, 0.7  # certainty from which a note begins, and below which it is in doubt

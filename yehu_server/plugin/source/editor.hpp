@@ -1,9 +1,9 @@
 /* The plug-in's own window: strings, bow and fingers as they move, what is heard, and preset, mapping
- * and tuning to choose. It looks at the instrument from the host's main thread (`yehu_look`), and
+ * and tuning to choose. It takes snapshots of the instrument (`yehu_snapshot`) on the host's main thread, and
  * is nothing while it is closed: no memory, window or timer.
  */
-#ifndef YEHU_FACE_HPP
-#define YEHU_FACE_HPP
+#ifndef YEHU_EDITOR_HPP
+#define YEHU_EDITOR_HPP
 
 #include "canvas.hpp"
 #include "instrument.hpp"
@@ -11,19 +11,19 @@
 
 namespace yehu {
 
-/* What a format does for its face. */
-struct FaceHost {
+/* What a format does for its editor. */
+struct EditorHost {
     void *owner;
     void (*edit)(void *owner, int parameter, double value);
     bool (*resize)(void *owner, int width, int height); /* ask for it; the host may set the size */
 };
 
-class Face {
+class Editor {
 public:
     static constexpr int WIDTH = 680, HEIGHT = 330, INTERVAL_MS = 33;
     static constexpr const char *NAME = "Yehu";
 
-    Face(const Instrument &instrument, const FaceHost &host) : instrument(instrument), host(host) {}
+    Editor(const Instrument &instrument, const EditorHost &host) : instrument(instrument), host(host) {}
     bool open(uintptr_t parent);
     void close() { window.close(); }
     void show(bool is_shown) { window.show(is_shown); }
@@ -56,13 +56,13 @@ private:
     void zoom(int percent);
 
     const Instrument &instrument;
-    const FaceHost host;
+    const EditorHost host;
     Window window;
     Canvas canvas;
     int wide = WIDTH, high = HEIGHT;
     bool is_stale = true, is_at_rest = false;
     int focus = 0, chosen[CHOOSERS] = {-1, -1, -1};
-    struct yehu_look seen = {};
+    struct yehu_snapshot seen = {};
     float shapes[STRINGS][SHAPES][POINTS] = {}; /* m; the latest at `latest` */
     int latest = 0;
     float swing = 0.0f; /* m, the greatest of late */

@@ -1,4 +1,4 @@
-"""Hears the pitch and the level of one voice, each 5 ms, as its sound comes in. Compiled.
+"""Detects the pitch and the level of one voice, each 5 ms, as its sound comes in. Compiled.
 
 The sound is thinned to about 12 kHz. Its normalised square difference with itself some time ago
 (McLeod and Wyvill, "A smarter way to find pitch", ICMC 2005) has a peak at each period: the first

@@ -44,9 +44,14 @@ from following import (
 )
 from load import CARD, JACK, dummy_jack, helper
 
-from yehu_server.core.engine.voice_callback import OF_WISH, follow_voice, voice_pitch, voice_prepare
+from yehu_server.core.engine.voice_callback import (
+    COMMAND_NUMBERS,
+    follow_voice,
+    voice_pitch,
+    voice_prepare,
+)
 from yehu_server.core.engine.warming import warm_up
-from yehu_server.core.player.wishes import BEGIN
+from yehu_server.core.player.commands import BEGIN
 from yehu_server.core.voice.note_detection import FOLLOWER
 from yehu_server.live.page.site import server_of, url_of, write_page
 
@@ -54,7 +59,7 @@ Array = Any
 
 MORE = {"oboe": 68, "clarinet": 71, "saxophone": 65, "cello": 42, "horn": 60, "choir": 52}
 HEARD_WITH = ("plain", "noise, 20 dB")
-BLOCK, ROOM = 128, 64  # samples; wishes
+BLOCK, ROOM = 128, 64  # samples; commands
 OCTAVE_CENTS, SEMITONE_CENTS = 1200.0, 100.0
 LATEST_S, STEP_S = 0.08, 0.0025  # of what is heard after what was sung
 
@@ -69,7 +74,7 @@ HERE = Path(__file__).parent
 
 def followed(sound: Array, rate: float = RATE, size: int = BLOCK) -> tuple[Array, Array, Array]:
     """The times of blocks, the pitch that is followed after each (NaN: none), and the onsets."""
-    voice, wishes = np.zeros(1, FOLLOWER), np.zeros((ROOM, OF_WISH))
+    voice, commands = np.zeros(1, FOLLOWER), np.zeros((ROOM, COMMAND_NUMBERS))
     voice_prepare.call(voice.ctypes.data, float(rate), math.nan, 0.0)
     sound = np.ascontiguousarray(sound, np.float32)
     ends = np.arange(size, len(sound), size)
@@ -77,9 +82,9 @@ def followed(sound: Array, rate: float = RATE, size: int = BLOCK) -> tuple[Array
     for end in ends:
         block = sound[end - size : end]
         count = follow_voice.call(
-            voice.ctypes.data, block.ctypes.data, size, wishes.ctypes.data, ROOM
+            voice.ctypes.data, block.ctypes.data, size, commands.ctypes.data, ROOM
         )
-        onsets += [end / rate] * int((wishes[:count, 0] == BEGIN).sum())
+        onsets += [end / rate] * int((commands[:count, 0] == BEGIN).sum())
         pitch.append(voice_pitch.call(voice.ctypes.data))
     return ends / rate, np.array(pitch), np.array(onsets)
 

@@ -7,7 +7,7 @@ throughout, and each message opens or closes its volume, so the message is heard
 that is not zero. The sample's time is the start of JACK's cycle on the monotonic clock plus its
 place in the cycle; where JACK is late, so is the sample. The device's own latency, the last
 column, comes on top. The instrument's own share is the time from the message's arrival, as stamped,
-to the frame at which the player fulfils it.
+to the frame at which the player applies it.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ from load import JACK, compute, dummy_jack, helper, midi_out, start
 
 from yehu_server.core.engine.mailbox import MIDI_INPUTS, SMALL_RING
 from yehu_server.core.midi.packing import PORT_AT, packed
+from yehu_server.core.player.commands import WRITE
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import WRITE
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.midi.ports import MidiOptions
 from yehu_server.live.options import ServeOptions
@@ -112,12 +112,12 @@ def measure(kind: str, port: int, trials: int, answer: Any) -> None:
 
 
 class Witness:
-    """Notes the frames at which messages arrived and were fulfilled."""
+    """Notes the frames at which messages arrived and were applied."""
 
     def __init__(self, server: Server, kind: str) -> None:
         self._instrument = server.instrument
         self._arrived: list[float] = []
-        self._instrument.report_wishes()
+        self._instrument.report_commands()
         if kind == "OSC":
             handle = server.handler.handle
 
@@ -145,10 +145,10 @@ class Witness:
             time.sleep(0.02)
 
     def shares(self) -> list[float]:
-        """Time from arrival to fulfilment (ms) of each message that opened the volume."""
-        wishes: Any = self._instrument.applied_wishes()
-        is_volume = (wishes["kind"] == WRITE) & (wishes["index"] == ROW["/playing/volume"])
-        opened = wishes["frame"][is_volume & (wishes["value"] == 1.0)]
+        """Time from arrival to application (ms) of each message that opened the volume."""
+        commands: Any = self._instrument.applied_commands()
+        is_volume = (commands["kind"] == WRITE) & (commands["index"] == ROW["/playing/volume"])
+        opened = commands["frame"][is_volume & (commands["value"] == 1.0)]
         nexts = np.searchsorted(opened, self._arrived)
         return [
             1e3 * float(opened[at] - came) / RATE

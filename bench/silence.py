@@ -23,7 +23,7 @@ import report
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.player.wishes import BEGIN
+from yehu_server.core.player.commands import BEGIN
 
 RATE, BLOCK = 48000.0, 128
 PARTS = (1, 4, 16)

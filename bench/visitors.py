@@ -10,18 +10,18 @@ from typing import Any
 import aiohttp
 import numpy as np
 
+from yehu_server.core.player.commands import WRITE
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import WRITE
 
-WISH_S = 0.05
-PARAMETER, STEPS = "/playing/variation", 10_000  # whose values tell wishes apart
+COMMAND_S = 0.05
+PARAMETER, STEPS = "/playing/variation", 10_000  # whose values tell commands apart
 
 
 def visit(url: str, listeners: int, seconds: float | None, results: Any) -> None:
     """Look, play and listen.
 
     `seconds` (float or None): for so long; None is until it is killed.
-    `results`: gets the values wished and the times, and of one listener the frames heard and the
+    `results`: gets the values requested and the times, and of one listener the frames heard and the
     times.
     """
     sent: list[tuple[float, float]] = []
@@ -56,10 +56,10 @@ async def _play(session: aiohttp.ClientSession, url: str, sent: list[tuple[float
         reading = asyncio.ensure_future(_read(socket))
         for number in itertools.count():
             value = (number % STEPS) / STEPS
-            wish = [-1.0, WRITE, ROW[PARAMETER], value, 0.0]
+            command = [-1.0, WRITE, ROW[PARAMETER], value, 0.0]
             sent.append((value, time.monotonic()))
-            await socket.send_bytes(np.array(wish, "<f8").tobytes())
-            await asyncio.sleep(WISH_S)
+            await socket.send_bytes(np.array(command, "<f8").tobytes())
+            await asyncio.sleep(COMMAND_S)
         await reading
 
 

@@ -12,10 +12,10 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
+from yehu_server.core.player.commands import apply
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import fulfil
 from yehu_server.params.table import ENGINE, FINGERS, SLOT, find
 from yehu_server.playing.part_state import Key
 from yehu_server.playing.player import Player
@@ -63,7 +63,7 @@ class Watched(Instrument):
     """Acts on each event as it is posted, and keeps what moves; options are `Instrument`'s.
 
     Events that name no frame come a frame after each other. Whatever moves has arrived before the
-    next wish.
+    next command.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -86,23 +86,23 @@ class Watched(Instrument):
         at = self._count if frame is None else frame
         m, places = self.midi, (self._rig["midi"].ctypes.data, self._rig["tables"].ctypes.data)
         interpret.call(*places, at, kind, index, value, other)
-        for n in range(int(m["wishes"])):
-            wish = (m[f"out_{what}"][n].item() for what in ("kind", "index", "value", "other"))
-            self._fulfil(frame, at, *wish)
+        for n in range(int(m["commands"])):
+            command = (m[f"out_{what}"][n].item() for what in ("kind", "index", "value", "other"))
+            self._apply(frame, at, *command)
         return True
 
     def wait(self, seconds: float) -> None:
         """Let time go by before what is posted next."""
         self._controls["frame"] += round(seconds * RATE)
 
-    def _fulfil(
+    def _apply(
         self, frame: int | None, at: int, kind: int, index: int, value: float, other: float
     ) -> None:
         c = self._controls[0]
         c["remaining"] = -1  # of what is not moved
         before = c["value"].copy()
         addresses = self._player.ctypes.data, self._controls.ctypes.data
-        fulfil.call(*addresses, at, kind, index, value, other)
+        apply.call(*addresses, at, kind, index, value, other)
         for slot in np.flatnonzero(c["remaining"] >= 0):
             address, ramp_ms = ENGINE[slot].address, 1e3 * float(c["remaining"][slot]) / RATE
             if ramp_ms > 0.0 and c["value"][slot] != before[slot]:  # it jumps, and then moves on
@@ -135,7 +135,7 @@ class Watched(Instrument):
         number = self._player[0]["sounding"]
         return None if number == SILENT else self.held[number]
 
-    def wished(self, address: str) -> float:
+    def requested(self, address: str) -> float:
         """The value that the player has for a parameter."""
         return float(self._player[0]["value"][ROW[address]])
 
@@ -186,7 +186,7 @@ class Watched(Instrument):
 
 
 class Checked(Player):
-    """Wishes to a `Watched`: what they tell must be what its player holds."""
+    """Commands to a `Watched`: what they tell must be what its player holds."""
 
     _instrument: Watched
 
@@ -203,5 +203,5 @@ class Checked(Player):
     def value(self, address: str) -> float:
         told = super().value(address)
         if not find(address).player_controlled:
-            assert told == self._instrument.wished(address)
+            assert told == self._instrument.requested(address)
         return told

@@ -21,9 +21,9 @@ class Playing:
     def __init__(self, seed: int = 0, **values: float) -> None:
         playing = PlayingOptions(seed=seed)
         self.instrument = Instrument(playing.spec(RATE, calibration_for(float(RATE))))
-        self.wishes = playing.player(self.instrument)
+        self.commands = playing.player(self.instrument)
         for name, value in values.items():
-            self.wishes.write(f"/playing/{name}", value)
+            self.commands.write(f"/playing/{name}", value)
 
     @property
     def controls(self) -> Any:
@@ -36,10 +36,10 @@ class Playing:
         return self.instrument._rig["player"][0]
 
     def on(self, note: float) -> None:
-        self.wishes.note_on(Key(0, note))
+        self.commands.note_on(Key(0, note))
 
     def off(self, note: float) -> None:
-        self.wishes.note_off(Key(0, note))
+        self.commands.note_off(Key(0, note))
 
     def play(self, seconds: float, *names: str) -> list[np.ndarray]:
         """Play on; return fields of the controls, every HOP frames."""

@@ -1,4 +1,4 @@
-"""Stands for an instrument that leads a part: events come to wishes, and nothing sounds."""
+"""Stands for an instrument that leads a part: events come to commands, and nothing sounds."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import IN_PORT, MIDI, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
-from yehu_server.core.player.wishes import KINDS
+from yehu_server.core.player.commands import KINDS
 from yehu_server.params.table import TABLE
 
 ALL_KINDS = (*KINDS, *EVENTS)
 DEFAULTS = {param.address: param.default for param in TABLE}
-Wished = tuple[int, int, float, float]  # kind, index, value, other
+Requested = tuple[int, int, float, float]  # kind, index, value, other
 
 
 class Leader:
@@ -52,11 +52,11 @@ class Leader:
     def frames(self, ms: float) -> int:
         return round(ms * 1e-3 * self.rate)
 
-    def interpret(self, frame: int, kind: int, *fields: float) -> list[Wished]:
+    def interpret(self, frame: int, kind: int, *fields: float) -> list[Requested]:
         """What an event comes to, all at its frame."""
         midi = self.midi
         interpret.call(self._midi.ctypes.data, self.tables.ctypes.data, frame, kind, *fields)
-        count = int(midi["wishes"])
+        count = int(midi["commands"])
         assert (midi["out_frame"][:count] == frame).all()
         assert midi["lost"] == 0
         names = ("out_kind", "out_index", "out_value", "out_other")

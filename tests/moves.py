@@ -1,4 +1,4 @@
-"""What fulfilled wishes move: the parameters of the engine, each at its frame."""
+"""What applied commands move: the parameters of the engine, each at its frame."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 
 from yehu_server.core.controls.slots import FINGER_POSITION, PLUCK, SHARE, SPEED
 from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.player.commands import apply
 from yehu_server.core.player.rows import LISTENING
-from yehu_server.core.player.wishes import fulfil
 from yehu_server.params.table import SLOT
 
 BY_EAR = [*FINGER_POSITION, SHARE]
@@ -36,18 +36,20 @@ class Moves:
         self._instrument = instrument
         self._player, self._controls = rig["player"].copy(), rig["controls"].copy()
         self.targets = self._controls["target"][0].copy()
-        instrument.report_wishes()
+        instrument.report_commands()
 
     def seen(self) -> list[Move]:
         """The moves since the last call; one to the same target too."""
-        return [move for wish in self._instrument.applied_wishes() for move in self._of(wish)]
+        return [
+            move for command in self._instrument.applied_commands() for move in self._of(command)
+        ]
 
-    def _of(self, wish: Any) -> list[Move]:
-        controls, frame = self._controls[0], int(wish["frame"])
+    def _of(self, command: Any) -> list[Move]:
+        controls, frame = self._controls[0], int(command["frame"])
         controls["target"], controls["silence_in"] = np.nan, 0  # so that every move is seen
         controls["frame"] = frame
         records = self._player.ctypes.data, self._controls.ctypes.data
-        fulfil.call(*records, *wish.item())
+        apply.call(*records, *command.item())
         is_moved = ~np.isnan(controls["target"])
         self.targets = np.where(is_moved, controls["target"], self.targets)
         moves = [

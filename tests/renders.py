@@ -21,8 +21,8 @@ import soundfile
 
 from yehu_server.cli import main
 from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.commands import BEGIN, COMMAND, DRAW, END, EXPRESS, HOLD, SLIDE
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import BEGIN, DRAW, END, EXPRESS, HOLD, SLIDE, WISH
 from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
 
@@ -76,7 +76,7 @@ def run(words: list[str]) -> None:
 def captured(path: Path) -> Path:
     """A capture of a player without calibration: notes, a slide, vibrato, a bow drawn by hand."""
     second = RATE
-    wishes = [
+    commands = [
         (0, HOLD, ROW["/playing/vibrato"], 0.8, 0.0),
         (0, BEGIN, 0, 69.0, 69.0),
         (second, SLIDE, 0, 72.5, 0.0),
@@ -87,7 +87,7 @@ def captured(path: Path) -> Path:
     ]
     beginning = SessionStart((InstrumentSpec(float(RATE), seed=5),), has_room=True)
     writer = CaptureWriter(path, beginning=beginning)
-    writer.wishes(np.array(wishes, WISH))
+    writer.commands(np.array(commands, COMMAND))
     writer.close(4 * second)
     return path
 

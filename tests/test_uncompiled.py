@@ -20,20 +20,20 @@ def phrase() -> tuple[Instrument, np.ndarray]:
     """Play two notes, a bend, their ends, a bow by hand, panic and one more, in small blocks."""
     playing = PlayingOptions(seed=1)
     instrument = Instrument(playing.spec(RATE, calibration_for(RATE)))
-    wishes = playing.player(instrument)
-    midi = playing.mapped(wishes)
-    wishes.note_on(Key(0, 70), {"/playing/pressure": 0.5}, frame=0)
-    wishes.write("/playing/bend", 0.3, frame=20)
-    wishes.write("/playing/vibrato", 30.0, frame=20)
-    wishes.write("/body/blend", 0.7, frame=30, hold=True)
-    wishes.note_on(Key(0, 74), frame=40)
-    wishes.note_off(Key(0, 70), frame=50)
-    wishes.note_off(Key(0, 74), frame=60)
-    wishes.release(frame=65)
-    wishes.slide(72.5, frame=70)
-    wishes.draw(0.2, 0.4, frame=75)
-    wishes.lift(frame=95)
-    wishes.stop_sound(frame=100)
+    commands = playing.player(instrument)
+    midi = playing.mapped(commands)
+    commands.note_on(Key(0, 70), {"/playing/pressure": 0.5}, frame=0)
+    commands.write("/playing/bend", 0.3, frame=20)
+    commands.write("/playing/vibrato", 30.0, frame=20)
+    commands.write("/body/blend", 0.7, frame=30, hold=True)
+    commands.note_on(Key(0, 74), frame=40)
+    commands.note_off(Key(0, 70), frame=50)
+    commands.note_off(Key(0, 74), frame=60)
+    commands.release(frame=65)
+    commands.slide(72.5, frame=70)
+    commands.draw(0.2, 0.4, frame=75)
+    commands.lift(frame=95)
+    commands.stop_sound(frame=100)
     midi.key_on(Key(1, 83), 0.8 * 127.0, frame=110)
     midi.end_all(frame=150)
     out = np.zeros(FRAMES, np.float32)
@@ -54,7 +54,7 @@ def signals() -> dict[str, np.ndarray]:
         "values": rig["controls"]["value"].copy(),
         "targets": rig["controls"]["target"].copy(),
         "player": np.array(player),
-        "wished": rig["player"]["value"].copy(),
+        "requested": rig["player"]["value"].copy(),
         "told": np.array(told, np.float64),
     }
 

@@ -1,37 +1,37 @@
 /** Keeps what was played as a capture of the server's format, and plays such a file again. */
 
 /** @typedef {import('./instrument.js').Instrument} Instrument */
-/** @typedef {import('./instrument.js').Wish} Wish */
+/** @typedef {import('./instrument.js').Command} Command */
 
 import facts from "./facts.js";
 import { FREE, TABLE, find } from "./playing/table.js";
-import { WISH } from "./sound/kernel.js";
+import { COMMAND } from "./sound/kernel.js";
 
 const FORMAT = "yehu-server capture";
 const VERSIONS = [2, 3]; // the former has one player, and no numbers of players
 const OWN = 1; // the player of this page, and of a file the one that is played
 const MOST_BYTES = 64 << 20;
-const MOST_WISHES = 1e6;
-const MOST_A_SECOND = 5000; // wishes: two hands come to some hundreds
+const MOST_COMMANDS = 1e6;
+const MOST_A_SECOND = 5000; // commands: two hands come to some hundreds
 const LONGEST_S = 24 * 3600;
 const EVERY = 60; // ms
 const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW } = facts.kinds;
-/** Kinds of wishes, by their numbers. */
+/** Kinds of commands, by their numbers. */
 export const KINDS = Object.keys(facts.kinds);
 const OF_SLOT = TABLE.filter(({ slot }) => slot !== null).map(({ address }) => address);
 const SILENCE = "silence"; // in place of an engine's parameter
 
-/** Kinds of wishes whose index means a parameter. */
+/** Kinds of commands whose index means a parameter. */
 export const OF_PARAMETERS = [RAMP, WRITE, HOLD, EXPRESS];
 
-/** The parameter of a wish, which its index means; null where it means something else. @param {Wish} wish */
+/** The parameter of a command, which its index means; null where it means something else. @param {Command} command */
 export function addressOf({ kind, index }) {
   if (kind === RAMP) return OF_SLOT[index] ?? SILENCE;
   return OF_PARAMETERS.includes(kind) ? TABLE[index].address : null;
 }
 
 /**
- * The index of a wish of a parameter.
+ * The index of a command of a parameter.
  * @param {number} kind
  * @param {string} address
  */
@@ -40,7 +40,7 @@ export function indexOf(kind, address) {
   return address === SILENCE ? OF_SLOT.length : OF_SLOT.indexOf(find(address).address);
 }
 
-/** Keeps the wishes that a sound fulfils, which is able to. */
+/** Keeps the commands that a sound applies, which is able to. */
 export class CaptureWriter {
   /** @param {import('./interfaces.js').Player} player @param {import('./interfaces.js').Sound} sound */
   constructor(player, sound) {
@@ -64,15 +64,15 @@ export class CaptureWriter {
   async stop() {
     const { sound } = this;
     if (!sound.keep) throw new Error("nothing is kept");
-    const { from, to, wishes } = await sound.keep.stop();
-    const rows = Array.from({ length: wishes.length / WISH }, (_, i) => {
-      const [frame, kind, index, value, other] = wishes.slice(i * WISH, (i + 1) * WISH);
+    const { from, to, commands } = await sound.keep.stop();
+    const rows = Array.from({ length: commands.length / COMMAND }, (_, i) => {
+      const [frame, kind, index, value, other] = commands.slice(i * COMMAND, (i + 1) * COMMAND);
       return { frame: frame - from, kind, index, value, other };
     });
     return {
       rate: sound.status.rate,
       values: this.values,
-      wishes: rows.sort((one, other) => one.frame - other.frame),
+      commands: rows.sort((one, other) => one.frame - other.frame),
       players: 1,
       frames: to - from,
     };
@@ -80,21 +80,21 @@ export class CaptureWriter {
 }
 
 /** A performance as a file. @param {Performance & {frames: number}} performance */
-export async function fileOf({ rate, values, wishes, frames }) {
+export async function fileOf({ rate, values, commands, frames }) {
   const answer = await fetch(new URL(`captures/${rate}.json`, import.meta.url));
   if (!answer.ok) throw new Error(`${answer.status} ${answer.statusText}`);
   const head = await answer.json();
   Object.assign(head.players[OWN - 1].values, values);
-  const lines = [head, ...wishes.map(lineOf), { end: frames }];
+  const lines = [head, ...commands.map(lineOf), { end: frames }];
   const text = lines.map((line) => `${JSON.stringify(line)}\n`);
   return new Blob(text, { type: "application/jsonl" });
 }
 
-/** @param {Wish} wish */
-function lineOf(wish) {
-  const { frame, kind, index, value, other } = wish;
+/** @param {Command} command */
+function lineOf(command) {
+  const { frame, kind, index, value, other } = command;
   const line = [frame, OWN, KINDS[kind].toLowerCase()];
-  const address = addressOf(wish);
+  const address = addressOf(command);
   if (address !== null) return [...line, address, value, ...(kind === EXPRESS ? [] : [other])];
   if (kind === BEGIN || kind === END) return [...line, index, value, other];
   if (kind === SLIDE || kind === STOP) return [...line, value];
@@ -105,7 +105,7 @@ function lineOf(wish) {
  * @typedef {object} Performance
  * @property {number} rate Hz
  * @property {Record<string, number>} values of parameters, at its beginning
- * @property {Wish[]} wishes of the first player, by frame
+ * @property {Command[]} commands of the first player, by frame
  * @property {number} players how many there are
  */
 
@@ -128,52 +128,52 @@ export async function readCapture(file) {
     find(address);
     finite(value);
   }
-  const told = lines.map((line) => JSON.parse(line)).filter(Array.isArray); // others are no wishes
+  const told = lines.map((line) => JSON.parse(line)).filter(Array.isArray); // others are no commands
   const own = isOld ? told : told.filter(([, player]) => player === OWN);
-  const wishes = own.map(([frame, ...wish]) => wishOf([frame, ...wish.slice(isOld ? 0 : 1)]));
+  const commands = own.map(([frame, ...command]) => commandOf([frame, ...command.slice(isOld ? 0 : 1)]));
   return checked({
     rate,
     values: Object.fromEntries(Object.entries(values).filter(([address]) => !find(address).playerControlled)),
-    wishes: wishes.sort((one, other) => one.frame - other.frame),
+    commands: commands.sort((one, other) => one.frame - other.frame),
     players: players.length,
   });
 }
 
 /**
- * A performance that came from elsewhere. Throws an error where it has more wishes than anybody plays,
+ * A performance that came from elsewhere. Throws an error where it has more commands than anybody plays,
  * in all or in a second, or numbers that are none.
  * @param {Performance} performance
  */
 export function checked(performance) {
-  const { rate, values, wishes } = performance;
-  if (wishes.length > MOST_WISHES) throw new RangeError("too many wishes");
+  const { rate, values, commands } = performance;
+  if (commands.length > MOST_COMMANDS) throw new RangeError("too many commands");
   Object.values(values).forEach(finite);
   let before = 0;
-  wishes.forEach(({ frame, value, other }, at) => {
+  commands.forEach(({ frame, value, other }, at) => {
     if (!(frame >= before && frame <= LONGEST_S * rate)) throw new RangeError(`frame ${frame}`);
     before = frame;
     finite(value);
     finite(other);
-    const earlier = wishes[at - MOST_A_SECOND];
-    if (earlier && frame - earlier.frame < rate) throw new RangeError("too many wishes at a time");
+    const earlier = commands[at - MOST_A_SECOND];
+    if (earlier && frame - earlier.frame < rate) throw new RangeError("too many commands at a time");
   });
   return performance;
 }
 
 /**
  * @param {unknown[]} line
- * @returns {Wish}
+ * @returns {Command}
  */
-function wishOf([frame, name, ...rest]) {
+function commandOf([frame, name, ...rest]) {
   const kind = KINDS.indexOf(String(name).toUpperCase());
   if (kind < 0) throw new TypeError(`no ${name}`);
-  /** @type {Wish} */
-  const wish = { frame: finite(frame), kind, index: 0, value: 0, other: 0 };
+  /** @type {Command} */
+  const command = { frame: finite(frame), kind, index: 0, value: 0, other: 0 };
   if (OF_PARAMETERS.includes(kind)) {
-    wish.index = indexOf(kind, String(rest.shift()));
-  } else if (kind === BEGIN || kind === END) wish.index = finite(rest.shift());
-  [wish.value, wish.other] = [finite(rest[0] ?? 0), finite(rest[1] ?? 0)];
-  return wish;
+    command.index = indexOf(kind, String(rest.shift()));
+  } else if (kind === BEGIN || kind === END) command.index = finite(rest.shift());
+  [command.value, command.other] = [finite(rest[0] ?? 0), finite(rest[1] ?? 0)];
+  return command;
 }
 
 /** @param {unknown} value */
@@ -185,24 +185,24 @@ function finite(value) {
 /** Plays a performance; tells by the event 'end'. */
 export class Replayer extends EventTarget {
   /** @param {Instrument} instrument @param {Performance} performance */
-  constructor(instrument, { rate, values, wishes }) {
+  constructor(instrument, { rate, values, commands }) {
     super();
     this.instrument = instrument;
-    this.wishes = wishes;
+    this.commands = commands;
     this.next = 0;
     const own = instrument.sound?.status.rate ?? rate;
     this.ratio = own / rate;
     for (const [address, value] of Object.entries(values)) instrument.player.write(address, value);
     this.begun = instrument.horizon;
-    this.latest = 0; // frame of the last wish that was posted
-    /** Notes that sound, by key. @type {Map<string, Wish>} */
+    this.latest = 0; // frame of the last command that was posted
+    /** Notes that sound, by key. @type {Map<string, Command>} */
     this.open = new Map();
     this.timer = window.setInterval(() => this.#play(), EVERY);
   }
 
   #play() {
-    for (; this.next < this.wishes.length; this.next++) {
-      const { frame, kind, index, value, other } = this.wishes[this.next];
+    for (; this.next < this.commands.length; this.next++) {
+      const { frame, kind, index, value, other } = this.commands[this.next];
       const at = Math.round(this.begun + frame * this.ratio);
       if (at > this.instrument.horizon) return;
       this.#post(at, kind, index, value, other);

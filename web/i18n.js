@@ -12,8 +12,8 @@ const changes = new EventTarget();
 
 /** @returns {'en' | 'zh'} */
 export function language() {
-  const wished = settings.language || navigator.language;
-  return wished.toLowerCase().startsWith("zh") ? "zh" : "en";
+  const requested = settings.language || navigator.language;
+  return requested.toLowerCase().startsWith("zh") ? "zh" : "en";
 }
 
 /** Load the words of the language. */

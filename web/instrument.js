@@ -10,7 +10,7 @@ import { Interpreter } from "./playing/interpreter.js";
 import { MAPPINGS } from "./playing/learned.js";
 import { Player } from "./playing/player.js";
 
-/** Wishes before the sound is open wait for it; more than these are of no use to anybody. */
+/** Commands before the sound is open wait for it; more than these are of no use to anybody. */
 const MOST_WAITING = 1000;
 const PREPARING = 503;
 const AHEAD_S = 0.25;
@@ -19,9 +19,9 @@ const AHEAD_HIDDEN_S = 1.5;
 /**
  * Tells by events: 'prepare' while a server prepares what the page plays by, 'ready' once it can be
  * played, 'lack' when it cannot (with the error as `error`); 'start' when it sounds, 'fail' when it
- * cannot; 'way' when it is to sound in another one; 'state' of each new snapshot; 'silence' when all has to end, and 'wish' of each wish (a `CustomEvent<Wish>`).
+ * cannot; 'way' when it is to sound in another one; 'state' of each new snapshot; 'silence' when all has to end, and 'command' of each command (a `CustomEvent<Command>`).
  *
- * @typedef {object} Wish
+ * @typedef {object} Command
  * @property {number} frame
  * @property {number} kind
  * @property {number} index
@@ -86,7 +86,7 @@ export class Instrument extends EventTarget {
     return this.sound?.status.rate ?? 0;
   }
 
-  /** Number of the sample at which a wish is fulfilled now, about. */
+  /** Number of the sample at which a command is applied now, about. */
   get frame() {
     return this.sound?.frame ?? this.state?.frame ?? 0;
   }
@@ -110,7 +110,7 @@ export class Instrument extends EventTarget {
     else if (this.waiting.length < MOST_WAITING)
       this.waiting.push([null, kind, index, value, other]);
     this.dispatchEvent(
-      new CustomEvent("wish", {
+      new CustomEvent("command", {
         detail: { frame: frame ?? this.frame, kind, index, value, other },
       }),
     );
@@ -181,7 +181,7 @@ export class Instrument extends EventTarget {
       });
       this.sound = sound;
       sound.resume?.();
-      for (const wish of this.waiting.splice(0)) sound.post(...wish);
+      for (const command of this.waiting.splice(0)) sound.post(...command);
       this.error = null;
       this.dispatchEvent(new Event("start"));
     } catch (error) {

@@ -2,11 +2,11 @@
  * The types that parts of the page share; nothing here runs.
  *
  * @typedef {(frame: number | null, kind: number, index: number, value: number, other: number)
- *   => void} Post One wish; frame null is now.
+ *   => void} Post One command; frame null is now.
  *
  * @typedef {object} Heard What the ear finds in the bowed string.
  * @property {number} certainty 0 to 1: how alike its motion is to that some periods ago
- * @property {number} errorCents of the pitch, from the one wished for
+ * @property {number} errorCents of the pitch, from the one asked for
  * @property {number} slips in a period
  *
  * @typedef {object} Bow
@@ -60,7 +60,7 @@
  * @property {Status} status
  * @property {AnalyserNode | null} analyser null: the page hears nothing
  * @property {{start: () => void, stop: () => Blob | Promise<Blob>}} [record] writes WAV
- * @property {{start: () => void, stop: () => Promise<CapturedWishes>}} [keep] what is fulfilled
+ * @property {{start: () => void, stop: () => Promise<CapturedCommands>}} [keep] what is applied
  * @property {Microphone} [voice] follows a microphone
  * @property {number} [heard] pitch of the voice; NaN for none
  * @property {(address: string) => number | undefined} [target] where a parameter of bow and
@@ -70,10 +70,10 @@
  * @property {number} [people] most that may play the part; by default one
  * @property {number} [frame] that sounds now, about; else that of the state
  *
- * @typedef {object} CapturedWishes
+ * @typedef {object} CapturedCommands
  * @property {number} from frame
  * @property {number} to frame
- * @property {number[]} wishes five numbers each: frame, kind, index, value, other
+ * @property {number[]} commands five numbers each: frame, kind, index, value, other
  *
  * @typedef {EventTarget & SoundMembers} Sound
  *

@@ -59,9 +59,9 @@ async function through(stream, bytes) {
  * Numbers of rows and kinds differ between versions of this page: a head names those that are used.
  * @param {Performance} performance
  */
-function pack({ rate, values, wishes }) {
-  const kinds = [...new Set(wishes.map(({ kind }) => kind))];
-  const addresses = [...new Set(wishes.map(addressOf).filter((found) => found !== null))];
+function pack({ rate, values, commands }) {
+  const kinds = [...new Set(commands.map(({ kind }) => kind))];
+  const addresses = [...new Set(commands.map(addressOf).filter((found) => found !== null))];
   const changed = FREE.filter((one) => (values[one.address] ?? one.default) !== one.default);
   const head = new TextEncoder().encode(
     JSON.stringify({
@@ -78,16 +78,16 @@ function pack({ rate, values, wishes }) {
   /** @type {Map<string, number>} */
   const last = new Map();
   let before = 0;
-  for (const wish of wishes) {
-    const time = Math.round((wish.frame / rate) * RATE);
-    const address = addressOf(wish);
+  for (const command of commands) {
+    const time = Math.round((command.frame / rate) * RATE);
+    const address = addressOf(command);
     put(bytes, time - before);
-    put(bytes, kinds.indexOf(wish.kind));
-    put(bytes, address === null ? wish.index : addresses.indexOf(address));
+    put(bytes, kinds.indexOf(command.kind));
+    put(bytes, address === null ? command.index : addresses.indexOf(address));
     for (const name of /** @type {const} */ (["value", "other"])) {
-      const value = Math.round(wish[name] * FINE);
-      put(bytes, value - (last.get(keyOf(wish, name)) ?? 0));
-      last.set(keyOf(wish, name), value);
+      const value = Math.round(command[name] * FINE);
+      put(bytes, value - (last.get(keyOf(command, name)) ?? 0));
+      last.set(keyOf(command, name), value);
     }
     before = time;
   }
@@ -117,25 +117,25 @@ function unpack(bytes) {
   const kinds = head.kinds.map((/** @type {string} */ name) => KINDS.indexOf(name));
   /** @type {Map<string, number>} */
   const last = new Map();
-  const wishes = [];
+  const commands = [];
   for (let frame = 0; at < bytes.length;) {
     frame += take();
-    const wish = { frame, kind: kinds[take()], index: take(), value: 0, other: 0 };
-    if (!(wish.kind >= 0)) throw new TypeError("another kind");
-    if (OF_PARAMETERS.includes(wish.kind))
-      wish.index = indexOf(wish.kind, head.addresses[wish.index]);
+    const command = { frame, kind: kinds[take()], index: take(), value: 0, other: 0 };
+    if (!(command.kind >= 0)) throw new TypeError("another kind");
+    if (OF_PARAMETERS.includes(command.kind))
+      command.index = indexOf(command.kind, head.addresses[command.index]);
     for (const name of /** @type {const} */ (["value", "other"])) {
-      const value = (last.get(keyOf(wish, name)) ?? 0) + take();
-      last.set(keyOf(wish, name), value);
-      wish[name] = value / FINE;
+      const value = (last.get(keyOf(command, name)) ?? 0) + take();
+      last.set(keyOf(command, name), value);
+      command[name] = value / FINE;
     }
-    wishes.push(wish);
+    commands.push(command);
   }
   const values = FREE.map((one) => [one.address, Number(head.values[one.address] ?? one.default)]);
-  return checked({ rate: RATE, values: Object.fromEntries(values), wishes, players: 1 });
+  return checked({ rate: RATE, values: Object.fromEntries(values), commands, players: 1 });
 }
 
-/** What a value is of: most differ little from the last one. @param {{kind: number, index: number}} wish @param {string} name */
+/** What a value is of: most differ little from the last one. @param {{kind: number, index: number}} command @param {string} name */
 const keyOf = ({ kind, index }, name) => `${kind} ${index} ${name}`;
 
 /**

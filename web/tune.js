@@ -153,14 +153,14 @@ export class TuneGuide extends Course {
 
   start() {
     this.#begun = performance.now();
-    this.instrument.addEventListener("wish", this.#hear);
+    this.instrument.addEventListener("command", this.#hear);
     this.timer = window.setInterval(() => this.#tick(), EVERY);
     this.move();
   }
 
   stop() {
     if (!this.isOn) return;
-    this.instrument.removeEventListener("wish", this.#hear);
+    this.instrument.removeEventListener("command", this.#hear);
     this.end();
   }
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
-from yehu_server.core.player.wishes import BEGIN
+from yehu_server.core.player.commands import BEGIN
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.part_state import Key
@@ -29,7 +29,7 @@ class SectionTake:
         self._ensemble = Ensemble(specs, has_room=False)
         self.instruments = self._ensemble.instruments
         for instrument in self.instruments:
-            instrument.report_wishes()
+            instrument.report_commands()
         self.player = playing.mapped(playing.player(self.instruments))
         self.begun: list[list[int]] = [[] for _ in self.instruments]  # frames of onsets
 
@@ -50,6 +50,6 @@ class SectionTake:
                 cores.mix(cores.sound(end - begin))
                 for number, instrument in enumerate(self.instruments):
                     sounds[number, begin:end] = cores.stems[:, number].mean(axis=1)
-                    wishes = instrument.applied_wishes()
-                    self.begun[number] += wishes["frame"][wishes["kind"] == BEGIN].tolist()
+                    commands = instrument.applied_commands()
+                    self.begun[number] += commands["frame"][commands["kind"] == BEGIN].tolist()
         return sounds

@@ -1,6 +1,6 @@
 """`vibrato`: how far pitch and level of each note swing under vibrato.
 
-The player's own, as files have it, and one that is wished for; from 1.2 s on, as medians of turns.
+The player's own, as files have it, and one that is asked for; from 1.2 s on, as medians of turns.
 The level counts without a cubic through all of it, since notes swell.
 """
 
@@ -15,7 +15,7 @@ from measures.take import NOTES, Setup, held, in_parallel
 RATE_HZ, STEADY_S, END_S, LENGTH_S = 5.5, 1.2, 3.1, 3.0
 WAYS = {
     "the player's own": {"/playing/phrasing": 0.5, "/playing/note_length": LENGTH_S},
-    "wished for, 30 cents to either side": {"/playing/vibrato": 30.0},
+    "asked for, 30 cents to either side": {"/playing/vibrato": 30.0},
 }
 # From peak to peak: the least width in recordings of an erhu, a violin and a cello; by ear.
 LEAST_CENTS, MOST_DB = 39.0, 4.0

@@ -69,11 +69,11 @@ class Player:
         """A column of the practice; see player.bowing."""
         return bowing_value(self.bowing, self.string, USUAL_BETA, float(self.note), column)
 
-    def force(self, speed: Array, beta: float, wish: float) -> Array:
+    def force(self, speed: Array, beta: float, command: float) -> Array:
         """The force (N) that the player's assist sets for a value of ``/playing/pressure``."""
         fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
         flautando, light, firm = map(self.recipe, (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
-        usual = share(flautando, light, firm, wish, self.string)
+        usual = share(flautando, light, firm, command, self.string)
         highest = speed * upper_limit(self.impedance, self.grip, 1.0, beta)  # it goes as the speed
         return (usual + fast) * highest
 
@@ -120,7 +120,7 @@ def draw_note(panels: Any, player: Player) -> list[Result]:
         draw(panels[i], places, "position", {"speed": i})
         if speed <= player.recipe(TOP_SPEED):
             beta = USUAL_BETA * player.recipe(DISTANCE_FACTOR)
-            ends = [float(player.force(speed, beta, wish)) for wish in (LIGHT, FIRM)]
+            ends = [float(player.force(speed, beta, command)) for command in (LIGHT, FIRM)]
             panels[i].plot([beta, beta], ends, color="k", lw=2.5, marker="_", ms=9, mew=2.5)
     speeds = bowed(player, {"position": [USUAL_BETA], "speed": SPEEDS})
     panels[-1].set_title(f"{title}, β = {USUAL_BETA:g}")
@@ -128,8 +128,8 @@ def draw_note(panels: Any, player: Player) -> list[Result]:
     if player.recipe(DISTANCE_FACTOR) == 1.0:
         borne = speeds.axes["speed"]
         borne = borne[borne <= player.recipe(TOP_SPEED)]
-        for wish in (LIGHT, FIRM):
-            panels[-1].plot(borne, player.force(borne, USUAL_BETA, wish), "k:", lw=2.0)
+        for command in (LIGHT, FIRM):
+            panels[-1].plot(borne, player.force(borne, USUAL_BETA, command), "k:", lw=2.0)
     panels[0].set_ylabel(LABELS["force"])
     return [places, speeds]
 

@@ -30,16 +30,16 @@ int main(int count, char **words) {
     long preparing = allocations() - counted;
     counted = allocations();
     for (long done = 0; done < frames; done += BLOCK) {
-        long wish = done / BLOCK;
-        yehu_post(yehu, done, YEHU_BEGIN, 0, 65.0 + wish % 24, 65.0 + wish % 24);
-        yehu_post(yehu, done, wish % kinds, wish % 40, 0.1 * (wish % 9), 0.2);
-        uint8_t bytes[] = {0x90, 65 + wish % 24, 90, 0xB0, 1, wish % 128};
+        long command = done / BLOCK;
+        yehu_post(yehu, done, YEHU_BEGIN, 0, 65.0 + command % 24, 65.0 + command % 24);
+        yehu_post(yehu, done, command % kinds, command % 40, 0.1 * (command % 9), 0.2);
+        uint8_t bytes[] = {0x90, 65 + command % 24, 90, 0xB0, 1, command % 128};
         yehu_midi(yehu, done, bytes, sizeof bytes);
-        yehu_control(yehu, done, wish % 3, 0.5);
+        yehu_control(yehu, done, command % 3, 0.5);
         taken += yehu_use_tables(yehu, done, &tables, sizeof tables) == 1;
         yehu_process(yehu, out, BLOCK);
         yehu_snapshot(yehu, &seen);
-        yehu_value(yehu, wish % 40);
+        yehu_value(yehu, command % 40);
         yehu_pitch(yehu);
     }
     long playing = allocations() - counted;

@@ -32,7 +32,7 @@ def library(tmp_path_factory) -> Path:
 @pytest.fixture(scope="session")
 def here() -> dict[str, np.ndarray]:
     """The samples of each phrase [shape=(frames, 2)], by this process."""
-    return {name: played(wishes)[0] for name, wishes in PHRASES.items()}
+    return {name: played(commands)[0] for name, commands in PHRASES.items()}
 
 
 @pytest.fixture

@@ -104,7 +104,7 @@ int main(int count, char **words) {
         for (int i = 0; i < AT_ONCE; i++) posted += message(yehu, frame + below(BLOCK));
         play(yehu, 1);
         if (block % ROUND) continue;
-        play(yehu, 40); /* what waits is fulfilled */
+        play(yehu, 40); /* what waits is applied */
         end_all(yehu);
         play(yehu, 40);
         int64_t *record = yehu;

@@ -1,10 +1,10 @@
-"""Phrases of wishes, and how they sound in this process."""
+"""Phrases of commands, and how they sound in this process."""
 
 import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.player.commands import BEGIN, END, HOLD
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import BEGIN, END, HOLD
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 
@@ -33,8 +33,8 @@ PHRASES = {
 }
 
 
-def played(wishes, frames=FRAMES, block=BLOCK, channels=2) -> tuple[np.ndarray, Ensemble]:
-    """Play wishes in this process, in the usual room.
+def played(commands, frames=FRAMES, block=BLOCK, channels=2) -> tuple[np.ndarray, Ensemble]:
+    """Play commands in this process, in the usual room.
 
     Returns
     -------
@@ -44,7 +44,7 @@ def played(wishes, frames=FRAMES, block=BLOCK, channels=2) -> tuple[np.ndarray, 
     """
     calibration = calibration_for(RATE)
     ensemble = Ensemble([PlayingOptions().spec(RATE, calibration)], channels=channels)
-    for frame, kind, index, value, other in wishes:
+    for frame, kind, index, value, other in commands:
         assert ensemble.first.post(kind, frame=frame, index=index, value=value, other=other)
     out = np.zeros((frames, channels), np.float32)
     for start in range(0, frames, block):

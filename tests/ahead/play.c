@@ -1,7 +1,7 @@
-/* Plays wishes by the library, for the tests: reads "frame kind index value other" lines, and writes
+/* Plays commands by the library, for the tests: reads "frame kind index value other" lines, and writes
  * samples (float32), those of all channels of a frame after one another.
  *
- *     play RATE CHANNELS FRAMES BLOCK WISHES SAMPLES
+ *     play RATE CHANNELS FRAMES BLOCK COMMANDS SAMPLES
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,8 +15,8 @@ int main(int count, char **words) {
     long channels = atol(words[2]), frames = atol(words[3]), block = atol(words[4]);
     void *yehu = aligned_alloc(64, (yehu_size() + 63) / 64 * 64);
     float *out = malloc(block * channels * sizeof *out);
-    FILE *wishes = fopen(words[5], "r"), *samples = fopen(words[6], "wb");
-    if (!yehu || !out || !wishes || !samples) return 3;
+    FILE *commands = fopen(words[5], "r"), *samples = fopen(words[6], "wb");
+    if (!yehu || !out || !commands || !samples) return 3;
     memset(yehu, 255, yehu_size()); /* preparing relies on nothing */
     if (!yehu_prepare(yehu, rate, channels)) {
         fprintf(stderr, "no instrument at %g Hz\n", rate);
@@ -24,7 +24,7 @@ int main(int count, char **words) {
     }
     long long frame, kind, index;
     double value, other;
-    while (fscanf(wishes, "%lld %lld %lld %lf %lf", &frame, &kind, &index, &value, &other) == 5)
+    while (fscanf(commands, "%lld %lld %lld %lf %lf", &frame, &kind, &index, &value, &other) == 5)
         if (!yehu_post(yehu, frame, kind, index, value, other)) return 5;
     for (long done = 0; done < frames; done += block) {
         long now = frames - done < block ? frames - done : block;

@@ -1,9 +1,9 @@
-// Plays wishes by the WebAssembly module, for the tests: reads a job as JSON from a file, and
+// Plays commands by the WebAssembly module, for the tests: reads a job as JSON from a file, and
 // writes samples (float32, left and right in turn) and a report.
 //
 //   node play.mjs JOB.json
 //
-// A job has: wasm, rate, snapshotLength, frames, block, wishes ([frame, kind, index, value, other]),
+// A job has: wasm, rate, snapshotLength, frames, block, commands ([frame, kind, index, value, other]),
 // samples (file to write).
 
 import { readFileSync, writeFileSync } from "node:fs";
@@ -12,7 +12,7 @@ import { CHANNELS, Kernel } from "../../web/sound/kernel.js";
 const job = JSON.parse(readFileSync(process.argv[2], "utf8"));
 const module = new WebAssembly.Module(readFileSync(job.wasm));
 const kernel = new Kernel(module, job.rate, job.block, job.snapshotLength);
-for (const wish of job.wishes) kernel.post(...wish);
+for (const command of job.commands) kernel.post(...command);
 const samples = new Float32Array(CHANNELS * job.frames);
 const times = [];
 for (let done = 0; done < job.frames; done += job.block) {

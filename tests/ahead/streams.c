@@ -3,7 +3,7 @@
  *     streams STEPS TABLES BLOCKS REPORTING MEMORY
  *
  * STEPS has lines: the name of a function, its frame and arguments; "map" takes the next of TABLES.
- * REPORTING is the number of the word of memory that lets wishes be reported. What was not taken
+ * REPORTING is the number of the word of memory that lets commands be reported. What was not taken
  * ends it with 10 and the number of the line.
  */
 #include <stdio.h>

@@ -21,7 +21,7 @@ from yehu_server.core.engine.rig import RIG
 from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
 from yehu_server.core.midi.tables import SLOTS
-from yehu_server.core.player import wishes
+from yehu_server.core.player import commands
 from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import find
 from yehu_server.playing.calibration_store import calibration_for
@@ -33,7 +33,7 @@ from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning, read_tuning
 
 RATE, BLOCK = 48000.0, 128
 _mail, _mail_at = (RIG.fields or {})["mail"][:2]
-# Number of the word of an instrument's memory that lets its wishes be reported.
+# Number of the word of an instrument's memory that lets its commands be reported.
 REPORTING = (_mail_at + (_mail.fields or {})["reporting"][1]) // 8
 OWN_CALLS = 0.05  # a chance after each
 NATIVE_FUNCTIONS = 40  # frames from one step to the next
@@ -139,7 +139,7 @@ class Maker:
             self._step("control", (number, argument), (events.CONTROL, number, argument, 0.0))
         elif kind == 2:
             param = chance.choice(calls.FREE)
-            self._post(wishes.HOLD, ROW[param.address], chance.uniform(param.lo, param.hi), 0.0)
+            self._post(commands.HOLD, ROW[param.address], chance.uniform(param.lo, param.hi), 0.0)
         else:
             self._post(events.RELEASE_ALL, 0, 1.0, 0.0)
             self._post(events.START, 0, 1.0, 0.0)
@@ -216,17 +216,17 @@ class Maker:
         elif name == "noteOff":
             self._post(events.NOTE_OFF, -1, self._key, 0.0)
         elif name == "slide":
-            self._post(wishes.SLIDE, 0, given[0], 0.0)
+            self._post(commands.SLIDE, 0, given[0], 0.0)
         elif name == "draw":
-            self._post(wishes.DRAW, 0, *given)
+            self._post(commands.DRAW, 0, *given)
         elif name == "endPortNotes":
             self._post(events.DISCONNECT, given[0], 0.0, 0.0)
         elif name in ("lift", "release"):
-            self._post(wishes.LIFT if name == "lift" else wishes.RELEASE, 0, 0.0, 0.0)
+            self._post(commands.LIFT if name == "lift" else commands.RELEASE, 0, 0.0, 0.0)
         elif name in ("endNotes", "panic"):
             self._post(events.RELEASE_ALL, 0, float(name == "panic"), 0.0)
             if name == "panic":
-                self._post(wishes.STOP, 0, 1.0, 0.0)
+                self._post(commands.STOP, 0, 1.0, 0.0)
 
 
 def stream_of(seed: int, parts: int) -> Stream:
@@ -253,7 +253,7 @@ def played(stream: Stream) -> np.ndarray:
     ensemble = Ensemble([PlayingOptions().spec(RATE, calibration_for(RATE))], is_live=True)
     first = ensemble.first
     first.begin_part(PlayingOptions().tables(Controls()))
-    first.report_wishes()
+    first.report_commands()
     assert first.post(events.START)
     tables = iter(stream.tables)
     out = np.zeros((BLOCK, 2), np.float32)
@@ -271,8 +271,8 @@ def played(stream: Stream) -> np.ndarray:
     return first._rig.copy()
 
 
-def wishes_in(rig: np.ndarray) -> np.ndarray:
-    """The wishes that were fulfilled, in order: ndarray [shape=(wishes,), dtype=WISH]."""
+def commands_in(rig: np.ndarray) -> np.ndarray:
+    """The commands that were applied, in order: ndarray [shape=(commands,), dtype=COMMAND]."""
     mail = rig["mail"][0]
     assert mail["unreported"] == 0
     assert mail["dropped"].sum() == 0
@@ -285,8 +285,8 @@ def record_in(memory: Path) -> np.ndarray:
 
 
 def numbers(found: Sequence[Sequence[Event]]) -> Iterator[list[float]]:
-    """All wishes of `interpreted`, as lists."""
-    return (list(wish) for wished in found for wish in wished)
+    """All commands of `interpreted`, as lists."""
+    return (list(command) for requested in found for command in requested)
 
 
 if __name__ == "__main__":

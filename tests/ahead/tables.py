@@ -73,7 +73,7 @@ def message(chance: random.Random) -> int:
 
 def play(count: int) -> dict[str, int]:
     """Play messages through one after another of random tables; count what came of it."""
-    chance, leader, counts = random.Random(2), Leader(), {"taken": 0, "refused": 0, "wishes": 0}
+    chance, leader, counts = random.Random(2), Leader(), {"taken": 0, "refused": 0, "commands": 0}
     right = some_tables(3, 30)
     leader.begin_part(right[0])
     for _ in range(count):
@@ -90,8 +90,8 @@ def play(count: int) -> dict[str, int]:
         posted += [(events.MESSAGE, packed([0xC0, chance.randrange(PROGRAMS)]), 0.0)]
         for frame, event in enumerate(posted):
             found = leader.interpret(frame, *event, 0.0)
-            assert np.isfinite([wish[2:] for wish in found]).all(), (tables, event, found)
-            counts["wishes"] += len(found)
+            assert np.isfinite([command[2:] for command in found]).all(), (tables, event, found)
+            counts["commands"] += len(found)
         assert np.isfinite(leader.midi["value"]).all()
     return counts
 

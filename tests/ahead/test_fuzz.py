@@ -36,4 +36,4 @@ def test_no_tables_that_are_taken_lead_outside_an_array_or_to_a_number_that_is_n
     run_in_plain_python("tables.py", TABLES, tmp_path / "counts")
     counts = json.loads((tmp_path / "counts").read_text())
     assert min(counts["taken"], counts["refused"]) > TABLES // 5
-    assert counts["wishes"] > 10 * TABLES
+    assert counts["commands"] > 10 * TABLES

@@ -13,7 +13,7 @@ from ahead.programs import compiled
 
 from yehu_server.ahead.build_hash import build_hash
 from yehu_server.core.midi.events import EVENTS
-from yehu_server.core.player.wishes import KINDS
+from yehu_server.core.player.commands import KINDS
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
@@ -23,15 +23,15 @@ pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no 
 
 @pytest.fixture(scope="module")
 def program(library, tmp_path_factory) -> Path:
-    """A C program that plays wishes."""
+    """A C program that plays commands."""
     return compiled(library, tmp_path_factory.mktemp("program") / "play", "play.c")
 
 
 @pytest.fixture
 def by_c(program, tmp_path):
-    def play(wishes, frames=FRAMES, rate=RATE, block=BLOCK, channels=2):
-        lines, samples = tmp_path / "wishes", tmp_path / "samples"
-        lines.write_text("".join(" ".join(map(repr, wish)) + "\n" for wish in wishes))
+    def play(commands, frames=FRAMES, rate=RATE, block=BLOCK, channels=2):
+        lines, samples = tmp_path / "commands", tmp_path / "samples"
+        lines.write_text("".join(" ".join(map(repr, command)) + "\n" for command in commands))
         numbers = map(str, (channels, frames, block))
         command = [program, repr(rate), *numbers, lines, samples]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -41,8 +41,8 @@ def by_c(program, tmp_path):
 
 
 def test_it_plays_the_very_samples_of_numbas_code_for_its_level(by_c, here):
-    for name, wishes in PHRASES.items():
-        sound, done = by_c(wishes)
+    for name, commands in PHRASES.items():
+        sound, done = by_c(commands)
         assert done.returncode == 0
         assert np.array_equal(sound, here[name]), name
 

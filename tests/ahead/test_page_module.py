@@ -10,7 +10,7 @@ from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED, played
 from yehu_server.ahead.build_hash import build_hash, section_of
 from yehu_server.core.engine.snapshot import SNAPSHOT, snapshot
 from yehu_server.core.midi.events import EVENTS
-from yehu_server.core.player.wishes import KINDS
+from yehu_server.core.player.commands import KINDS
 from yehu_server.params.table import SLOT, TABLE
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node")
@@ -18,8 +18,8 @@ pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="there is n
 
 @pytest.fixture
 def by_node(node, tmp_path):
-    def play(wishes, frames=FRAMES, rate=RATE, block=BLOCK):
-        job = {"rate": rate, "frames": frames, "block": block, "wishes": wishes}
+    def play(commands, frames=FRAMES, rate=RATE, block=BLOCK):
+        job = {"rate": rate, "frames": frames, "block": block, "commands": commands}
         report = node("play.mjs", **job, rows=len(TABLE), samples=str(tmp_path / "samples"))
         return np.fromfile(tmp_path / "samples", np.float32).reshape(-1, 2), report
 
@@ -28,8 +28,8 @@ def by_node(node, tmp_path):
 
 def test_a_phrase_begins_as_here_and_stays_near(by_node, here):
     found = []
-    for name, wishes in PHRASES.items():
-        sound, report = by_node(wishes)
+    for name, commands in PHRASES.items():
+        sound, report = by_node(commands)
         assert (report["finite"], report["lost"]) == (True, 0)
         assert np.abs(sound).max() > 0.01
         assert begins_alike(sound, here[name]), name
@@ -66,7 +66,7 @@ def test_it_names_the_sources_that_it_was_built_from(by_node, wasm):
 
 def test_a_rate_that_it_was_not_built_for_is_refused(node, tmp_path):
     with pytest.raises(AssertionError, match="not built for 32000 Hz"):
-        node("play.mjs", rate=32000, frames=1, block=1, wishes=[], samples=str(tmp_path / "s"))
+        node("play.mjs", rate=32000, frames=1, block=1, commands=[], samples=str(tmp_path / "s"))
 
 
 def test_no_random_events_make_a_trap_or_a_number_that_is_not_finite(node, everything):

@@ -1,4 +1,4 @@
-"""The same bytes give the same wishes: by the server, by C, in WebAssembly and in plain Python."""
+"""The same bytes give the same commands: by server, C, WebAssembly and plain Python."""
 
 import json
 import random
@@ -12,13 +12,13 @@ from ahead.streams import (
     BLOCK,
     RATE,
     REPORTING,
+    commands_in,
     interpreted,
     messages_of,
     numbers,
     played,
     record_in,
     stream_of,
-    wishes_in,
 )
 
 from yehu_server.ahead.interface import control, midi, use_tables
@@ -28,7 +28,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
 from yehu_server.core.midi.tables import SLOTS, TABLES
-from yehu_server.core.player.wishes import KINDS, RAMP
+from yehu_server.core.player.commands import KINDS, RAMP
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
@@ -47,25 +47,25 @@ def here(streams):
     return [played(stream) for stream in streams]
 
 
-def test_the_streams_have_messages_and_wishes_of_all_kinds(streams, here):
+def test_the_streams_have_messages_and_commands_of_all_kinds(streams, here):
     posted = [event for stream in streams for step in stream.steps for event in step.events]
     statuses = {index & 0xF0 for kind, index, *_ in posted if kind == events.MESSAGE}
     assert statuses >= {0x80, 0x90, 0xA0, 0xB0, 0xC0, 0xD0, 0xE0, 0xF0}
     controls = {index >> 8 & 0x7F for kind, index, *_ in posted if index & 0xF0 == 0xB0}
     assert controls >= {1, 6, 33, 38, 64, 96, 97, 98, 99, 100, 101, 120, 121, 123}
     assert {kind for kind, *_ in posted} >= {events.CONTROL, events.TABLES_TO, events.START}
-    found = {int(kind) for rig in here for kind in wishes_in(rig)["kind"]}
+    found = {int(kind) for rig in here for kind in commands_in(rig)["kind"]}
     assert found == set(range(len(KINDS))) - {RAMP}
 
 
 def test_the_instrument_plays_what_each_event_comes_to_alone(streams, here):
     for stream, rig in zip(streams, here, strict=True):
-        found = [list(wish)[1:] for wish in wishes_in(rig).tolist()]
+        found = [list(command)[1:] for command in commands_in(rig).tolist()]
         assert found == list(numbers(interpreted(stream)))
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
-def test_c_gives_the_same_wishes_and_records_to_the_bit(streams, here, library, tmp_path):
+def test_c_gives_the_same_commands_and_records_to_the_bit(streams, here, library, tmp_path):
     program = compiled(library, tmp_path / "streams", "streams.c")
     for stream, rig in zip(streams, here, strict=True):
         files, blocks = stream.write(tmp_path), str(stream.frames // BLOCK)
@@ -73,7 +73,7 @@ def test_c_gives_the_same_wishes_and_records_to_the_bit(streams, here, library, 
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (0, "")
         found = record_in(tmp_path / "memory")
-        assert wishes_in(found).tobytes() == wishes_in(rig).tobytes()
+        assert commands_in(found).tobytes() == commands_in(rig).tobytes()
         assert found["midi"].tobytes() == rig["midi"].tobytes()
 
 
@@ -89,7 +89,7 @@ def test_web_assembly_gives_the_same_but_for_the_last_bit_of_a_power(
         report = node("streams.mjs", **job, **files)
         assert report == {"finite": True, "lost": 0}
         found = record_in(tmp_path / "memory")
-        assert_near(wishes_in(found), wishes_in(rig))
+        assert_near(commands_in(found), commands_in(rig))
         assert_near(found["midi"][0], rig["midi"][0])
 
 
@@ -106,7 +106,7 @@ def test_plain_python_gives_the_same(tmp_path):
     for seed in SEEDS:
         wanted = interpreted(stream_of(seed, SHORT))
         assert sum(map(len, wanted)) > 60
-        assert results[str(seed)] == [list(map(list, wished)) for wished in wanted]
+        assert results[str(seed)] == [list(map(list, requested)) for requested in wanted]
 
 
 # -- bytes ----------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""An instrument that fulfils its wishes and makes no sound, and a calibration for it."""
+"""An instrument that applies its commands and makes no sound, and a calibration for it."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import heapq
 import math
 
 import numpy as np
-from interpreted import ALL_KINDS, Leader, Wished
+from interpreted import ALL_KINDS, Leader, Requested
 
 from yehu_server.core.controls.record import prepare_controls
 from yehu_server.core.controls.slots import HIGHEST, LOWEST
 from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.commands import KINDS, apply
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import prepare_player
-from yehu_server.core.player.wishes import KINDS, fulfil
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.player import Player
@@ -24,7 +24,7 @@ DEFAULTS = {param.address: param.default for param in TABLE}
 RATE = Leader.rate
 PLAYER = prepare_player(QUANTITIES, RATE, DEFAULTS, calibration=CALIBRATION)
 CONTROLS = prepare_controls(QUANTITIES, RATE, DEFAULTS)
-_ = fulfil.call, sounding_pitch(PLAYER[0])  # compile now, not within an input's bounds
+_ = apply.call, sounding_pitch(PLAYER[0])  # compile now, not within an input's bounds
 # Of the player's record, what may not be a number: where nothing was sent or heard yet.
 MAY_BE_NAN = {"sent", "first_error"}
 
@@ -66,24 +66,24 @@ class Instrument(Leader):
         return True
 
     def play(self) -> None:
-        """Interpret and fulfil what is due, by frame and then as posted."""
+        """Interpret and apply what is due, by frame and then as posted."""
         while self._waiting and self._waiting[0][0] <= self.frame:
             frame, _, *event = heapq.heappop(self._waiting)
-            for wish in self.interpret(frame, *event):
-                self.fulfil(wish)
+            for command in self.interpret(frame, *event):
+                self.apply(command)
 
     def interpret_events(self) -> None:
         self.play()
 
-    def fulfil(self, wish: Wished) -> None:
-        """Fulfil a wish at this frame; every parameter stays within its range."""
-        kind, _, value, other = wish
+    def apply(self, command: Requested) -> None:
+        """Apply a command at this frame; every parameter stays within its range."""
+        kind, _, value, other = command
         assert 0 <= kind < len(KINDS)
-        assert math.isfinite(value), wish
-        assert math.isfinite(other), wish
-        fulfil.call(self._player.ctypes.data, self._controls.ctypes.data, self.frame, *wish)
+        assert math.isfinite(value), command
+        assert math.isfinite(other), command
+        apply.call(self._player.ctypes.data, self._controls.ctypes.data, self.frame, *command)
         target = self._controls["target"][0]
-        assert ((target >= LOWEST) & (target <= HIGHEST)).all(), wish  # also refuses NaN
+        assert ((target >= LOWEST) & (target <= HIGHEST)).all(), command  # also refuses NaN
 
     def check_player(self) -> None:
         """All that the player decides by is a number."""

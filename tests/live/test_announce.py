@@ -20,11 +20,11 @@ def port(host: str, number: int) -> SimpleNamespace:
     return SimpleNamespace(host=host, port=number)
 
 
-def test_what_others_can_reach_is_announced_or_what_one_wishes(monkeypatch):
+def test_what_others_can_reach_is_announced_or_what_one_commands(monkeypatch):
     monkeypatch.setattr(announce, "lan_address", lambda: "192.0.2.5")
     osc, query = Service(OSC, "192.0.2.7", 9000), Service(OSCQUERY, "192.0.2.5", 9001)
     here, far = port(HOST, 9000), port("192.0.2.7", 9000)
-    for osc_port, query_port, wish, expected in [
+    for osc_port, query_port, command, expected in [
         (here, port("::1", 9001), None, []),
         (here, None, None, []),
         (far, port("0.0.0.0", 9001), None, [osc, query]),  # noqa: S104
@@ -33,7 +33,7 @@ def test_what_others_can_reach_is_announced_or_what_one_wishes(monkeypatch):
         (here, port(HOST, 9001), True, [Service(OSC, HOST, 9000), Service(OSCQUERY, HOST, 9001)]),
         (far, far, False, []),
     ]:
-        assert announced(osc_port, query_port, wish) == expected
+        assert announced(osc_port, query_port, command) == expected
 
 
 def test_what_goes_wrong_is_said_in_a_line(until, monkeypatch):

@@ -50,9 +50,9 @@ def listener() -> Watched:
 @pytest.fixture
 def player(listener) -> Checked:
     """A player without random variation."""
-    wishes = Checked(listener)
-    wishes.write("/playing/variation", 0.0)
-    return wishes
+    commands = Checked(listener)
+    commands.write("/playing/variation", 0.0)
+    return commands
 
 
 @pytest.fixture

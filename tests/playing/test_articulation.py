@@ -57,17 +57,17 @@ def test_a_note_without_dynamics_is_fingered_and_waits_for_the_breath(player, li
 # ---------------------------------------------------------------- vibrato and tremolo
 
 
-def test_vibrato_and_tremolo_are_as_wished(player, listener):
+def test_vibrato_and_tremolo_are_as_requested(player, listener):
     player.note_on(key(75))
     assert listener["/vibrato/depth"] == 0.0
-    for wish, moved, value in [
+    for command, moved, value in [
         ("vibrato", "/vibrato/depth", 25.0),
         ("vibrato_rate", "/vibrato/rate", 6.5),
         ("vibrato_press", "/vibrato/press", 0.2),
         ("tremolo", "/bow/tremolo", 9.0),
         ("tremolo", "/bow/tremolo", 0.0),
     ]:
-        player.write(f"/playing/{wish}", value)
+        player.write(f"/playing/{command}", value)
         assert listener[moved] == value
 
 

@@ -45,10 +45,10 @@ def bowed(string: int, pitch: float, place: float = PLACE) -> list[float]:
     return [bowing_value(SHIPPED, string, place, pitch, column) for column in range(BOWING_SIZE)]
 
 
-def pressure(string: int, wish: float, pitch: float) -> float:
-    """The bow's pressure at a pitch, for a wish."""
+def pressure(string: int, command: float, pitch: float) -> float:
+    """The bow's pressure at a pitch, for a command."""
     m = bowed(string, pitch)
-    return share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], wish, string)
+    return share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], command, string)
 
 
 def test_ordinarily_notes_are_bowed_as_asked_and_on_the_f_string_not_near_the_bridge():
@@ -60,8 +60,10 @@ def test_ordinarily_notes_are_bowed_as_asked_and_on_the_f_string_not_near_the_br
     positions = table[0, ..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
     assert positions.min() == pytest.approx(0.17)
     assert np.all(table[0, PLACES.index(0.25), :, DISTANCE_FACTOR] == 1.0)
-    for wish in (0.1, 0.2, 0.25, 0.3, 0.42, 0.55):
-        assert share(*DEFAULT_BOWING[AT_FLAUTANDO : AT_FIRM + 1], wish, 0) == pytest.approx(wish)
+    for command in (0.1, 0.2, 0.25, 0.3, 0.42, 0.55):
+        assert share(*DEFAULT_BOWING[AT_FLAUTANDO : AT_FIRM + 1], command, 0) == pytest.approx(
+            command
+        )
 
 
 def test_a_note_is_bowed_as_its_table_says_and_leans_between_its_ends(subtests):
@@ -69,10 +71,10 @@ def test_a_note_is_bowed_as_its_table_says_and_leans_between_its_ends(subtests):
         with subtests.test(string=string, note=note):
             assert bowed(string, float(note)) == usual(string, note)
             flautando, light, firm = usual(string, note)[AT_FLAUTANDO : AT_FIRM + 1]
-            wishes = (0.5 * FLAUTANDO, FLAUTANDO, LIGHT, 0.5 * (LIGHT + FIRM), FIRM)
-            assert [pressure(string, wish, float(note)) for wish in wishes] == pytest.approx(
-                [0.5 * flautando, flautando, light, 0.5 * (light + firm), firm]
-            )
+            commands = (0.5 * FLAUTANDO, FLAUTANDO, LIGHT, 0.5 * (LIGHT + FIRM), FIRM)
+            assert [
+                pressure(string, command, float(note)) for command in commands
+            ] == pytest.approx([0.5 * flautando, flautando, light, 0.5 * (light + firm), firm])
     assert bowed(0, 30.0) == bowed(0, 64.0) == usual(0, 65)  # beyond the table as the last
     assert bowed(1, 120.0) == bowed(1, 91.0)
 
@@ -80,7 +82,7 @@ def test_a_note_is_bowed_as_its_table_says_and_leans_between_its_ends(subtests):
 def test_pressure_goes_from_flautando_to_scratch_without_a_step():
     shares = DEFAULT_BOWING[AT_FLAUTANDO : AT_FIRM + 1]
     for string, edge in ((0, 1.3), (1, 4.0)):
-        pressures = [share(*shares, 0.01 * wish, string) for wish in range(201)]
+        pressures = [share(*shares, 0.01 * command, string) for command in range(201)]
         assert (pressures[0], pressures[100]) == (0.0, pytest.approx(edge))
         assert 0.0 < np.diff(pressures).min() < np.diff(pressures).max() < 0.1
 

@@ -30,7 +30,7 @@ VOLUME = "/playing/volume"
 @pytest.fixture
 def instrument() -> Instrument:
     instrument = Instrument(InstrumentSpec(RATE))
-    instrument.report_wishes()
+    instrument.report_commands()
     return instrument
 
 
@@ -212,7 +212,7 @@ def test_many_threads_take_turns_without_a_torn_note(live, instrument):
         thread.join()
     run(instrument, 4096)
     assert live.pitch is None
-    frames = instrument.applied_wishes()["frame"]
+    frames = instrument.applied_commands()["frame"]
     assert instrument.dropped_events == 0
     assert len(frames) >= 1600
     assert (np.diff(frames) >= 0).all()

@@ -115,7 +115,7 @@ def test_what_the_player_never_moves_stays_as_written(player, listener):
     assert [move.value for move in listener.of("/output/gain")] == [0.3]
 
 
-def test_a_held_wish_stays_until_release_whatever_controllers_say_and_can_be_set_anew(
+def test_a_held_command_stays_until_release_whatever_controllers_say_and_can_be_set_anew(
     player, listener
 ):
     player.write("/playing/speed", 0.3, hold=True)

@@ -59,9 +59,9 @@ def test_a_finger_stays_on_its_string_for_a_near_note_and_goes_to_the_other_for_
         assert listener.where() == where, notes
 
 
-def test_a_string_may_be_wished_for():
+def test_a_string_may_be_asked_for():
     sliding = "sliding-vibrato"  # which goes below the open C string
-    for wish, note, articulation, where in [
+    for command, note, articulation, where in [
         (1.0, 72, "ordinary", ("F", 7)),
         (1.0, 79, "ordinary", ("F", 14)),
         (1.0, 65, "ordinary", ("F", None)),
@@ -74,16 +74,16 @@ def test_a_string_may_be_wished_for():
     ]:
         player, listener = hands()
         player.note_on(key(71))  # from here the F string would be nearer for 74
-        player.write("/playing/string", wish)
+        player.write("/playing/string", command)
         player.write("/playing/articulation", float(NUMBER[articulation]))
         player.note_on(key(note))
-        assert listener.where() == where, (wish, note, articulation)
+        assert listener.where() == where, (command, note, articulation)
 
 
-def test_strokes_go_in_turn_or_the_way_that_is_wished_for():
-    for wish, expected in ((0.0, [1, -1, 1, -1]), (1.0, [1] * 4), (-1.0, [-1] * 4)):
+def test_strokes_go_in_turn_or_the_way_that_is_asked_for():
+    for command, expected in ((0.0, [1, -1, 1, -1]), (1.0, [1] * 4), (-1.0, [-1] * 4)):
         player, listener = hands()
-        player.write("/playing/direction", wish)
+        player.write("/playing/direction", command)
         signs = []
         for note in (66, 73, 66, 65):
             player.note_on(key(note))
@@ -292,7 +292,7 @@ def test_a_bend_moves_the_finger_along_its_string_as_far_as_it_goes(subtests):
         (65, 0.0, {1.0: ("F", 1), 0.0: ("F", None)}),  # an open string, stopped and open again
         (66, 0.0, {-7.0: ("F", None)}),  # nothing is below it
         (71, 0.0, {5.0: ("F", 11), 7.0: ("C", 6)}),  # on the other where that goes on
-        (71, 1.0, {7.0: ("F", 13)}),  # unless this one is wished for
+        (71, 1.0, {7.0: ("F", 13)}),  # unless this one is asked for
     ]:
         with subtests.test(note=note, string=string):
             player, listener = hands()

@@ -21,15 +21,15 @@ RATE = 44100
 class Stand:
     """A player and an instrument; times in seconds."""
 
-    def __init__(self, **wishes: float) -> None:
+    def __init__(self, **commands: float) -> None:
         self.instrument: Instrument = Instrument(
             PlayingOptions().spec(RATE, calibration_for(float(RATE)))
         )
         self.player: Player = PlayingOptions().player(self.instrument)
-        self.wish(0.0, variation=0.0, **wishes)
+        self.command(0.0, variation=0.0, **commands)
 
-    def wish(self, seconds: float, **wishes: float) -> None:
-        for name, value in wishes.items():
+    def command(self, seconds: float, **commands: float) -> None:
+        for name, value in commands.items():
             self.player.write(f"/playing/{name}", value, frame=round(seconds * RATE))
 
     def on(self, seconds: float, note: int) -> None:
@@ -115,7 +115,7 @@ def test_a_slow_bend_is_followed():
         stand = Stand()
         stand.on(0.0, note)
         for n in range(101):
-            stand.wish(0.4 + 0.01 * n, bend=0.02 * n)
+            stand.command(0.4 + 0.01 * n, bend=0.02 * n)
         sound = stand.play(1.6)
         for n in (20, 40, 60, 80, 100):
             time = 0.4 + 0.01 * n  # 12 ms late, by the smoothing; in the middle of 40 ms
@@ -126,7 +126,7 @@ def test_a_slow_bend_is_followed():
 def test_pressing_harder_raises_the_pitch_as_silk_does():
     stand = Stand(listening=0.0)  # who listens corrects it
     stand.on(0.0, 75)
-    stand.wish(0.5, press=5.0)
+    stand.command(0.5, press=5.0)
     sound = stand.play(1.0)
     rise = 100.0 * (heard(sound, 0.7, 0.25) - heard(sound, 0.25, 0.2))
     assert 3.0 < rise < 40.0
@@ -135,7 +135,7 @@ def test_pressing_harder_raises_the_pitch_as_silk_does():
 # ---------------------------------------------------------------- vibrato, tremolo, dynamics
 
 
-def test_vibrato_is_as_wide_and_as_fast_as_wished():
+def test_vibrato_is_as_wide_and_as_fast_as_requested():
     stand = Stand(vibrato=30.0, vibrato_rate=6.0, vibrato_delay=0.0)
     stand.on(0.0, 76)
     sound = stand.play(1.6)

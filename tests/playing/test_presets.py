@@ -280,7 +280,7 @@ def test_a_program_is_the_players_own_before_a_shipped_one(presets, put):
 @pytest.fixture
 def instrument() -> Instrument:
     instrument = Instrument(InstrumentSpec(RATE))
-    instrument.report_wishes()
+    instrument.report_commands()
     return instrument
 
 
@@ -305,15 +305,15 @@ def test_all_of_a_load_is_heard_at_one_frame(instrument):
     live = live_player(instrument)
     live.key_on(74.0, 90.0, frame=0)
     run(instrument, 22050)
-    instrument.applied_wishes()
+    instrument.applied_commands()
     moved = ("/bow/speed", "/bow/position", "/output/gain")
     before = [instrument.target(address) for address in moved]
     far = {p.address: p.from_unit(0.3) for p in POSSIBLE.values() if p.address != "/playing/bend"}
     live.load(far, frame=23000)
     run(instrument, 4410)
-    wishes = instrument.applied_wishes()
-    assert {int(wish["frame"]) for wish in wishes} == {23000}
-    assert len(wishes) == len(far)
+    commands = instrument.applied_commands()
+    assert {int(command["frame"]) for command in commands} == {23000}
+    assert len(commands) == len(far)
     after = [instrument.target(address) for address in moved]
     assert all(now != then for now, then in zip(after, before, strict=True))
 

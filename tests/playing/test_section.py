@@ -1,4 +1,4 @@
-"""A section passes wishes on to its players: notes one by one, as they begin, all else to all."""
+"""A section passes commands on to its players: notes one by one, as they begin, all else to all."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import IN_PORT, MIDI, clear_held, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
-from yehu_server.core.player import wishes as kinds
+from yehu_server.core.player import commands as kinds
 from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.bind import Bind
@@ -34,7 +34,7 @@ CHORD = (76, 72, 67)
 
 
 class Posted(NamedTuple):
-    """A wish that an instrument was told; fields as in the record of its part."""
+    """A command that an instrument was told; fields as in the record of its part."""
 
     kind: int
     frame: int
@@ -76,9 +76,9 @@ class Told:
         m, at = self.midi, self.frame if frame is None else frame
         places = self._midi.ctypes.data, self.tables.ctypes.data
         interpret.call(*places, at, kind, index, value, other)
-        for n in range(int(m["wishes"])):
-            wish = (m[f"out_{what}"][n].item() for what in Posted.__annotations__)
-            self._part[m["out_player"][n]].all.append(Posted(*wish))
+        for n in range(int(m["commands"])):
+            command = (m[f"out_{what}"][n].item() for what in Posted.__annotations__)
+            self._part[m["out_player"][n]].all.append(Posted(*command))
         self.posted += 1
         return True
 
@@ -89,20 +89,20 @@ class Told:
         return {"pitch": self.sounding_pitch, "drained": 0, "next_frame": 0}
 
     def of(self, *chosen: int) -> list[Posted]:
-        """What it was told, of some kinds, in the order of fulfilment."""
-        return sorted((w for w in self.all if w.kind in chosen), key=lambda wish: wish.frame)
+        """What it was told, of some kinds, in the order of application."""
+        return sorted((w for w in self.all if w.kind in chosen), key=lambda command: command.frame)
 
     def begun(self) -> list[tuple[float, int]]:
         """Keys and frames of the notes begun."""
-        return [(wish.value, wish.frame) for wish in self.of(kinds.BEGIN)]
+        return [(command.value, command.frame) for command in self.of(kinds.BEGIN)]
 
     def settled(self) -> list[float]:
-        """The keys that it holds once all is fulfilled."""
+        """The keys that it holds once all is applied."""
         held: dict[float, None] = {}
-        for wish in self.of(kinds.BEGIN, kinds.END):
-            held.pop(wish.value, None)
-            if wish.kind == kinds.BEGIN:
-                held[wish.value] = None
+        for command in self.of(kinds.BEGIN, kinds.END):
+            held.pop(command.value, None)
+            if command.kind == kinds.BEGIN:
+                held[command.value] = None
         return list(held)
 
     def value(self, address: str) -> float:
@@ -117,7 +117,7 @@ kinds_of_settings = (kinds.WRITE, kinds.HOLD, kinds.EXPRESS)
 def section(people: int, playing: PlayingOptions | None = None) -> SimpleNamespace:
     told: list[Told] = []
     told += [Told(number, told) for number in range(people)]
-    return SimpleNamespace(told=told, wishes=(playing or PlayingOptions()).player(told))
+    return SimpleNamespace(told=told, commands=(playing or PlayingOptions()).player(told))
 
 
 @pytest.fixture
@@ -132,11 +132,11 @@ def four() -> SimpleNamespace:
 
 def on(to, *keys, frame, values=None):
     for key in keys:
-        to.wishes.note_on(Key(0, key), values, frame=frame)
+        to.commands.note_on(Key(0, key), values, frame=frame)
 
 
 def off(to, *keys, frame):
-    to.wishes.notes_off([Key(0, key) for key in keys], frame=frame)
+    to.commands.notes_off([Key(0, key) for key in keys], frame=frame)
 
 
 def test_players_of_a_section_lie_one_after_another():
@@ -153,7 +153,7 @@ def test_a_new_stroke_and_a_slur_stay_one_in_every_player(four):
         off(four, 67, frame=(beat + 1) * BEAT)
     for number, told in enumerate(four.told):
         acts = told.of(kinds.BEGIN, kinds.END)
-        assert [wish.kind for wish in acts] == [kinds.BEGIN, kinds.END] * 60
+        assert [command.kind for command in acts] == [kinds.BEGIN, kinds.END] * 60
         late = [w.frame - BEAT * beat for beat, w in enumerate(acts[::2])]
         assert late == [each[number] for each in expected]
         gaps = [b.frame - a.frame for a, b in zip(acts[1::2], acts[2::2], strict=False)]
@@ -164,7 +164,7 @@ def test_a_new_stroke_and_a_slur_stay_one_in_every_player(four):
         off(four, 68 - beat % 2, frame=beat * BEAT + 100)
     for told in four.told:
         acts = told.of(kinds.BEGIN, kinds.END)[1:]
-        assert [wish.kind for wish in acts[:20]] == [kinds.BEGIN, kinds.END] * 10
+        assert [command.kind for command in acts[:20]] == [kinds.BEGIN, kinds.END] * 10
 
 
 def test_a_note_ends_after_it_began_though_a_later_one_was_asked_for_before(four):
@@ -185,7 +185,7 @@ def test_a_chord_is_divided_from_the_top_each_player_in_one_stroke():
             on(ten, key, frame=BEAT + apart * at)
         assert [told.settled() for told in ten.told] == [[76]] * 4 + [[72]] * 3 + [[67]] * 3
         for told in ten.told:  # the notes of one stroke begin at one frame
-            assert len({wish.frame for wish in told.of(kinds.BEGIN, kinds.END)}) == 1 or apart
+            assert len({command.frame for command in told.of(kinds.BEGIN, kinds.END)}) == 1 or apart
 
 
 def test_keys_thirty_milliseconds_apart_are_a_line():
@@ -248,7 +248,7 @@ def test_a_key_that_sounds_again_has_its_expression_again(four):
     address = "/playing/pressure"
     on(four, 67, frame=0, values={address: 0.6})
     on(four, 69, frame=BEAT, values={address: 0.2})
-    four.wishes.post(kinds.EXPRESS, 2 * BEAT, ROW[address], 0.6)
+    four.commands.post(kinds.EXPRESS, 2 * BEAT, ROW[address], 0.6)
     off(four, 69, frame=2 * BEAT)
     for told in four.told:
         express, end = [w for w in told.all if w.kind in (kinds.EXPRESS, kinds.END)][-2:]
@@ -257,14 +257,14 @@ def test_a_key_that_sounds_again_has_its_expression_again(four):
 
 def test_a_seed_begins_the_onsets_anew_and_without_variation_all_begin_at_once(four):
     for begin in (0, 20 * BEAT):
-        four.wishes.write("/engine/seed", 5.0, frame=begin)
+        four.commands.write("/engine/seed", 5.0, frame=begin)
         for beat in range(10):
             on(four, 67, frame=begin + beat * BEAT)
             off(four, 67, frame=begin + beat * BEAT + BEAT // 2)
     frames = np.array([[frame for _, frame in told.begun()] for told in four.told])
     assert np.array_equal(frames[:, 10:] - 20 * BEAT, frames[:, :10])
     four = section(4)
-    four.wishes.write("/playing/variation", 0.0)
+    four.commands.write("/playing/variation", 0.0)
     on(four, 67, frame=BEAT)
     assert [told.begun() for told in four.told] == [[(67, BEAT)]] * 4
 
@@ -273,7 +273,7 @@ MPE = Mapping("mpe", (Bind("bend", "/playing/bend"), Bind("cc 1", "/playing/vibr
 
 
 def test_a_chord_is_bent_as_a_whole_and_in_mpe_each_note_by_itself(four):
-    midi = four.wishes.mapped(MPE)
+    midi = four.commands.mapped(MPE)
     for channel, note in ((1, 76), (2, 67)):
         midi.receive(mido.Message("note_on", note=note, channel=channel), frame=0)
     for number, (channel, pitch, bends) in enumerate([(1, 8191, (48, 0)), (2, -8192, (48, -48))]):
@@ -285,7 +285,7 @@ def test_a_chord_is_bent_as_a_whole_and_in_mpe_each_note_by_itself(four):
     midi.receive(mido.Message("control_change", control=1, value=127), frame=BEAT + 20)
     assert all(told.value("/playing/vibrato") == 100.0 for told in four.told)
     four = section(4)
-    midi = four.wishes.mapped(replace(MPE, mpe=False))
+    midi = four.commands.mapped(replace(MPE, mpe=False))
     for note in CHORD:
         midi.receive(mido.Message("note_on", note=note), frame=0)
     midi.receive(mido.Message("pitchwheel", pitch=8191), frame=BEAT)
@@ -296,70 +296,70 @@ def test_what_is_set_during_a_note_is_not_undone_as_a_late_player_begins(four):
     address = "/playing/dynamics"
     for beat in range(20):
         on(four, 67, frame=beat * BEAT, values={address: 0.5})
-        four.wishes.write(address, 0.9, frame=beat * BEAT + 10)
+        four.commands.write(address, 0.9, frame=beat * BEAT + 10)
         off(four, 67, frame=beat * BEAT + BEAT // 2)
         assert all(told.value(address) == 0.9 for told in four.told)
 
 
 def test_settings_reach_all_with_what_is_a_players_own(four):
-    four.wishes.write("/playing/vibrato", 30.0)
+    four.commands.write("/playing/vibrato", 30.0)
     assert all(told.value("/playing/vibrato") == 30.0 for told in four.told)
-    four.wishes.write("/output/gain", -3.0)
-    assert four.wishes.value("/output/gain") == -3.0
+    four.commands.write("/output/gain", -3.0)
+    assert four.commands.value("/output/gain") == -3.0
     assert four.told[2].value("/output/gain") == pytest.approx(-3.0 - 10.0 * np.log10(4.0))
-    four.wishes.write("/room/pan", 0.1)
+    four.commands.write("/room/pan", 0.1)
     assert np.mean([told.value("/room/pan") for told in four.told]) == pytest.approx(0.1)
-    four.wishes.write("/engine/seed", 5.0)
+    four.commands.write("/engine/seed", 5.0)
     assert len({told.value("/engine/seed") for told in four.told}) == 4
 
 
 def test_a_setting_is_there_from_the_first_sample_in_every_player(four):
-    four.wishes.start_with("/output/gain", 2.0)
+    four.commands.start_with("/output/gain", 2.0)
     for told in four.told:
         jump = told.of(kinds.RAMP)[-1]
         assert ENGINE[jump.index].address == "/output/gain"
         assert (jump.frame, jump.other) == (0, 0.0)
         assert jump.value == told.value("/output/gain") == pytest.approx(2.0 - 6.0206)
     alone = section(1)
-    alone.wishes.start_with("/output/gain", 2.0)
+    alone.commands.start_with("/output/gain", 2.0)
     assert alone.told[0].all[-1] == Posted(kinds.RAMP, 0, SLOT["/output/gain"], 2.0, 0.0)
 
 
 def test_fewer_and_more_may_play_but_not_more_than_there_are(four):
-    assert four.wishes.value("/playing/section") == 4.0
+    assert four.commands.value("/playing/section") == 4.0
     on(four, 67, frame=0)
-    assert four.wishes.write("/playing/section", 2.0, frame=BEAT) == 2.0
+    assert four.commands.write("/playing/section", 2.0, frame=BEAT) == 2.0
     assert [told.settled() for told in four.told] == [[67]] * 2 + [[]] * 2
     assert four.told[0].value("/output/gain") == pytest.approx(-10.0 * np.log10(2.0))
     on(four, 69, frame=2 * BEAT)
     assert [told.settled() for told in four.told] == [[67, 69]] * 2 + [[]] * 2
     off(four, 67, 69, frame=3 * BEAT)
-    assert four.wishes.write("/playing/section", 16.0, frame=4 * BEAT) == 4.0
+    assert four.commands.write("/playing/section", 16.0, frame=4 * BEAT) == 4.0
     on(four, 72, frame=5 * BEAT)
     assert all(told.settled() == [72] for told in four.told)
-    assert section(1).wishes.write("/playing/section", 16.0) == 1.0
+    assert section(1).commands.write("/playing/section", 16.0) == 1.0
 
 
 def test_a_gain_that_is_held_stays_so_as_players_rest(four):
-    four.wishes.write("/output/gain", -5.0, hold=True)
-    four.wishes.write("/playing/section", 1.0)
+    four.commands.write("/output/gain", -5.0, hold=True)
+    four.commands.write("/playing/section", 1.0)
     last = [w for w in four.told[0].all if w.index == ROW["/output/gain"]][-1]
     assert (last.kind, last.value) == (kinds.HOLD, -5.0)
 
 
 def test_the_pitch_is_that_of_the_first_who_plays(four):
-    assert four.wishes.pitch is None
+    assert four.commands.pitch is None
     four.told[2].sounding_pitch = 67.0
-    assert four.wishes.pitch == 67.0
+    assert four.commands.pitch == 67.0
 
 
 def test_the_finger_of_those_who_play_the_last_key_slides(four):
     on(four, 76, frame=0)
     on(four, 67, frame=0)
-    four.wishes.slide(68.0, frame=BEAT)
+    four.commands.slide(68.0, frame=BEAT)
     assert [len(told.of(kinds.SLIDE)) for told in four.told] == [0, 0, 1, 1]
     off(four, 76, 67, frame=2 * BEAT)
-    four.wishes.slide(70.0, frame=3 * BEAT)
+    four.commands.slide(70.0, frame=3 * BEAT)
     assert all(told.of(kinds.SLIDE)[-1].value == 70.0 for told in four.told)
 
 
@@ -371,11 +371,11 @@ def test_notes_that_ended_with_the_audio_process_are_forgotten(four):
     assert [len(told.of(kinds.END)) for told in four.told] == before
 
 
-def test_a_panic_comes_after_the_notes_that_were_wished_before_it(four):
+def test_a_panic_comes_after_the_notes_that_were_requested_before_it(four):
     for beat in range(20):
         on(four, 67, frame=beat * BEAT)
-        four.wishes.notes_off([Key(0, 67)], frame=beat * BEAT + 5)
-        four.wishes.stop_sound(frame=beat * BEAT + 5, is_panic=True)
+        four.commands.notes_off([Key(0, 67)], frame=beat * BEAT + 5)
+        four.commands.stop_sound(frame=beat * BEAT + 5, is_panic=True)
         for told in four.told:
             assert told.of(kinds.BEGIN, kinds.END, kinds.STOP)[-1].kind == kinds.STOP
 
@@ -398,7 +398,7 @@ def played(playing: PlayingOptions, people: int, block: int, seconds: float = 1.
     return sounds
 
 
-def test_the_same_wishes_give_the_same_samples_in_blocks_of_any_size():
+def test_the_same_commands_give_the_same_samples_in_blocks_of_any_size():
     playing = replace(PlayingOptions(seed=9), start=(("/playing/section", 2.0),))
     sounds = played(playing, 2, 4096)
     assert np.array_equal(sounds, played(playing, 2, 100))
@@ -414,8 +414,8 @@ def test_no_note_hangs_whatever_is_played(seed):
     people = int(random.integers(2, 7))
     playing = replace(PlayingOptions(), start=(("/playing/section", float(people)),))
     part = section(people, playing)
-    told, wishes = part.told, part.wishes
-    midi = playing.mapped(wishes)
+    told, commands = part.told, part.commands
+    midi = playing.mapped(commands)
     frame = 0
     for number in range(400):
         frame += int(random.choice([0, 0, 100, 1500, 6000, 20000]))
@@ -428,9 +428,9 @@ def test_no_note_hangs_whatever_is_played(seed):
             fields = {"note": note, "velocity": int(random.integers(0, 127))}
         midi.receive(mido.Message(str(kind), channel=channel, **fields), frame=frame)
         if number % 50 == 49:
-            wishes.write("/playing/section", float(random.integers(1, 7)), frame=frame)
+            commands.write("/playing/section", float(random.integers(1, 7)), frame=frame)
         if number % 10 == 9:
-            held = {key.note for key in wishes.held()}
+            held = {key.note for key in commands.held()}
             assert all(set(each.settled()) <= held for each in told)
     midi.end_all(frame=frame)
     assert not any(each.settled() for each in told)
@@ -455,10 +455,10 @@ def test_players_add_up_as_people_do_and_not_as_copies_of_one():
 def test_a_reset_lets_all_play_that_played_at_the_start():
     playing = replace(PlayingOptions(), start=(("/playing/section", 4.0),))
     part = section(4, playing)
-    told, wishes = part.told, part.wishes
-    playing.mapped(wishes)
-    wishes.write("/playing/section", 1.0, frame=10)
-    wishes.reset(frame=20)
-    assert wishes.value("/playing/section") == 4.0
-    wishes.note_on(Key(0, 67), frame=BEAT)
+    told, commands = part.told, part.commands
+    playing.mapped(commands)
+    commands.write("/playing/section", 1.0, frame=10)
+    commands.reset(frame=20)
+    assert commands.value("/playing/section") == 4.0
+    commands.note_on(Key(0, 67), frame=BEAT)
     assert all(each.settled() == [67] for each in told)

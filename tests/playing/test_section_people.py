@@ -143,8 +143,8 @@ def test_a_part_of_one_player_is_the_instrument_of_its_style():
         playing.spec(44100.0, ideal()),
     ):
         instrument = Instrument(spec)
-        wishes = playing.player(instrument)
-        wishes.draw(0.2, 0.6, frame=0)
+        commands = playing.player(instrument)
+        commands.draw(0.2, 0.6, frame=0)
         out.append(np.zeros(4410, np.float32))
         instrument.process(out[-1])
     assert np.abs(out[0]).max() > 1e-3
@@ -155,10 +155,10 @@ def vibratos(variation):
     """Rate and depth of the vibrato of each of six, and its phase as their note begins."""
     specs = section_specs(PlayingOptions(), 44100.0, ideal(), people=6)
     ensemble = Ensemble(specs, has_room=False)
-    wishes = PlayingOptions().player(ensemble.instruments)
-    wishes.write("/playing/variation", variation)
-    wishes.write("/playing/vibrato", 30.0)
-    wishes.note_on(Key(0, 74))
+    commands = PlayingOptions().player(ensemble.instruments)
+    commands.write("/playing/variation", variation)
+    commands.write("/playing/vibrato", 30.0)
+    commands.note_on(Key(0, 74))
     ensemble.process(np.zeros((441, 2), np.float32))
     found = []
     for instrument in ensemble.instruments:

@@ -143,10 +143,10 @@ def test_strings_in_fourths_are_stopped_where_their_notes_are():
     spec = in_fourths()
     for note, string, stop in ((67, 0, 0), (71, 0, 4), (72, 1, 0), (79, 1, 7), (50, 0, 0)):
         instrument = Instrument(spec)
-        wishes = Player(instrument)
-        assert (wishes.notes.ends, wishes.policy.fit(66.0, wishes.notes)) == ((67, 89), 78.0)
-        wishes.write("/playing/variation", 0.0)
-        wishes.note_on(Key(0, note), tuned=float(note))
+        commands = Player(instrument)
+        assert (commands.notes.ends, commands.policy.fit(66.0, commands.notes)) == ((67, 89), 78.0)
+        commands.write("/playing/variation", 0.0)
+        commands.note_on(Key(0, note), tuned=float(note))
         instrument.process(np.zeros(256, np.float32))
         player = instrument._rig["player"][0]
         length = player["wave_speed"][string] / (2.0 * hertz(spec.notes.open_notes[string]))

@@ -6,7 +6,7 @@ import mido
 import numpy as np
 import pytest
 from ahead.likeness import NEAR, apart, are_near, begins_alike
-from ahead.streams import BLOCK, RATE, REPORTING, Step, Stream, record_in, wishes_in
+from ahead.streams import BLOCK, RATE, REPORTING, Step, Stream, commands_in, record_in
 from ahead.test_streams import assert_near
 from plugin.sounds import PHRASE, played, prepared, script, write_midi
 
@@ -42,20 +42,20 @@ def messages(file):
 
 
 def by_render(file, monkeypatch):
-    """Samples and wishes of `render`, which takes the lengths of notes from the score otherwise."""
+    """Samples and commands of `render`, which else takes the lengths of notes from the score."""
     monkeypatch.setattr(performance, "notes_of", lambda _score: ())
     options = Options(rate=int(RATE), tail_s=0.0)
     playing = performance.Performance([Part(read_score(file))], options, reports=True)
     samples = np.concatenate(list(playing.blocks()))[:FRAMES]
-    wishes = wishes_in(playing.ensemble.first._rig)
-    return samples, wishes[wishes["index"] != ROW["/playing/phrasing"]]
+    commands = commands_in(playing.ensemble.first._rig)
+    return samples, commands[commands["index"] != ROW["/playing/phrasing"]]
 
 
 def by_library(path, messages):
     library, memory = prepared(path, RATE)
     record = memory[: RIG.itemsize]
     record.view(np.int64)[REPORTING] = 1
-    return played(library, memory, messages, FRAMES), wishes_in(record.view(RIG))
+    return played(library, memory, messages, FRAMES), commands_in(record.view(RIG))
 
 
 def by_page(node, messages, folder):
@@ -65,13 +65,13 @@ def by_page(node, messages, folder):
     files = {name: str(folder / name) for name in ("memory", "samples")}
     assert node("streams.mjs", **job, **files, reporting=REPORTING) == {"finite": True, "lost": 0}
     samples = np.fromfile(folder / "samples", np.float32).reshape(-1, 2)
-    return samples, wishes_in(record_in(folder / "memory"))
+    return samples, commands_in(record_in(folder / "memory"))
 
 
-def test_a_file_comes_to_the_same_wishes_and_samples(
+def test_a_file_comes_to_the_same_commands_and_samples(
     file, messages, library, node, play, tmp_path, monkeypatch
 ):
-    """A plug-in reports no wishes; its samples are the library's, to the last bit."""
+    """A plug-in reports no commands; its samples are the library's, to the last bit."""
     assert messages == [(frame, *data) for frame, *data in PHRASE]
     rendered, wanted = by_render(file, monkeypatch)
     in_c, found = by_library(library, messages)

@@ -1,4 +1,4 @@
-"""Captures: written as wishes are fulfilled, readable whatever ends them."""
+"""Captures: written as commands are applied, readable whatever ends them."""
 
 from __future__ import annotations
 
@@ -21,10 +21,9 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.player.bowing import default_bowing_table
 from yehu_server.core.player.calibration import PITCHES, ROWS_OF_A_YEHU, SPEEDS, Calibration
-from yehu_server.core.player.fingering import OpenStrings
-from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import (
+from yehu_server.core.player.commands import (
     BEGIN,
+    COMMAND,
     DRAW,
     END,
     EXPRESS,
@@ -35,9 +34,10 @@ from yehu_server.core.player.wishes import (
     RELEASE,
     SLIDE,
     STOP,
-    WISH,
     WRITE,
 )
+from yehu_server.core.player.fingering import OpenStrings
+from yehu_server.core.player.rows import ROW
 from yehu_server.errors import OutputError, ScoreError, YehuError
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.options import PlayingOptions
@@ -62,9 +62,9 @@ def plain() -> SessionStart:
 
 @pytest.fixture
 def write(plain):
-    def write(path, wishes=(), end=None, gaps=(), lost=0):
+    def write(path, commands=(), end=None, gaps=(), lost=0):
         writer = CaptureWriter(path, beginning=plain)
-        writer.wishes(np.array(list(wishes), WISH))
+        writer.commands(np.array(list(commands), COMMAND))
         for frame in gaps:
             writer.note("rest", frame, since=frame)
         if lost:
@@ -128,14 +128,14 @@ EACH_KIND = {
 }
 
 
-def test_each_kind_of_wish_is_read_to_the_bit(tmp_path, write):
+def test_each_kind_of_command_is_read_to_the_bit(tmp_path, write):
     assert EACH_KIND.keys() == set(KINDS)
-    for kind, wishes in EACH_KIND.items():
-        path = write(tmp_path / kind, wishes, end=9)
+    for kind, commands in EACH_KIND.items():
+        path = write(tmp_path / kind, commands, end=9)
         assert {json.loads(line)[2] for line in path.read_text().splitlines()[1:-1]} == {kind}
         capture = read_capture(path)
-        assert capture.wishes.dtype == WISH
-        assert capture.wishes.tolist() == wishes, kind
+        assert capture.commands.dtype == COMMAND
+        assert capture.commands.tolist() == commands, kind
         header = (capture.version, capture.rate, capture.frames, capture.warnings)
         assert header == (3, RATE, 9, [])
 
@@ -197,7 +197,7 @@ def test_a_session_that_crashed_can_be_read_with_a_warning_of_what_it_lost(tmp_p
     path = write(tmp_path / "c", RAMPS)
     path.write_text(path.read_text()[:-9])  # in the middle of the last line
     capture = read_capture(path)
-    assert len(capture.wishes) == 2
+    assert len(capture.commands) == 2
     assert capture.frames == 8 + 48000
     assert "did not end properly" in capture.warnings[0]
     path = write(tmp_path / "d", RAMPS, end=9001, lost=4)
@@ -246,33 +246,33 @@ ADDRESSES = [
 ]
 
 
-def wish_something(instrument, wishes, chance) -> None:
+def command_something(instrument, commands, chance) -> None:
     """Ask a player for anything, mostly for notes: now, soon, or for a frame that has passed."""
     frame = instrument.frame + chance.choice([-500, 0, 0, 1, 30, 700])
     what = chance.randrange(12)
     key = Key(chance.choice([-1, 0, 5]), chance.choice([65, 66.25, 69, 72, 74, 77.5, 88, 40]))
     if what < 4:
         values = {"/playing/dynamics": chance.random(), "/playing/attack": 20.0 * chance.random()}
-        wishes.note_on(key, values, frame=frame)
+        commands.note_on(key, values, frame=frame)
     elif what < 6:
-        ending = wishes.held()[: chance.randrange(1, 3)]
+        ending = commands.held()[: chance.randrange(1, 3)]
         if ending:
-            wishes.post(EXPRESS, frame, ROW["/playing/speed"], 0.2)
-        wishes.notes_off(ending, frame=frame)
+            commands.post(EXPRESS, frame, ROW["/playing/speed"], 0.2)
+        commands.notes_off(ending, frame=frame)
     elif what < 9:
         param = find(chance.choice(ADDRESSES))
         value = chance.uniform(param.lo, param.hi)
         glide_ms, hold = chance.choice([0.0, 33.3]), chance.random() < 0.1
-        wishes.write(param.address, value, frame=frame, hold=hold, glide_ms=glide_ms)
+        commands.write(param.address, value, frame=frame, hold=hold, glide_ms=glide_ms)
     elif what == 9:
-        wishes.slide(60.0 + 30.0 * chance.random(), frame=frame)
-        wishes.draw(chance.uniform(-0.3, 0.3), chance.random(), frame=frame)
+        commands.slide(60.0 + 30.0 * chance.random(), frame=frame)
+        commands.draw(chance.uniform(-0.3, 0.3), chance.random(), frame=frame)
     elif what == 10:
-        wishes.lift(frame=frame)
-        wishes.notes_off(wishes.held(), frame=frame)
-        wishes.stop_sound(frame=frame)
+        commands.lift(frame=frame)
+        commands.notes_off(commands.held(), frame=frame)
+        commands.stop_sound(frame=frame)
     elif chance.random() < 0.3:
-        wishes.release(frame=frame)
+        commands.release(frame=frame)
 
 
 @pytest.mark.parametrize(("seed", "players"), [(1, 1), (2, 3), (3, 2)])
@@ -288,13 +288,13 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
     )
     asked = [playing.player(one) for playing, one in zip(per_part, stage.instruments, strict=True)]
     for one in stage.instruments:
-        one.report_wishes()
+        one.report_commands()
     capture = LiveCapture(stage, tmp_path / "c", said.append, has_room=True)
     played, frames = [], 0
     while frames < 2 * RATE:
         if chance.random() < 0.3:
             number = chance.randrange(players)
-            wish_something(stage.instruments[number], asked[number], chance)
+            command_something(stage.instruments[number], asked[number], chance)
         if chance.random() < 0.05:
             address = chance.choice(["/room/size", "/room/level", "/room/pan", "/room/decay"])
             stage.instruments[chance.randrange(players)].write(address, chance.uniform(0.2, 1.0))
@@ -315,10 +315,10 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
     assert said == []
     meters = [one.meters() for one in stage.instruments]
     assert sum(each["late_events"] for each in meters) > 5
-    assert sum(wishes.notes_played for wishes in asked) > 20
+    assert sum(commands.notes_played for commands in asked) > 20
     read = read_capture(tmp_path / "c")
     assert np.bincount(read.players).tolist() == [each["applied"] for each in meters]
-    assert len(set(read.wishes["kind"])) > 6
+    assert len(set(read.commands["kind"])) > 6
     assert bool(read.gaps) == bool(seed % 2)
     assert read.frames == frames
     expected = np.concatenate(played)
@@ -328,16 +328,16 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
     np.testing.assert_array_equal(again, expected)
 
 
-def test_wishes_of_several_players_are_read_in_the_order_of_frames(tmp_path):
+def test_commands_of_several_players_are_read_in_the_order_of_frames(tmp_path):
     beginning = session_start_of(
         [Instrument(InstrumentSpec(RATE)), Instrument(InstrumentSpec(RATE))], has_room=True
     )
     writer = CaptureWriter(tmp_path / "c", beginning=beginning)
     for player, frames in [(1, [5, 9]), (0, [3, 7]), (1, [9]), (0, [8])]:
-        writer.wishes(np.array([(frame, LIFT, 0, 0.0, 0.0) for frame in frames], WISH), player)
+        writer.commands(np.array([(frame, LIFT, 0, 0.0, 0.0) for frame in frames], COMMAND), player)
     writer.close(10)
     read = read_capture(tmp_path / "c")
-    found = zip(read.wishes["frame"].tolist(), read.players.tolist(), strict=True)
+    found = zip(read.commands["frame"].tolist(), read.players.tolist(), strict=True)
     assert list(found) == [(3, 0), (5, 1), (7, 0), (8, 0), (9, 1), (9, 1)]
     assert read.beginning.has_room
 
@@ -408,7 +408,7 @@ def test_a_file_of_version_1_sounds_as_its_ramps_do_from_its_own_values(tmp_path
     values = {param.address: param.default for param in ENGINE if param.address not in unknown}
     path = first_version(tmp_path / "c", MOVES, values | own, end=15000, gaps=[5000])
     capture = read_capture(path)
-    assert (capture.version, len(capture.wishes), capture.warnings) == (1, len(MOVES), [])
+    assert (capture.version, len(capture.commands), capture.warnings) == (1, len(MOVES), [])
     samples = replayed(path)
     np.testing.assert_array_equal(samples, written(MOVES, gaps=[5000], start_values=own))
     assert rms(samples[5500:9000]) > 0.001
@@ -426,11 +426,11 @@ def test_a_full_disk_leaves_whole_lines(tmp_path, plain):
     resource.setrlimit(resource.RLIMIT_FSIZE, (len(begun) + len(first) + 9, hard))
     try:
         with pytest.raises(OutputError, match="cannot write"):
-            writer.wishes(np.array([(frame, RAMP, SPEED, 0.5, 0.0) for frame in (1, 2)], WISH))
+            writer.commands(np.array([(frame, RAMP, SPEED, 0.5, 0.0) for frame in (1, 2)], COMMAND))
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert path.read_bytes() == begun + first.encode()
-    assert len(read_capture(path).wishes) == 1
+    assert len(read_capture(path).commands) == 1
 
 
 def test_an_older_capture_is_replaced_only_where_that_is_asked_for(tmp_path, write, plain):
@@ -472,7 +472,7 @@ NO_RAMPS = [
     '[0, ["/bow/speed"], 0.1, 0]',
     '[0, "begin", 0, 69.0, 69.0]',
 ]
-NO_WISHES = [
+NO_COMMANDS = [
     *("nonsense", "[]", "[0]", "[0, 1]", "[0, 1, 4]", '[0, 1, "jump"]', '[0, 1, ["lift"]]'),
     # Frames and players that there are not; as in version 2, and in version 1.
     *(
@@ -521,7 +521,7 @@ def refusal_of(path) -> str:
 
 
 def test_a_line_that_no_instrument_wrote_is_named_and_refused(tmp_path, write):
-    refuse_lines(write(tmp_path / "c", RAMPS[:1]), [*NO_WISHES, *NO_FRAMES])
+    refuse_lines(write(tmp_path / "c", RAMPS[:1]), [*NO_COMMANDS, *NO_FRAMES])
     refuse_lines(first_version(tmp_path / "first", MOVES[:1]), [*NO_RAMPS, *NO_FRAMES])
 
 
@@ -553,9 +553,9 @@ def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
 
 
 def test_a_long_session_is_read_whole(tmp_path, monkeypatch, write):
-    wishes = [(frame, RAMP, SPEED, 0.1, 0.0) for frame in range(10)]
-    assert read_capture(write(tmp_path / "c", wishes)).wishes.tolist() == wishes
-    monkeypatch.setattr("yehu_server.scores.capture.MOST_WISHES", 8)
+    commands = [(frame, RAMP, SPEED, 0.1, 0.0) for frame in range(10)]
+    assert read_capture(write(tmp_path / "c", commands)).commands.tolist() == commands
+    monkeypatch.setattr("yehu_server.scores.capture.MOST_COMMANDS", 8)
     with pytest.raises(ScoreError, match="more than 8 events"):
         read_capture(tmp_path / "c")
 

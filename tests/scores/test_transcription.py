@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.commands import BEGIN, COMMAND, END, EXPRESS, STOP, WRITE
 from yehu_server.core.player.rows import ROW, VELOCITY
-from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, STOP, WISH, WRITE
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
@@ -157,7 +157,7 @@ def test_a_capture_is_written_as_its_players_played(tmp_path):
     path = tmp_path / "session.jsonl"
     writer = CaptureWriter(path, beginning=SessionStart((InstrumentSpec(RATE),)))
     second = int(RATE)
-    wishes = [
+    commands = [
         (0, EXPRESS, VELOCITY, 80 / 127, 0.0),
         (0, BEGIN, 0, 67.0, 67.0),
         (second, BEGIN, 0, 60.0, 72.0),  # C4, moved into range; it begins while G4 is held
@@ -165,7 +165,7 @@ def test_a_capture_is_written_as_its_players_played(tmp_path):
         (2 * second - 1, WRITE, ROW["/bow/force"], 1.0, 0.0),  # which no score has
         (2 * second, STOP, 0, 0.0, 0.0),
     ]
-    writer.wishes(np.array(wishes, WISH))
+    writer.commands(np.array(commands, COMMAND))
     writer.close(3 * second)
     written, left = read_as_written(path, tempo=60.0)
     [part] = written.parts

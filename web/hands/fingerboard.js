@@ -114,7 +114,7 @@ export class Fingerboard extends EventTarget {
 
   /** @param {Touch[]} touches */
   #move(touches) {
-    // A finger is where it is last: a wish for each point of its way says no more.
+    // A finger is where it is last: a request for each point of its way says no more.
     const touch = touches[touches.length - 1];
     const held = this.touches.get(touch.id);
     if (!held) return;

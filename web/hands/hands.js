@@ -7,7 +7,7 @@ import { OPEN, withinRange } from "./scale.js";
 
 const DYNAMICS = "/playing/dynamics";
 const VIBRATO = "/playing/vibrato";
-/** Least change of the dynamics that is worth a wish, as a share of them. */
+/** Least change of the dynamics that is worth a command, as a share of them. */
 const STEP = 0.02;
 /** After so long without a finger, ms, others play as loud as before: a note has died away. */
 const RETURNS_AFTER = 600;

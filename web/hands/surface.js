@@ -16,12 +16,12 @@ const FARTHEST = 0.5;
 export class Surface extends EventTarget {
   /**
    * @param {HTMLElement} stage
-   * @param {string} wished direction of rising pitches, "across" or "down"; else as the stage has room
+   * @param {string} requested direction of rising pitches, "across" or "down"; else as the stage has room
    */
-  constructor(stage, wished) {
+  constructor(stage, requested) {
     super();
     this.stage = stage;
-    this.wished = wished;
+    this.requested = requested;
     this.direction = "across";
     this.length = this.breadth = 1; // px
     this.board = [0, 1]; // where it begins and ends along the strings, px
@@ -30,16 +30,16 @@ export class Surface extends EventTarget {
     this.measure();
   }
 
-  /** @param {string} wished */
-  turn(wished) {
-    this.wished = wished;
+  /** @param {string} requested */
+  turn(requested) {
+    this.requested = requested;
     this.measure();
   }
 
   measure() {
     const { clientWidth: width, clientHeight: height, style } = this.stage;
-    const isWished = ["across", "down"].includes(this.wished);
-    this.direction = isWished ? this.wished : height > width ? "down" : "across";
+    const isRequested = ["across", "down"].includes(this.requested);
+    this.direction = isRequested ? this.requested : height > width ? "down" : "across";
     this.stage.classList.toggle("down", this.isUpright);
     [this.length, this.breadth] = this.isUpright ? [height, width] : [width, height];
     this.round = Math.min(ROUND * this.length, WIDEST * this.breadth);

@@ -1,7 +1,7 @@
 /**
  * What MIDI, mappings and hands mean: the server's own code, in WebAssembly, on the page's thread.
  *
- * Events go in (`facts.events`), and wishes come out (`facts.kinds`).
+ * Events go in (`facts.events`), and commands come out (`facts.kinds`).
  */
 
 import facts from "../facts.js";
@@ -10,7 +10,7 @@ import { room, wasmImports } from "../sound/kernel.js";
 const { record, tablesAt, length, slots } = facts.interpreter;
 const HALVES = 2; // of a whole number, whose lower one holds all that pages read
 
-/** @typedef {[kind: number, index: number, value: number, other: number]} Wished */
+/** @typedef {[kind: number, index: number, value: number, other: number]} Requested */
 
 export class Interpreter {
   /**
@@ -76,7 +76,7 @@ export class Interpreter {
    * @param {number} index
    * @param {number} value
    * @param {number} other
-   * @returns {Wished[]}
+   * @returns {Requested[]}
    */
   take(frame, kind, index, value, other) {
     const { out_kind, out_index, out_value, out_other } = record;

@@ -1,4 +1,4 @@
-/** The part that the page plays: interprets events to wishes, and keeps the values of its parameters. */
+/** The part that the page plays: interprets events to commands, and keeps the values of its parameters. */
 
 import facts from "../facts.js";
 import { FREE, find } from "./table.js";
@@ -24,7 +24,7 @@ const TOLD_WITHIN_S = 0.1;
  *   and controllers move from
  * @property {(row: number, value: number) => unknown} [follow] take what others have set
  *
- * @typedef {Pick<SoundMembers, "post" | "frame" | "target" | "reported" | "people"> & Others} Sink What wishes
+ * @typedef {Pick<SoundMembers, "post" | "frame" | "target" | "reported" | "people"> & Others} Sink What commands
  *   are posted to.
  */
 
@@ -61,8 +61,8 @@ export class Part {
     if (interpreter === null) return;
     this.#learnValues(interpreter);
     // What is for now has a frame of its own, before all others.
-    const wishes = interpreter.take(frame ?? --this.#now, kind, index, value, other);
-    for (const [kind, index, value, other] of wishes) {
+    const commands = interpreter.take(frame ?? --this.#now, kind, index, value, other);
+    for (const [kind, index, value, other] of commands) {
       const isSection = kind === WRITE && index === SECTION;
       this.#post(frame, kind, index, isSection ? this.#people(interpreter, value) : value, other);
     }
@@ -76,7 +76,7 @@ export class Part {
       const wasSet = this.#news(address, row);
       if (wasSet !== undefined && row !== SECTION) {
         this.#told.set(row, wasSet);
-        // Notes to come begin with it; what it comes to now, others have wished already.
+        // Notes to come begin with it; what it comes to now, others have requested already.
         if (interpreter.isTarget(row)) interpreter.take(--this.#now, SET, row, wasSet, 0);
         else values[row] = wasSet;
         this.#sink.follow?.(row, wasSet);

@@ -30,7 +30,7 @@ const [BOW_SPEED, BOW_FORCE] = ["/bow/speed", "/bow/force"].map(find);
  */
 
 /**
- * Plays the instrument: each call is an event for the interpreter, which makes wishes of it at a
+ * Plays the instrument: each call is an event for the interpreter, which makes commands of it at a
  * frame, or now. Before there is an interpreter calls do nothing, but for `panic`.
  *
  * Frames may lie ahead, as of a tune that is played; `endNotes` and `panic` come after all of them.
@@ -73,7 +73,7 @@ export class Player {
   }
 
   /**
-   * A frame after which nothing is wished yet, or now.
+   * A frame after which nothing is requested yet, or now.
    * @param {number | null} frame
    * @returns {number | null}
    */
@@ -159,7 +159,7 @@ export class Player {
   }
 
   /**
-   * End the notes of a port that is gone; without a frame, after all that is wished of it ahead.
+   * End the notes of a port that is gone; without a frame, after all that is requested of it ahead.
    * @param {number} port
    * @param {number | null} frame
    */

@@ -3,19 +3,19 @@
  * It takes messages and tells others.
  */
 
-import { CHANNELS, Kernel, NOW, VOICE_WISH, WISH } from "./kernel.js";
+import { CHANNELS, Kernel, NOW, VOICE_COMMAND, COMMAND } from "./kernel.js";
 
 const SNAPSHOTS_A_SECOND = 60;
 const CHUNK = 4096; // recorded frames that are told at a time
 const FAINT = 1e-3; // of full scale; what is fainter dies away within the time that follows
-const SLEEPS_AFTER_S = 4; // without a wish or a sound
+const SLEEPS_AFTER_S = 4; // without a command or a sound
 const MOST_SNAPSHOTS = 4; // that nobody has given back yet; then nobody is looking
 
 /**
  * @typedef {object} Take
- * @property {Float64Array} [wishes] WISH numbers each
+ * @property {Float64Array} [commands] COMMAND numbers each
  * @property {boolean} [record] begins or ends a recording
- * @property {boolean} [keep] begins or ends keeping the wishes that are fulfilled
+ * @property {boolean} [keep] begins or ends keeping the commands that are applied
  * @property {Float64Array} [seen] a snapshot, given back
  * @property {number[] | null} [voice] begins following a voice, moved to these pitches if there are
  *   any; null ends it
@@ -27,7 +27,7 @@ const MOST_SNAPSHOTS = 4; // that nobody has given back yet; then nobody is look
  * @property {number} [load] share of the time that computing takes
  * @property {Float32Array} [recorded] samples, left and right in turn
  * @property {boolean} [isLast] of a recording
- * @property {{from: number, to: number, wishes: number[]}} [kept] frames, and WISH numbers each
+ * @property {{from: number, to: number, commands: number[]}} [kept] frames, and COMMAND numbers each
  */
 
 export class Engine {
@@ -60,19 +60,19 @@ export class Engine {
   }
 
   /** @param {Take} message */
-  take({ wishes, record, keep, seen, voice }) {
+  take({ commands, record, keep, seen, voice }) {
     if (seen) this.free.push(seen);
     if (voice !== undefined) this.#follow(voice);
-    if (wishes) {
+    if (commands) {
       this.sleeps = false;
       this.restless = this.frame;
-      for (let i = 0; i < wishes.length; i += WISH) {
-        this.#post(wishes[i], wishes.subarray(i + 1, i + WISH));
+      for (let i = 0; i < commands.length; i += COMMAND) {
+        this.#post(commands[i], commands.subarray(i + 1, i + COMMAND));
       }
     }
     if (keep === true) [this.kept, this.keptFrom] = [[], this.frame];
     else if (keep === false && this.kept) {
-      this.tell({ kept: { from: this.keptFrom, to: this.frame, wishes: this.kept } }, []);
+      this.tell({ kept: { from: this.keptFrom, to: this.frame, commands: this.kept } }, []);
       this.kept = null;
     }
     if (record === true) {
@@ -81,11 +81,11 @@ export class Engine {
     } else if (record === false) this.#endRecording();
   }
 
-  /** @param {number} frame or NOW @param {Float64Array} wish kind, index, value, other */
-  #post(frame, wish) {
-    const isTaken = this.kernel.post(frame, wish[0], wish[1], wish[2], wish[3]);
+  /** @param {number} frame or NOW @param {Float64Array} command kind, index, value, other */
+  #post(frame, command) {
+    const isTaken = this.kernel.post(frame, command[0], command[1], command[2], command[3]);
     this.restless = Math.max(this.restless, frame);
-    if (isTaken && this.kept) this.kept.push(Math.max(frame, this.frame), ...wish);
+    if (isTaken && this.kept) this.kept.push(Math.max(frame, this.frame), ...command);
   }
 
   /** @param {number[] | null} tuning of the voice to follow from now on; null for none */
@@ -102,13 +102,13 @@ export class Engine {
   /** Follow a voice, where one is followed. @param {Float32Array} samples at most a block */
   hear(samples) {
     if (!this.follows) return;
-    const wishes = this.kernel.follow(samples);
-    if (wishes.length) {
+    const commands = this.kernel.follow(samples);
+    if (commands.length) {
       this.sleeps = false;
       this.restless = this.frame;
     }
-    for (let i = 0; i < wishes.length; i += VOICE_WISH) {
-      this.#post(NOW, wishes.subarray(i, i + VOICE_WISH));
+    for (let i = 0; i < commands.length; i += VOICE_COMMAND) {
+      this.#post(NOW, commands.subarray(i, i + VOICE_COMMAND));
     }
   }
 

@@ -1,5 +1,5 @@
 /**
- * The instrument in WebAssembly: post wishes, compute samples, take snapshots.
+ * The instrument in WebAssembly: post commands, compute samples, take snapshots.
  *
  * It is the very callback of the server, compiled ahead of time. It runs in an audio worklet, on the
  * page's own thread, and in Node.
@@ -10,26 +10,26 @@ const ALIGNED = 64; // bytes
 const SECOND_NS = 1_000_000_000n;
 const KEYS = 128; // of a tuning
 
-/** Wishes for the frame that is computed next, whichever it is, have this one. */
+/** Commands for the frame that is computed next, whichever it is, have this one. */
 export const NOW = -1;
 
 /** Left and right, in turn. */
 export const CHANNELS = 2;
 
-/** Numbers of a wish in a message: frame or NOW, kind, index, value, other. */
-export const WISH = 5;
+/** Numbers of a command in a message: frame or NOW, kind, index, value, other. */
+export const COMMAND = 5;
 
-/** Gathers the wishes of one turn of the page, which go together. */
-export class WishBatch {
+/** Gathers the commands of one turn of the page, which go together. */
+export class CommandBatch {
   /** @type {number[]} */
   #numbers = [];
 
-  /** @param {(wishes: Float64Array<ArrayBuffer>) => void} send */
+  /** @param {(commands: Float64Array<ArrayBuffer>) => void} send */
   constructor(send) {
     this.send = send;
   }
 
-  /** Post a wish; `frame` null is now. @type {import('../interfaces.js').Post} */
+  /** Post a command; `frame` null is now. @type {import('../interfaces.js').Post} */
   post = (frame, kind, index, value, other) => {
     if (this.#numbers.length === 0) {
       queueMicrotask(() => this.send(Float64Array.from(this.#numbers.splice(0))));
@@ -38,9 +38,9 @@ export class WishBatch {
   };
 }
 
-/** Numbers of a wish of a voice, which has no frame; and the most of a block. */
-export const VOICE_WISH = WISH - 1;
-const VOICE_WISHES = 64;
+/** Numbers of a command of a voice, which has no frame; and the most of a block. */
+export const VOICE_COMMAND = COMMAND - 1;
+const VOICE_COMMANDS = 64;
 
 /** What the module needs of its surroundings. @param {() => DataView} view of its memory */
 export function wasmImports(view) {
@@ -99,22 +99,22 @@ export class Kernel {
     }).exports;
     this.exported = exported;
     this.most = most;
-    const [rig, out, snapshot, voice, sung, wishes] = room(
+    const [rig, out, snapshot, voice, sung, commands] = room(
       exported,
       Number(exported.yehu_size()),
       4 * CHANNELS * most,
       8 * snapshotLength,
       Number(exported.yehu_voice_size()),
       4 * most,
-      8 * VOICE_WISH * VOICE_WISHES,
+      8 * VOICE_COMMAND * VOICE_COMMANDS,
     );
-    this.at = { rig, out, snapshot, voice, sung, wishes };
+    this.at = { rig, out, snapshot, voice, sung, commands };
     const memory = exported.memory.buffer; // it grows no more
     this.view = new DataView(memory);
     this.out = new Float32Array(memory, out, CHANNELS * most);
     this.seen = new Float64Array(memory, snapshot, snapshotLength);
     this.sung = new Float32Array(memory, sung, most);
-    this.sungWishes = new Float64Array(memory, wishes, VOICE_WISH * VOICE_WISHES);
+    this.sungCommands = new Float64Array(memory, commands, VOICE_COMMAND * VOICE_COMMANDS);
     this.lengths = Array.from({ length: most + 1 }, (_, frames) => BigInt(frames));
     if (exported.yehu_prepare(this.at.rig, rate, BigInt(CHANNELS)) === 0n) {
       throw new RangeError(`the instrument was not built for ${rate} Hz`);
@@ -142,7 +142,7 @@ export class Kernel {
   }
 
   /**
-   * Post a wish; see the table of kinds. Returns whether there was room for it.
+   * Post a command; see the table of kinds. Returns whether there was room for it.
    * @param {number} frame or NOW
    * @param {number} kind
    * @param {number} index
@@ -179,17 +179,17 @@ export class Kernel {
   }
 
   /**
-   * What the next samples of a voice come to: VOICE_WISH numbers for each wish. None at all end
+   * What the next samples of a voice come to: VOICE_COMMAND numbers for each command. None at all end
    * its note.
    * @param {Float32Array} samples at most `most`
    */
   follow(samples) {
     this.sung.set(samples);
-    const { voice, sung, wishes } = this.at;
+    const { voice, sung, commands } = this.at;
     const count = this.exported.yehu_follow_voice(
-      voice, sung, BigInt(samples.length), wishes, BigInt(VOICE_WISHES),
+      voice, sung, BigInt(samples.length), commands, BigInt(VOICE_COMMANDS),
     ); // prettier-ignore
-    return this.sungWishes.subarray(0, VOICE_WISH * Number(count));
+    return this.sungCommands.subarray(0, VOICE_COMMAND * Number(count));
   }
 
   /** The pitch of the voice, or NaN. */

@@ -1,5 +1,5 @@
 /**
- * The instrument of the server, for the page: posts wishes to it, and tells what it does; the page
+ * The instrument of the server, for the page: posts commands to it, and tells what it does; the page
  * may also hear it. It has the same interface as `Sound`.
  */
 
@@ -7,7 +7,7 @@ import facts from "../facts.js";
 import { find } from "../playing/table.js";
 import { StreamPlayer } from "./stream_player.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
-import { WishBatch } from "./kernel.js";
+import { CommandBatch } from "./kernel.js";
 
 /** @typedef {import('./server_connection.js').ServerConnection} ServerConnection */
 /** @typedef {import('../interfaces.js').Status} Status */
@@ -35,7 +35,7 @@ export class Remote extends EventTarget {
     this.people = Infinity; // the server knows how many there are
     this.state = snapshotOf(this.seen);
     this.analyser = listener?.analyser ?? null;
-    this.post = new WishBatch((wishes) => line.send(wishes)).post;
+    this.post = new CommandBatch((commands) => line.send(commands)).post;
     this.look = (/** @type {Event} */ event) => {
       this.seen.set(/** @type {CustomEvent<Float64Array>} */ (event).detail);
       this.isSeen = true;

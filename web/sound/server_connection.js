@@ -2,12 +2,12 @@
 
 import facts from "../facts.js";
 import { find } from "../playing/table.js";
-import { WISH } from "./kernel.js";
+import { COMMAND } from "./kernel.js";
 
 const AGAIN_MS = 500;
 const AGAIN_AT_MOST_MS = 5000;
 const LOOK = 0; // what the first number of a message says
-const WISHES = 1;
+const COMMANDS = 1;
 const MOST_UNSENT = 1 << 16; // bytes
 const FIRST_PART = "1";
 const NO_PIN = 4401; // close codes: the server wants a PIN, or another one
@@ -55,8 +55,8 @@ export function socketUrl(name) {
 }
 
 /**
- * Tells by events: 'open', 'break', 'status', 'look' (detail: the numbers), 'wishes' of another
- * page (detail: {page, wishes}), 'refuse' where a PIN is missing or wrong, and 'left' (detail: the number of a page that went).
+ * Tells by events: 'open', 'break', 'status', 'look' (detail: the numbers), 'commands' of another
+ * page (detail: {page, commands}), 'refuse' where a PIN is missing or wrong, and 'left' (detail: the number of a page that went).
  */
 export class ServerConnection extends EventTarget {
   constructor() {
@@ -71,7 +71,7 @@ export class ServerConnection extends EventTarget {
     this.part = new URLSearchParams(location.search).get("part") ?? FIRST_PART;
     /** @type {WebSocket | null} */
     this.socket = null;
-    /** Fulfilled by the first status. @type {Promise<void>} */
+    /** Applied by the first status. @type {Promise<void>} */
     this.ready = new Promise((resolve) =>
       this.addEventListener("status", () => resolve(), { once: true }),
     );
@@ -93,14 +93,14 @@ export class ServerConnection extends EventTarget {
     return this.seen?.[facts.snapshotLength + facts.parameters.length + find(address).row];
   }
 
-  /** Fulfilled by the first look. @returns {Promise<void>} */
+  /** Applied by the first look. @returns {Promise<void>} */
   get looked() {
     if (this.seen) return Promise.resolve();
     return new Promise((resolve) => this.addEventListener("look", () => resolve(), { once: true }));
   }
 
   /**
-   * What this page wants to get: looks at the server's instrument, and other pages' wishes.
+   * What this page wants to get: looks at the server's instrument, and other pages' commands.
    * @param {{looks: boolean, sounds: boolean}} wanted
    */
   want(wanted) {
@@ -109,12 +109,12 @@ export class ServerConnection extends EventTarget {
   }
 
   /**
-   * Send wishes: five numbers each. Nothing is kept for later: a note would come too late.
-   * @param {Float64Array<ArrayBuffer>} wishes
+   * Send commands: five numbers each. Nothing is kept for later: a note would come too late.
+   * @param {Float64Array<ArrayBuffer>} commands
    */
-  send(wishes) {
+  send(commands) {
     if (this.isOpen && this.socket && this.socket.bufferedAmount < MOST_UNSENT) {
-      this.socket.send(wishes);
+      this.socket.send(commands);
     }
   }
 
@@ -171,10 +171,10 @@ export class ServerConnection extends EventTarget {
     if (what === LOOK) {
       this.seen = numbers.subarray(1);
       this.dispatchEvent(new CustomEvent("look", { detail: this.seen }));
-    } else if (what === WISHES) {
-      const wishes = [];
-      for (let i = 2; i < numbers.length; i += WISH) wishes.push(numbers.subarray(i, i + WISH));
-      this.dispatchEvent(new CustomEvent("wishes", { detail: { page, wishes } }));
+    } else if (what === COMMANDS) {
+      const commands = [];
+      for (let i = 2; i < numbers.length; i += COMMAND) commands.push(numbers.subarray(i, i + COMMAND));
+      this.dispatchEvent(new CustomEvent("commands", { detail: { page, commands } }));
     }
   }
 }

@@ -1,11 +1,11 @@
-/** Sends the wishes of a page that computes its own sound to the server and to other such pages, and plays theirs. */
+/** Sends the commands of a page that computes its own sound to the server and to other such pages, and plays theirs. */
 
 /** @typedef {import('../instrument.js').Instrument} Instrument */
-/** @typedef {import('../instrument.js').Wish} Wish */
+/** @typedef {import('../instrument.js').Command} Command */
 /** @typedef {import('./server_connection.js').ServerConnection} ServerConnection */
 
 import facts from "../facts.js";
-import { NOW, WishBatch } from "./kernel.js";
+import { NOW, CommandBatch } from "./kernel.js";
 
 const { BEGIN, END } = facts.kinds;
 // Channels of another page's keys, as the server keeps visitors apart.
@@ -17,28 +17,28 @@ export class Sharing {
   constructor(instrument, line) {
     this.instrument = instrument;
     this.line = line;
-    this.batch = new WishBatch((wishes) => line.send(wishes));
+    this.batch = new CommandBatch((commands) => line.send(commands));
     /** Keys that other pages hold: pairs of channel and key. @type {Map<number, number[][]>} */
     this.held = new Map();
     this.own = (/** @type {Event} */ event) =>
-      this.#share(/** @type {CustomEvent<Wish>} */ (event).detail);
+      this.#share(/** @type {CustomEvent<Command>} */ (event).detail);
     this.others = (/** @type {Event} */ event) => {
-      const { page, wishes } = /** @type {CustomEvent} */ (event).detail;
-      for (const wish of wishes) this.#play(page, wish);
+      const { page, commands } = /** @type {CustomEvent} */ (event).detail;
+      for (const command of commands) this.#play(page, command);
     };
     this.left = (/** @type {Event} */ event) =>
       this.#let(/** @type {CustomEvent<number>} */ (event).detail);
     this.broken = () => {
       for (const page of [...this.held.keys()]) this.#let(page);
     };
-    instrument.addEventListener("wish", this.own);
-    line.addEventListener("wishes", this.others);
+    instrument.addEventListener("command", this.own);
+    line.addEventListener("commands", this.others);
     line.addEventListener("left", this.left);
     line.addEventListener("break", this.broken);
     line.want({ looks: true, sounds: true }); // looks tell what others set
   }
 
-  /** @param {Wish} wish */
+  /** @param {Command} command */
   #share({ frame, kind, index, value, other }) {
     const { sound, frame: here } = this.instrument;
     const ahead = (frame - here) / (sound?.status.rate ?? 1);
@@ -46,7 +46,7 @@ export class Sharing {
     this.batch.post(ahead > 0 ? Math.max(there, 0) : null, kind, index, value, other);
   }
 
-  /** @param {number} page @param {Float64Array} wish */
+  /** @param {number} page @param {Float64Array} command */
   #play(page, [frame, kind, index, value, other]) {
     const { sound } = this.instrument;
     if (!sound) return;
@@ -82,8 +82,8 @@ export class Sharing {
 
   close() {
     this.broken();
-    this.instrument.removeEventListener("wish", this.own);
-    this.line.removeEventListener("wishes", this.others);
+    this.instrument.removeEventListener("command", this.own);
+    this.line.removeEventListener("commands", this.others);
     this.line.removeEventListener("left", this.left);
     this.line.removeEventListener("break", this.broken);
     this.line.want({ looks: false, sounds: false });

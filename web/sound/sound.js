@@ -1,8 +1,8 @@
-/** The sound of this page: posts wishes to the instrument, and tells what it does. */
+/** The sound of this page: posts commands to the instrument, and tells what it does. */
 
 import facts from "../facts.js";
 import { Engine } from "./engine.js";
-import { CHANNELS, WishBatch } from "./kernel.js";
+import { CHANNELS, CommandBatch } from "./kernel.js";
 import { Output } from "./output.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
 import { settings } from "../settings.js";
@@ -50,7 +50,7 @@ export class Sound extends EventTarget {
     this.isAsleep = false; // nothing sounds, and nothing is computed
     this.suspending = 0; // timer
     this.dropouts = 0;
-    this.post = new WishBatch((wishes) => this.#send(wishes)).post;
+    this.post = new CommandBatch((commands) => this.#send(commands)).post;
     /** @type {Float32Array[] | null} */
     this.chunks = null;
     /** @type {((blob: Blob) => void) | null} */
@@ -98,11 +98,11 @@ export class Sound extends EventTarget {
     this.output.port?.postMessage(message, buffers);
   }
 
-  /** @param {Float64Array<ArrayBuffer>} wishes */
-  #send(wishes) {
+  /** @param {Float64Array<ArrayBuffer>} commands */
+  #send(commands) {
     clearTimeout(this.suspending);
     if (this.isAsleep) this.resume();
-    this.#take({ wishes }, [wishes.buffer]);
+    this.#take({ commands }, [commands.buffer]);
   }
 
   /** @param {string} address of a parameter of bow or fingers */

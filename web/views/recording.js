@@ -176,8 +176,8 @@ async function invite(instrument, play) {
   try {
     const brought = await readLink(location.hash);
     if (brought === null) return;
-    const { wishes, rate } = brought;
-    const seconds = Math.ceil((wishes.at(-1)?.frame ?? 0) / rate);
+    const { commands, rate } = brought;
+    const seconds = Math.ceil((commands.at(-1)?.frame ?? 0) / rate);
     const listen = async () => {
       button.remove();
       await instrument.start();

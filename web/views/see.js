@@ -90,7 +90,7 @@ function views(yehu) {
 /** @param {import('../hands/surface.js').Surface} surface */
 function directions(surface) {
   const { element, show } = makeChoice(words("strings.direction"), DIRECTIONS, "lies", (one) => {
-    const direction = surface.wished === one ? "" : one; // chosen again, it lies as there is room
+    const direction = surface.requested === one ? "" : one; // chosen again, it lies as there is room
     remember({ direction });
     surface.turn(direction);
   });

@@ -93,18 +93,18 @@ def melody(description: Description, number: int) -> Sound:
     _, calibration = calibrated(description)
     playing = PlayingOptions(seed=number % 65536, quantities=description.quantities)
     instrument = Instrument(playing.spec(rate, calibration))
-    wishes = PlayingOptions().player(instrument)
+    commands = PlayingOptions().player(instrument)
     for address in description.draws:
         if address.startswith("/"):
-            wishes.write(address, drawn[address])
+            commands.write(address, drawn[address])
     end_s = 0.0
     for place, note in enumerate(drawn["notes"]):
         key = Key(place % 16, float(place))
         begin, end = (instrument.frames(1e3 * note[name]) for name in ("begin", "end"))
-        wishes.write("/playing/note_length", note["length"], frame=begin)
+        commands.write("/playing/note_length", note["length"], frame=begin)
         struck = {"/playing/velocity": note["velocity"] / 127.0}
-        wishes.note_on(key, struck, frame=begin, tuned=note["pitch"])
-        wishes.note_off(key, frame=end)
+        commands.note_on(key, struck, frame=begin, tuned=note["pitch"])
+        commands.note_off(key, frame=end)
         end_s = max(end_s, note["end"])
     frames = instrument.frames(1e3 * (end_s + drawn["tail"]))
     if frames > LONGEST_S * rate:

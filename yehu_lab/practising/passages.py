@@ -62,7 +62,7 @@ class Search:
 
     @property
     def is_high_on_inner(self) -> bool:
-        """Whether it is played on the inner string only where that is wished for, or near."""
+        """Whether it is played on the inner string only where that is asked for, or near."""
         return self.string == 0 and self.sounds >= self.notes.open_notes[1]
 
 

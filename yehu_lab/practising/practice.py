@@ -4,7 +4,8 @@ Each note is played first, and after others, slurred and separate, at several sp
 the ear of the player (``player.ear``), at the string, tells whether it speaks: with one slip in a
 period, at its pitch. What the body radiates has to have that pitch, too: the bow may keep a mode of
 it going beside a high note. Where it doesn't speak, other shares of Schelleng's limit, places
-nearby, slower bows and a firmer finger are tried. What is farther from the wish has to be better.
+nearby, slower bows and a firmer finger are tried. What is farther from what is asked for has to be
+better.
 """
 
 from __future__ import annotations
@@ -192,23 +193,23 @@ class Practice:
         spec = InstrumentSpec(self._rate, self._tuned, calibration=self._calibration, bowing=table)
         instrument = Instrument(spec)
         instrument.disable_pressure_correction()
-        wishes = Player(instrument)
-        wishes.write("/playing/variation", 0.0)
-        wishes.write("/playing/bow_length", 0.0)
+        commands = Player(instrument)
+        commands.write("/playing/variation", 0.0)
+        commands.write("/playing/bow_length", 0.0)
         instrument.write("/bow/noise", 0.0, ramp_ms=0.0)
-        wishes.write("/playing/bow_position", PLACES[search.place])
+        commands.write("/playing/bow_position", PLACES[search.place])
         if search.is_high_on_inner:
-            wishes.write("/playing/string", 1.0)
+            commands.write("/playing/string", 1.0)
         speaks, off, count = 0.0, 0.0, 0
         for passage in passages:
-            early, late, error = self._play(instrument, wishes, search, passage)
+            early, late, error = self._play(instrument, commands, search, passage)
             speaks += (late + EARLY * early) / (1.0 + EARLY)
             off += min(abs(error), NEAR_EARLY) if early else NEAR_EARLY
             count += 1
         return (speaks - off / OFF_WEIGHT) / count
 
     def _play(
-        self, instrument: Instrument, wishes: Player, search: Search, passage: Passage
+        self, instrument: Instrument, commands: Player, search: Search, passage: Passage
     ) -> tuple[bool, bool, float]:
         """Whether a note speaks early and late in a passage, and its error (cents) early."""
         start = instrument.frame
@@ -222,22 +223,22 @@ class Practice:
         before, note = passage.before, search.sounds
         at = start + instrument.frames(1e3 * BEFORE_S)
         rest = instrument.frames(1e3 * passage.rest_s)
-        wishes.write("/playing/speed", passage.speed, frame=start)
-        wishes.write("/playing/pressure", passage.pressure, frame=start)
+        commands.write("/playing/speed", passage.speed, frame=start)
+        commands.write("/playing/pressure", passage.pressure, frame=start)
         if before is not None:
-            wishes.note_on(Key(0, before), frame=start, tuned=self._pitches[before])
+            commands.note_on(Key(0, before), frame=start, tuned=self._pitches[before])
             if not passage.is_slurred:
-                wishes.note_off(Key(0, before), frame=at - rest)
-        wishes.note_on(Key(0, note), frame=at, tuned=self._pitches[note])
+                commands.note_off(Key(0, before), frame=at - rest)
+        commands.note_on(Key(0, note), frame=at, tuned=self._pitches[note])
         if before is not None and passage.is_slurred:
-            wishes.note_off(Key(0, before), frame=at)
+            commands.note_off(Key(0, before), frame=at)
         play_until(BEFORE_S + EARLY_S)
         early, error = _speaks(instrument, NEAR_EARLY)
         sound = play_until(BEFORE_S + LATE_S)[-instrument.frames(1e3 * LISTEN_S) :]
         late, _ = _speaks(instrument, NEAR_OPEN if search.is_open else NEAR_LATE)
         late = late and has_pitch(sound, self._rate, self._pitches[note])
         end = start + instrument.frames(1e3 * (BEFORE_S + UP_S))
-        wishes.note_off(Key(0, note), frame=end)
+        commands.note_off(Key(0, note), frame=end)
         play_until(BEFORE_S + EACH_S)
         return early, late, error
 

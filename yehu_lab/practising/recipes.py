@@ -22,7 +22,7 @@ from yehu_server.params.table import find
 Array = Any
 
 DEFAULT = PLACES.index(find("/playing/bow_position").default)  # practised first
-# Distances of the bow from the bridge, relative to those wished for; on the F string at the default
+# Distances of the bow from the bridge, relative to those asked for; on the F string at the default
 # place, too.
 FARTHERS = ((0.7, 0.85, 1.0, 1.2, 1.45, 1.75), (0.75, 0.87, 1.0, 1.15))
 DEFAULT_FARTHERS = ((1.0, 1.15, 1.3, 1.5, 1.7), (0.87, 1.0, 1.15))

@@ -13,7 +13,7 @@ from yehu_server.compile.jit import Native
 from yehu_server.core.engine.snapshot import SNAPSHOT
 from yehu_server.core.midi import events, packing, tables
 from yehu_server.core.midi.record import PORTS
-from yehu_server.core.player import wishes
+from yehu_server.core.player import commands
 from yehu_server.params.table import TABLE
 
 WIDTH = 100
@@ -51,7 +51,7 @@ extern "C" {{
 #define YEHU_SOURCES "{sources}"
 
 /* Kinds of events. Some say what the player is to do: what their index, value and other are.
-{wishes}
+{commands}
  *
  * The others are interpreted, by mapping and tuning. yehu_midi, yehu_control and yehu_use_tables
  * post MESSAGE (of port 0; see YEHU_PACKED), CONTROL and TABLES_TO.
@@ -107,12 +107,12 @@ def header(
     `sources`: the hash of what it is made from.
     `rates`: the rates (Hz) that it can be prepared at.
     """
-    kinds = (*wishes.KINDS, *events.EVENTS)
+    kinds = (*commands.KINDS, *events.EVENTS)
     return OUTLINE.format(
         version=version,
         sources=sources,
         rates=", ".join(f"{rate:g}" for rate in rates),
-        wishes=_table(wishes),
+        commands=_table(commands),
         events=_table(events),
         kinds="\n".join(f"    YEHU_{kind.upper()} = {i}," for i, kind in enumerate(kinds)),
         last_port=PORTS - 1,

@@ -36,10 +36,10 @@ from yehu_server.core.midi.record import MIDI, NONE
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.midi.values import NO_KEY, find_values
 from yehu_server.core.physics.layout import STATE
+from yehu_server.core.player.commands import COMMAND, HOLD, RAMP, WRITE
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import MOST_HELD, PLAYER
 from yehu_server.core.player.rows import IS_ENGINES, IS_PLAYER_CONTROLLED, ROWS, SLOT_OF
-from yehu_server.core.player.wishes import HOLD, RAMP, WISH, WRITE
 from yehu_server.core.stage.delay_lines import LINES
 from yehu_server.core.stage.record import STAGE, TAPE_AT
 
@@ -183,7 +183,7 @@ def _cleared() -> Array:
     rig: Any = memory.RIG.fields
     ends = {name: (at, at + kind.itemsize) for name, (kind, at, *_) in rig.items()}
     ring = int(memory.RINGS_AT[SERVER])
-    ends["ring"] = (ring, ring + WISH.itemsize)  # the one event that an image has
+    ends["ring"] = (ring, ring + COMMAND.itemsize)  # the one event that an image has
     ends["tables"] = (memory.TABLES_AT, memory.TABLES_AT + TABLES_BYTES)  # the first of its slots
     stage: Any = STAGE.fields
     line = memory.RIG_BYTES + stage["room"][1] + stage["room"][0].fields["line"][1]
@@ -273,13 +273,13 @@ def reset(rig: Any) -> None:
         post_to(rig, SERVER, 0, TABLES_TO, tables, 0.0, 0.0)
     p = record_at(rig, memory.PLAYER_AT, PLAYER)
     for row in range(ROWS):
-        wished, is_held = m.value[row], m.is_held[row] != 0
+        requested, is_held = m.value[row], m.is_held[row] != 0
         if is_held:
-            post_to(rig, SERVER, 0, HOLD, row, wished, 0.0)
-        elif not IS_PLAYER_CONTROLLED[row] and wished != p.value[row]:
+            post_to(rig, SERVER, 0, HOLD, row, requested, 0.0)
+        elif not IS_PLAYER_CONTROLLED[row] and requested != p.value[row]:
             if IS_ENGINES[row]:  # at once
-                post_to(rig, SERVER, 0, RAMP, SLOT_OF[row], wished, 0.0)
-            post_to(rig, SERVER, 0, WRITE, row, wished, 0.0)
+                post_to(rig, SERVER, 0, RAMP, SLOT_OF[row], requested, 0.0)
+            post_to(rig, SERVER, 0, WRITE, row, requested, 0.0)
 
 
 def sources_function(sources: str) -> Native:

@@ -63,10 +63,10 @@ def interpreter_prepare(interpreter: Any) -> None:
 def interpreter_take(
     interpreter: Any, frame: int, kind: int, index: int, value: float, other: float
 ) -> int:
-    """Interpret an event (``midi.events``); return the number of wishes that it comes to."""
+    """Interpret an event (``midi.events``); return the number of commands that it comes to."""
     m = carray(interpreter, (1,), MIDI)[0]
     interpret(m, at(interpreter, TABLES_AT), frame, kind, index, value, other)
-    return int(m.wishes)
+    return int(m.commands)
 
 
 INTERPRETER: tuple[Native, ...] = (interpreter_size, interpreter_prepare, interpreter_take)

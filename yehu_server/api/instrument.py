@@ -1,4 +1,4 @@
-"""The instrument for Python: wishes or controls in, arrays of sound and signals out."""
+"""The instrument for Python: commands or controls in, arrays of sound and signals out."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ class Instrument:
     ) -> None:
         self._rate, self._playing = rate, playing
         self._channels = 2 if stereo else 1
-        self._wishes: Player
+        self._commands: Player
         self._stage: Ensemble | Engine
         if stereo:
             self._stage = Ensemble([spec])
@@ -136,7 +136,7 @@ class Instrument:
             "spec": self._engine.spec,
             "stereo": self._channels > 1,
             "dropped": self._dropped,
-            "pending": self._wishes.pending,
+            "pending": self._commands.pending,
             "memory": zlib.compress(memoryview(self._stage.memory), 1),  # most of it is zero
         }
 
@@ -145,7 +145,7 @@ class Instrument:
             raise YehuError(f"this instrument was pickled by version {state['version']}")
         get_ready()
         self._build(state["rate"], state["playing"], state["spec"], stereo=state["stereo"])
-        self._wishes.pending = state["pending"]
+        self._commands.pending = state["pending"]
         self._dropped = state["dropped"]
         memory = np.frombuffer(zlib.decompress(state["memory"]), np.uint8)
         np.frombuffer(self._stage.memory, np.uint8, count=len(memory))[:] = memory
@@ -171,7 +171,7 @@ class Instrument:
     @property
     def pitch(self) -> float | None:
         """The pitch that is played (fractional MIDI note); None in silence."""
-        return self._wishes.pitch
+        return self._commands.pitch
 
     # -- notes ---------------------------------------------------------------------------------
 
@@ -194,10 +194,10 @@ class Instrument:
         ParameterError
             Where one is out of range, or the time is over.
         """
-        pitch = playable(note, self._wishes.notes)
+        pitch = playable(note, self._commands.notes)
         struck = number(velocity, "velocity", 0.0, 127.0) / 127.0
         values = {"/playing/velocity": struck}
-        self._wishes.note_on(Key(CHANNEL, pitch), values, frame=self._frame(at))
+        self._commands.note_on(Key(CHANNEL, pitch), values, frame=self._frame(at))
         self._check()
 
     def note_off(self, note: str | float | None = None, *, at: float | None = None) -> None:
@@ -209,14 +209,14 @@ class Instrument:
             Where it is no note, or the time is over.
         """
         if note is None:
-            self._wishes.end_all(frame=self._frame(at))
+            self._commands.end_all(frame=self._frame(at))
         else:
-            self._wishes.note_off(Key(CHANNEL, pitch_of(note)), frame=self._frame(at))
+            self._commands.note_off(Key(CHANNEL, pitch_of(note)), frame=self._frame(at))
         self._check()
 
     def slide(self, note: str | float, *, at: float | None = None) -> None:
         """Slide the finger to a pitch: that of the sounding note, or of a bow drawn by hand."""
-        self._wishes.slide(playable(note, self._wishes.notes), frame=self._frame(at))
+        self._commands.slide(playable(note, self._commands.notes), frame=self._frame(at))
         self._check()
 
     def bend(self, semitones: float, *, at: float | None = None) -> None:
@@ -249,12 +249,12 @@ class Instrument:
         """
         address, found = setting(address, value)
         glide_ms = 1e3 * number(glide, "glide", 0.0, LONGEST_S)
-        self._wishes.write(address, found, frame=self._frame(at), glide_ms=glide_ms)
+        self._commands.write(address, found, frame=self._frame(at), glide_ms=glide_ms)
         self._check()
 
     def hold(self, address: str, value: float, *, at: float | None = None) -> None:
         """Set a parameter and keep it there, whatever notes do, until `release`; see `set`."""
-        self._wishes.write(*setting(address, value), frame=self._frame(at), hold=True)
+        self._commands.write(*setting(address, value), frame=self._frame(at), hold=True)
         self._check()
 
     def get(self, address: str) -> float:
@@ -265,11 +265,11 @@ class Instrument:
         ParameterError
             Where there is no such parameter.
         """
-        return self._wishes.value(find(address).address)
+        return self._commands.value(find(address).address)
 
     def release(self, *, at: float | None = None) -> None:
         """Return all that was set directly or held to the player."""
-        self._wishes.release(frame=self._frame(at))
+        self._commands.release(frame=self._frame(at))
         self._check()
 
     # -- by hand -------------------------------------------------------------------------------
@@ -286,12 +286,12 @@ class Instrument:
         """
         speed = setting("/bow/speed", speed)[1]
         force = setting("/bow/force", force)[1]
-        self._wishes.draw(speed, force, frame=self._frame(at))
+        self._commands.draw(speed, force, frame=self._frame(at))
         self._check()
 
     def lift(self, *, at: float | None = None) -> None:
         """Lift a bow drawn by hand."""
-        self._wishes.lift(frame=self._frame(at))
+        self._commands.lift(frame=self._frame(at))
         self._check()
 
     def pluck(self, force: float, position: float = 0.3, *, at: float | None = None) -> None:
@@ -343,7 +343,7 @@ class Instrument:
         True
         """
         frames = self._frames(seconds)
-        run = Run(self._engine, self._stage, self._wishes, curves_of(controls))
+        run = Run(self._engine, self._stage, self._commands, curves_of(controls))
         sound = run.sound(frames, self._channels)
         self._check()
         return sound
@@ -387,15 +387,15 @@ class Instrument:
         """
         frames = self._frames(seconds)
         every = whole(strings_every, "strings_every", 0, 2**31)
-        run = Run(self._engine, self._stage, self._wishes, curves_of(controls))
+        run = Run(self._engine, self._stage, self._commands, curves_of(controls))
         found = run.signals(frames, self._channels, every)
         self._check()
         return found
 
     def stop(self) -> None:
         """End all notes, and let all sound fade within 5 ms; time and parameters stay."""
-        self._wishes.end_all()
-        self._wishes.stop_sound(is_panic=True)
+        self._commands.end_all()
+        self._commands.stop_sound(is_panic=True)
 
     def reset(self) -> None:
         """Begin anew: at time 0, with the settings that it was made with."""
@@ -407,13 +407,13 @@ class Instrument:
     def _begin(self) -> None:
         """Give all parameters the values that preset and settings begin with."""
         self._dropped = 0
-        self._wishes = self._playing.player(self._engine)
+        self._commands = self._playing.player(self._engine)
         for address, value in self._playing.start:
             if find(address).place is Place.ENGINE:
                 self._engine.write(address, value, ramp_ms=0.0)
-            self._wishes.write(address, value)
+            self._commands.write(address, value)
         for address, value in self._playing.settings:
-            self._wishes.start_with(address, value)
+            self._commands.start_with(address, value)
 
     def _frame(self, at: float | None) -> int | None:
         if at is None:
@@ -427,8 +427,8 @@ class Instrument:
         return round(number(seconds, "seconds", 0.0, LONGEST_S) * self._rate)
 
     def _check(self) -> None:
-        """Tell of wishes that were lost."""
+        """Tell of commands that were lost."""
         dropped = self._engine.dropped_events
         if dropped > self._dropped:
             self._dropped = dropped
-            raise YehuError("too many wishes wait to be played: play some of them first")
+            raise YehuError("too many commands wait to be played: play some of them first")

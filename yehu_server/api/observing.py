@@ -68,10 +68,10 @@ class Run:
         self,
         instrument: Instrument,
         stage: Ensemble | Instrument,
-        wishes: Player,
+        commands: Player,
         curves: Sequence[Curve] = (),
     ) -> None:
-        self._instrument, self._stage, self._wishes = instrument, stage, wishes
+        self._instrument, self._stage, self._commands = instrument, stage, commands
         self._curves = curves
         self._rig = np.frombuffer(instrument.memory, RIG, count=1)[0]
 
@@ -135,7 +135,7 @@ class Run:
     def _take_over(self) -> None:
         """Take the parameters of the curves from the player, and put them to their first values."""
         for curve in self._curves:
-            self._wishes.write(curve.address, curve.at(0.0))
+            self._commands.write(curve.address, curve.at(0.0))
             if curve.address in SLOT:
                 self._instrument.write(curve.address, curve.at(0.0), ramp_ms=0.0)
 
@@ -147,4 +147,4 @@ class Run:
                 ramp_ms = 1e3 * (end - start) / self._instrument.rate
                 self._instrument.write(curve.address, value, ramp_ms=ramp_ms)
             else:
-                self._wishes.write(curve.address, value)
+                self._commands.write(curve.address, value)

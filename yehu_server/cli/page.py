@@ -57,8 +57,8 @@ PORT = 8010
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(commands, "page", __doc__, run)
-    wish = "write the page here and end; the folder is created if missing"
-    add_folder(parser, required=False, text=wish)
+    command = "write the page here and end; the folder is created if missing"
+    add_folder(parser, required=False, text=command)
     add_options(
         parser,
         f"""

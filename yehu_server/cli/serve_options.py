@@ -211,21 +211,21 @@ def _page_of(arguments: argparse.Namespace) -> Any:
     """Where the page is served; None where it is not."""
     from yehu_server.live.page.pages import PageOptions
 
-    wished = arguments.panel_port
-    has_page = arguments.lan or arguments.open or wished is not None or arguments.http != "none"
+    requested = arguments.panel_port
+    has_page = arguments.lan or arguments.open or requested is not None or arguments.http != "none"
     if arguments.no_panel or not has_page:
         if arguments.lan or arguments.open:
             raise ParameterError("--no-panel: there is no page to open")
         return None
     http = "" if arguments.http == "none" else arguments.http
     host, beside = parse_address(http, *HTTP_ADDRESS)
-    number = wished if wished is not None else (beside + 1) % (1 << 16) if beside else 0
+    number = requested if requested is not None else (beside + 1) % (1 << 16) if beside else 0
     networks = list(arguments.http_allow)
     guests = None
     if arguments.lan:
         host, networks = ANYWHERE, [*(networks or [str(lan_interface().network)]), *HERE]
         guests = Guests(arguments.lan)
-    return PageOptions((host, number), networks, wished is not None, guests)
+    return PageOptions((host, number), networks, requested is not None, guests)
 
 
 # ---------------------------------------------------------------- converters

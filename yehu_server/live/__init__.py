@@ -3,5 +3,5 @@
 web thread ─> OSC thread ──┐
              pages process ┤
                            ├─> Player ─> ring ─> C callback, in the audio process ─> device
-              MIDI process ┘                              └─> meters, applied wishes, tape
+              MIDI process ┘                              └─> meters, applied commands, tape
 """

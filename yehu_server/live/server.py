@@ -118,7 +118,7 @@ class Server:
                 self.context.on_tree_change.append(self.web.tree_changed)
             if options.capture is not None:
                 for instrument in self.ensemble.instruments:
-                    instrument.report_wishes()
+                    instrument.report_commands()
             for player, playing in zip(self.players, per_part, strict=True):
                 for address, value in playing.settings:
                     player.hold(address, value)

@@ -19,7 +19,7 @@ from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
 from yehu_server.core.midi.record import SECTION
 from yehu_server.core.midi.tables import SLOTS, plain_tables
-from yehu_server.core.player import wishes
+from yehu_server.core.player import commands
 from yehu_server.core.player.rows import ROW
 from yehu_server.errors import ParameterError
 from yehu_server.params.preset_file import Preset
@@ -148,7 +148,7 @@ class Player(PartState):
         frame: int | None = None,
         hold: bool = False,
         glide_ms: float = 0.0,
-        kind: int = wishes.WRITE,
+        kind: int = commands.WRITE,
     ) -> float:
         """Set any parameter of the table; return the value it then has.
 
@@ -168,7 +168,7 @@ class Player(PartState):
             self._note(param.address, accepted, frame, is_held=hold)
             if param.address == "/bow/force":  # raw newtons are heard only without assist
                 self._note("/bow/assist", 0.0, frame, is_held=hold)
-            self.post(wishes.HOLD if hold else kind, frame, row, accepted, glide_ms)
+            self.post(commands.HOLD if hold else kind, frame, row, accepted, glide_ms)
         return accepted
 
     def set(
@@ -190,7 +190,7 @@ class Player(PartState):
     def jump(self, address: str, value: float) -> None:
         """Have the engine begin with a value that a parameter was given, and not move there."""
         if address in SLOT:
-            self.post(wishes.RAMP, None, SLOT[address], find(address).clamped(value))
+            self.post(commands.RAMP, None, SLOT[address], find(address).clamped(value))
 
     def load(self, values: Values[str, float], *, frame: int | None = None) -> None:
         """Set the parameters of a preset, except held ones, all at one frame."""
@@ -203,7 +203,7 @@ class Player(PartState):
         """Return every parameter that was taken over to the player."""
         with self._lock:
             self.pending.clear()
-            self.post(wishes.RELEASE, frame)
+            self.post(commands.RELEASE, frame)
 
     # -- notes -------------------------------------------------------------------------------
 
@@ -230,11 +230,11 @@ class Player(PartState):
         has_note = tuned is not None or self.has(key)
         with self._lock:
             for address, value in (values or {}).items() if has_note else ():
-                self.post(wishes.EXPRESS, frame, ROW[address], find(address).clamped(value))
+                self.post(commands.EXPRESS, frame, ROW[address], find(address).clamped(value))
             if tuned is None:
                 self.post(events.NOTE_ON, frame, key.channel, key.note, OWN_VALUES)
             else:
-                self.post(wishes.BEGIN, frame, key.channel, key.note, tuned)
+                self.post(commands.BEGIN, frame, key.channel, key.note, tuned)
         return has_note
 
     def notes_off(self, keys: Iterable[Key], *, frame: int | None = None) -> None:
@@ -243,7 +243,7 @@ class Player(PartState):
         with self._lock:
             for key in ending:
                 more = float(key is not ending[-1])
-                self.post(wishes.END, frame, key.channel, key.note, more)
+                self.post(commands.END, frame, key.channel, key.note, more)
 
     def note_off(self, key: Key, *, frame: int | None = None) -> None:
         """End a note; see `notes_off`."""
@@ -258,7 +258,7 @@ class Player(PartState):
 
         In a panic also what sounds ends.
         """
-        self.post(wishes.STOP, frame, value=float(is_panic))
+        self.post(commands.STOP, frame, value=float(is_panic))
 
     def end_notes(self, *, frame: int) -> None:
         """End all notes, as if all keys and pedals were released; lift a bow drawn by hand."""
@@ -375,7 +375,7 @@ class Player(PartState):
         The sounding note slides; in silence, the finger waits there for the bow.
         """
         pitch = RangePolicy.CLAMP.fit(pitch, self.notes) or pitch
-        self.post(wishes.SLIDE, frame, value=pitch)
+        self.post(commands.SLIDE, frame, value=pitch)
         return pitch
 
     def draw(self, speed: float, force: float, *, frame: int | None = None) -> tuple[float, float]:
@@ -388,12 +388,12 @@ class Player(PartState):
         with self._lock:
             for address, value in drawn.items():
                 self._note(address, value, frame)
-            self.post(wishes.DRAW, frame, value=speed, other=force)
+            self.post(commands.DRAW, frame, value=speed, other=force)
         return speed, force
 
     def lift(self, *, frame: int | None = None) -> None:
         """Lift a bow drawn by hand, and return it to the player."""
-        self.post(wishes.LIFT, frame)
+        self.post(commands.LIFT, frame)
 
 
 def key_of(key: Key | float) -> Key:

@@ -12,8 +12,8 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.commands import EXPRESS
 from yehu_server.core.player.rows import BEND, ROW
-from yehu_server.core.player.wishes import EXPRESS
 from yehu_server.params.table import find
 from yehu_server.playing.parts import number_of_instruments
 from yehu_server.playing.section_instruments import part_specs
@@ -97,7 +97,7 @@ class Performance:
     """Plays each part on an instrument of its own; a section has several.
 
     With `has_stems`, `stems` has what each part gives; with `reports` the instruments report the
-    wishes that they fulfil, for a capture. Raises ParameterError where the players are more than a
+    commands that they apply, for a capture. Raises ParameterError where the players are more than a
     stage has room for.
     """
 
@@ -122,7 +122,7 @@ class Performance:
             specs, channels=options.sound_channels, has_room=not options.is_dry
         )
         for instrument in self.ensemble.instruments if reports else ():
-            instrument.report_wishes()
+            instrument.report_commands()
         self.players = [
             PartPlayer(part, self.ensemble.instruments[place])
             for part, place in zip(parts, self._places, strict=True)

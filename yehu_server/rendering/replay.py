@@ -20,7 +20,7 @@ from yehu_server.scores.score import check_duration
 from yehu_server.util.files import anything
 from yehu_server.util.sound_file import sound_file
 
-BLOCK = 1024  # frames; the ring holds all wishes that can be fulfilled in one block
+BLOCK = 1024  # frames; the ring holds all commands that can be applied in one block
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Replayed:
 
 def blocks(capture: Capture, ensemble: Ensemble) -> Iterator[Any]:
     """Yield the samples of a capture in blocks [shape=(frames, 2), float32]."""
-    frames = capture.wishes["frame"]
+    frames = capture.commands["frame"]
     borders = merge(range(0, capture.frames, BLOCK), sorted(capture.gaps), [capture.frames])
     for start, stop in pairwise(border for border, _ in groupby(borders)):
         if start in capture.gaps:
@@ -47,8 +47,8 @@ def blocks(capture: Capture, ensemble: Ensemble) -> Iterator[Any]:
             else:
                 ensemble.end_all()
         due = slice(np.searchsorted(frames, start), np.searchsorted(frames, stop))
-        wishes, players = capture.wishes[due].tolist(), capture.players[due].tolist()
-        for (frame, kind, index, value, other), player in zip(wishes, players, strict=True):
+        commands, players = capture.commands[due].tolist(), capture.players[due].tolist()
+        for (frame, kind, index, value, other), player in zip(commands, players, strict=True):
             instrument = ensemble.instruments[player]
             instrument.post(kind, frame=frame, index=index, value=value, other=other)
         samples = np.zeros((stop - start, EARS), np.float32)
@@ -85,7 +85,7 @@ def replay(
         real_time_factor=duration_s / (time.perf_counter() - start),
         peak=file.peak,
         rms=file.rms,
-        events=len(capture.wishes),
+        events=len(capture.commands),
         lost_states=ensemble.lost_states,
         warnings=capture.warnings,
     )

@@ -1,6 +1,6 @@
 """Read captures of sessions; docs/capture.md describes the format.
 
-Version 1 held what moved bow and fingers, not what was wished of the player. Versions 1 and 2 have
+Version 1 held what moved bow and fingers, not what the player was asked for. Versions 1 and 2 have
 one player.
 """
 
@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.player.wishes import WISH
+from yehu_server.core.player.commands import COMMAND
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture_format import (
     FORMAT,
     VERSION,
-    WishRow,
+    CommandRow,
     build,
     frames_of,
     from_line,
@@ -31,9 +31,9 @@ from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import read_lines, why
 
 MOST_BYTES = 1 << 30
-MOST_WISHES = 20_000_000  # each takes 48 bytes
+MOST_COMMANDS = 20_000_000  # each takes 48 bytes
 MOST_RESTS = 1000
-ROW = np.dtype([("wish", WISH), ("player", np.int64)])
+ROW = np.dtype([("command", COMMAND), ("player", np.int64)])
 
 
 @dataclass
@@ -43,13 +43,13 @@ class Capture:
     beginning: SessionStart
     build: dict[str, str]
     version: int = VERSION
-    wishes: Any = field(default_factory=lambda: np.zeros(0, WISH))  # by frame
-    players: Any = field(default_factory=lambda: np.zeros(0, np.int64))  # of each wish, from 0
+    commands: Any = field(default_factory=lambda: np.zeros(0, COMMAND))  # by frame
+    players: Any = field(default_factory=lambda: np.zeros(0, np.int64))  # of each command, from 0
     gaps: dict[int, int] = field(
         default_factory=dict
     )  # frame of each rest, and since when it was silent
     end: int | None = None  # number of frames
-    lost: int = 0  # wishes that were not captured
+    lost: int = 0  # commands that were not captured
     warnings: list[str] = field(default_factory=list)
 
     @property
@@ -59,8 +59,8 @@ class Capture:
 
     @property
     def frames(self) -> int:
-        """Number of frames; where the end is missing, until a second after the last wish."""
-        last = int(self.wishes["frame"][-1]) + 1 if len(self.wishes) else 0
+        """Number of frames; where the end is missing, until a second after the last command."""
+        last = int(self.commands["frame"][-1]) + 1 if len(self.commands) else 0
         last = max([last, *self.gaps])
         return max(last, last + round(self.rate) if self.end is None else self.end)
 
@@ -76,16 +76,16 @@ def read_capture(path: Path) -> Capture:
     except ValueError as error:  # no UTF-8, or a NUL in the name
         raise ScoreError(f"{path}: not a capture ({error})") from error
     for player in range(len(capture.beginning.players)):
-        if np.any(np.diff(rows["wish"]["frame"][rows["player"] == player]) < 0):
+        if np.any(np.diff(rows["command"]["frame"][rows["player"] == player]) < 0):
             raise ScoreError(f"{path}: events are not in order of frames")
-    rows = rows[np.argsort(rows["wish"]["frame"], kind="stable")]
-    capture.wishes, capture.players = rows["wish"].copy(), rows["player"].copy()
+    rows = rows[np.argsort(rows["command"]["frame"], kind="stable")]
+    capture.commands, capture.players = rows["command"].copy(), rows["player"].copy()
     _warn(capture)
     return capture
 
 
-def _rows(path: Path, lines: Iterator[str], capture: Capture) -> Iterator[tuple[WishRow, int]]:
-    """The wishes of all lines, with their players; other entries go into the capture."""
+def _rows(path: Path, lines: Iterator[str], capture: Capture) -> Iterator[tuple[CommandRow, int]]:
+    """The commands of all lines, with their players; other entries go into the capture."""
     count = 0
     for number, line in enumerate(lines, start=2):
         try:
@@ -97,8 +97,8 @@ def _rows(path: Path, lines: Iterator[str], capture: Capture) -> Iterator[tuple[
         if row is not None:
             yield row
             count += 1
-            if count > MOST_WISHES:
-                raise ScoreError(f"{path}: has more than {MOST_WISHES} events")
+            if count > MOST_COMMANDS:
+                raise ScoreError(f"{path}: has more than {MOST_COMMANDS} events")
 
 
 _WRONG = (
@@ -119,7 +119,7 @@ def _header(path: Path, line: str) -> Capture:
     return Capture(beginning, built, version)
 
 
-def _row(entry: Any, capture: Capture) -> tuple[WishRow, int] | None:
+def _row(entry: Any, capture: Capture) -> tuple[CommandRow, int] | None:
     if isinstance(entry, list):
         if capture.version == 1:
             frame, *ramp = entry

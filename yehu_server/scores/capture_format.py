@@ -1,4 +1,4 @@
-"""The lines of a capture: wishes as JSON values, and back; docs/capture.md describes them."""
+"""The lines of a capture: commands as JSON values, and back; docs/capture.md describes them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.compile import levels
 from yehu_server.compile.cache_folder import source_hash
 from yehu_server.core.controls.slots import SILENCE
-from yehu_server.core.player import wishes
+from yehu_server.core.player import commands
 from yehu_server.params.table import ENGINE, SLOT, TABLE
 from yehu_server.util import __version__
 
@@ -23,9 +23,9 @@ SILENCED = "silence"
 ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: SILENCED}
 INDICES = {address: slot for slot, address in ADDRESSES.items()}
 ROWS = {param.address: row for row, param in enumerate(TABLE)}
-NUMBERS = {name: kind for kind, name in enumerate(wishes.KINDS)}
+NUMBERS = {name: kind for kind, name in enumerate(commands.KINDS)}
 
-WishRow = tuple[int, int, int, float, float]  # of a wish
+CommandRow = tuple[int, int, int, float, float]  # of a command
 
 
 def build() -> dict[str, str]:
@@ -39,53 +39,53 @@ def build() -> dict[str, str]:
     }
 
 
-def as_line(wish: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one for each kind
-    """The JSON value of a wish, a record of dtype WISH, of a player, counted from 0."""
-    frame, kind, index, value, other = wish.item()
-    line: list[Any] = [frame, player + 1, wishes.KINDS[kind]]
-    if kind == wishes.RAMP:
+def as_line(command: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one for each kind
+    """The JSON value of a command, a record of dtype COMMAND, of a player, counted from 0."""
+    frame, kind, index, value, other = command.item()
+    line: list[Any] = [frame, player + 1, commands.KINDS[kind]]
+    if kind == commands.RAMP:
         return [*line, ADDRESSES[index], value, int(other)]
-    if kind in (wishes.WRITE, wishes.HOLD):
+    if kind in (commands.WRITE, commands.HOLD):
         return [*line, TABLE[index].address, value, other]
-    if kind == wishes.EXPRESS:
+    if kind == commands.EXPRESS:
         return [*line, TABLE[index].address, value]
-    if kind == wishes.BEGIN:
+    if kind == commands.BEGIN:
         return [*line, index, value, other]
-    if kind == wishes.END:
+    if kind == commands.END:
         return [*line, index, value, int(other)]
-    if kind in (wishes.SLIDE, wishes.STOP):
+    if kind in (commands.SLIDE, commands.STOP):
         return [*line, value]
-    return [*line, value, other] if kind == wishes.DRAW else line
+    return [*line, value, other] if kind == commands.DRAW else line
 
 
-def from_line(line: list[Any]) -> WishRow:
-    """The fields of a wish, from its JSON value without the player.
+def from_line(line: list[Any]) -> CommandRow:
+    """The fields of a command, from its JSON value without the player.
 
     Raises ValueError, TypeError, KeyError where it is none, or a value is out of range.
     """
     frame, kind, values = frames_of(line[0]), NUMBERS[line[1]], line[2:]
     index, value, other = 0, 0.0, 0.0
-    if kind == wishes.RAMP:
+    if kind == commands.RAMP:
         return (frame, *ramp_of(*values))
-    if kind in (wishes.WRITE, wishes.HOLD):
+    if kind in (commands.WRITE, commands.HOLD):
         address, number, glide_ms = values
         index, value = _setting(address, number)
         other = _within(glide_ms, 0.0, MOST_MS)
-    elif kind == wishes.EXPRESS:
+    elif kind == commands.EXPRESS:
         index, value = _setting(*values)
-    elif kind in (wishes.BEGIN, wishes.END):
+    elif kind in (commands.BEGIN, commands.END):
         channel, key, last = values
         index = _whole(channel, -MOST_CHANNELS, MOST_CHANNELS)  # below 0: no MIDI channel
         value = _within(key, 0.0, HIGHEST_KEY)
-        is_key = kind == wishes.BEGIN
+        is_key = kind == commands.BEGIN
         other = _within(last, 0.0, HIGHEST_KEY) if is_key else float(_whole(last, 0, 1))
-    elif kind == wishes.STOP:
+    elif kind == commands.STOP:
         (panic,) = values
         value = _within(panic, 0.0, 1.0)
-    elif kind == wishes.SLIDE:
+    elif kind == commands.SLIDE:
         (pitch,) = values
         value = _within(pitch, 0.0, HIGHEST_KEY)
-    elif kind == wishes.DRAW:
+    elif kind == commands.DRAW:
         speed, force = values
         value, other = _setting("/bow/speed", speed)[1], _setting("/bow/force", force)[1]
     elif values:
@@ -97,7 +97,7 @@ def ramp_of(address: str, target: Any, ramp: Any) -> tuple[int, int, float, floa
     """The fields of a ramp after its frame: also the events of version 1."""
     index = INDICES[address]
     lo, hi = (0.0, 0.0) if index == SILENCE else (ENGINE[index].lo, ENGINE[index].hi)
-    return wishes.RAMP, index, _within(target, lo, hi), float(frames_of(ramp))
+    return commands.RAMP, index, _within(target, lo, hi), float(frames_of(ramp))
 
 
 def player_of(number: Any, players: int) -> int:

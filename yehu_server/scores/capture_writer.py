@@ -1,4 +1,4 @@
-"""Write captures of sessions: every wish that the player fulfilled, with its frame.
+"""Write captures of sessions: every command that the player applied, with its frame.
 
 docs/capture.md describes the format: one JSON value a line, so that a capture that was cut short
 by a crash can be read.
@@ -35,9 +35,9 @@ class CaptureWriter:
         self._whole_bytes = 0
         self._write([header_of(beginning)])
 
-    def wishes(self, wishes: Any, player: int = 0) -> None:
-        """Add wishes [shape=(wishes,), dtype=WISH] that a player, counted from 0, fulfilled."""
-        self._write(as_line(wish, player) for wish in wishes)
+    def commands(self, commands: Any, player: int = 0) -> None:
+        """Add commands [shape=(n,), dtype=COMMAND] that a player, counted from 0, applied."""
+        self._write(as_line(command, player) for command in commands)
 
     def note(self, what: str, frame: int, **details: int) -> None:
         """Add a ``rest`` (after a gap `since` a frame), or ``lost`` `events`."""
@@ -67,9 +67,9 @@ class CaptureWriter:
 
 
 class LiveCapture:
-    """Writes the wishes that players fulfil to a file; a full disk ends only the capture.
+    """Writes the commands that players apply to a file; a full disk ends only the capture.
 
-    The ensemble's instruments must report their wishes (``Instrument.report_wishes``) from the
+    The ensemble's instruments must report their commands (``Instrument.report_commands``) from the
     first frame on; `has_room`: whether it plays in a room. `on_message` is called with a line when
     the capture ends by itself. Raises OutputError where the file cannot be written, or is
     there.
@@ -96,7 +96,7 @@ class LiveCapture:
         self.is_whole = True
 
     def keep_up(self) -> None:
-        """Write the wishes that were fulfilled since the last call."""
+        """Write the commands that were applied since the last call."""
         if self._writer is not None:
             try:
                 self._write(self._writer)
@@ -104,7 +104,7 @@ class LiveCapture:
                 self._end(error)
 
     def close(self) -> None:
-        """Write the last wishes, and end the capture after the last frame played."""
+        """Write the last commands, and end the capture after the last frame played."""
         self.keep_up()
         writer, self._writer = self._writer, None
         if writer is not None:
@@ -125,7 +125,7 @@ class LiveCapture:
             self._rests += 1
         unreported = 0
         for player, instrument in enumerate(self._ensemble.instruments):
-            writer.wishes(instrument.applied_wishes(), player)
+            writer.commands(instrument.applied_commands(), player)
             unreported += int(instrument.meters()["unreported"])
         if unreported > self._unreported:
             frame = int(self._ensemble.meters()["frame"])

@@ -170,11 +170,11 @@ def _string(low: float, high: float, states: Sequence[_State], within: NoteRange
     No finger slides to where a string is open.
     """
     inner, outer = within.open_notes
-    wished = [round(state.values[STRING]) for state in states]
+    requested = [round(state.values[STRING]) for state in states]
     if low < inner + OPEN_WITHIN:
         return None
     if low >= outer + OPEN_WITHIN:
-        return None if INNER in wished and high > within.highest_notes[0] else 0.0
-    if high <= outer - OPEN_WITHIN or wished == [INNER, INNER]:
+        return None if INNER in requested and high > within.highest_notes[0] else 0.0
+    if high <= outer - OPEN_WITHIN or requested == [INNER, INNER]:
         return 0.0
-    return INNER if high <= within.highest_notes[0] and wished == [0, 0] else None
+    return INNER if high <= within.highest_notes[0] and requested == [0, 0] else None

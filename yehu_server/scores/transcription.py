@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from yehu_server.core.physics.elementary import log2
+from yehu_server.core.player.commands import BEGIN, END, EXPRESS, STOP
 from yehu_server.core.player.rows import VELOCITY
-from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, STOP
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture import Capture, read_capture
 from yehu_server.scores.chosen_parts import says_mpe
@@ -132,9 +132,9 @@ def written_of_capture(
     lost: Counter[str] = Counter()
     players = len(capture.beginning.players)
     for player in range(players):
-        own = capture.wishes[capture.players == player]
+        own = capture.commands[capture.players == player]
         until_end = [*own.tolist(), (capture.frames, STOP, 0, 0.0, 0.0)]
-        heard = _of_wishes(until_end, capture.rate)
+        heard = _of_commands(until_end, capture.rate)
         voices.append((f"player {player + 1}" if players > 1 else "", heard))
         notes = np.isin(own["kind"], (BEGIN, END, EXPRESS, STOP))
         lost["moves of bow and fingers"] += int(np.sum(~notes))
@@ -142,13 +142,13 @@ def written_of_capture(
     return written, {**+lost, **more}
 
 
-def _of_wishes(
-    wishes: Sequence[tuple[int, int, int, float, float]], rate: float
+def _of_commands(
+    commands: Sequence[tuple[int, int, int, float, float]], rate: float
 ) -> list[PlayedNote]:
     heard: list[PlayedNote] = []
     held: dict[tuple[int, float], tuple[float, float, int]] = {}
     velocity = 0
-    for frame, kind, index, value, other in wishes:
+    for frame, kind, index, value, other in commands:
         now, key = frame / rate, (index, value)
         if kind == EXPRESS and index == VELOCITY:
             velocity = round(127.0 * value)

@@ -12,7 +12,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.output import SOUNDED
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.player.wishes import BEGIN
+from yehu_server.core.player.commands import BEGIN
 from yehu_server.errors import ParameterError
 
 RATE = 22050.0

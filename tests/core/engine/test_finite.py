@@ -14,8 +14,8 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.commands import BEGIN, KINDS, RAMP
 from yehu_server.core.player.rows import ROWS
-from yehu_server.core.player.wishes import BEGIN, KINDS, RAMP
 from yehu_server.core.stage.directivity import SIDES
 from yehu_server.core.stage.late_field import ROOM
 from yehu_server.core.stage.seat import SEAT
@@ -139,7 +139,7 @@ def test_a_target_that_is_no_number_is_passed_over(instrument, playing):
 
 
 @pytest.mark.parametrize("sounds", [False, True], ids=["in silence", "in a note"])
-def test_whatever_is_wished_for_every_sample_is_finite(instrument, playing, sounds, everything):
+def test_whatever_is_asked_for_every_sample_is_finite(instrument, playing, sounds, everything):
     for kind, bad in tried(range(len(KINDS)), everything):
         instrument._rig[:] = playing
         if sounds:

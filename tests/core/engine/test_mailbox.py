@@ -1,4 +1,4 @@
-"""Wishes to the instrument: rings between threads and processes, the heap in sample time."""
+"""Commands to the instrument: rings between threads and processes, the heap in sample time."""
 
 import mmap
 import os
@@ -37,15 +37,15 @@ from yehu_server.core.engine.mailbox import (
 )
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import TABLES_TO
+from yehu_server.core.player.commands import BEGIN, EXPRESS, HOLD, RAMP, WRITE
 from yehu_server.core.player.rows import ROW, ROWS
-from yehu_server.core.player.wishes import BEGIN, EXPRESS, HOLD, RAMP, WRITE
 from yehu_server.params.table import ENGINE, SLOT
 
 RATE = 22050
 PATIENCE_S = 120.0  # for other threads and processes; they took 20 s on a busy machine
 # Parameters that are not heard while no bow is on the strings.
 INERT = [SLOT["/bow/force"], SLOT["/bow/pressure"]]
-# Kind and index of wishes that are not heard either, of even and of odd number.
+# Kind and index of commands that are not heard either, of even and of odd number.
 (EVEN_KIND, EVEN), (ODD_KIND, ODD) = UNHEARD = [
     (RAMP, SLOT["/bow/force"]),
     (EXPRESS, ROW["/playing/vibrato_rate"]),
@@ -56,7 +56,7 @@ LAST = TABLES_TO  # kind of events
 
 
 def post_numbered(instrument: Instrument, number: int, frame: int = 0) -> bool:
-    """Post a wish that carries its number in each of its parts."""
+    """Post a command that carries its number in each of its parts."""
     kind, index = UNHEARD[number % 2]
     return instrument.post(kind, frame=frame, index=index, value=number, other=-number)
 
@@ -66,13 +66,13 @@ def post_ramp(instrument: Instrument, frame: int, slot: int, target: float, ramp
     return instrument.post(RAMP, frame=frame, index=slot, value=target, other=ramp)
 
 
-def numbers(wishes: np.ndarray) -> np.ndarray:
-    """The numbers of wishes posted by `post_numbered`; all parts of each must agree."""
-    found = wishes["value"].astype(int)
-    np.testing.assert_array_equal(wishes["value"], found)
-    np.testing.assert_array_equal(wishes["other"], -found)
-    np.testing.assert_array_equal(wishes["kind"], np.array(UNHEARD)[found % 2, 0])
-    np.testing.assert_array_equal(wishes["index"], np.array(UNHEARD)[found % 2, 1])
+def numbers(commands: np.ndarray) -> np.ndarray:
+    """The numbers of commands posted by `post_numbered`; all parts of each must agree."""
+    found = commands["value"].astype(int)
+    np.testing.assert_array_equal(commands["value"], found)
+    np.testing.assert_array_equal(commands["other"], -found)
+    np.testing.assert_array_equal(commands["kind"], np.array(UNHEARD)[found % 2, 0])
+    np.testing.assert_array_equal(commands["index"], np.array(UNHEARD)[found % 2, 1])
     return found
 
 
@@ -81,13 +81,13 @@ def offline() -> Instrument:
 
 
 def live(rate: float = RATE) -> Instrument:
-    """An instrument whose blocks take a limited number of wishes."""
+    """An instrument whose blocks take a limited number of commands."""
     return Instrument(InstrumentSpec(rate), is_live=True)
 
 
 def reporting(instrument: Instrument) -> Instrument:
-    """An instrument, made to report the wishes that it applies."""
-    instrument.report_wishes()
+    """An instrument, made to report the commands that it applies."""
+    instrument.report_commands()
     return instrument
 
 
@@ -97,7 +97,7 @@ _post = numba.njit(native.post.function)
 
 
 def storm(rig, start, count):
-    """Post numbered wishes as fast as possible, each until it is taken; return the refusals."""
+    """Post numbered commands as fast as possible, each until it is taken; return the refusals."""
     refused = 0
     for number in range(start, start + count):
         kind, index = (ODD_KIND, ODD) if number % 2 else (EVEN_KIND, EVEN)
@@ -140,13 +140,13 @@ def collect(
     deadline = time.monotonic() + PATIENCE_S
     while read < count and time.monotonic() < deadline:
         meanwhile()
-        reports.append(instrument.applied_wishes().copy())  # without the room for more
+        reports.append(instrument.applied_commands().copy())  # without the room for more
         read += len(reports[-1])
     return np.concatenate(reports)
 
 
 @pytest.mark.parametrize("make", [offline, live], ids=["offline", "live"])
-def test_wishes_come_whole_and_in_order_from_thread_to_thread(make):
+def test_commands_come_whole_and_in_order_from_thread_to_thread(make):
     instrument, count, refused = reporting(make()), 50_000, []
     out = np.zeros(64, np.float32)
     mail = instrument._rig["mail"]
@@ -162,12 +162,12 @@ def test_wishes_come_whole_and_in_order_from_thread_to_thread(make):
     poster = threading.Thread(target=post, daemon=True)
     with aside(play):
         poster.start()
-        wishes = collect(instrument, count)
+        commands = collect(instrument, count)
         poster.join(PATIENCE_S)
     run(instrument, 64)
-    assert not len(instrument.applied_wishes())
-    np.testing.assert_array_equal(numbers(wishes), np.arange(count))
-    assert (np.diff(wishes["frame"]) >= 0).all()
+    assert not len(instrument.applied_commands())
+    np.testing.assert_array_equal(numbers(commands), np.arange(count))
+    assert (np.diff(commands["frame"]) >= 0).all()
     assert instrument.dropped_events == refused[0]
     meters = instrument.meters()
     assert (meters["applied"], meters["waiting"], meters["unreported"]) == (count, 0, 0)
@@ -189,12 +189,12 @@ while not over.is_set():
 
 
 @pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no memfd_create here")
-def test_wishes_come_whole_and_in_order_to_another_process_and_its_reports_back():
+def test_commands_come_whole_and_in_order_to_another_process_and_its_reports_back():
     count, size = 20_000, memory.memory_bytes(1)
     descriptor = os.memfd_create("rig")
     os.ftruncate(descriptor, size)
     instrument = sound.alone(RATE, memory=mmap.mmap(descriptor, size), is_live=True).first
-    instrument.report_wishes()
+    instrument.report_commands()
     pipes = {"stdin": subprocess.PIPE, "stdout": None, "stderr": None}
     process = forks.start(descriptor, code=CALLBACKS, pass_fds=[descriptor], **pipes)
     os.close(descriptor)
@@ -206,14 +206,14 @@ def test_wishes_come_whole_and_in_order_to_another_process_and_its_reports_back(
             posted += post_numbered(instrument, posted)
 
     try:
-        wishes = collect(instrument, count, post_some)
+        commands = collect(instrument, count, post_some)
         process.communicate(timeout=PATIENCE_S)  # its input ends here
     finally:
         process.kill()
     assert process.returncode == 0
-    assert not len(instrument.applied_wishes())
-    np.testing.assert_array_equal(numbers(wishes), np.arange(count))
-    assert (np.diff(wishes["frame"]) >= 0).all()
+    assert not len(instrument.applied_commands())
+    np.testing.assert_array_equal(numbers(commands), np.arange(count))
+    assert (np.diff(commands["frame"]) >= 0).all()
     meters = instrument.meters()
     assert meters["applied"] == count
     assert meters["frame"] + meters["block"] == instrument.frame == 64 * meters["callbacks"]
@@ -230,7 +230,7 @@ def test_a_full_ring_drops_and_counts_what_comes_and_keeps_what_it_has(make):
             assert post_numbered(instrument, number) == (number < RING)
         assert instrument.dropped_events == dropped
         run(instrument, 2 * RING // (LIVE_BUDGET // 64) + 1000)
-        np.testing.assert_array_equal(numbers(instrument.applied_wishes()), np.arange(RING))
+        np.testing.assert_array_equal(numbers(instrument.applied_commands()), np.arange(RING))
 
 
 def test_a_writer_of_times_far_ahead_leaves_the_heap_to_the_others():
@@ -256,10 +256,10 @@ def test_reports_nobody_reads_are_dropped_and_counted_and_the_older_kept():
     run(instrument, 4096)
     assert instrument.meters()["applied"] == RING + 100
     assert instrument.meters()["unreported"] == 100
-    np.testing.assert_array_equal(numbers(instrument.applied_wishes()), np.arange(RING))
+    np.testing.assert_array_equal(numbers(instrument.applied_commands()), np.arange(RING))
     post_numbered(instrument, 7)
     run(instrument, 64)
-    np.testing.assert_array_equal(numbers(instrument.applied_wishes()), [7])
+    np.testing.assert_array_equal(numbers(instrument.applied_commands()), [7])
     assert instrument.meters()["unreported"] == 100
 
 
@@ -277,7 +277,7 @@ def test_cursors_are_words_of_their_own_in_cache_lines_of_their_own():
 
 
 def target(index: int, order: int) -> float:
-    """A value within the parameter's range that no other wish has."""
+    """A value within the parameter's range that no other command has."""
     param = ENGINE[index]
     return param.lo + (param.hi - param.lo) * order / (1 << 16)
 
@@ -291,7 +291,7 @@ class Model:
         self.applied: list[tuple[int, int, float]] = []  # frame, index, target
 
     def post(self, frame: int, index: int) -> float:
-        """Post a wish; return its target, which no other wish has."""
+        """Post a command; return its target, which no other command has."""
         self.order += 1
         self.late += frame < self.frame
         self.waiting.append((frame, self.order, index))
@@ -299,18 +299,18 @@ class Model:
 
     def play(self, frames: int) -> None:
         for _ in range(frames):
-            due = [wish for wish in sorted(self.waiting) if wish[0] <= self.frame]
-            for wish in due[:APPLIED_AT_ONCE]:
-                self.waiting.remove(wish)
-                _, order, index = wish
+            due = [command for command in sorted(self.waiting) if command[0] <= self.frame]
+            for command in due[:APPLIED_AT_ONCE]:
+                self.waiting.remove(command)
+                _, order, index = command
                 self.applied.append((self.frame, index, target(index, order)))
             self.frame += 1
 
 
 def postings(frames: int, most: int) -> st.SearchStrategy:
-    wish = st.tuples(st.integers(-2, frames), st.sampled_from(INERT))
+    command = st.tuples(st.integers(-2, frames), st.sampled_from(INERT))
     # What is posted before a block, and how long that block is.
-    return st.lists(st.tuples(st.lists(wish, max_size=most), st.integers(1, frames)), max_size=6)
+    return st.lists(st.tuples(st.lists(command, max_size=most), st.integers(1, frames)), max_size=6)
 
 
 @settings(max_examples=25)
@@ -318,17 +318,17 @@ def postings(frames: int, most: int) -> st.SearchStrategy:
     st.one_of(postings(300, 60), postings(5, 60), postings(2, 120)),
     st.sampled_from([1, 64, 100, 333, 4096]),
 )
-def test_wishes_apply_by_frame_and_then_as_posted_whatever_the_order_of_posting(batches, block):
+def test_commands_apply_by_frame_and_then_as_posted_whatever_the_order_of_posting(batches, block):
     instrument, model = reporting(offline()), Model()
-    for wishes, frames in [*batches, ([], 600)]:
-        for frame, index in wishes:
+    for commands, frames in [*batches, ([], 600)]:
+        for frame, index in commands:
             assert post_ramp(instrument, frame, index, model.post(frame, index))
         model.play(frames)
         run(instrument, frames, block=block)
-    wishes = instrument.applied_wishes()
-    assert (wishes["kind"] == RAMP).all()
-    assert not wishes["other"].any()
-    assert wishes[["frame", "index", "value"]].tolist() == model.applied
+    commands = instrument.applied_commands()
+    assert (commands["kind"] == RAMP).all()
+    assert not commands["other"].any()
+    assert commands[["frame", "index", "value"]].tolist() == model.applied
     meters = instrument.meters()
     assert meters["late_events"] == model.late
     assert meters["applied"] == len(model.applied)
@@ -342,25 +342,25 @@ def test_thousands_in_any_order_come_out_sorted():
     for number, frame in enumerate(frames):
         post_numbered(instrument, number, frame)
     run(instrument, 2100)
-    wishes = instrument.applied_wishes()
+    commands = instrument.applied_commands()
     expected = sorted(range(len(frames)), key=lambda number: (frames[number], number))
-    np.testing.assert_array_equal(numbers(wishes), expected)
-    np.testing.assert_array_equal(wishes["frame"], sorted(frames))  # none has 32 on a frame
+    np.testing.assert_array_equal(numbers(commands), expected)
+    np.testing.assert_array_equal(commands["frame"], sorted(frames))  # none has 32 on a frame
 
 
 # ---------------------------------------------------------------- the heap: single promises
 
 
-def test_at_most_so_many_wishes_apply_on_one_frame_and_the_rest_on_the_next():
+def test_at_most_so_many_commands_apply_on_one_frame_and_the_rest_on_the_next():
     instrument = reporting(offline())
     for number in range(3 * APPLIED_AT_ONCE + 4):
         post_numbered(instrument, number, 50)
     for number in range(3 * APPLIED_AT_ONCE + 4, 3 * APPLIED_AT_ONCE + 10):
         post_numbered(instrument, number, 51)
     run(instrument, 100)
-    wishes = instrument.applied_wishes()
-    np.testing.assert_array_equal(numbers(wishes), np.arange(3 * APPLIED_AT_ONCE + 10))
-    frames, counts = np.unique(wishes["frame"], return_counts=True)
+    commands = instrument.applied_commands()
+    np.testing.assert_array_equal(numbers(commands), np.arange(3 * APPLIED_AT_ONCE + 10))
+    frames, counts = np.unique(commands["frame"], return_counts=True)
     assert frames.tolist() == [50, 51, 52, 53]
     assert counts.tolist() == [APPLIED_AT_ONCE] * 3 + [10]
     assert instrument.meters()["late_events"] == 0  # they were posted in time
@@ -372,13 +372,13 @@ def test_more_than_wait_at_once_in_the_order_of_frames_apply_on_their_frames():
     for number in range(count):
         post_numbered(instrument, number, 100 + number // 10)
     run(instrument, 100 + count)
-    wishes = instrument.applied_wishes()
-    np.testing.assert_array_equal(numbers(wishes), np.arange(count))
-    np.testing.assert_array_equal(wishes["frame"], 100 + np.arange(count) // 10)
+    commands = instrument.applied_commands()
+    np.testing.assert_array_equal(numbers(commands), np.arange(count))
+    np.testing.assert_array_equal(commands["frame"], 100 + np.arange(count) // 10)
     assert instrument.meters()["late_events"] == 0
 
 
-def test_a_live_instrument_takes_in_so_many_wishes_for_each_64_frames():
+def test_a_live_instrument_takes_in_so_many_commands_for_each_64_frames():
     instrument = live()
     for number in range(RING):
         post_numbered(instrument, number, FAR)
@@ -390,7 +390,7 @@ def test_a_live_instrument_takes_in_so_many_wishes_for_each_64_frames():
     assert instrument.dropped_events == 2 * LIVE_BUDGET
 
 
-def test_a_wish_of_no_kind_or_for_no_parameter_changes_nothing():
+def test_a_command_of_no_kind_or_for_no_parameter_changes_nothing():
     wild = (-1, -2, 2**62, -(2**62))
     none = [
         *product([RAMP], [*wild, SILENCE + 1, SILENCE + 5]),
@@ -420,7 +420,7 @@ def test_a_reset_leaves_nothing_to_apply_or_to_report():
     post_numbered(instrument, 3, 0)
     instrument.reset()
     run(instrument, 300)
-    assert not len(instrument.applied_wishes())
+    assert not len(instrument.applied_commands())
     meters = instrument.meters()
     assert (meters["waiting"], meters["applied"], meters["late_events"]) == (0, 0, 0)
 
@@ -430,8 +430,8 @@ def test_a_reset_leaves_nothing_to_apply_or_to_report():
 MANY = 200
 
 
-def waiting_wishes() -> tuple[Ensemble, list[int]]:
-    """An instrument that many wishes in any order wait in, and their numbers as they will come."""
+def waiting_commands() -> tuple[Ensemble, list[int]]:
+    """An instrument with many commands that wait in any order, and their numbers as due."""
     chance = random.Random(5)
     ensemble = sound.alone(RATE)
     instrument = reporting(ensemble.first)
@@ -449,11 +449,11 @@ def died(ensemble: Ensemble) -> None:
     ensemble.recover()
 
 
-def test_a_wish_that_came_while_the_process_died_comes_once_and_no_other_is_lost():
+def test_a_command_that_came_while_the_process_died_comes_once_and_no_other_is_lost():
     # While an entry comes or leaves, others move up or down by copies: one of them is there twice,
     # and the one that moves may be nowhere. It is still counted, or no longer.
     for lost in (0, 1, 7, MANY - 1):
-        ensemble, expected = waiting_wishes()
+        ensemble, expected = waiting_commands()
         instrument, heap = ensemble.first, ensemble.first._rig["events"][0]
         number = int(heap["order"][lost])
         heap[lost] = heap[MANY // 2]
@@ -461,18 +461,18 @@ def test_a_wish_that_came_while_the_process_died_comes_once_and_no_other_is_lost
         assert instrument._rig["mail"]["pending_events"][0] == MANY - 1
         run(ensemble, 1000)
         expected.remove(number)
-        np.testing.assert_array_equal(numbers(instrument.applied_wishes()), expected)
+        np.testing.assert_array_equal(numbers(instrument.applied_commands()), expected)
 
 
 def test_a_heap_that_was_left_out_of_order_is_mended_and_takes_more():
-    ensemble, expected = waiting_wishes()
+    ensemble, expected = waiting_commands()
     instrument, heap = ensemble.first, ensemble.first._rig["events"][0]
     heap[:MANY] = heap[np.random.default_rng(1).permutation(MANY)]
     died(ensemble)
     post_numbered(instrument, MANY, 300)
     post_numbered(instrument, MANY + 1, 700)
     run(ensemble, 1000)
-    found = numbers(instrument.applied_wishes())
+    found = numbers(instrument.applied_commands())
     np.testing.assert_array_equal(found, [MANY, *expected, MANY + 1])
 
 
@@ -487,6 +487,6 @@ def test_even_more_than_can_wait_at_once_apply_the_same_in_blocks_of_any_size():
         for number in range(500):
             post_numbered(instrument, number, 30 + 7 * number % 500)
         run(instrument, 3200, block=block)
-        return instrument.applied_wishes()
+        return instrument.applied_commands()
 
     np.testing.assert_array_equal(applied(1), applied(64))

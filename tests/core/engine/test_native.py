@@ -19,9 +19,9 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.warming import all_functions, functions_beside
 from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
+from yehu_server.core.player.commands import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
 from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
 
 RATE = 22050
 FOR_STUDIES = [call for called in compile_all.MORE.values() for call in functions_beside(called)]
@@ -184,7 +184,7 @@ def test_the_callback_reads_and_writes_the_cursors_atomically_and_in_order():
     }
 
 
-def test_a_wish_is_written_before_the_cursor_tells_of_it():
+def test_a_command_is_written_before_the_cursor_tells_of_it():
     before, after = "\n".join(lines("post")).split("store atomic")
     assert "store" in re.split(r"^\S+:", before, flags=re.MULTILINE)[-1]  # in the same basic block
     assert "store" not in after.partition("\n\n")[0]

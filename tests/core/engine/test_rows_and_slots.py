@@ -206,7 +206,7 @@ def test_a_mix_up_is_found():
         "def f(c, row):\n    c.slope[row] = 0.0",
         f"{SLOTS_OF} POSITION, SIDE\n{ROWS_OF} POSITION",
         f"{SLOTS_OF} LOWEST\nLOWEST[ROW['/bow/force']]",
-        "self.post(wishes.RAMP, index=ROW[address])",
+        "self.post(commands.RAMP, index=ROW[address])",
         f"{SLOTS_OF} GAIN\nemit(m, 0, frame, WRITE, GAIN, 0.0, 0.0)",
         f"{ROWS_OF} SPEED\n{TAKE}\ntake(c, SPEED, 0.1, 0)",
     ]

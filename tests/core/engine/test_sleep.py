@@ -16,8 +16,8 @@ from yehu_server.core.engine.output import SOUNDED
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.sleep import QUIET, WINDOW
 from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.commands import BEGIN, END, HOLD, WRITE
 from yehu_server.core.player.rows import EXPRESSION, ROW, TREMOLO
-from yehu_server.core.player.wishes import BEGIN, END, HOLD, WRITE
 from yehu_server.core.stage.seat import SPAN
 
 RATE = 44100.0
@@ -184,11 +184,11 @@ def test_it_wakes_as_if_it_had_been_computed_all_the_time():
 def test_a_replay_that_sleeps_plays_the_same():
     live = two_notes(2)
     for instrument in live.instruments:
-        instrument.report_wishes()
+        instrument.report_commands()
     heard, counts = blocks(live, 100, 20, 7000)
     again = Ensemble([InstrumentSpec(RATE, seed=k, body=k) for k in range(2)])
     for one, other in zip(live.instruments, again.instruments, strict=True):
-        for frame, kind, index, value, extra in one.applied_wishes().tolist():
+        for frame, kind, index, value, extra in one.applied_commands().tolist():
             other.post(kind, frame=frame, index=index, value=value, other=extra)
     replayed, own = blocks(again, 1024, 20, 7000)
     np.testing.assert_array_equal(replayed, heard)

@@ -9,8 +9,8 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.snapshot import NO_STRING, SNAPSHOT, snapshot
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.layout import V_B, X_B
+from yehu_server.core.player.commands import BEGIN, END, HOLD
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import BEGIN, END, HOLD
 
 RATE = 44100.0
 

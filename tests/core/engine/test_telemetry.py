@@ -19,7 +19,7 @@ from yehu_server.core.engine.rig import METERS_AT, POSTED_AT
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.telemetry import BINS_PER_DEADLINE, LOAD_BINS, METERS, SHAPE_POINTS
 from yehu_server.core.physics.layout import GHOST, STRINGS
-from yehu_server.core.player.wishes import RAMP
+from yehu_server.core.player.commands import RAMP
 
 RATE = 44100
 run = partial(sound.run, block=4096)
@@ -461,7 +461,7 @@ def test_meters_of_a_new_instrument_are_empty():
     assert loop == {"due_ns": 0, "error_ns": 0, "ns_per_frame": 1e9 / RATE}
 
 
-def test_lost_states_and_wishes_are_reported():
+def test_lost_states_and_commands_are_reported():
     instrument = bowed()
     run(instrument, 4096)
     instrument._rig["state"]["motion"]["u"] = np.nan

@@ -26,12 +26,12 @@ def bowed(effort: float, place: float = PLAIN_PLACE, **settings: float) -> Watch
     """An instrument whose notes all brighten alike, bowed with an effort (m/s)."""
     calibration = replace(ideal(), centroids=tables(CENTROIDS), louder=tables(LOUDER))
     instrument = Watched(calibration=calibration)
-    wishes = Player(instrument)
-    pressure = effort / instrument.wished("/playing/speed")
+    commands = Player(instrument)
+    pressure = effort / instrument.requested("/playing/speed")
     settings |= {"pressure": pressure, "bow_position": place, "variation": 0.0}
     for name, value in settings.items():
-        wishes.write(f"/playing/{name}", value)
-    wishes.note_on(Key(0, PITCH))
+        commands.write(f"/playing/{name}", value)
+    commands.note_on(Key(0, PITCH))
     return instrument
 
 
@@ -53,14 +53,14 @@ def test_what_the_shelf_adds_to_the_loudness_is_taken_back():
     as_the_model, brighter = bowed(PLAIN_EFFORT), bowed(0.3)
     added = np.interp(gain_for(0.3), GAINS, LOUDER)
     assert added > 1.0
-    evenness = as_the_model.wished("/body/evenness")
+    evenness = as_the_model.requested("/body/evenness")
     fell = as_the_model.target("/output/balance") - brighter.target("/output/balance")
     assert fell == pytest.approx(evenness * added, abs=0.01)
 
 
 def test_a_bow_that_leans_harder_in_mid_note_is_brighter_and_as_loud():
     instrument = bowed(PLAIN_EFFORT)
-    louder = 0.3 / instrument.wished("/playing/speed")
+    louder = 0.3 / instrument.requested("/playing/speed")
     Player(instrument).write("/playing/pressure", louder)
     brighter = bowed(0.3)
     for address in ("/body/brilliance", "/output/balance"):

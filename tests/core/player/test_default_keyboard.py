@@ -18,9 +18,9 @@ OLD = "keyboard-bow-speed"
 def steady(mapping: str, *controls: tuple[int, int]) -> np.ndarray:
     """A second of a held note, once its vibrato has come in."""
     instrument = Instrument(PlayingOptions().spec(float(RATE), calibration_for(float(RATE))))
-    wishes = Player(instrument)
-    wishes.write("/playing/variation", 0.0, frame=0, hold=True)
-    midi = wishes.mapped(load(mapping))
+    commands = Player(instrument)
+    commands.write("/playing/variation", 0.0, frame=0, hold=True)
+    midi = commands.mapped(load(mapping))
     for control, value in controls:
         midi.receive(mido.Message("control_change", control=control, value=value), frame=0)
     midi.receive(mido.Message("note_on", note=NOTE, velocity=80), frame=0)

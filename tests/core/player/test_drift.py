@@ -103,7 +103,7 @@ def test_hands_that_rest_come_to_rest():
 def test_what_somebody_else_moves_is_steady(address, which):
     playing = Playing(variation=1.0)
     playing.on(74)
-    playing.wishes.write(address, 0.2)
+    playing.commands.write(address, 0.2)
     drift = playing.play(0.5, "drift")[0][40:]
     assert (drift[:, which] == 0.0).all()
     assert np.abs(drift[:, CENTS_DRIFT]).max() > 0.0

@@ -82,7 +82,7 @@ def test_a_gesture_goes_on_while_dynamics_move():
         playing = held("swell", listening=1.0, note_length=2.0, dynamics=0.7)
         found = []
         for step in range(40):
-            playing.wishes.write("/playing/dynamics", 0.7 + step_of_dynamics * step)
+            playing.commands.write("/playing/dynamics", 0.7 + step_of_dynamics * step)
             found.append(np.abs(playing.play(0.02, "value")[0][-1, SPEED]))
         speeds.append(np.array(found))
     still, moved = speeds
@@ -165,7 +165,7 @@ def test_a_finger_touches_the_node_of_a_harmonic_and_no_other_note():
         playing.play(0.1)
         playing.on(note)
         playing.play(0.05)
-        playing.wishes.write("/playing/speed", 0.15)
+        playing.commands.write("/playing/speed", 0.15)
         values = playing.play(0.1, "value")[0][-1]
         down = np.flatnonzero(values[FINGER_PRESS] > 0.0)
         assert len(down) == 1
@@ -214,7 +214,7 @@ def test_a_trill_beats_a_second_above_some_seven_times_a_second_and_a_mordent_on
     assert np.count_nonzero(np.diff(bends("mordent")) != 0.0) == 2
 
 
-def test_vibratos_of_their_own_go_before_what_is_wished():
+def test_vibratos_of_their_own_go_before_what_is_requested():
     pressing, straight = played("pressing-vibrato"), played("straight", vibrato=40.0)
     assert pressing[-1, UPWARD] == 1.0
     assert pressing[-1, DEPTH] > 20.0

@@ -10,9 +10,9 @@ from sound import rms, run_for
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.midi.record import clear_held
 from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.commands import STOP
 from yehu_server.core.player.record import prepare_player
 from yehu_server.core.player.tuning_by_ear import LASTING, begin_tuning, jumps
-from yehu_server.core.player.wishes import STOP
 from yehu_server.params.table import FINGERS, TABLE
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
@@ -31,25 +31,25 @@ class Play:
     def __init__(self, listening: float = 1.0, detuned: float = 0.0, **values: float) -> None:
         playing = PlayingOptions()
         self.instrument = Instrument(playing.spec(RATE, calibration_for(float(RATE))))
-        self.wishes: Player = playing.player(self.instrument)
-        self.wishes.write("/playing/variation", 0.0)
-        self.wishes.write("/playing/listening", listening)
+        self.commands: Player = playing.player(self.instrument)
+        self.commands.write("/playing/variation", 0.0)
+        self.commands.write("/playing/listening", listening)
         self.detune(detuned)
         for name, value in values.items():
-            self.wishes.write(f"/playing/{name}", value)
+            self.commands.write(f"/playing/{name}", value)
         run_for(self.instrument, 0.05)
 
     def detune(self, by: float) -> None:
         for string in ("inner", "outer"):
-            self.wishes.write(f"/string/{string}/tuning", by)
+            self.commands.write(f"/string/{string}/tuning", by)
 
     def note(self, note: int, seconds: float, block: int = 0) -> np.ndarray:
         """The sound of a note, whose key stays down."""
-        self.wishes.note_on(Key(0, note))
+        self.commands.note_on(Key(0, note))
         return run_for(self.instrument, seconds, block)
 
     def rest(self, note: int, seconds: float = 0.4) -> None:
-        self.wishes.note_off(Key(0, note))
+        self.commands.note_off(Key(0, note))
         run_for(self.instrument, seconds)
 
     @property
@@ -133,7 +133,7 @@ def test_samples_do_not_depend_on_the_sizes_of_blocks(listening):
     for block in (1, 7, 64, 1000):
         play = Play(listening, -30.0, vibrato=15.0)
         sound = [play.note(71, 0.3, block), play.note(76, 0.2, block)]
-        play.wishes.write("/playing/bend", 0.4)
+        play.commands.write("/playing/bend", 0.4)
         sounds.append(np.concatenate([*sound, run_for(play.instrument, 0.2, block)]))
         assert play.player["learnt"].any()
     assert rms(sounds[0]) > 1e-3
@@ -142,10 +142,10 @@ def test_samples_do_not_depend_on_the_sizes_of_blocks(listening):
 
 
 @pytest.mark.parametrize("note", [66, 70, 76, 84])
-@pytest.mark.parametrize("wish", [{"pressure": 1.0}, {"pressure": 1.6}, {"tremolo": 8.0}], ids=str)
-def test_the_right_hand_lets_scratching_and_tremolo_be(note, wish):
-    play = Play(1.0, 0.0, **wish)
-    play.wishes.note_on(Key(0, note))
+@pytest.mark.parametrize("asked", [{"pressure": 1.0}, {"pressure": 1.6}, {"tremolo": 8.0}], ids=str)
+def test_the_right_hand_lets_scratching_and_tremolo_be(note, asked):
+    play = Play(1.0, 0.0, **asked)
+    play.commands.note_on(Key(0, note))
     for _ in range(80):
         run_for(play.instrument, 0.01)
         assert play.player["pressure_factor"] == 1.0
@@ -184,7 +184,7 @@ def test_a_panic_ends_what_sounds_even_if_the_part_has_forgotten_it(is_panic):
     play = Play()
     play.note(70, 0.4)
     clear_held(play.instrument.midi)
-    play.wishes.stop_sound(is_panic=is_panic)
+    play.commands.stop_sound(is_panic=is_panic)
     sound = run_for(play.instrument, 0.5)
     assert (rms(sound[round(0.1 * RATE) :]) == 0.0) == is_panic
     assert (play.player["held"] == 0) == is_panic
@@ -212,8 +212,8 @@ def test_a_pitch_that_jumps_over_its_place_is_distinguished_from_one_that_swings
 
 def test_a_bow_drawn_by_hand_is_heard_and_left_alone():
     play = Play(detuned=-30.0)
-    play.wishes.slide(76.0)
-    play.wishes.draw(0.15, 0.6)
+    play.commands.slide(76.0)
+    play.commands.draw(0.15, 0.6)
     run_for(play.instrument, 0.1)
     fingers, force = play.fingers(), play.instrument.target("/bow/force")
     run_for(play.instrument, 0.6)

@@ -7,7 +7,7 @@ from yehu_server.core.controls.slots import DEPTH, FINGER_POSITION, ONSET
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
 
-def test_a_long_note_gets_a_vibrato_that_comes_late_if_phrased_and_none_was_wished_for():
+def test_a_long_note_gets_a_vibrato_that_comes_late_if_phrased_and_none_was_asked_for():
     def vibrato(note: float, seconds: float, **values: float) -> np.ndarray:
         """Depth (cents) and onset of the vibrato, every 5 ms."""
         playing = Playing(**values)
@@ -19,8 +19,8 @@ def test_a_long_note_gets_a_vibrato_that_comes_late_if_phrased_and_none_was_wish
     assert onset[40] < 0.4 < onset[80]  # none after 0.2 s, some after 0.4 s
     assert onset[-1] == 1.0
     assert (vibrato(74, 1.0)[0] == 0.0).all()
-    wished = vibrato(74, 0.5, phrasing=1.0, vibrato=10.0, vibrato_delay=0.0)
-    assert wished[:, -1].tolist() == [10.0, 1.0]
+    requested = vibrato(74, 0.5, phrasing=1.0, vibrato=10.0, vibrato_delay=0.0)
+    assert requested[:, -1].tolist() == [10.0, 1.0]
 
 
 def slide_s(phrasing: float, first: int, second: int, held_s: float = 0.5) -> float:
@@ -52,7 +52,7 @@ def first_bend(leap: float, **values: float) -> float:
     playing.on(76.0 - leap)
     playing.play(0.35)
     for name, value in values.items():
-        playing.wishes.write(f"/playing/{name}", value)
+        playing.commands.write(f"/playing/{name}", value)
     playing.on(76)
     playing.play(0.005)
     return float(playing.player["gesture"]["bend"])

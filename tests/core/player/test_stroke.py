@@ -44,7 +44,7 @@ def test_an_endless_bow_never_turns():
 
 def test_a_change_within_a_note_is_a_dip_and_no_click():
     playing = Playing(variation=0.0)
-    playing.wishes.write("/bow/noise", 0.0)
+    playing.commands.write("/bow/noise", 0.0)
     playing.on(74)
     sound = playing.sound(4.0).astype(float)
     window = RATE // 200
@@ -82,7 +82,7 @@ def test_a_note_that_needs_more_hair_than_is_left_goes_the_other_way():
     playing = Playing(variation=0.0)
     for _ in range(6):
         for length in (1.5, 0.2):
-            playing.wishes.write("/playing/note_length", length)
+            playing.commands.write("/playing/note_length", length)
             playing.on(74)
             speed, place = drawn(playing, length)
             assert len(turns(speed[10:])) == 0  # the note is one stroke
@@ -108,14 +108,14 @@ def test_a_slur_that_has_no_hair_left_begins_a_new_stroke():
 
 def test_a_bow_that_somebody_else_draws_has_no_end():
     playing = Playing(variation=0.0)
-    playing.wishes.write("/bow/side", -1.0)
-    playing.wishes.write("/bow/speed", 0.3)
+    playing.commands.write("/bow/side", -1.0)
+    playing.commands.write("/bow/speed", 0.3)
     speed, place = drawn(playing, 5.0)
     assert len(turns(speed)) == 0
     assert place[-1] > 1.4
 
 
-def test_one_direction_is_kept_if_wished():
+def test_one_direction_is_kept_if_requested():
     playing = Playing(variation=0.0, direction=1.0)
     for _ in range(8):
         playing.on(74)

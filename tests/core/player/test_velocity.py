@@ -23,11 +23,11 @@ def struck(note: int, velocity: int) -> np.ndarray:
     playing = PlayingOptions()
     assert playing.mapping.name == "keyboard"
     instrument = Instrument(playing.spec(RATE, calibration_for(float(RATE))))
-    wishes = playing.player(instrument)
-    wishes.write("/playing/variation", 0.0)
+    commands = playing.player(instrument)
+    commands.write("/playing/variation", 0.0)
     instrument.write("/bow/noise", 0.0, ramp_ms=0.0)  # A4 at the body's mode minds it by a decibel
-    wishes.write("/body/evenness", 1.0)
-    playing.mapped(wishes).receive(mido.Message("note_on", note=note, velocity=velocity))
+    commands.write("/body/evenness", 1.0)
+    playing.mapped(commands).receive(mido.Message("note_on", note=note, velocity=velocity))
     sound = np.zeros(round(1.2 * RATE), np.float32)
     instrument.process(sound)
     return sound

@@ -83,7 +83,7 @@ def test_one_that_presses_goes_only_up_as_everywhere():
 def test_the_players_own_is_narrower_near_the_nut():
     depths = [played(note, phrasing=0.5)[0] for note in (66, 70, 79)]
     assert depths == pytest.approx([20.0, 28.0, 30.0])
-    assert played(66, vibrato=30.0)[0] == 30.0  # what is wished is not
+    assert played(66, vibrato=30.0)[0] == 30.0  # what is requested is not
 
 
 def test_a_long_open_string_is_stopped_on_the_other_for_its_vibrato():

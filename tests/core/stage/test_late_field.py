@@ -45,8 +45,8 @@ def test_each_octave_decays_within_five_percent_of_what_is_asked(asked, rate):
     for centre in OCTAVES:
         if centre * 2.0**0.5 < 0.45 * rate:
             measured = decay_time(octave(heard, rate, centre), rate)
-            wished = decay_at(centre, asked.decay, asked.damping)
-            assert measured == pytest.approx(wished, rel=0.05), centre
+            requested = decay_at(centre, asked.decay, asked.damping)
+            assert measured == pytest.approx(requested, rel=0.05), centre
 
 
 @pytest.mark.parametrize("before", [

@@ -108,9 +108,9 @@ def test_reflections_come_from_the_mirror_images_to_the_sample(place, rate):
         assert set(np.flatnonzero(np.abs(heard[:, ear]) > 1e-9)) == set(frames)
         sideways = (images[:, 0] - head[0]) / np.linalg.norm(images - head, axis=1)
         shading = np.sqrt(1.0 + (2 * ear - 1) * 0.7 * sideways)
-        wished = np.zeros(len(heard))
-        np.add.at(wished, frames, kept * 2.0 / np.maximum(ways, 2.0) * shading)
-        assert np.allclose(heard[:, ear], wished, rtol=0.01, atol=1e-12)
+        requested = np.zeros(len(heard))
+        np.add.at(requested, frames, kept * 2.0 / np.maximum(ways, 2.0) * shading)
+        assert np.allclose(heard[:, ear], requested, rtol=0.01, atol=1e-12)
 
 
 def test_a_wall_of_a_damped_room_takes_the_high_notes():

@@ -8,10 +8,10 @@ from itertools import pairwise, product
 import numpy as np
 import pytest
 
-from yehu_server.core.engine.voice_callback import OF_WISH, follow_voice, voice_prepare
+from yehu_server.core.engine.voice_callback import COMMAND_NUMBERS, follow_voice, voice_prepare
+from yehu_server.core.player.commands import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.player.note_range import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.core.player.rows import DYNAMICS
-from yehu_server.core.player.wishes import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.voice.note_detection import FOLLOWER
 
 RATE = 48000.0
@@ -22,23 +22,23 @@ PERIOD_OF_F4_S = 1.0 / 349.2
 
 @dataclass
 class Followed:
-    """Wishes (kind, pitch or value) with their times (s), and pitch and level of each block."""
+    """Commands (kind, pitch or value) with their times (s), and pitch and level of each block."""
 
-    wishes: list[tuple[float, int, float]]
+    commands: list[tuple[float, int, float]]
     times: np.ndarray
     pitch: np.ndarray  # NaN: no note sounds
 
     def of(self, *kinds: int) -> list[tuple[float, float]]:
-        return [(time, value) for time, kind, value in self.wishes if kind in kinds]
+        return [(time, value) for time, kind, value in self.commands if kind in kinds]
 
 
 def followed(
     sound: np.ndarray, rate: float = RATE, transpose: float = math.nan, correct: float = 0.0
 ) -> Followed:
-    voice, into = np.zeros(1, FOLLOWER), np.zeros((256, OF_WISH))
+    voice, into = np.zeros(1, FOLLOWER), np.zeros((256, COMMAND_NUMBERS))
     voice_prepare.call(voice.ctypes.data, rate, transpose, correct)
     sound = np.ascontiguousarray(sound, np.float32)
-    wishes, times, pitch = [], [], []
+    commands, times, pitch = [], [], []
     for start in range(0, len(sound) + 1, BLOCK):
         block = sound[start : start + BLOCK]
         count = follow_voice.call(
@@ -48,10 +48,10 @@ def followed(
         for kind, index, value, other in into[:count].tolist():
             is_louder = (int(kind), int(index)) == (WRITE, DYNAMICS)
             pitch_or_value = other if int(kind) == BEGIN else value
-            wishes.append((time, LOUDER if is_louder else int(kind), pitch_or_value))
+            commands.append((time, LOUDER if is_louder else int(kind), pitch_or_value))
         times.append(time)
         pitch.append(voice["heard"][0] if voice["is_open"][0] else math.nan)
-    return Followed(wishes, np.array(times), np.array(pitch))
+    return Followed(commands, np.array(times), np.array(pitch))
 
 
 def vowel(pitch: np.ndarray, rate: float = RATE) -> np.ndarray:
@@ -112,7 +112,7 @@ def test_noise_and_silence_play_nothing():
     random = np.random.default_rng(5)
     hum = 0.02 * np.sin(2.0 * np.pi * 50.0 * np.arange(96000) / RATE)
     for sound in (np.zeros(96000), random.normal(0.0, 0.1, 96000), hum):
-        assert followed(sound).wishes == []
+        assert followed(sound).commands == []
 
 
 def test_what_is_no_number_ends_nothing():
@@ -120,7 +120,7 @@ def test_what_is_no_number_ends_nothing():
     sound[30000:30100], sound[31000] = np.nan, np.inf
     heard = followed(sound)
     assert len(heard.of(BEGIN)) == 1
-    assert all(math.isfinite(value) for _, _, value in heard.wishes)
+    assert all(math.isfinite(value) for _, _, value in heard.commands)
 
 
 def test_vibrato_and_slides_are_one_note_that_slides():
@@ -209,7 +209,7 @@ def test_all_is_played_within_the_range_of_the_instrument_and_moved_no_further()
 def test_what_is_no_longer_followed_ends():
     sound = sung(lambda t: np.full(len(t), 62.0))[: int(0.8 * RATE) // BLOCK * BLOCK]
     heard = followed(sound)  # the last block is empty
-    assert [kind for _, kind, _ in heard.wishes][-1] == END
+    assert [kind for _, kind, _ in heard.commands][-1] == END
 
 
 def test_vibrato_of_a_bowed_string_is_no_new_stroke():

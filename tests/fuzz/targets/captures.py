@@ -9,7 +9,7 @@ from fuzz.target import scratch, target, words, written
 from yehu_server.core.controls.slots import HIGHEST, LOWEST, SILENCE
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.physics.grid import check_rate
-from yehu_server.core.player.wishes import KINDS, RAMP
+from yehu_server.core.player.commands import KINDS, RAMP
 from yehu_server.errors import YehuError
 from yehu_server.params.table import find
 from yehu_server.scores.capture import Capture, read_capture
@@ -25,7 +25,7 @@ WORDS = (
     ),
     *(f'"{kind}", '.encode() for kind in KINDS),
 )
-MOST_FULFILLED = 2000
+MOST_APPLIED = 2000
 
 
 def check_beginning(beginning: SessionStart) -> None:
@@ -46,44 +46,44 @@ def check_beginning(beginning: SessionStart) -> None:
                 assert all(np.isfinite(table).all() for table in tables)
 
 
-def check_wishes(taken: Capture) -> None:
-    """Whatever is wished, it is written as it was read, and no parameter leaves its range."""
-    wishes = taken.wishes
-    assert (wishes["frame"] >= 0).all()
-    assert (wishes["frame"] <= taken.frames).all()
-    assert np.isfinite(wishes["value"]).all()
-    ramps = wishes[(wishes["kind"] == RAMP) & (wishes["index"] != SILENCE)]
+def check_commands(taken: Capture) -> None:
+    """Whatever is requested, it is written as it was read, and no parameter leaves its range."""
+    commands = taken.commands
+    assert (commands["frame"] >= 0).all()
+    assert (commands["frame"] <= taken.frames).all()
+    assert np.isfinite(commands["value"]).all()
+    ramps = commands[(commands["kind"] == RAMP) & (commands["index"] != SILENCE)]
     assert (ramps["value"] >= LOWEST[ramps["index"]]).all()
     assert (ramps["value"] <= HIGHEST[ramps["index"]]).all()
     assert ((ramps["other"] >= 0) & (ramps["other"] <= MOST_FRAMES)).all()
     instrument = Instrument()
-    for frame, *wish in wishes[:MOST_FULFILLED].tolist():
+    for frame, *command in commands[:MOST_APPLIED].tolist():
         instrument.now_s = frame / instrument.rate
-        instrument.fulfil(tuple(wish))
+        instrument.apply(tuple(command))
     instrument.check_player()
 
 
 @target("capture", YehuError, words=WORDS)
 def capture(data: bytes) -> None:
-    """A capture has a length, its wishes are in range, and it can be written again."""
+    """A capture has a length, its commands are in range, and it can be written again."""
     path = written(data, "file.jsonl")
     taken = read_capture(path)
     check_beginning(taken.beginning)
     assert 0 <= taken.frames <= MOST_FRAMES  # replay sets a bound of its own: --max-duration
     assert all(0 <= since <= rest <= MOST_FRAMES for rest, since in taken.gaps.items())
-    check_wishes(taken)
+    check_commands(taken)
     again = scratch() / "again.jsonl"
     again.unlink(missing_ok=True)
     writer = CaptureWriter(again, beginning=taken.beginning)
     for player in range(len(taken.beginning.players)):
-        writer.wishes(taken.wishes[taken.players == player], player)
+        writer.commands(taken.commands[taken.players == player], player)
     for rest, since in taken.gaps.items():
         writer.note("rest", rest, since=since)
     writer.close(taken.frames)
     read = read_capture(again)
     for player, start in enumerate(taken.beginning.players):
         ours, theirs = read.players == player, taken.players == player
-        assert np.array_equal(read.wishes[ours], taken.wishes[theirs])
+        assert np.array_equal(read.commands[ours], taken.commands[theirs])
         written_start = read.beginning.players[player]
         assert np.array_equal(written_start.bowing, start.bowing)
         for what in ("quantities", "seed", "open_strings", "calibration", "values", "body"):

@@ -12,7 +12,7 @@ from yehu_server.core.engine.mailbox import WRITERS
 from yehu_server.core.engine.rig import RING_SIZES
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import TABLES_TO
-from yehu_server.core.player.wishes import BEGIN, WISH
+from yehu_server.core.player.commands import BEGIN, COMMAND
 
 RINGS = ("ring", "midi_ring", "page_ring", "sound_ring")  # by writer
 MOST_EVENTS = 64
@@ -46,7 +46,7 @@ def event_ring(data: bytes) -> None:
         if not program:
             break
         how = program.byte()
-        event = np.frombuffer(program.full(WISH.itemsize), WISH)[0].copy()
+        event = np.frombuffer(program.full(COMMAND.itemsize), COMMAND)[0].copy()
         if how & 1:
             event["frame"] = now + how
         if how & 2:

@@ -98,13 +98,13 @@ def test_a_full_disk_keeps_take_and_capture_as_far_as_they_got(
     until(lambda: live.server.takes.names == "", "the disk to be full")
     limited(capture.stat().st_size + 10)
     client.tell("/note", 69, 90)
-    until(lambda: any("capture ended" in line for line in live.said), "no room for wishes")
+    until(lambda: any("capture ended" in line for line in live.said), "no room for commands")
     limited(resource.RLIM_INFINITY)
     live.end()
     assert not live.server.is_whole
     assert soundfile.info(take).frames == (100_000 - 58) // 8
     assert capture.read_bytes().endswith(b"]\n")
-    assert len(read_capture(capture).wishes) > 0
+    assert len(read_capture(capture).commands) > 0
 
 
 def test_older_takes_are_refused_before_anything_else(make_live, tmp_path):

@@ -126,33 +126,33 @@ export async function fingersOf(page) {
 }
 
 /**
- * The wishes since the last call: [name of its kind, index, value, other, frame].
+ * The commands since the last call: [name of its kind, index, value, other, frame].
  * @param {import("playwright-core").Page} page
  */
-export function wishes(page) {
+export function commands(page) {
   return page.evaluate(async () => {
     const { default: facts } = await import("/facts.js");
     const names = Object.fromEntries(
       Object.entries(facts.kinds).map(([name, kind]) => [kind, name]),
     );
-    return globalThis.imitation.wishes.splice(0).map(([kind, ...rest]) => [names[kind], ...rest]);
+    return globalThis.imitation.commands.splice(0).map(([kind, ...rest]) => [names[kind], ...rest]);
   });
 }
 
 /**
- * Wait until wishes of a kind were made, so many of them.
+ * Wait until commands of a kind were made, so many of them.
  * @param {import("playwright-core").Page} page
  * @param {string} kind
  * @param {number} count
  */
-export async function wished(page, kind, count = 1) {
+export async function requested(page, kind, count = 1) {
   const number = await page.evaluate(
     async (name) => (await import("/facts.js")).default.kinds[name],
     kind,
   );
   await page.waitForFunction(
     ([sought, least]) =>
-      globalThis.imitation?.wishes.filter(([one]) => one === sought).length >= least,
+      globalThis.imitation?.commands.filter(([one]) => one === sought).length >= least,
     [number, count],
   );
 }
@@ -171,7 +171,7 @@ export function drawn(page) {
 }
 
 /**
- * The keys that are held, as far as the wishes tell.
+ * The keys that are held, as far as the commands tell.
  * @param {import("playwright-core").Page} page
  */
 export function held(page) {

@@ -1,6 +1,6 @@
 /**
  * Imitates the sound of the page, in place of `web/sound/sound.js`: it makes no sound, but
- * snapshots of an ideal string in Helmholtz motion, by the wishes it is given, which it keeps.
+ * snapshots of an ideal string in Helmholtz motion, by the commands it is given, which it keeps.
  */
 
 import facts from "../facts.js";
@@ -23,7 +23,7 @@ export class Sound extends EventTarget {
   constructor() {
     super();
     /** @type {[number, number, number, number, number][]} kind, index, value, other, frame */
-    this.wishes = [];
+    this.commands = [];
     /** @type {{key: string, pitch: number}[]} */
     this.notes = [];
     this.values = new Map(facts.parameters.map((param) => [param.row, param.default]));
@@ -70,7 +70,7 @@ export class Sound extends EventTarget {
       stop: async () => ({
         from: this.keptFrom,
         to: this.#frame(),
-        wishes: this.kept,
+        commands: this.kept,
       }),
     };
     this.keptFrom = 0;
@@ -89,7 +89,7 @@ export class Sound extends EventTarget {
   /** @type {import("../../../web/interfaces.js").Post} */
   post(frame, kind, index, value, other) {
     const at = frame ?? this.state?.frame ?? 0;
-    this.wishes.push([kind, index, value, other, at]);
+    this.commands.push([kind, index, value, other, at]);
     this.kept.push(at, kind, index, value, other);
     const key = `${index} ${value}`;
     if (kind === BEGIN) {

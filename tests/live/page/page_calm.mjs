@@ -1,9 +1,9 @@
 /**
- * Counts how often pictures are drawn, with and without the wish for little motion; and drags in the
+ * Counts how often pictures are drawn, with and without the request for little motion; and drags in the
  * diagram on a narrow phone.
  */
 
-import { READY, SIZES, fingersOf, open, wishes } from "./browser.mjs";
+import { READY, SIZES, fingersOf, open, commands } from "./browser.mjs";
 
 const SECOND = 1000;
 
@@ -121,7 +121,7 @@ async function drag(browser, url) {
   for (const name of ["silent", "sounding"]) {
     if (name === "sounding") await page.keyboard.down("KeyC");
     await page.waitForTimeout(500);
-    await wishes(page);
+    await commands(page);
     await page.evaluate(() => {
       globalThis.taken = false;
       const take = () => (globalThis.taken = true);
@@ -140,7 +140,7 @@ async function drag(browser, url) {
     await page.waitForTimeout(300);
     found[name] = {
       taken: await page.evaluate(() => globalThis.taken), // by the browser, to scroll
-      wishes: await wishes(page),
+      commands: await commands(page),
       room: { width, height },
     };
   }

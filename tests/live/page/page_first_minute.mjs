@@ -1,6 +1,6 @@
 /** Plays the first minute: an invitation, three gestures; keeps a performance as a link, and opens it. */
 
-import { drawn, fingersOf, held, open, wished, wishes } from "./browser.mjs";
+import { drawn, fingersOf, held, open, requested, commands } from "./browser.mjs";
 
 const SIZES = [
   [1920, 1080],
@@ -56,7 +56,7 @@ export default async function (browser, url) {
     await touch("touchMove", [finger(0.4 + 0.006 * Math.sin(2 * Math.PI * 6 * elapsed()))]);
     await page.waitForTimeout(20);
   }
-  found.rocked = await wishes(page);
+  found.rocked = await commands(page);
   await touch("touchEnd", []);
   found.said.push(await words());
   for (const along of [0.5, 0.4, 0.6, 0.3]) {
@@ -90,13 +90,13 @@ export default async function (browser, url) {
 
   await page.click("#tab-keep");
   await page.getByRole("button", { name: "Keep", exact: true }).click();
-  await wishes(page);
+  await commands(page);
   await page.keyboard.press("KeyX", { delay: 200 });
   await touch("touchStart", [finger(0.5)]);
   for (let step = 1; step <= 10; step++) await touch("touchMove", [finger(0.5 + step * 0.01)]);
   await touch("touchEnd", []);
   await page.waitForTimeout(100);
-  found.played = await wishes(page);
+  found.played = await commands(page);
   await page.locator("#panel-keep button[aria-pressed=true]").click();
   const link = await page.getByLabel("Link that plays it").inputValue();
   found.link = link;
@@ -105,8 +105,8 @@ export default async function (browser, url) {
   const { page: friend, errors: others } = await open(browser, link);
   await friend.click("#listen");
   await friend.waitForFunction(() => globalThis.imitation);
-  await wished(friend, "END", found.played.filter(([kind]) => kind === "END").length);
-  found.replayed = await wishes(friend);
+  await requested(friend, "END", found.played.filter(([kind]) => kind === "END").length);
+  found.replayed = await commands(friend);
   found.heldAfter = await held(friend);
   await friend.close();
 
@@ -120,7 +120,7 @@ export default async function (browser, url) {
   const { x, y, width, height } = await third.locator("#fingerboard").boundingBox();
   await hand("touchStart", [{ x: x + 0.8 * width, y: y + height / 2, id: 1 }]);
   await third.waitForTimeout(800); // longer than what was kept
-  found.taken = { held: await held(third), wishes: await wishes(third) };
+  found.taken = { held: await held(third), commands: await commands(third) };
   await hand("touchEnd", []);
   await third.waitForTimeout(100);
   found.let = await held(third);

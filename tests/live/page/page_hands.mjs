@@ -1,6 +1,6 @@
-/** Plays the page with fingers, mouse and keys; prints the wishes that followed. */
+/** Plays the page with fingers, mouse and keys; prints the commands that followed. */
 
-import { fingersOf, held, open, wishes } from "./browser.mjs";
+import { fingersOf, held, open, commands } from "./browser.mjs";
 
 /** @param {import("playwright-core").Locator} locator */
 async function boxOf(locator) {
@@ -20,7 +20,7 @@ export default async function (browser, url) {
   const found = {};
   await page.click("#start");
   await page.waitForFunction(() => globalThis.imitation);
-  await wishes(page);
+  await commands(page);
 
   const ten = Array.from({ length: 10 }, (_, id) => ({ x: placeOf(67 + 2 * id), y: middle, id }));
   /** @param {number} count of fingers that are down */
@@ -28,14 +28,14 @@ export default async function (browser, url) {
     for (let n = 1; n <= count; n++) await touch("touchStart", ten.slice(0, n));
   };
   await press(10);
-  found.tenDown = { held: await held(page), wishes: await wishes(page) };
+  found.tenDown = { held: await held(page), commands: await commands(page) };
   for (let n = 9; n >= 1; n--) await touch("touchEnd", ten.slice(0, n));
   await touch("touchEnd", []);
-  found.tenUp = { held: await held(page), wishes: await wishes(page) };
+  found.tenUp = { held: await held(page), commands: await commands(page) };
 
   await press(10);
   await touch("touchCancel", []);
-  found.cancelled = { held: await held(page), wishes: await wishes(page) };
+  found.cancelled = { held: await held(page), commands: await commands(page) };
 
   await press(10);
   await page.evaluate(() => window.dispatchEvent(new Event("blur")));
@@ -54,7 +54,7 @@ export default async function (browser, url) {
   await press(10);
   await touch("touchEnd", []);
   found.atOnce = { held: await held(page) };
-  await wishes(page);
+  await commands(page);
 
   // A finger that slides, with a semitone's steps, and one that lands beside a note.
   await touch("touchStart", [{ x: placeOf(69.2), y: middle, id: 0 }]);
@@ -62,7 +62,7 @@ export default async function (browser, url) {
     await touch("touchMove", [{ x: placeOf(69.2 + step / 4), y: middle, id: 0 }]);
   }
   await touch("touchEnd", []);
-  found.slid = await wishes(page);
+  found.slid = await commands(page);
 
   await touch("touchStart", [{ x: placeOf(72), y: middle, id: 0 }]);
   for (const share of [0.02, 0.98]) {
@@ -70,7 +70,7 @@ export default async function (browser, url) {
   }
   await touch("touchEnd", []);
   await page.waitForTimeout(800);
-  found.swelled = await wishes(page);
+  found.swelled = await commands(page);
 
   // The bow, drawn across the strings and back while a finger stops the string.
   /** @param {number} share */
@@ -82,24 +82,24 @@ export default async function (browser, url) {
     await touch("touchMove", [at(0.2 + step * 0.03), stopping]);
     await page.waitForTimeout(20);
   }
-  found.drawnForth = await wishes(page);
+  found.drawnForth = await commands(page);
   for (let step = 10; step >= 0; step--) {
     await touch("touchMove", [at(0.2 + step * 0.03), stopping]);
     await page.waitForTimeout(20);
   }
-  found.drawnBack = await wishes(page);
+  found.drawnBack = await commands(page);
   await page.waitForTimeout(250);
-  found.rested = await wishes(page);
+  found.rested = await commands(page);
   await touch("touchEnd", [stopping]);
   await touch("touchEnd", []);
-  found.lifted = { held: await held(page), wishes: await wishes(page) };
+  found.lifted = { held: await held(page), commands: await commands(page) };
 
   // Without assist the fingerboard only stops the string.
   await page.locator("#ways input[role=switch]").first().uncheck();
-  await wishes(page);
+  await commands(page);
   await touch("touchStart", [{ x: placeOf(76), y: middle, id: 1 }]);
   await touch("touchEnd", []);
-  found.withoutAssist = await wishes(page);
+  found.withoutAssist = await commands(page);
   for (const [name, height] of [
     ["light", 0.1],
     ["firm", 0.9],
@@ -107,36 +107,36 @@ export default async function (browser, url) {
     await page.mouse.move(bow.x + bow.width * height, bow.y + bow.height * 0.3);
     await page.mouse.down();
     await page.mouse.up();
-    found[name] = await wishes(page);
+    found[name] = await commands(page);
   }
   await page.locator("#ways input[role=switch]").first().check();
 
   // The computer's keyboard.
   await page.locator("#fingerboard").focus();
-  await wishes(page);
+  await commands(page);
   for (const key of ["KeyZ", "KeyV", "KeyQ"]) await page.keyboard.down(key);
   for (const key of ["KeyQ", "KeyV", "KeyZ"]) await page.keyboard.up(key);
-  found.keys = { held: await held(page), wishes: await wishes(page) };
+  found.keys = { held: await held(page), commands: await commands(page) };
   for (const key of ["KeyZ", "KeyX", "KeyC"]) await page.keyboard.down(key);
   await page.evaluate(() => window.dispatchEvent(new Event("blur")));
   found.keysLeft = { held: await held(page) };
   for (const key of ["KeyZ", "KeyX", "KeyC"]) await page.keyboard.up(key);
   await page.keyboard.press("Equal");
-  await wishes(page);
+  await commands(page);
   await page.keyboard.press("KeyZ");
-  found.octave = await wishes(page);
+  found.octave = await commands(page);
   await page.keyboard.press("Minus");
   await page.keyboard.press("ArrowRight");
   await page.keyboard.down("Space");
   await page.keyboard.up("Space");
-  found.arrows = await wishes(page);
+  found.arrows = await commands(page);
   await page.locator("#bow").focus();
   await page.keyboard.down("ArrowLeft");
   await page.keyboard.up("ArrowLeft");
-  found.bowKeys = await wishes(page);
+  found.bowKeys = await commands(page);
   await page.click("#tab-all");
   await page.locator("#panel-all input[type=search]").fill("zxcv");
-  found.writing = await wishes(page);
+  found.writing = await commands(page);
   await page.keyboard.press("Escape");
   found.errors = errors;
   return found;

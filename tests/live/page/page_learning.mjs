@@ -1,18 +1,18 @@
 /** Teaches the page's MIDI keyboard what its knobs move, by keys alone; prints what followed. */
 
 import { readFileSync } from "node:fs";
-import { READY, open, pretendMidi, sendMidi, wishes } from "./browser.mjs";
+import { READY, open, pretendMidi, sendMidi, commands } from "./browser.mjs";
 
 const KNOB = 0xb0;
 const WHEEL = 0xe0;
 const TOUCH = 0xd0;
 
 /**
- * Wishes that write parameters: [row, value].
+ * Commands that write parameters: [row, value].
  * @param {import("playwright-core").Page} page
  */
 async function written(page) {
-  const all = await wishes(page);
+  const all = await commands(page);
   return all.filter(([kind]) => kind === "WRITE").map(([, row, value]) => [row, value]);
 }
 
@@ -47,7 +47,7 @@ export default async function (browser, url) {
   await sendMidi(page, KNOB, 74, 10);
   await sendMidi(page, KNOB, 74, 12); // a knob that trembles is not meant
   found.trembled = await list();
-  await wishes(page);
+  await commands(page);
   await sendMidi(page, KNOB, 74, 30);
   found.learned = { list: await list(), word: await word(), written: await written(page) };
   await sendMidi(page, KNOB, 74, 127);
@@ -61,7 +61,7 @@ export default async function (browser, url) {
   await page.keyboard.type("5");
   await page.keyboard.press("Enter");
   found.ends = [await ends.first().inputValue(), await ends.nth(1).inputValue()];
-  await wishes(page);
+  await commands(page);
   await sendMidi(page, KNOB, 74, 0);
   await sendMidi(page, KNOB, 74, 127);
   found.spanned = await written(page);
@@ -128,7 +128,7 @@ export default async function (browser, url) {
   await page.waitForFunction(
     () => globalThis.imitation && globalThis.pretended.input.onmidimessage,
   );
-  await wishes(page);
+  await commands(page);
   await sendMidi(page, KNOB, 74, 127);
   found.again = await written(page);
 
@@ -137,7 +137,7 @@ export default async function (browser, url) {
   const tunes = page.locator("#panel-tunes");
   await tunes.getByRole("button", { name: "Listen: MPE phrase" }).click();
   await tunes.getByRole("button", { name: "Stop: MPE phrase" }).click();
-  await wishes(page);
+  await commands(page);
   await sendMidi(page, KNOB, 74, 0);
   found.afterTune = await written(page);
 
@@ -145,7 +145,7 @@ export default async function (browser, url) {
   await panel.getByRole("button", { name: /Forget: CC 74/ }).press("Enter");
   found.forgotten = await list();
   found.focusAfter = await page.evaluate(() => document.activeElement.ariaLabel);
-  await wishes(page);
+  await commands(page);
   await sendMidi(page, KNOB, 74, 127);
   found.backToMapping = await written(page); // of which CC 74 moves the bow's place
   found.errors = errors;

@@ -1,6 +1,6 @@
 /** A newcomer comes to an easy tune, plays it with a mistake, and is told how it went; prints what was seen. */
 
-import { drawn, open, wished, wishes } from "./browser.mjs";
+import { drawn, open, requested, commands } from "./browser.mjs";
 
 const SIZES = [
   [320, 568],
@@ -77,10 +77,10 @@ export default async function (browser, url) {
 
   await page.setViewportSize({ width: 1440, height: 900 });
   await page.click("#tab-tunes");
-  await wishes(page);
+  await commands(page);
   await page.locator("#panel-tunes .tune button").first().click();
-  await wished(page, "BEGIN");
-  found.heard = (await wishes(page)).filter(([kind]) => kind === "BEGIN").length;
+  await requested(page, "BEGIN");
+  found.heard = (await commands(page)).filter(([kind]) => kind === "BEGIN").length;
   // The strip of notes is drawn, and goes on.
   const picture = () => page.locator("#score").evaluate((canvas) => canvas.toDataURL());
   const one = await picture();

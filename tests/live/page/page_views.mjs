@@ -1,6 +1,6 @@
 /** Looks at the page in every size, theme and language; prints what it finds. */
 
-import { READY, SIZES, drawn, held, open, pretendMidi, wished, wishes } from "./browser.mjs";
+import { READY, SIZES, drawn, held, open, pretendMidi, requested, commands } from "./browser.mjs";
 
 /** Elements that a finger should be able to touch, and their sizes. */
 const TARGETS = "button:not([hidden]), select, input, summary, canvas[tabindex]";
@@ -84,13 +84,13 @@ export default async function (browser, url) {
 
   // The bow, placed by the diagram.
   await page.click("#tab-see");
-  await wishes(page);
+  await commands(page);
   const diagram = await page.locator("#schelleng").boundingBox();
   await page.mouse.move(diagram.x + diagram.width * 0.3, diagram.y + diagram.height * 0.7);
   await page.mouse.down();
   await page.mouse.move(diagram.x + diagram.width * 0.8, diagram.y + diagram.height * 0.2);
   await page.mouse.up();
-  found.placed = await wishes(page);
+  found.placed = await commands(page);
   // Its upper right corner, 6 px from the edge, of one that is not drawn yet.
   found.corner = await page.evaluate(async () => {
     const { Schelleng } = await import("/pictures/schelleng.js");
@@ -103,9 +103,9 @@ export default async function (browser, url) {
   });
 
   await page.click("#tab-sound");
-  await wishes(page);
+  await commands(page);
   await page.click("#panel-sound .cards button:nth-child(3)");
-  found.preset = await wishes(page);
+  found.preset = await commands(page);
 
   // The tuner measures from the notes of the tuning: this one's A is 43 cents flat.
   const tunings = page.locator("#panel-sound section", { hasText: "Tuning" }).locator("select");
@@ -117,7 +117,7 @@ export default async function (browser, url) {
   await page.keyboard.up("KeyZ");
   await page.click("#tab-sound");
   await tunings.selectOption("equal");
-  await wishes(page);
+  await commands(page);
 
   await page.click("#tab-all");
   await page.fill("#panel-all input[type=search]", "bow speed");
@@ -130,17 +130,17 @@ export default async function (browser, url) {
   const number = page.locator("#panel-all .parameter:not([hidden]) input[type=number]");
   await number.fill("9999");
   await number.press("Enter");
-  found.clamped = { shown: await number.inputValue(), wishes: await wishes(page) };
+  found.clamped = { shown: await number.inputValue(), commands: await commands(page) };
   await page.click("#panel-all .parameter:not([hidden]) .reset");
-  found.reset = { shown: await number.inputValue(), wishes: await wishes(page) };
+  found.reset = { shown: await number.inputValue(), commands: await commands(page) };
 
   await page.click("#tab-tunes");
   await page.locator("#panel-tunes button").first().click();
-  await wished(page, "BEGIN");
-  found.tune = (await wishes(page)).filter(([kind]) => kind === "BEGIN").length;
+  await requested(page, "BEGIN");
+  found.tune = (await commands(page)).filter(([kind]) => kind === "BEGIN").length;
   await page.locator("#panel-tunes button").first().click();
-  found.tuneStopped = { held: await held(page), wishes: await wishes(page) };
-  await wishes(page);
+  found.tuneStopped = { held: await held(page), commands: await commands(page) };
+  await commands(page);
 
   // What is kept and loaded again asks for the same.
   await page.click("#tab-keep");
@@ -148,16 +148,16 @@ export default async function (browser, url) {
   await keep.click();
   await page.keyboard.press("KeyX");
   await page.keyboard.press("KeyC");
-  found.played = await wishes(page);
+  found.played = await commands(page);
   const download = page.waitForEvent("download");
   await page.locator("#panel-keep button[aria-pressed=true]").click();
   await page.getByRole("button", { name: "Save as a file" }).click();
   const file = await (await download).path();
   found.kept = (await import("node:fs")).readFileSync(file, "utf8").trim().split("\n").slice(1);
-  await wishes(page);
+  await commands(page);
   await page.locator("#panel-keep input[type=file]").setInputFiles(file);
-  await wished(page, "END", 2);
-  found.replayed = await wishes(page);
+  await requested(page, "END", 2);
+  found.replayed = await commands(page);
   await page.locator("#panel-keep input[type=file]").setInputFiles({
     name: "wrong.jsonl",
     mimeType: "text/plain",
@@ -171,13 +171,13 @@ export default async function (browser, url) {
   await page.click("#tab-connect");
   await page.getByRole("button", { name: "Use MIDI keyboards" }).click();
   await page.waitForSelector("#panel-connect select:not([hidden])");
-  await wishes(page);
+  await commands(page);
   await page.evaluate(() => {
     const { input } = globalThis.pretended;
     input.onmidimessage({ data: Uint8Array.of(0x90, 70, 100) });
     globalThis.pretended.pull();
   });
-  found.midi = await wishes(page);
+  found.midi = await commands(page);
   found.inputs = await page.locator("#panel-connect section:first-child option").allTextContents();
 
   // A tune that waits for its notes.
@@ -194,7 +194,7 @@ export default async function (browser, url) {
   await page.keyboard.press(first === 65 ? "KeyX" : "KeyZ"); // a wrong one
   found.along.push(await bar.evaluate((element) => element.value));
   await page.evaluate((pitch) => {
-    globalThis.imitation.wishes.length = 0;
+    globalThis.imitation.commands.length = 0;
     const keys = ["Z", "S", "X", "D", "C", "F", "V", "B", "H", "N", "J", "M"];
     const code = `Key${keys[pitch - 65]}`;
     for (const type of ["keydown", "keyup"])

@@ -20,8 +20,8 @@ const { linkOf, readLink } = await import(new URL("link.js", web).href);
 const { BEGIN, EXPRESS, END } = facts.kinds;
 const RATE = 1000;
 
-function performance(wishes) {
-  return { rate: RATE, values: {}, wishes, players: 1 };
+function performance(commands) {
+  return { rate: RATE, values: {}, commands, players: 1 };
 }
 
 function notes(count, apart) {
@@ -48,7 +48,7 @@ test("a link brings what was played", async () => {
     { frame: 2000, kind: EXPRESS, index: 3, value: 0.25, other: 0 },
   ]);
   const read = await readLink(new URL(await linkOf(played)).hash);
-  assert.deepEqual(read.wishes, played.wishes);
+  assert.deepEqual(read.commands, played.commands);
 });
 
 test("what is no performance is refused, soon", async () => {

@@ -27,29 +27,29 @@ const RATE = 48000;
 const LOUDNESS = "/playing/dynamics";
 const PEOPLE = "/playing/section";
 
-/** A player, and what is wished through it. */
+/** A player, and what is requested through it. */
 async function playing(members = {}) {
-  const wishes = [];
+  const commands = [];
   const sink = {
-    post: (frame, kind, index, value, other) => wishes.push({ frame, kind, index, value, other }),
+    post: (frame, kind, index, value, other) => commands.push({ frame, kind, index, value, other }),
     frame: 0,
     rate: RATE,
     ...members,
   };
   const player = new Player(sink);
   player.playBy(await Interpreter.open(module));
-  const of = (...kinds) => wishes.filter((wish) => kinds.includes(wish.kind));
+  const of = (...kinds) => commands.filter((command) => kinds.includes(command.kind));
   const values = (kind, address) =>
     of(kind)
       .filter(({ index }) => index === ROW[address])
       .map(({ value }) => value);
-  return { player, wishes, sink, of, values };
+  return { player, commands, sink, of, values };
 }
 
-/** The keys that are held after some wishes. */
-function heldAfter(wishes) {
+/** The keys that are held after some commands. */
+function heldAfter(commands) {
   const held = new Set();
-  for (const { kind, index, value } of wishes) {
+  for (const { kind, index, value } of commands) {
     if (kind === BEGIN) held.add(`${index} ${value}`);
     if (kind === END) held.delete(`${index} ${value}`);
   }
@@ -57,13 +57,13 @@ function heldAfter(wishes) {
 }
 
 test("two fingers at one pitch are two notes", async () => {
-  const { player, wishes } = await playing();
+  const { player, commands } = await playing();
   player.fingerOn("left", 70, 0.5);
   player.fingerOn("right", 70, 0.5);
   player.noteOff("left");
-  assert.equal(heldAfter(wishes), 1);
+  assert.equal(heldAfter(commands), 1);
   player.noteOff("right");
-  assert.equal(heldAfter(wishes), 0);
+  assert.equal(heldAfter(commands), 0);
 });
 
 test("a hand that takes another pitch slurs: the old note ends after the new one has begun", async () => {
@@ -82,7 +82,7 @@ test("a hand that takes another pitch slurs: the old note ends after the new one
 });
 
 test("whatever ten fingers do, no note is left when all are up", async () => {
-  const { player, wishes, of } = await playing();
+  const { player, commands, of } = await playing();
   let seed = 1;
   const chance = (most) => (seed = (seed * 16807) % 2147483647) % most;
   for (let step = 0; step < (EVERYTHING ? 5000 : 1000); step += 1) {
@@ -92,7 +92,7 @@ test("whatever ten fingers do, no note is left when all are up", async () => {
   }
   for (let id = 0; id < 10; id += 1) player.noteOff(id);
   assert.ok(of(BEGIN).length > (EVERYTHING ? 2000 : 400));
-  assert.equal(heldAfter(wishes), 0);
+  assert.equal(heldAfter(commands), 0);
 });
 
 test("a key of MIDI is tuned, from the next note on; a finger is not", async () => {
@@ -102,19 +102,19 @@ test("a key of MIDI is tuned, from the next note on; a finger is not", async () 
   player.fingerOn("finger", 67, 0.5);
   player.applyTuning("equal");
   player.midi([0x90, 67, 90]);
-  const [key, finger, equal] = of(BEGIN).map((wish) => wish.other);
+  const [key, finger, equal] = of(BEGIN).map((command) => command.other);
   assert.equal(key, facts.tunings["chaozhou-seven-equal"].keys[67]);
   assert.notEqual(key, 67);
   assert.deepEqual([finger, equal], [67, 67]);
 });
 
-test("without a frame wishes are for now", async () => {
-  const { player, wishes } = await playing();
+test("without a frame commands are for now", async () => {
+  const { player, commands } = await playing();
   player.fingerOn("hand", 70, 0.5);
   player.write("/playing/vibrato", 20);
   player.noteOff("hand");
   player.panic();
-  assert.ok(wishes.every((wish) => wish.frame === null));
+  assert.ok(commands.every((command) => command.frame === null));
 });
 
 test("a key that is struck twice for now ends once it is released", async () => {
@@ -132,7 +132,7 @@ test("a note that is to begin is silent where its end is for now", async () => {
     const made = await playing();
     made.player.midi([0x90, 70, 90], 960);
     ended(made);
-    for (const { frame, kind, index, value, other } of made.wishes) {
+    for (const { frame, kind, index, value, other } of made.commands) {
       kernel.post(frame ?? 0, kind, index, value, other);
     }
     kernel.compute(4800);
@@ -144,7 +144,7 @@ test("a touch is heard within 100 ms: what comes to it is the browser's own late
   const late = [];
   for (let pitch = 65; pitch <= 89; pitch += EVERYTHING ? 1 : 6) {
     const kernel = new Kernel(new WebAssembly.Module(module), RATE, 128, facts.snapshotLength);
-    const post = (frame, ...wish) => kernel.post(frame ?? NOW, ...wish);
+    const post = (frame, ...command) => kernel.post(frame ?? NOW, ...command);
     const { player } = await playing({ post });
     for (const preset of ["vibrato", "courtyard"]) player.applyPreset(preset); // as the page begins
     player.fingerOn("hand", pitch, 0.63);
@@ -157,7 +157,7 @@ test("a touch is heard within 100 ms: what comes to it is the browser's own late
   assert.deepEqual(late, []);
 });
 
-test("panic comes after what is wished ahead, unless that is far ahead", async () => {
+test("panic comes after what is requested ahead, unless that is far ahead", async () => {
   const { player, of } = await playing({ frame: 1000 });
   player.midi([0x90, 70, 90], 5000);
   player.panic();
@@ -167,13 +167,13 @@ test("panic comes after what is wished ahead, unless that is far ahead", async (
   assert.equal(of(LIFT)[1].frame, null);
 });
 
-test("a port that is gone ends what it wished ahead", async () => {
+test("a port that is gone ends what it requested ahead", async () => {
   const { player, of, values } = await playing();
   player.midi([0x90, 70, 90], 4000, 3);
   player.midi([0x90, 72, 90], 5000, 3);
   player.endPortNotes(3);
   assert.deepEqual(
-    of(END).map((wish) => wish.frame),
+    of(END).map((command) => command.frame),
     [5000, 5000],
   );
   player.midi([0xe0, 0, 127], 6000, 4);
@@ -265,7 +265,7 @@ test("a control with smoothing is not undone by the next note", async () => {
   assert.equal(player.value(LOUDNESS), 38 / 127);
 });
 
-test("whatever events come, each comes to an end, and all wishes are finite", async () => {
+test("whatever events come, each comes to an end, and all commands are finite", async () => {
   const interpreter = await Interpreter.open(module);
   const player = new Player({ post() {} });
   player.playBy(interpreter);
@@ -283,14 +283,14 @@ test("whatever events come, each comes to an end, and all wishes are finite", as
       ? bytes + 3 * 2 ** 24 + chance(17) * 2 ** 32
       : chance(chance(9) ? 100 : 2e9) - 5;
     const kind = isMessage ? facts.events.MESSAGE : chance(kinds);
-    const wishes = interpreter.take(chance(1e6) - 1000, kind, index, value, other);
-    if (kind >= Object.keys(facts.kinds).length) assert.ok(wishes.flat().every(Number.isFinite));
+    const commands = interpreter.take(chance(1e6) - 1000, kind, index, value, other);
+    if (kind >= Object.keys(facts.kinds).length) assert.ok(commands.flat().every(Number.isFinite));
   }
 });
 
 test("what does not exist or is no number is refused, and changes nothing", async () => {
-  const { player, wishes } = await playing();
-  const count = wishes.length;
+  const { player, commands } = await playing();
+  const count = commands.length;
   const refused = [
     () => player.write("/playing/nothing", 1),
     () => player.write("/playing/vibrato", NaN),
@@ -303,7 +303,7 @@ test("what does not exist or is no number is refused, and changes nothing", asyn
     () => player.applyTuning("nothing"),
   ];
   for (const call of refused) assert.throws(call, ParameterError);
-  assert.equal(wishes.length, count);
+  assert.equal(commands.length, count);
 });
 
 test("a preset sets what it names", async () => {
@@ -313,20 +313,20 @@ test("a preset sets what it names", async () => {
   for (const [address, value] of Object.entries(values)) assert.equal(player.value(address), value);
 });
 
-test("without an interpreter only silence can be wished, and what was chosen waits for it", async () => {
-  const wishes = [];
-  const player = new Player({ post: (...wish) => wishes.push(wish) });
+test("without an interpreter only silence can be requested, and what was chosen waits for it", async () => {
+  const commands = [];
+  const player = new Player({ post: (...command) => commands.push(command) });
   player.fingerOn("hand", 70, 0.5);
   player.write(LOUDNESS, 0.5);
   player.applyTuning("chaozhou-seven-equal");
   player.remap(MAPPINGS.wind);
   player.panic();
-  assert.deepEqual(wishes, [[null, STOP, 0, 1, 0]]);
+  assert.deepEqual(commands, [[null, STOP, 0, 1, 0]]);
   assert.equal(player.value(LOUDNESS), facts.parameters[ROW[LOUDNESS]].default);
   player.playBy(await Interpreter.open(module));
   player.midi([0xb0, 2, 127]); // a breath controller
   player.midi([0x90, 67, 90]);
-  const [, , , , pitch] = wishes.find(([, kind]) => kind === BEGIN);
+  const [, , , , pitch] = commands.find(([, kind]) => kind === BEGIN);
   assert.equal(pitch, facts.tunings["chaozhou-seven-equal"].keys[67]);
-  assert.ok(wishes.length > 5);
+  assert.ok(commands.length > 5);
 });

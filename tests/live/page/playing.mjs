@@ -1,9 +1,9 @@
 /**
- * Plays streams of calls on the page's player, and prints the wishes that it posts.
+ * Plays streams of calls on the page's player, and prints the commands that it posts.
  *
  * The argument is the page's folder. The first line of the input has mappings by name, each as
  * `facts.mappings` has them, or as the name of one and binds that are learned over it; each other line
- * is a stream: calls of methods. Each line of the output has the wishes of a stream, five numbers
+ * is a stream: calls of methods. Each line of the output has the commands of a stream, five numbers
  * each; a frame of -1 is now. The first one has the tables that were written for each mapping.
  */
 
@@ -22,14 +22,14 @@ const { writeTables } = await import(new URL("playing/tables.js", web).href);
 
 /** What a stream comes to. */
 async function play(calls, mappings) {
-  const wishes = [];
-  const player = new Player({ post: (frame, ...fields) => wishes.push(frame ?? -1, ...fields) });
+  const commands = [];
+  const player = new Player({ post: (frame, ...fields) => commands.push(frame ?? -1, ...fields) });
   player.playBy(await Interpreter.open(module));
   for (const [method, ...values] of calls) {
     if (method === "remap") values[0] = mappings[values[0]];
     player[method](...values);
   }
-  return wishes;
+  return commands;
 }
 
 /** What is written for a mapping: its fields, but for the ends of arrays that are 0. */

@@ -26,7 +26,7 @@ def start(
             midi=None,
             osc=(HOST, 0),
             http=WebOptions((HOST, 0)),
-            page=PageOptions((HOST, port), is_wished=True),
+            page=PageOptions((HOST, port), is_required=True),
             parts=list(parts),
         ),
         say,

@@ -23,12 +23,12 @@ from waiting import PATIENCE_S, until
 from web_client import Refused, WebSocket, ask
 
 from yehu_server.ahead.interpreter import snapshot_layout, snapshot_length
+from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
 from yehu_server.live import limits
 from yehu_server.live.options import PartOptions
 from yehu_server.live.page.players import CHANNELS, LOWEST
-from yehu_server.live.page.sockets import LOOK, NO_PART, NOW, WISHES, WRONG
+from yehu_server.live.page.sockets import COMMANDS, LOOK, NO_PART, NOW, WRONG
 from yehu_server.live.server import Server
 from yehu_server.params.table import TABLE
 from yehu_server.playing.options import PlayingOptions
@@ -55,7 +55,7 @@ def server(said) -> Iterator[Server]:
 
 @pytest.fixture(autouse=True)
 def _silent(server) -> None:
-    """Every part begins as at the start: what a page wishes comes by another ring than resets."""
+    """Every part begins as at the start: what a page commands comes by another ring than resets."""
     for player in server.players:
         player.reset(frame=player.frame_of())
         frame, instrument = player.frame_of(), player.instrument
@@ -77,12 +77,14 @@ def sounds(server: Server, pitch: float) -> bool:
     return server.player.pitch == pytest.approx(pitch, abs=0.6)
 
 
-def wish(kind: int, index: int = 0, value: float = 0.0, other: float = 0.0, at: float = NOW) -> Any:
+def command(
+    kind: int, index: int = 0, value: float = 0.0, other: float = 0.0, at: float = NOW
+) -> Any:
     return [at, kind, index, value, other]
 
 
-def packed(*wishes: Any) -> bytes:
-    return np.array(wishes, "<f8").tobytes()
+def packed(*commands: Any) -> bytes:
+    return np.array(commands, "<f8").tobytes()
 
 
 class Page:
@@ -95,8 +97,8 @@ class Page:
     async def want(self, *, looks: bool = False, sounds: bool = False) -> None:
         await self.socket.send_str(json.dumps({"looks": looks, "sounds": sounds}))
 
-    async def wish(self, *wishes: Any) -> None:
-        await self.socket.send_bytes(packed(*wishes))
+    async def command(self, *commands: Any) -> None:
+        await self.socket.send_bytes(packed(*commands))
 
     async def numbers(self) -> Any:
         """The next message of numbers."""
@@ -248,7 +250,7 @@ def test_looks_come_sixty_times_a_second_to_pages_that_want_them(server) -> None
     assert 40 < 59 / ((frames[-1] - frames[0]) / server.instrument.rate) < 70
 
 
-# ---------------------------------------------------------------- wishes
+# ---------------------------------------------------------------- commands
 
 
 def test_a_page_does_not_end_the_keys_of_others(server) -> None:
@@ -256,7 +258,7 @@ def test_a_page_does_not_end_the_keys_of_others(server) -> None:
     receive(server.player, message, frame=server.player.frame_of(), port=0)
 
     async def play(page: Page) -> None:
-        await page.wish(wish(BEGIN, 0, 72.0, 72.0), wish(END, 0, 72.0, 0.0))
+        await page.command(command(BEGIN, 0, 72.0, 72.0), command(END, 0, 72.0, 0.0))
         await asyncio.to_thread(until, lambda: server.player.notes_played, "no note")
 
     with_pages(server, play, 1)
@@ -264,15 +266,15 @@ def test_a_page_does_not_end_the_keys_of_others(server) -> None:
     assert sounds(server, 72.0)
 
 
-def test_a_wish_ahead_is_fulfilled_at_its_frame(server) -> None:
-    server.instrument.report_wishes()
-    server.instrument.applied_wishes()
+def test_a_command_ahead_is_applied_at_its_frame(server) -> None:
+    server.instrument.report_commands()
+    server.instrument.applied_commands()
 
     async def lateness(page: Page, ahead: int) -> int:
         frame = server.instrument.frame + ahead
-        await page.wish(wish(WRITE, ROW[PRESSURE], 0.75, at=frame))
+        await page.command(command(WRITE, ROW[PRESSURE], 0.75, at=frame))
         await asyncio.to_thread(until, lambda: server.instrument.frame > frame + 480, "no time")
-        applied = server.instrument.applied_wishes()
+        applied = server.instrument.applied_commands()
         found = applied[(applied["kind"] == WRITE) & (applied["value"] == 0.75)]
         return int(found["frame"].item()) - frame
 
@@ -287,45 +289,45 @@ def test_a_wish_ahead_is_fulfilled_at_its_frame(server) -> None:
     assert with_pages(server, play, 1)[-1] == 0
 
 
-def test_what_is_no_wish_and_no_question_ends_the_connection(server, subtests) -> None:
+def test_what_is_no_command_and_no_question_ends_the_connection(server, subtests) -> None:
     async def ending(page: Page, said: str | bytes) -> Any:
         await (page.socket.send_str if isinstance(said, str) else page.socket.send_bytes)(said)
         return (await page.end())[0]
 
     for said in [
         *("", "[]", "{}", '{"looks": 1}', "[" * 5000),
-        packed(wish(RAMP, 0, 1.0)),
-        packed(wish(11)),
-        packed(wish(-1)),
-        packed(wish(2.5)),
-        packed(wish(WRITE, 0, np.nan)),
-        packed(wish(WRITE, 0.5, 1.0)),
-        packed(wish(HOLD, len(TABLE), 1.0)),
-        packed(wish(EXPRESS, -1, 1.0)),
-        packed(wish(BEGIN, LOWEST - 1, 69.0, 69.0)),
-        packed(wish(BEGIN, LOWEST + CHANNELS, 69.0, 69.0)),
-        packed(wish(WRITE, 0, 1.0, at=-2)),
-        packed(wish(WRITE, 0, 1.0, at=1e300)),
-        packed(wish(WRITE))[:-1],
+        packed(command(RAMP, 0, 1.0)),
+        packed(command(11)),
+        packed(command(-1)),
+        packed(command(2.5)),
+        packed(command(WRITE, 0, np.nan)),
+        packed(command(WRITE, 0.5, 1.0)),
+        packed(command(HOLD, len(TABLE), 1.0)),
+        packed(command(EXPRESS, -1, 1.0)),
+        packed(command(BEGIN, LOWEST - 1, 69.0, 69.0)),
+        packed(command(BEGIN, LOWEST + CHANNELS, 69.0, 69.0)),
+        packed(command(WRITE, 0, 1.0, at=-2)),
+        packed(command(WRITE, 0, 1.0, at=1e300)),
+        packed(command(WRITE))[:-1],
         b"",
     ]:
         with subtests.test(said=said[:40]):
             assert with_pages(server, lambda page, said=said: ending(page, said), 1) == WRONG
 
 
-def test_pages_that_sound_get_the_wishes_of_others_and_hear_that_they_left(server) -> None:
+def test_pages_that_sound_get_the_commands_of_others_and_hear_that_they_left(server) -> None:
     async def share(one: Page, other: Page) -> Any:
         number = (await one.told("status"))["page"]
         await other.want(sounds=True)
         await asyncio.sleep(0.2)
-        await one.wish(wish(BEGIN, 0, 69.0, 69.0))
+        await one.command(command(BEGIN, 0, 69.0, 69.0))
         found = await other.numbers()
         await one.socket.close()
         assert await other.told("left") == number
         return found.tolist(), number
 
     found, number = with_pages(server, share, 1, 1)
-    assert found == [WISHES, number, *wish(BEGIN, 0, 69.0, 69.0)]
+    assert found == [COMMANDS, number, *command(BEGIN, 0, 69.0, 69.0)]
 
 
 # ---------------------------------------------------------------- parts
@@ -343,7 +345,7 @@ def test_a_page_plays_its_part_and_lets_go_of_it_as_it_leaves(server) -> None:
     first, second = server.players
 
     async def play(page: Page) -> None:
-        await page.wish(wish(BEGIN, 3, 72.0, 72.0))
+        await page.command(command(BEGIN, 3, 72.0, 72.0))
         await asyncio.to_thread(until, lambda: second.pitch is not None, "no note")
         assert len(second.held()) == 1
 
@@ -358,7 +360,7 @@ def test_silence_in_a_page_silences_its_part(server) -> None:
     until(lambda: all(player.pitch for player in server.players), "no notes")
 
     async def panic(page: Page) -> None:
-        await page.wish(wish(STOP, 0, 1.0))
+        await page.command(command(STOP, 0, 1.0))
         await asyncio.to_thread(until, lambda: server.players[1].pitch is None, "still there")
 
     with_pages(server, panic, 2)
@@ -382,10 +384,10 @@ def test_the_room_is_one_for_all_and_a_section_tells_the_parts_place(server) -> 
     first, second = server.players
 
     async def furnish(page: Page) -> None:
-        await page.wish(wish(WRITE, ROW[SIZE], 12.0))
+        await page.command(command(WRITE, ROW[SIZE], 12.0))
         await page.look(SIZE, (12.0).__eq__)
         await page.look(PAN, second.value(PAN).__eq__)
-        await page.wish(wish(WRITE, ROW[PAN], 0.25))
+        await page.command(command(WRITE, ROW[PAN], 0.25))
         await page.look(PAN, (0.25).__eq__)
 
     with_pages(server, furnish, 2)
@@ -445,7 +447,7 @@ def process_of_pages() -> int:
 @pytest.mark.skipif(not PROCESSES.is_dir(), reason="finds the process there")
 def test_a_process_that_dies_ends_its_pages_notes_and_is_replaced(server, said) -> None:
     async def play(page: Page) -> None:
-        await page.wish(wish(BEGIN, 0, 69.0, 69.0))
+        await page.command(command(BEGIN, 0, 69.0, 69.0))
         await asyncio.to_thread(until, lambda: sounds(server, 69.0), "no note")
         os.kill(process_of_pages(), signal.SIGKILL)
         await asyncio.to_thread(until, lambda: server.player.pitch is None, "it still sounds")

@@ -16,8 +16,8 @@ import pytest
 from yehu_server.core.midi import events
 from yehu_server.core.midi.record import MIDI
 from yehu_server.core.midi.tables import MOST_BINDS, TABLES
+from yehu_server.core.player.commands import KINDS
 from yehu_server.core.player.rows import IS_ENGINES, IS_PLAYER_CONTROLLED, ROW
-from yehu_server.core.player.wishes import KINDS
 from yehu_server.errors import ParameterError
 from yehu_server.live.page import examples, facts
 from yehu_server.live.page.facts import tunings
@@ -70,7 +70,7 @@ def test_each_parameter_is_there_with_its_numbers(known):
         assert (row["smoothMs"], row["isChoice"]) == (param.smooth_ms, param.is_choice)
 
 
-def test_each_kind_of_wish_and_of_other_events_has_its_number(known):
+def test_each_kind_of_command_and_of_other_events_has_its_number(known):
     assert [KINDS[number].upper() for number in known["kinds"].values()] == list(known["kinds"])
     assert sorted(known["kinds"].values()) == list(range(len(KINDS)))
     assert {name: getattr(events, name) for name in known["events"]} == known["events"]

@@ -12,8 +12,8 @@ from aiohttp.test_utils import TestClient, TestServer
 from wire import StillTime
 
 from yehu_server.core.midi.events import LEAVE, RELEASE_ALL
+from yehu_server.core.player.commands import BEGIN, DRAW, EXPRESS, HOLD, STOP, WRITE
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, STOP, WRITE
 from yehu_server.live import limits
 from yehu_server.live.page import guests as admitting
 from yehu_server.live.page import sockets as serving
@@ -59,7 +59,7 @@ def test_however_many_machines_guess_few_are_remembered() -> None:
 
 # ---------------------------------------------------------------- roles
 
-WISHES = {
+COMMANDS = {
     "a note": (BEGIN, 1, 69.0),
     "its value": (EXPRESS, ROW["/playing/pressure"], 0.4),
     "a controller": (WRITE, ROW["/playing/vibrato"], 20.0),
@@ -74,12 +74,12 @@ WISHES = {
 
 @pytest.mark.parametrize(
     ("role", "names"),
-    [("own", list(WISHES)), ("play", list(WISHES)[:4]), ("listen", [])],
+    [("own", list(COMMANDS)), ("play", list(COMMANDS)[:4]), ("listen", [])],
 )
-def test_each_role_may_wish_its_own(role, names) -> None:
-    wishes = np.array([[-1.0, *wish, 0.0] for wish in WISHES.values()])
-    found, ends = permitted(role, wishes)
-    assert found.tolist() == [[-1.0, *WISHES[name], 0.0] for name in names]
+def test_each_role_may_command_its_own(role, names) -> None:
+    commands = np.array([[-1.0, *command, 0.0] for command in COMMANDS.values()])
+    found, ends = permitted(role, commands)
+    assert found.tolist() == [[-1.0, *COMMANDS[name], 0.0] for name in names]
     assert ends == (role == "play")
 
 
@@ -105,13 +105,15 @@ class View:
         return True
 
 
-Wish = tuple[int, int, float]
+Command = tuple[int, int, float]
 
 
-def visit(role: str | None, *wishes: Wish, at_once: int = 9) -> tuple[list[int], int | None, str]:
-    """Send wishes as a page of a role: what was posted, the close code, and the role told.
+def visit(
+    role: str | None, *commands: Command, at_once: int = 9
+) -> tuple[list[int], int | None, str]:
+    """Send commands as a page of a role: what was posted, the close code, and the role told.
 
-    `at_once`: wishes of one message.
+    `at_once`: commands of one message.
     """
 
     async def meet() -> tuple[list[int], int | None, str]:
@@ -135,7 +137,7 @@ def visit(role: str | None, *wishes: Wish, at_once: int = 9) -> tuple[list[int],
                 message = await socket.receive()
                 if message.type is WSMsgType.TEXT:
                     told = message.json()["status"]["role"]
-                    rows = [[-1.0, *wish, 0.0] for wish in wishes]
+                    rows = [[-1.0, *command, 0.0] for command in commands]
                     for some in (rows[at : at + at_once] for at in range(0, len(rows), at_once)):
                         await socket.send_bytes(np.array(some, "<f8").tobytes())
                     await asyncio.sleep(0.1)
@@ -146,13 +148,13 @@ def visit(role: str | None, *wishes: Wish, at_once: int = 9) -> tuple[list[int],
 
 def test_silence_is_a_players_own_an_owners_for_all_and_a_listener_or_a_stranger_plays_nothing():
     assert visit(None) == ([], NO_PIN, "")
-    assert visit("listen", *WISHES.values()) == ([], None, "listen")
-    assert visit("play", WISHES["a note"], WISHES["silence"]) == ([BEGIN, LEAVE], None, "play")
-    assert visit("play", WISHES["silence"])[0] == []
-    assert RELEASE_ALL in visit("own", WISHES["silence"])[0]
+    assert visit("listen", *COMMANDS.values()) == ([], None, "listen")
+    assert visit("play", COMMANDS["a note"], COMMANDS["silence"]) == ([BEGIN, LEAVE], None, "play")
+    assert visit("play", COMMANDS["silence"])[0] == []
+    assert RELEASE_ALL in visit("own", COMMANDS["silence"])[0]
 
 
-def test_a_page_that_wishes_too_much_has_to_wait(monkeypatch):
+def test_a_page_that_commands_too_much_has_to_wait(monkeypatch):
     waited: list[float] = []
 
     async def wait(seconds: float) -> None:
@@ -161,5 +163,5 @@ def test_a_page_that_wishes_too_much_has_to_wait(monkeypatch):
     monkeypatch.setattr(limits, "PAGE_EVENTS_A_SECOND", 0.001)
     monkeypatch.setattr(limits, "PAGE_EVENTS_AT_ONCE", 3.0)
     monkeypatch.setattr(serving, "asyncio", SimpleNamespace(**vars(asyncio) | {"sleep": wait}))
-    assert visit("own", *[WISHES["a note"]] * 6, at_once=2)[0] == [BEGIN] * 6
+    assert visit("own", *[COMMANDS["a note"]] * 6, at_once=2)[0] == [BEGIN] * 6
     assert waited == pytest.approx([1000.0, 3000.0], rel=0.01)

@@ -13,7 +13,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.snapshot import SNAPSHOT, snapshot
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
-from yehu_server.core.player.wishes import BEGIN
+from yehu_server.core.player.commands import BEGIN
 
 RATE = 44100.0
 E5 = 76.0

@@ -47,10 +47,10 @@ def test_whoever_wants_little_motion_sees_little_until_it_is_asked_for(found) ->
 def test_a_narrow_diagram_is_dragged_while_a_note_sounds(found) -> None:
     """Else the browser takes the finger, to scroll the page."""
     silent, sounding = (found["drag"][name] for name in ("silent", "sounding"))
-    places = [value for kind, row, value, *_ in sounding["wishes"] if row == PLACE]
+    places = [value for kind, row, value, *_ in sounding["commands"] if row == PLACE]
     assert (silent["taken"], sounding["taken"]) == (True, False)
     assert places == sorted(places)
     assert places[-1] / places[0] > 3.0
-    assert sounding["wishes"][-1][0] == "RELEASE"
+    assert sounding["commands"][-1][0] == "RELEASE"
     assert sounding["room"]["width"] > 320
     assert sounding["room"]["height"] > 240

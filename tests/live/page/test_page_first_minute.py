@@ -35,7 +35,9 @@ def test_the_invitation_goes_with_the_first_touch_and_each_gesture_is_noticed(fo
     assert found["pressed"] == "scratch"
     assert found["taught"] is True
     # A finger that rocks puts the player's vibrato to rest.
-    at_first, rocking = (wish[2] for wish in found["rocked"] if wish[:2] == ["WRITE", VIBRATO])
+    at_first, rocking = (
+        command[2] for command in found["rocked"] if command[:2] == ["WRITE", VIBRATO]
+    )
     assert at_first > rocking == 0.0
 
 
@@ -46,11 +48,11 @@ def test_a_key_brings_help_and_takes_it_away(found) -> None:
 
 def test_a_link_asks_for_what_was_played_until_one_touches_the_string(found) -> None:
     played, replayed = (
-        [wish for wish in found[name] if wish[0] in ("BEGIN", "END", "SLIDE")]
+        [command for command in found[name] if command[0] in ("BEGIN", "END", "SLIDE")]
         for name in ("played", "replayed")
     )
     assert len(played) > 5
-    assert [wish[0] for wish in played] == [wish[0] for wish in replayed]
+    assert [command[0] for command in played] == [command[0] for command in replayed]
     for one, other in zip(played, replayed, strict=True):
         assert other[1:4] == pytest.approx(one[1:4], abs=1e-4)
     late = [other[4] - one[4] for one, other in zip(played, replayed, strict=True)]

@@ -15,28 +15,28 @@ DYNAMICS = next(row for row, one in enumerate(TABLE) if one.address == "/playing
 
 @pytest.fixture(scope="module")
 def played(imitated) -> Any:
-    """What was wished while the page was played, by what was done."""
+    """What was requested while the page was played, by what was done."""
     return drive("page_hands.mjs", imitated)
 
 
-def of_kind(wishes: list[list[Any]], *kinds: str) -> list[list[Any]]:
-    return [wish for wish in wishes if wish[0] in kinds]
+def of_kind(commands: list[list[Any]], *kinds: str) -> list[list[Any]]:
+    return [command for command in commands if command[0] in kinds]
 
 
-def pitches(wishes: list[list[Any]]) -> list[float]:
+def pitches(commands: list[list[Any]]) -> list[float]:
     """The pitches at which notes begin."""
-    return [other for _kind, _index, _value, other, _frame in of_kind(wishes, "BEGIN")]
+    return [other for _kind, _index, _value, other, _frame in of_kind(commands, "BEGIN")]
 
 
-def slides(wishes: list[list[Any]]) -> list[float]:
-    return [value for _kind, _index, value, _other, _frame in of_kind(wishes, "SLIDE")]
+def slides(commands: list[list[Any]]) -> list[float]:
+    return [value for _kind, _index, value, _other, _frame in of_kind(commands, "SLIDE")]
 
 
 def test_ten_fingers_begin_ten_notes_and_leave_none_however_they_go(played) -> None:
     assert played["tenDown"]["held"] == 10
-    assert pitches(played["tenDown"]["wishes"]) == [67.0 + 2 * finger for finger in range(10)]
-    assert len(of_kind(played["tenUp"]["wishes"], "END")) == 10
-    begun, ended = (of_kind(played["cancelled"]["wishes"], kind) for kind in ("BEGIN", "END"))
+    assert pitches(played["tenDown"]["commands"]) == [67.0 + 2 * finger for finger in range(10)]
+    assert len(of_kind(played["tenUp"]["commands"], "END")) == 10
+    begun, ended = (of_kind(played["cancelled"]["commands"], kind) for kind in ("BEGIN", "END"))
     assert len(begun) == len(ended) == 10
     ways = ("tenUp", "atOnce", "cancelled", "left", "hidden")
     assert {way: played[way]["held"] for way in ways} == dict.fromkeys(ways, 0)
@@ -47,7 +47,9 @@ def test_a_finger_lands_in_tune_slides_and_is_louder_across_the_string(played) -
     way = slides(played["slid"])
     assert way == sorted(way)
     assert way[-1] == pytest.approx(71.2, abs=0.05)  # it touched at 69.2 and went two semitones
-    dynamics = [wish[2] for wish in of_kind(played["swelled"], "WRITE") if wish[1] == DYNAMICS]
+    dynamics = [
+        command[2] for command in of_kind(played["swelled"], "WRITE") if command[1] == DYNAMICS
+    ]
     loud, soft, usual = dynamics
     assert 0.2 < soft < 0.3
     assert loud == usual == 1.0  # until it goes
@@ -55,14 +57,14 @@ def test_a_finger_lands_in_tune_slides_and_is_louder_across_the_string(played) -
 
 def test_the_bow_is_drawn_as_fast_as_the_finger_until_it_rests_or_leaves(played) -> None:
     for name, direction in (("drawnForth", 1.0), ("drawnBack", -1.0)):
-        speeds = [direction * wish[2] for wish in of_kind(played[name], "DRAW")]
+        speeds = [direction * command[2] for command in of_kind(played[name], "DRAW")]
         assert max(speeds) > 0.05
         assert sum(speeds) > 0.0
         assert all(abs(speed) <= 1.0 for speed in speeds)
     # A slow browser notices that it rests while the finger still comes back.
     drawn = of_kind([*played["drawnBack"], *played["rested"]], "DRAW")
     assert drawn[-1][2] == 0.0
-    assert of_kind(played["lifted"]["wishes"], "LIFT", "DRAW")[-1][0] == "LIFT"
+    assert of_kind(played["lifted"]["commands"], "LIFT", "DRAW")[-1][0] == "LIFT"
     assert played["lifted"]["held"] == 0
 
 
@@ -81,9 +83,9 @@ def test_without_assist_the_bow_is_heavier_towards_the_coconut(played) -> None:
 
 
 def test_two_rows_of_keys_are_a_piano_that_another_key_moves_an_octave(played) -> None:
-    wishes = played["keys"]["wishes"]
-    assert pitches(wishes) == [65.0, 71.0, 77.0]
-    assert len(of_kind(wishes, "END")) == 3
+    commands = played["keys"]["commands"]
+    assert pitches(commands) == [65.0, 71.0, 77.0]
+    assert len(of_kind(commands, "END")) == 3
     assert played["keys"]["held"] == 0
     assert pitches(played["octave"]) == [77.0]
     assert played["keysLeft"]["held"] == 0  # leaving the window lifts all keys

@@ -31,8 +31,8 @@ def page_of(words: str):
     return options_of(parse(["serve", *words.split()], cli._parser())).page
 
 
-def test_the_page_is_beside_oscquery_or_where_it_is_wished() -> None:
-    for words, address, is_wished in [
+def test_the_page_is_beside_oscquery_or_where_it_is_requested() -> None:
+    for words, address, is_required in [
         ("", (HERE, 9002), False),
         ("--http 127.0.0.1:9100", (HERE, 9101), False),
         ("--http :0", (HERE, 0), False),
@@ -42,7 +42,7 @@ def test_the_page_is_beside_oscquery_or_where_it_is_wished() -> None:
         ("--lan", (ALL, 9002), False),
     ]:
         page = page_of(words)
-        assert (page.address, page.is_wished) == (address, is_wished), words
+        assert (page.address, page.is_required) == (address, is_required), words
 
 
 def test_there_may_be_no_page_which_cannot_be_opened() -> None:

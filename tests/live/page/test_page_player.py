@@ -1,4 +1,4 @@
-"""The page's player wishes what the server's does: the same interpreter, in WebAssembly."""
+"""The page's player commands what the server's does: the same interpreter, in WebAssembly."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from live.page import streams
 
 from yehu_server.core.midi.events import FINGER_ON
 from yehu_server.core.midi.tables import TABLES
+from yehu_server.core.player.commands import BEGIN
 from yehu_server.core.player.note_range import NoteRange
-from yehu_server.core.player.wishes import BEGIN
 from yehu_server.live.page import facts
 from yehu_server.params.table import find
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
@@ -35,25 +35,25 @@ HAND = -1  # channel of the only hand
 # may lie elsewhere, where somebody has taught the mapping something in place of their bind.
 UNUSED = {"same", "input_lo", "input_hi", "program_row", "first_point", "x", "y"}
 
-Wished = tuple[float, ...]  # frame, kind, index, value, other
+Requested = tuple[float, ...]  # frame, kind, index, value, other
 
 
 class Recorder(Leader):
-    """Stands for an instrument, and records what is wished of it, as soon as it is posted."""
+    """Stands for an instrument, and records what is requested of it, as soon as it is posted."""
 
     frame = 0
     is_live = False
 
     def __init__(self) -> None:
         super().__init__()
-        self.wishes: list[Wished] = []
+        self.commands: list[Requested] = []
         self.posted = 0
 
     def post(self, kind, *, frame=None, index=0, value=0.0, other=0.0) -> bool:
         self.posted += 1
         at = -self.posted if frame is None else frame  # what is for now has a frame of its own
-        for wish in self.interpret(at, kind, index, value, other):
-            self.wishes.append((-1 if frame is None else frame, *wish))
+        for command in self.interpret(at, kind, index, value, other):
+            self.commands.append((-1 if frame is None else frame, *command))
         return True
 
     def meters(self) -> dict[str, float]:
@@ -133,13 +133,13 @@ def mappings(taught) -> dict[str, Mapping]:
 
 @pytest.fixture(scope="module")
 def page_told(run_node, playing, mappings, taught, everything):
-    """Streams of calls, the tables that the page makes, and the wishes that each comes to."""
+    """Streams of calls, the tables that the page makes, and the commands that each comes to."""
     made = streams.Streams(2, list(mappings))
     played = [made.next() for _ in range(MANY_STREAMS if everything else STREAMS)]
     own = {name: facts.mapping(mapping) for name, mapping in mappings.items()}
     own |= {name: each["page"] for name, each in taught.items()}
-    tables, *wishes = play(run_node, playing, own, *played)
-    return played, tables, wishes
+    tables, *commands = play(run_node, playing, own, *played)
+    return played, tables, commands
 
 
 def play(run_node, folder: Path, *lines: Any) -> list[Any]:
@@ -147,7 +147,7 @@ def play(run_node, folder: Path, *lines: Any) -> list[Any]:
     return [*map(json.loads, run_node("playing.mjs", folder, lines=lines).splitlines())]
 
 
-def test_the_page_wishes_what_the_server_wishes(page_told, mappings, tmp_path):
+def test_the_page_commands_what_the_server_commands(page_told, mappings, tmp_path):
     presets, kinds = Presets(tmp_path), set()
     tunings = {
         name: EQUAL if name == "equal" else read_tuning(*map(Path, name.split(", ")))
@@ -158,7 +158,7 @@ def test_the_page_wishes_what_the_server_wishes(page_told, mappings, tmp_path):
         server = Server(mappings, tunings, presets)
         for call in calls:
             server.call(*call)
-        wanted = np.array(server.instrument.wishes)
+        wanted = np.array(server.instrument.commands)
         found = np.array(page).reshape(-1, 5)
         assert found.shape == wanted.shape, (number, calls)
         assert np.allclose(found, wanted, rtol=1e-12, atol=1e-12), (number, calls)
@@ -191,8 +191,8 @@ def test_the_page_of_another_fiddle_plays_that_fiddles_notes(run_node, playing, 
     erhu = NoteRange((62, 69), (11.5, 24.0))
     (folder / "facts.js").write_text(facts.module(facts.facts(erhu)))
     calls = [["midi", [0x90, key, 90], number, 0] for number, key in enumerate((61, 62, 93, 94))]
-    _, wishes = play(run_node, folder, {}, calls)
-    begun = [wish[4] for wish in np.reshape(wishes, (-1, 5)) if wish[1] == BEGIN]
+    _, commands = play(run_node, folder, {}, calls)
+    begun = [command[4] for command in np.reshape(commands, (-1, 5)) if command[1] == BEGIN]
     assert begun == [73.0, 62.0, 93.0, 82.0]  # an octave from what it has not
 
 

@@ -55,7 +55,7 @@ def test_load_and_latency_are_told_where_they_are_high(found) -> None:
 
 def test_the_diagram_places_the_bow_until_it_is_let_go(found) -> None:
     *placed, end = found["placed"]
-    assert [wish[:2] for wish in placed] == 2 * [
+    assert [command[:2] for command in placed] == 2 * [
         ["WRITE", ROW["/bow/position"]],
         ["WRITE", ROW["/bow/force"]],
     ]
@@ -82,13 +82,13 @@ def test_presets_and_parameters_write_their_values(found) -> None:
     # A number beyond the range becomes its end; a button brings back the default.
     for name, value in (("clamped", 500), ("reset", 40)):
         assert found[name]["shown"] == str(value)
-        wishes = [wish[:3] for wish in found[name]["wishes"]]
-        assert wishes == [["WRITE", ROW["/playing/attack"], value]]
+        commands = [command[:3] for command in found[name]["commands"]]
+        assert commands == [["WRITE", ROW["/playing/attack"], value]]
 
 
 def test_what_was_kept_is_played_again_and_what_is_no_performance_is_refused(found) -> None:
-    def notes(wishes: list[list[Any]]) -> list[list[Any]]:
-        return [wish[:4] for wish in wishes if wish[0] in ("BEGIN", "END")]
+    def notes(commands: list[list[Any]]) -> list[list[Any]]:
+        return [command[:4] for command in commands if command[0] in ("BEGIN", "END")]
 
     assert len(notes(found["played"])) == 4
     assert notes(found["replayed"]) == notes(found["played"])
@@ -100,7 +100,10 @@ def test_what_was_kept_is_played_again_and_what_is_no_performance_is_refused(fou
 
 
 def test_a_midi_keyboard_plays_and_leaves_no_note_when_it_is_pulled_out(found) -> None:
-    assert [wish[0] for wish in found["midi"] if wish[0] in ("BEGIN", "END")] == ["BEGIN", "END"]
+    assert [command[0] for command in found["midi"] if command[0] in ("BEGIN", "END")] == [
+        "BEGIN",
+        "END",
+    ]
     assert found["inputs"] == ["All that are connected"]
 
 

@@ -34,14 +34,14 @@ function follow(pitches, isTimed) {
   const wrong = [];
   guide.addEventListener("wrong", () => wrong.push(guide.pitch));
   guide.start();
-  const wish = (kind, value, other) =>
-    instrument.dispatchEvent(new CustomEvent("wish", { detail: { kind, value, other } }));
+  const command = (kind, value, other) =>
+    instrument.dispatchEvent(new CustomEvent("command", { detail: { kind, value, other } }));
   return {
     guide,
     wrong,
-    begin: (pitch) => wish(BEGIN, 0, pitch),
-    slide: (pitch) => wish(SLIDE, pitch, 0),
-    draw: (speed) => wish(DRAW, speed, 1),
+    begin: (pitch) => command(BEGIN, 0, pitch),
+    slide: (pitch) => command(SLIDE, pitch, 0),
+    draw: (speed) => command(DRAW, speed, 1),
     wait: (seconds) => {
       clock += 1000 * seconds;
       tick();

@@ -56,14 +56,14 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
     try:
         stage = alone(output.find(), memory=output.memory.buffer, channels=2)
         instrument = stage.first
-        instrument.report_wishes()
+        instrument.report_commands()
         beginning = session_start_of([instrument], has_room=False)
         capture = CaptureWriter(tmp_path / "take.jsonl", beginning=beginning)
         output.begin(stage)
         listener = recorder(1).connected()
         bow(instrument)
         time.sleep(0.1)
-        capture.wishes(instrument.applied_wishes())
+        capture.commands(instrument.applied_commands())
 
         listener.forget()
         time.sleep(1.0)

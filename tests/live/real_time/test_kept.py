@@ -30,7 +30,7 @@ def test_a_kill_leaves_takes_that_can_be_opened_and_a_capture_that_can_be_read(
     for file in (take, other):
         assert len(sound_of(file)) == soundfile.info(file).frames
         assert np.any(sound_of(file))
-    assert len(read_capture(capture).wishes) > 0
+    assert len(read_capture(capture).commands) > 0
 
 
 def sound_of(path: Path) -> np.ndarray:

@@ -284,13 +284,13 @@ while True:
 """
 
 
-def play(instrument: Instrument, wishes: Player) -> None:
+def play(instrument: Instrument, commands: Player) -> None:
     """Play two notes, each varied in its own way; the second is held until the sound dies."""
     frame = instrument.frame + 100
-    wishes.note_on(Key(0, 67), {"/playing/pressure": 0.5}, frame=frame)
-    wishes.write("/playing/bend", 0.3, frame=frame + 500)
-    wishes.note_on(Key(0, 74), frame=frame + 2000)
-    wishes.note_off(Key(0, 67), frame=frame + 3000)
+    commands.note_on(Key(0, 67), {"/playing/pressure": 0.5}, frame=frame)
+    commands.write("/playing/bend", 0.3, frame=frame + 500)
+    commands.note_on(Key(0, 74), frame=frame + 2000)
+    commands.note_off(Key(0, 67), frame=frame + 3000)
 
 
 def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_path):
@@ -299,27 +299,27 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
     calibration = calibration_for(48000.0)
     stage = Ensemble([playing.spec(48000.0, calibration)], memory=memory.buffer)
     live = stage.first
-    wishes = playing.player(live)
-    live.report_wishes()
+    commands = playing.player(live)
+    live.report_commands()
     capture = CaptureWriter(
         tmp_path / "take.jsonl", beginning=session_start_of([live], has_room=True)
     )
     recorded = np.zeros((0, 2), np.float32)
     for _ in range(3):
-        play(live, wishes)
+        play(live, commands)
         audio = forks.start(memory.descriptor, code=PLAYS_ON, pass_fds=[memory.descriptor])
         assert audio.stdout.readline() == "plays\n"
         time.sleep(0.1)
         audio.kill()
         audio.communicate()
         stage.recover()
-        capture.wishes(live.applied_wishes())
+        capture.commands(live.applied_commands())
         begin, samples = stage.taped(len(recorded))
         assert begin == len(recorded)
         recorded = np.concatenate([recorded, samples])
-    play(live, wishes)
+    play(live, commands)
     stage.process(np.zeros((9600, 2), np.float32))
-    capture.wishes(live.applied_wishes())
+    capture.commands(live.applied_commands())
     for since, frame in stage.gaps:
         capture.note("rest", frame, since=since)
     capture.close(live.frame)

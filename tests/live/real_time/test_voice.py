@@ -46,10 +46,10 @@ def test_what_is_sung_is_played_and_ends_with_the_input(jackd, serve, tmp_path):
     server.said("following system")
     sing(jackd, tmp_path)
     server.close()
-    wishes = [json.loads(line) for line in take.read_text().splitlines()[1:]]
-    begun = [wish for wish in wishes if "begin" in wish]
+    commands = [json.loads(line) for line in take.read_text().splitlines()[1:]]
+    begun = [command for command in commands if "begin" in command]
     assert [round(pitch) for *_, pitch in begun] == [note + 12 for note in NOTES]
-    assert sum("end" in wish for wish in wishes if isinstance(wish, list)) >= len(NOTES)
+    assert sum("end" in command for command in commands if isinstance(command, list)) >= len(NOTES)
 
 
 def test_an_input_that_is_not_there_is_told_and_the_rest_plays(jackd, serve):

@@ -1,1 +1,1 @@
-"""The running instrument: wishes, player, controls, model, output, in one compiled callback."""
+"""The running instrument: commands, player, controls, model, output, in one compiled callback."""

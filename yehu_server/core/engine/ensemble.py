@@ -147,7 +147,7 @@ class Ensemble:
             native.callback.call(None, address, len(out), None, 0, self._address)
 
     def reset(self) -> None:
-        """Put all back to their start; drop all wishes. Nothing may compute meanwhile."""
+        """Put all back to their start; drop all commands. Nothing may compute meanwhile."""
         for instrument in self.instruments:
             instrument.reset()
         rest_stage(self._stage)

@@ -1,7 +1,7 @@
-"""Dispatches posted events: interprets each when it is due, and distributes its wishes. Compiled.
+"""Dispatches posted events: interprets each when it is due, and distributes its commands. Compiled.
 
 The events of a part lie with its first instrument. Each is interpreted once, before the frames
-that it is for are computed (``midi.interpret_events``); its wishes go to the heaps of those who
+that it is for are computed (``midi.interpret_events``); its commands go to the heaps of those who
 play.
 """
 
@@ -47,7 +47,7 @@ from yehu_server.core.midi.events import FINGER_ON, NOTE_OFF, NOTE_ON, RELEASE_A
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import MIDI, NONE
-from yehu_server.core.player.wishes import BEGIN, END, WISH
+from yehu_server.core.player.commands import BEGIN, COMMAND, END
 
 NOTHING = -1  # the kind of an event that was cancelled
 # Frames from now that an event may be: the server plays whole scores ahead, other writers play
@@ -59,8 +59,8 @@ FARTHEST, FARTHEST_AHEAD = 1 << 40, 1 << 20
 def interpret_events(rigs: Any, end: int) -> int:
     """Interpret what all parts were sent for frames before `end`.
 
-    Returns the frame before which that is done: sooner than `end`, where wishes find no room until
-    others are fulfilled.
+    Returns the frame before which that is done: sooner than `end`, where commands find no room
+    until others are applied.
 
     Parameters
     ----------
@@ -84,11 +84,11 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
     m = record_at(rig, MIDI_AT, MIDI)
     events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
     drain(rigs, rig, mail, now)
-    while mail.pending_events > 0 and events[0].wish.frame < end:
+    while mail.pending_events > 0 and events[0].command.frame < end:
         if not have_room(rigs, part, m.players):
-            return int(max(events[0].wish.frame, now))
+            return int(max(events[0].command.frame, now))
         is_full = mail.pending_events == HEAP
-        event, order = events[0].wish, events[0].order
+        event, order = events[0].command, events[0].order
         frame, kind, index = max(event.frame, now), event.kind, event.index
         value, other = event.value, event.other
         pop(events, mail.pending_events)
@@ -113,7 +113,7 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
     for writer in range(WRITERS):
         farthest = FARTHEST if writer == SERVER else FARTHEST_AHEAD
         size = RING_SIZES[writer]
-        ring = carray(at(rig, RINGS_AT[writer]), (size,), WISH)
+        ring = carray(at(rig, RINGS_AT[writer]), (size,), COMMAND)
         posted = load_acquire(rig, POSTED_AT + writer * CURSOR_BYTES)
         drained = mail.drained[writer, 0]
         if posted < drained or posted - drained > size:
@@ -163,7 +163,7 @@ def frame_of_arrival(rigs: Any, mail: Any, time_ns: int) -> int:
 
 @compiled_with_aliasing
 def have_room(rigs: Any, part: int, players: int) -> bool:
-    """Whether all who play a part have room for the wishes of another event."""
+    """Whether all who play a part have room for the commands of another event."""
     for who in range(players):
         rig = at(rigs, (part + who) * RIG_BYTES)
         if HEAP - record_at(rig, MAIL_AT, MAIL).waiting < ROOM:
@@ -173,8 +173,8 @@ def have_room(rigs: Any, part: int, players: int) -> bool:
 
 @compiled_with_aliasing
 def hand_over(rigs: Any, part: int, m: Any) -> None:
-    """Give those who play a part the wishes that an event came to."""
-    for n in range(m.wishes):
+    """Give those who play a part the commands that an event came to."""
+    for n in range(m.commands):
         rig = at(rigs, (part + m.out_player[n]) * RIG_BYTES)
         mail = record_at(rig, MAIL_AT, MAIL)
         if mail.waiting == HEAP:
@@ -209,7 +209,7 @@ def cancel(
     if kind != RELEASE_ALL and find_key(m, channel, key) != NONE:
         return
     for n in range(coming):
-        event = events[n].wish
+        event = events[n].command
         if event.kind not in (NOTE_ON, FINGER_ON, BEGIN) or events[n].order > order:
             continue
         if kind == RELEASE_ALL or (event.index == channel and event.value == key):

@@ -1,4 +1,4 @@
-"""The instrument for Python: post wishes, read meters; alone, compute samples without a room."""
+"""The instrument for Python: post commands, read meters; alone, compute samples without a room."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from yehu_server.core.physics.bow import friction_bound
 from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.physics.layout import MAX_FINGERS, REFINED, new_record
 from yehu_server.core.physics.time_loop import kernel_of
+from yehu_server.core.player.commands import COMMAND, RAMP
 from yehu_server.core.player.record import end_all, prepare_player
-from yehu_server.core.player.wishes import RAMP, WISH
 from yehu_server.core.stage.record import STAGE, prepare_stage, rest_stage
 from yehu_server.core.stage.seat import prepare_seat, rest_seat
 from yehu_server.errors import ParameterError
@@ -36,7 +36,7 @@ Array = Any
 class Instrument:
     """A yehu and its player.
 
-    One thread at a time may post wishes (`post`, `write`, `silence`), and another may compute
+    One thread at a time may post commands (`post`, `write`, `silence`), and another may compute
     samples, also in another process that shares `memory`: `process` those of an instrument
     alone, without a room; ``ensemble.Ensemble`` those of one or more on a stage.
 
@@ -49,7 +49,7 @@ class Instrument:
     memory : buffer of RIG_BYTES, optional
         Holds all state of an instrument of an ensemble.
     is_live : bool
-        Whether the number of wishes that one block takes is limited.
+        Whether the number of commands that one block takes is limited.
 
     Raises
     ------
@@ -84,7 +84,7 @@ class Instrument:
         self.reset()
 
     def reset(self) -> None:
-        """Put model and parameters back to their start; drop all wishes.
+        """Put model and parameters back to their start; drop all commands.
 
         Nothing may post or compute meanwhile.
         """
@@ -228,7 +228,7 @@ class Instrument:
         Parameters
         ----------
         frame : int
-            When to begin; by default now. Wishes of one frame are fulfilled in the order posted.
+            When to begin; by default now. Commands of one frame are applied in the order posted.
         ramp_ms : float
             Length of the ramp; by default the parameter's own smoothing.
 
@@ -332,7 +332,7 @@ class Instrument:
         return bool(self._rig["meters"]["running"][0])
 
     def repair(self) -> None:
-        """Put meters and waiting wishes in order again, after a process was killed."""
+        """Put meters and waiting commands in order again, after a process was killed."""
         self._rig["version"][0, 0] += self._rig["version"][0, 0] % 2
         self._rig["meters"]["running"] = 0
         repair(self._rig["events"][0], self._rig["mail"][0], "pending_events")
@@ -365,15 +365,15 @@ class Instrument:
         """Take the time of frames from the first instrument of an ensemble, at an address."""
         self._clock = address
 
-    def report_wishes(self) -> None:
-        """Report fulfilled wishes from now on, for `applied_wishes`."""
+    def report_commands(self) -> None:
+        """Report applied commands from now on, for `applied_commands`."""
         self._rig["mail"]["reporting"] = 1
 
-    def applied_wishes(self) -> Array:
-        """The wishes fulfilled since the last call: ndarray [shape=(wishes,), dtype=WISH]."""
-        wishes = np.zeros(RING, WISH)
-        count = native.read_reports.call(self._address, wishes.ctypes.data, RING)
-        return wishes[:count].copy()
+    def applied_commands(self) -> Array:
+        """The commands applied since the last call: ndarray [shape=(commands,), dtype=COMMAND]."""
+        commands = np.zeros(RING, COMMAND)
+        count = native.read_reports.call(self._address, commands.ctypes.data, RING)
+        return commands[:count].copy()
 
 
 def new_memory(parts: int) -> Any:

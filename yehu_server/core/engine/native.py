@@ -57,9 +57,9 @@ from yehu_server.core.engine.rig import (
 from yehu_server.core.engine.sounding import sound
 from yehu_server.core.engine.telemetry import METERS, account, update_clock
 from yehu_server.core.physics.layout import STATE
+from yehu_server.core.player.commands import COMMAND
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import PLAYER
-from yehu_server.core.player.wishes import WISH
 from yehu_server.core.stage.record import STAGE
 
 STALL_NS = 20_000_000
@@ -195,7 +195,7 @@ def post_to(
     if posted - load_acquire(rig, DRAINED_AT + writer * CURSOR_BYTES) >= size:
         mail.dropped[writer, 0] += 1
         return 0
-    entry = carray(at(rig, RINGS_AT[writer]), (size,), WISH)[posted & (size - 1)]
+    entry = carray(at(rig, RINGS_AT[writer]), (size,), COMMAND)[posted & (size - 1)]
     entry.frame, entry.kind, entry.index = frame, kind, index
     entry.value, entry.other = value, other
     store_release(rig, POSTED_AT + writer * CURSOR_BYTES, posted + 1)
@@ -204,14 +204,14 @@ def post_to(
 
 @native
 def read_reports(rig: Any, into: Any, room: int) -> int:
-    """Move reports of wishes to an array of WISH [shape=(room,)]; return their number."""
+    """Move reports of commands to an array of COMMAND [shape=(room,)]; return their number."""
     mail = record_at(rig, MAIL_AT, MAIL)
-    reports = carray(at(rig, REPORTS_AT), (RING,), WISH)
-    wishes = carray(into, (room,), WISH)
+    reports = carray(at(rig, REPORTS_AT), (RING,), COMMAND)
+    commands = carray(into, (room,), COMMAND)
     read = mail.read[0]
     count = int(min(load_acquire(rig, REPORTED_AT) - read, room))
     for i in range(count):
-        wishes[i] = reports[(read + i) & (RING - 1)]
+        commands[i] = reports[(read + i) & (RING - 1)]
     store_release(rig, READ_AT, read + count)
     return count
 

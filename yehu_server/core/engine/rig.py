@@ -19,9 +19,9 @@ from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.midi.record import MIDI
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.physics.layout import MODEL, REFINED, STATE, lined_up
+from yehu_server.core.player.commands import COMMAND
 from yehu_server.core.player.ear import EAR_SAMPLES
 from yehu_server.core.player.record import PLAYER
-from yehu_server.core.player.wishes import WISH
 from yehu_server.core.stage.record import STAGE
 from yehu_server.core.stage.seat import SEAT
 
@@ -43,15 +43,15 @@ RIG = lined_up(
         ("taped", np.int64, LINE),
         # Of the first instrument of a part: what the part is sent, by writer; what is to come;
         # the record of the part, and its tables.
-        ("ring", WISH, RING),
-        ("midi_ring", WISH, SMALL_RING),
-        ("page_ring", WISH, SMALL_RING),
-        ("sound_ring", WISH, SMALL_RING),
+        ("ring", COMMAND, RING),
+        ("midi_ring", COMMAND, SMALL_RING),
+        ("page_ring", COMMAND, SMALL_RING),
+        ("sound_ring", COMMAND, SMALL_RING),
         ("events", WAITING, HEAP),
         ("midi", MIDI),
         ("tables", TABLES, SLOTS),
-        ("heap", WAITING, HEAP),  # wishes to come
-        ("reports", WISH, RING),
+        ("heap", WAITING, HEAP),  # commands to come
+        ("reports", COMMAND, RING),
         ("seat", SEAT),
         ("kernel", np.int64, LINE),  # the address of the kernel, 0 for the plain one (time_loop.py)
         ("refined", REFINED),
@@ -99,7 +99,7 @@ def count_parts(rigs: Any) -> int:
 def ring_place(writer: int, rig: int) -> dict[str, int]:
     """Where a writer's ring of an instrument lies in the memory of all: bytes, but for its size.
 
-    For writers that load no compiled code: entries of dtype WISH; cursors, each 8 bytes.
+    For writers that load no compiled code: entries of dtype COMMAND; cursors, each 8 bytes.
     """
     mail: Any = MAIL.fields
     start = rig * RIG_BYTES

@@ -2,7 +2,7 @@
 
 Windows of frames begin at fixed frames, whatever the blocks are. An instrument whose controls stood
 still, and which was quiet for a whole window, falls asleep as the next one begins. Its model, its
-controls and its filters stay as they are then, and its samples are zeros; a wish wakes it at the
+controls and its filters stay as they are then, and its samples are zeros; a command wakes it at the
 very frame that it is due, and it goes on from there. The player goes on meanwhile: its random
 numbers are the same whether the instrument slept or not.
 """

@@ -35,7 +35,7 @@ from yehu_server.core.engine.mailbox import (
     MAIL,
     RING,
     WAITING,
-    copy_wish,
+    copy_command,
     pop,
 )
 from yehu_server.core.engine.output import (
@@ -71,39 +71,39 @@ from yehu_server.core.physics import kernel, refined
 from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.layout import MODEL, REFINED, RELATIVE_VELOCITY, STATE, STRINGS
 from yehu_server.core.physics.time_loop import advance_by
+from yehu_server.core.player.commands import COMMAND, apply
 from yehu_server.core.player.ear import EAR_SAMPLES, remember
 from yehu_server.core.player.listening import update_player
 from yehu_server.core.player.record import PLAYER
-from yehu_server.core.player.wishes import WISH, fulfil
 
 Array = Any
 
 
 @compiled_with_aliasing
-def apply(rig: Any, mail: Any, p: Any, c: Any) -> None:
-    """Fulfil the wishes that are due at this frame, and report them."""
+def apply_due(rig: Any, mail: Any, p: Any, c: Any) -> None:
+    """Apply the commands that are due at this frame, and report them."""
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
     for _ in range(APPLIED_AT_ONCE):
-        if mail.waiting == 0 or heap[0].wish.frame > c.frame:
+        if mail.waiting == 0 or heap[0].command.frame > c.frame:
             return
-        wish = heap[0].wish
-        fulfil(p, c, c.frame, wish.kind, wish.index, wish.value, wish.other)
+        command = heap[0].command
+        apply(p, c, c.frame, command.kind, command.index, command.value, command.other)
         if mail.reporting != 0:
-            report(rig, mail, c.frame, wish)
+            report(rig, mail, c.frame, command)
         mail.applied += 1
         pop(heap, mail.waiting)
         mail.waiting -= 1
 
 
 @compiled_with_aliasing
-def report(rig: Any, mail: Any, frame: int, wish: Any) -> None:
-    """Report a fulfilled wish for captures, with the frame that it was fulfilled at."""
+def report(rig: Any, mail: Any, frame: int, command: Any) -> None:
+    """Report a applied request for captures, with the frame that it was applied at."""
     reported = mail.reported[0]
     if reported - load_acquire(rig, READ_AT) >= RING:
         mail.unreported += 1
         return
-    entry = carray(at(rig, REPORTS_AT), (RING,), WISH)[reported & (RING - 1)]
-    copy_wish(wish, entry)
+    entry = carray(at(rig, REPORTS_AT), (RING,), COMMAND)[reported & (RING - 1)]
+    copy_command(command, entry)
     entry.frame = frame
     store_release(rig, REPORTED_AT, reported + 1)
 
@@ -160,7 +160,7 @@ def sleep(rig: Any, p: Any, c: Any, sounded: Any, begin: int, end: int) -> int:
     while done < end:
         until = c.frame + end - done
         if mail.waiting > 0:
-            until = min(until, heap[0].wish.frame)
+            until = min(until, heap[0].command.frame)
         if until > c.frame == p.ear.next:
             update_player(p, c, at(rig, EAR_BUFFER_AT))
         if until <= c.frame or not is_still(c):
@@ -209,7 +209,7 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
         first, start = c.frame, done
         silenced, retuned, ends = False, False, False
         while done < wanted and not (silenced or retuned or ends):
-            apply(rig, mail, p, c)
+            apply_due(rig, mail, p, c)
             if c.frame == p.ear.next:
                 update_player(p, c, at(rig, EAR_BUFFER_AT))
             silenced = write_row(c, o, done)

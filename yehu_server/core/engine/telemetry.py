@@ -79,9 +79,9 @@ METERS = np.dtype(
         # The mailbox.
         ("late_events", np.int64),
         ("applied", np.int64),
-        ("drained", np.int64),  # number of wishes taken from the ring, and
+        ("drained", np.int64),  # number of commands taken from the ring, and
         ("pitch", np.float64),  # that sounds (fractional MIDI note); NaN in silence
-        ("next_frame", np.int64),  # the frame up to which those that are due were fulfilled
+        ("next_frame", np.int64),  # the frame up to which those that are due were applied
         ("waiting", np.int64),
         ("unreported", np.int64),
     ],

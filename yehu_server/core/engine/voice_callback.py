@@ -1,4 +1,4 @@
-"""Follows a voice: a sound goes in, wishes for the instrument come out. Compiled.
+"""Follows a voice: a sound goes in, commands for the instrument come out. Compiled.
 
 The callback of an audio input calls it, in whatever process that is; a page calls it as well.
 """
@@ -20,7 +20,7 @@ from yehu_server.core.voice.note_detection import FOLLOWER, decide, end, prepare
 from yehu_server.core.voice.pitch_detection import take
 
 FOLLOWER_BYTES = FOLLOWER.itemsize
-OF_WISH = 4  # numbers of a wish for others: kind, index, value, other
+COMMAND_NUMBERS = 4  # numbers of a request for others: kind, index, value, other
 
 
 @native
@@ -57,7 +57,7 @@ def voice_pitch(voice: Any) -> float:
 
 @native
 def follow_voice(voice: Any, sound: Any, frames: int, into: Any, most: int) -> int:
-    """Follow float samples of a voice; return how many wishes they come to, to be posted.
+    """Follow float samples of a voice; return how many commands they come to, to be posted.
 
     Each is four numbers: kind, index, value, other. Of a voice that is followed no more, the note
     ends where no samples are given (frames 0).
@@ -66,26 +66,31 @@ def follow_voice(voice: Any, sound: Any, frames: int, into: Any, most: int) -> i
     """
     f = record_at(voice, 0, FOLLOWER)
     samples = carray(sound, (frames,), np.float32)
-    wishes = carray(into, (most, OF_WISH), np.float64)
+    commands = carray(into, (most, COMMAND_NUMBERS), np.float64)
     found = 0
     if frames == 0:
-        f.wishes = 0
+        f.commands = 0
         end(f)
-        found = copy_wishes(f, wishes, 0)
+        found = copy_commands(f, commands, 0)
     for i in range(frames):
         if take(f.hearing, samples[i]):
             decide(f)
-            found = copy_wishes(f, wishes, found)
+            found = copy_commands(f, commands, found)
     return found
 
 
 @compiled_with_aliasing
-def copy_wishes(f: Any, wishes: Any, found: int) -> int:
-    """Add the wishes of a hearing to those found, as far as there is room; return their number."""
-    count = min(f.wishes, len(wishes) - found)
+def copy_commands(f: Any, commands: Any, found: int) -> int:
+    """Add an estimate's commands to those found, as far as there is room; return their number."""
+    count = min(f.commands, len(commands) - found)
     for n in range(count):
-        wish = wishes[found + n]
-        wish[0], wish[1], wish[2], wish[3] = f.kind[n], f.index[n], f.value[n], f.other[n]
+        command = commands[found + n]
+        command[0], command[1], command[2], command[3] = (
+            f.kind[n],
+            f.index[n],
+            f.value[n],
+            f.other[n],
+        )
     return int(found + count)
 
 
@@ -110,7 +115,7 @@ def follow_input(
     for i in range(len(samples)):
         if take(f.hearing, samples[i]):
             decide(f)
-            for n in range(f.wishes):
+            for n in range(f.commands):
                 post_to(rig, SOUND_INPUT, now, f.kind[n], f.index[n], f.value[n], f.other[n])
     restore_denormals(mode)
     return 0

@@ -10,7 +10,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import is_in_zone, plays
-from yehu_server.core.midi.emit_wishes import stop_sound
+from yehu_server.core.midi.emit_commands import stop_sound
 from yehu_server.core.midi.note_ends import (
     SUSTAIN,
     end_notes,

@@ -1,7 +1,7 @@
 """Events: all that a part can be sent, each at a frame.
 
-A wish (``player.wishes``) may also be posted as an event, as a replay does; it passes on to the
-players of the part. Beside them:
+A command (``player.commands``) may also be posted as an event, as a replay does; it passes on to
+the players of the part. Beside them:
 
 | kind | index | value | other |
 |---|---|---|---|
@@ -21,7 +21,7 @@ players of the part. Beside them:
 
 from __future__ import annotations
 
-from yehu_server.core.player.wishes import KINDS
+from yehu_server.core.player.commands import KINDS
 
 EVENTS = (
     "message", "note_on", "finger_on", "note_off", "set", "load", "control", "disconnect", "leave",

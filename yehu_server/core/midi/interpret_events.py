@@ -11,13 +11,13 @@ from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.midi.channel_messages import disconnect, receive, system_reset
 from yehu_server.core.midi.control_changes import is_bound
-from yehu_server.core.midi.emit_wishes import (
+from yehu_server.core.midi.emit_commands import (
     begin_key,
     end_key,
     express,
     hold_nothing,
     pass_on,
-    record_wish,
+    record_command,
     release_held,
     write,
 )
@@ -44,8 +44,7 @@ from yehu_server.core.midi.section import slide_players
 from yehu_server.core.midi.sources import move_control, set_directly
 from yehu_server.core.midi.tables import CONTROL as CONTROL_SOURCE
 from yehu_server.core.midi.tables import SLOTS, TABLES
-from yehu_server.core.player.rows import ROW, ROWS
-from yehu_server.core.player.wishes import (
+from yehu_server.core.player.commands import (
     BEGIN,
     END,
     EXPRESS,
@@ -56,6 +55,7 @@ from yehu_server.core.player.wishes import (
     STOP,
     WRITE,
 )
+from yehu_server.core.player.rows import ROW, ROWS
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE
 
@@ -69,7 +69,7 @@ START_VALUES = np.array([param.default for param in PLAYERS_FIRST])
 def interpret(
     m: Midi, tables: Any, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
-    """Interpret an event, given by its fields; the wishes that it comes to are in the record.
+    """Interpret an event, given by its fields; the commands that it comes to are in the record.
 
     One of no kind, for no parameter, or with a number that is not finite changes nothing.
 
@@ -81,9 +81,9 @@ def interpret(
     """
     all_tables = carray(tables, (SLOTS,), TABLES)
     t = all_tables[m.tables]
-    m.wishes = 0
+    m.commands = 0
     if kind < len(KINDS) or kind > TABLES_TO:
-        wish(m, frame, kind, index, value, other)
+        command(m, frame, kind, index, value, other)
     elif not (math.isfinite(value) and math.isfinite(other)):
         return
     elif kind == MESSAGE:
@@ -138,14 +138,14 @@ def apply_start_values(m: Any, t: Any, frame: int, with_all: bool) -> None:
 
 
 @compiled_exactly
-def wish(m: Any, frame: int, kind: int, index: int, value: float, other: float) -> None:
-    """Pass on what somebody wishes who knows the player (``player.wishes``)."""
+def command(m: Any, frame: int, kind: int, index: int, value: float, other: float) -> None:
+    """Pass on what somebody commands who knows the player (``player.commands``)."""
     is_right = math.isfinite(value) and math.isfinite(other)
     if kind in (WRITE, HOLD, EXPRESS):
         is_right = is_right and 0 <= index < ROWS
     if m.players == 1:  # as it is: it may be one of a replay
         if is_right:
-            record_wish(m, kind, index, value, other)
+            record_command(m, kind, index, value, other)
         emit(m, 0, frame, kind, index, value, other)
     elif not is_right or not 0 <= kind < len(KINDS):
         return

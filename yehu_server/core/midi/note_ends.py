@@ -9,7 +9,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import master_of, moves_all
-from yehu_server.core.midi.emit_wishes import end_listed, express
+from yehu_server.core.midi.emit_commands import end_listed, express
 from yehu_server.core.midi.part_keys import list_key, next_sounding_key
 from yehu_server.core.midi.record import CHANNELS, NONE, Midi
 from yehu_server.core.midi.tables import Tables

@@ -9,7 +9,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import forget_channel, is_midi
-from yehu_server.core.midi.emit_wishes import begin_key
+from yehu_server.core.midi.emit_commands import begin_key
 from yehu_server.core.midi.note_ends import (
     end_notes,
     express_key,

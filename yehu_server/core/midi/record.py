@@ -1,4 +1,4 @@
-"""The state of a part: held keys, controllers, channels, and wishes of the present event."""
+"""The state of a part: held keys, controllers, channels, and commands of the present event."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ CHANNELS = PORTS * IN_PORT
 MAX_PLAYERS = 16  # players of a section, at most
 MOST_CHORD = 32  # notes that a section divides
 ONSETS = 64  # that a section remembers
-MOST_WISHES = 8192  # that one event comes to
+MOST_COMMANDS = 8192  # that one event comes to
 NONE = -1
 SECTION = ROW["/playing/section"]
 
 MIDI = np.dtype(
     [
         ("tables", np.int64),  # number of those in use
-        # What was wished of parameters, by row; and which are held.
+        # What was requested of parameters, by row; and which are held.
         ("value", np.float64, ROWS),
         ("is_held", np.int64, ROWS),
         # Held keys, in the order pressed, and the one that sounds: its number, or NONE.
@@ -113,7 +113,7 @@ MIDI = np.dtype(
         ("has_note", np.int64, MAX_PLAYERS),
         ("note_channel", np.int64, MAX_PLAYERS),
         ("note_key", np.float64, MAX_PLAYERS),
-        ("wished", np.int64, MAX_PLAYERS),
+        ("requested", np.int64, MAX_PLAYERS),
         ("waits", np.int64, MAX_PLAYERS),
         # The last chord: its keys, their pitches, and the values of each.
         ("chord", np.int64),
@@ -142,15 +142,15 @@ MIDI = np.dtype(
         ("onset_late", np.int64, (ONSETS, MAX_PLAYERS)),
         ("late", np.int64, MAX_PLAYERS),
         ("before", np.float64, MAX_PLAYERS),
-        # Wishes that the event comes to.
-        ("wishes", np.int64),
+        # Commands that the event comes to.
+        ("commands", np.int64),
         ("lost", np.int64),  # of those that there was no room for
-        ("out_frame", np.int64, MOST_WISHES),
-        ("out_kind", np.int64, MOST_WISHES),
-        ("out_index", np.int64, MOST_WISHES),
-        ("out_value", np.float64, MOST_WISHES),
-        ("out_other", np.float64, MOST_WISHES),
-        ("out_player", np.int64, MOST_WISHES),
+        ("out_frame", np.int64, MOST_COMMANDS),
+        ("out_kind", np.int64, MOST_COMMANDS),
+        ("out_index", np.int64, MOST_COMMANDS),
+        ("out_value", np.float64, MOST_COMMANDS),
+        ("out_other", np.float64, MOST_COMMANDS),
+        ("out_player", np.int64, MOST_COMMANDS),
         # Where moves go while tables change.
         ("saved_move_number", np.int64, MOST_BINDS),
         ("saved_position", np.float64, MOST_BINDS),
@@ -207,11 +207,11 @@ def clear_held(m: Any) -> None:
 def emit(
     m: Any, player: int, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
-    """Wish something of one player at a frame (``player.wishes``)."""
-    if m.wishes >= MOST_WISHES:
+    """Command something of one player at a frame (``player.commands``)."""
+    if m.commands >= MOST_COMMANDS:
         m.lost += 1
         return
-    n = m.wishes
+    n = m.commands
     m.out_player[n], m.out_frame[n], m.out_kind[n] = player, frame, kind
     m.out_index[n], m.out_value[n], m.out_other[n] = index, value, other
-    m.wishes += 1
+    m.commands += 1

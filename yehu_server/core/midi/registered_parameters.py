@@ -18,7 +18,7 @@ from yehu_server.core.midi.channels import (
     is_in_zone,
     master_of,
 )
-from yehu_server.core.midi.emit_wishes import in_range
+from yehu_server.core.midi.emit_commands import in_range
 from yehu_server.core.midi.notes import end_channel
 from yehu_server.core.midi.record import IN_PORT, NONE
 from yehu_server.core.midi.sources import follow, move_coarse, move_fine, step

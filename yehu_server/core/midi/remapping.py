@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.core.midi.emit_wishes import write
+from yehu_server.core.midi.emit_commands import write
 from yehu_server.core.midi.record import NONE, Midi
 from yehu_server.core.midi.resets import restore_moves
 from yehu_server.core.midi.sources import set_directly

@@ -6,7 +6,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import add_active, forget_moves, moves_all
-from yehu_server.core.midi.emit_wishes import write
+from yehu_server.core.midi.emit_commands import write
 from yehu_server.core.midi.record import CHANNELS, NONE, Midi
 from yehu_server.core.midi.sources import follow
 from yehu_server.core.midi.tables import (

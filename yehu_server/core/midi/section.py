@@ -1,10 +1,10 @@
 """A section: several players who play one part, each an instrument of their own. Compiled.
 
-Wishes are passed on to the players: notes at the frame at which each of them begins, which is at
-most ``section_players.LATEST_MS`` after the planned one; all else as it is wished, but not before
-the note that was wished earlier. Keys struck within `CHORD_MS` are a chord, whose notes the players
-divide; one line is played by all. Where a note of a chord ends, its players rest until the next
-note, which is theirs.
+Commands are passed on to the players: notes at the frame at which each of them begins, which is at
+most ``section_players.LATEST_MS`` after the planned one; all else as it is requested, but not
+before an earlier note. Keys struck within `CHORD_MS` are a chord, whose notes the players divide;
+one line is played by all. Where a note of a chord ends, its players rest until the next note, which
+is theirs.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import MOST_CHORD, NONE, emit
 from yehu_server.core.midi.section_players import own_value, plan_onset, plan_release
+from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, SLIDE, WRITE
 from yehu_server.core.player.record import MOST_HELD
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, HOLD, RAMP, SLIDE, WRITE
 from yehu_server.params.table import ENGINE
 
 CHORD_MS = 30.0  # keys struck within this time are a chord
@@ -31,15 +31,15 @@ ROW_OF_SLOT = np.array([ROW[param.address] for param in ENGINE])
 
 @compiled_exactly
 def time_of(m: Any, who: int, frame: int) -> int:
-    """When a player fulfils a wish for a frame: not before the note that was wished before it."""
-    return int(m.waits[who] if m.wished[who] <= frame < m.waits[who] else frame)
+    """When a player applies a command for a frame: not before an earlier note."""
+    return int(m.waits[who] if m.requested[who] <= frame < m.waits[who] else frame)
 
 
 @compiled_exactly
 def act(m: Any, who: int, frame: int, late: int) -> int:
-    """The frame at which a player acts that is `late` frames late; its later wishes wait."""
+    """The frame at which a player acts that is `late` frames late; its later commands wait."""
     at = max(time_of(m, who, frame), frame + late)
-    m.wished[who], m.waits[who] = frame, at
+    m.requested[who], m.waits[who] = frame, at
     return at
 
 
@@ -58,7 +58,7 @@ def emit_to_all(
     channel: int,
     key: float,
 ) -> None:
-    """Wish something of all players; where `of_key`, of those who play a key, or rest."""
+    """Command something of all players; where `of_key`, of those who play a key, or rest."""
     for who in range(m.players):
         last = m.holds[who] - 1
         if of_key and last >= 0:

@@ -15,7 +15,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import add_active, moves_key, plays
 from yehu_server.core.midi.curves import from_unit, picks_up, to_unit
-from yehu_server.core.midi.emit_wishes import write
+from yehu_server.core.midi.emit_commands import write
 from yehu_server.core.midi.record import NONE, Midi
 from yehu_server.core.midi.section import sounds
 from yehu_server.core.midi.tables import (

@@ -1,4 +1,4 @@
-"""The player: turns wishes (notes, parameters) into moves of bow and fingers. Compiled.
+"""The player: turns commands (notes, parameters) into moves of bow and fingers. Compiled.
 
 It runs in the audio callback, on one flat record (``record.PLAYER``) beside the controls.
 """

@@ -60,7 +60,7 @@ def bowing_value(table: Array, string: int, place: float, pitch: float, column: 
     string : int
         0 or 1.
     place : float
-        The bow position wished for.
+        The bow position asked for.
     column : int
         TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR or LEAST_PRESS.
     """
@@ -84,7 +84,7 @@ def at_pitch(bowings: Array, pitch: float, column: int) -> float:
 
 
 @compiled_exactly
-def share(flautando: float, light: float, firm: float, wish: float, string: int) -> float:
+def share(flautando: float, light: float, firm: float, command: float, string: int) -> float:
     """The value of ``/bow/pressure`` for one of ``/playing/pressure``, on a string.
 
     Parameters
@@ -92,10 +92,10 @@ def share(flautando: float, light: float, firm: float, wish: float, string: int)
     flautando, light, firm : float
         The values for FLAUTANDO, LIGHT and FIRM.
     """
-    if wish <= FLAUTANDO:
-        return flautando * wish / FLAUTANDO
-    if wish <= LIGHT:
-        return flautando + (light - flautando) * (wish - FLAUTANDO) / (LIGHT - FLAUTANDO)
-    if wish <= FIRM:
-        return light + (firm - light) * (wish - LIGHT) / (FIRM - LIGHT)
-    return float(firm + (EDGES[string] - firm) * (wish - FIRM) / (SCRATCHY - FIRM))
+    if command <= FLAUTANDO:
+        return flautando * command / FLAUTANDO
+    if command <= LIGHT:
+        return flautando + (light - flautando) * (command - FLAUTANDO) / (LIGHT - FLAUTANDO)
+    if command <= FIRM:
+        return light + (firm - light) * (command - LIGHT) / (FIRM - LIGHT)
+    return float(firm + (EDGES[string] - firm) * (command - FIRM) / (SCRATCHY - FIRM))

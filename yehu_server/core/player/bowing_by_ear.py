@@ -57,7 +57,7 @@ def heaviest(p: Any) -> float:
 def fault_of(p: Any) -> int:
     """What is wrong with what is heard.
 
-    Without a period and with many slips the bow may be either; then the wish decides.
+    Without a period and with many slips the bow may be either; then the command decides.
     """
     if p.ear.certainty < ROUGH and (p.ear.slips < MANY or p.value[PRESSURE] > FIRM):
         return TOO_HEAVY

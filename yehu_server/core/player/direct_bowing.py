@@ -10,7 +10,7 @@ from yehu_server.core.player.fingering import choose
 from yehu_server.core.player.left_hand import side_of
 from yehu_server.core.player.notes import BEND_RAMP_MS, even_out, follow_bend
 from yehu_server.core.player.ownership import USUAL_MS, ramp_to, take_all_back, write_directly
-from yehu_server.core.player.right_hand import wished_speed
+from yehu_server.core.player.right_hand import requested_speed
 from yehu_server.core.player.rows import BOW_FORCE, BOW_SIDE, BOW_SPEED, POSITION
 
 
@@ -25,7 +25,7 @@ def slide(p: Any, c: Any, pitch: float) -> None:
         follow_bend(p, c)
         return
     p.finger_pitch = pitch
-    string, position = choose(p, pitch, False, False, wished_speed(p))
+    string, position = choose(p, pitch, False, False, requested_speed(p))
     left_hand.stop(p, c, string, position, 0.0, BEND_RAMP_MS)
     if p.is_direct != 0:
         ramp_to(p, c, BOW_SIDE, side_of(p), USUAL_MS)

@@ -31,8 +31,8 @@ OPEN_FOR = np.array([OPEN_WITHIN, ON_PITCH_WITHIN, 0.0])  # semitones, for each 
 
 
 @compiled_exactly
-def wished_string(p: Any) -> int:
-    """The string wished for, 0 or 1; -1 for either."""
+def requested_string(p: Any) -> int:
+    """The string asked for, 0 or 1; -1 for either."""
     return int(np.rint(p.value[STRING])) - 1
 
 
@@ -42,7 +42,7 @@ def choose(p: Any, pitch: float, beats: bool, shakes: bool, speed: float) -> tup
 
     Below the open outer string it is on the inner one; from there up on the outer, unless the
     finger is on the inner string and nearer to the pitch there, as far as that is stopped. A string
-    that is wished for is taken wherever it has the pitch.
+    that is asked for is taken wherever it has the pitch.
 
     Parameters
     ----------
@@ -59,18 +59,18 @@ def choose(p: Any, pitch: float, beats: bool, shakes: bool, speed: float) -> tup
     position : float
         Of the finger (m), or OPEN.
     """
-    wish = wished_string(p)
+    command = requested_string(p)
     if pitch < p.open_note[0] + OPEN_WITHIN:
         return 0, OPEN  # the lowest note of the instrument
-    if wish == 0:
+    if command == 0:
         return 0, learnt_position(p, 0, pitch, speed)
     is_open = abs(pitch - p.open_note[1]) < OPEN_FOR[p.open_strings]
-    if is_open and (wish == 1 or not shakes):
+    if is_open and (command == 1 or not shakes):
         return 1, OPEN
     if pitch < p.open_note[1] + OPEN_WITHIN:
         return 0, learnt_position(p, 0, pitch, speed)
     near = learnt_position(p, 1, pitch, speed)
-    if wish == 1 or p.string != 0 or p.position == OPEN or beats or pitch > p.highest[0]:
+    if command == 1 or p.string != 0 or p.position == OPEN or beats or pitch > p.highest[0]:
         return 1, near
     far = learnt_position(p, 0, pitch, speed)
     if abs(far - p.position) < abs(near - p.position):
@@ -83,17 +83,17 @@ def stay(p: Any, pitch: float, steps: bool, speed: float) -> tuple[int, float]:
     """Follow a bent pitch on the string that sounds, as far as that has it.
 
     Where the outer string has no finger it changes to the inner one, and above where that is
-    stopped to the outer, unless the inner is wished for. An open string stays open within
+    stopped to the outer, unless the inner is asked for. An open string stays open within
     OPEN_WITHIN, and is again where the finger `steps` and does not slide. Returns as `choose` does.
     """
-    wish = wished_string(p)
-    string = p.string if wish < 0 else wish
+    command = requested_string(p)
+    string = p.string if command < 0 else command
     if pitch < p.open_note[0]:
         return 0, OPEN
     may_be_open = string == 0 or p.position == OPEN or steps
     if abs(pitch - p.open_note[string]) < OPEN_WITHIN and may_be_open:
         return string, OPEN
-    if string == 0 and pitch > p.highest[0] and wish != 0:
+    if string == 0 and pitch > p.highest[0] and command != 0:
         string = 1
     if string == 1 and pitch < p.open_note[1] + OPEN_WITHIN:
         string = 0
@@ -112,9 +112,9 @@ def choose_for_slide(
     where it is. Returns as `choose` does.
     """
     first, second = p.open_note[0], p.open_note[1]
-    if low < second + OPEN_WITHIN and high <= p.highest[0] and wished_string(p) != 1:
+    if low < second + OPEN_WITHIN and high <= p.highest[0] and requested_string(p) != 1:
         return 0, OPEN if pitch < first + OPEN_WITHIN else learnt_position(p, 0, pitch, speed)
-    if low > second and pitch > second + OPEN_WITHIN and wished_string(p) != 0:
+    if low > second and pitch > second + OPEN_WITHIN and requested_string(p) != 0:
         return 1, learnt_position(p, 1, pitch, speed)
     return choose(p, pitch, False, False, speed) if is_new else stay(p, pitch, False, speed)
 

@@ -297,16 +297,16 @@ def attack_ms(p: Any) -> float:
 
 @compiled_exactly
 def tremolo_of(p: Any) -> float:
-    """Strokes a second: as wished, else the gesture's."""
-    wished = p.value[TREMOLO]
-    return float(wished if wished > 0.0 else SHAPES[p.gesture.row, STROKES])
+    """Strokes a second: as requested, else the gesture's."""
+    requested = p.value[TREMOLO]
+    return float(requested if requested > 0.0 else SHAPES[p.gesture.row, STROKES])
 
 
 @compiled_exactly
 def tremolo_depth_of(p: Any) -> float:
-    """How deep a tremolo is: as wished where there is a wish for one, else the gesture's."""
-    wished = p.value[TREMOLO_DEPTH]
-    return float(wished if p.value[TREMOLO] > 0.0 else SHAPES[p.gesture.row, DEPTH])
+    """How deep a tremolo is: as requested where there is a request for one, else the gesture's."""
+    requested = p.value[TREMOLO_DEPTH]
+    return float(requested if p.value[TREMOLO] > 0.0 else SHAPES[p.gesture.row, DEPTH])
 
 
 @compiled_exactly

@@ -13,7 +13,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.elementary import log2
-from yehu_server.core.player.fingering import wished_string
+from yehu_server.core.player.fingering import requested_string
 
 # String, where the finger touches (semitones above the open string), and the parts that swing.
 SPEAKING = ((0, 12.0, 2.0), (1, 12.0, 2.0), (1, 7.0, 3.0))
@@ -42,11 +42,11 @@ def string_of(node: int) -> int:
 @compiled_exactly
 def node_of(p: Any, pitch: float) -> int:
     """The row of NODES that a pitch (fractional MIDI note) is the touched note of, else NONE."""
-    wish = wished_string(p)
+    command = requested_string(p)
     for i in range(len(NODES)):
         string = string_of(i)
         above = pitch - p.open_note[string]
-        if abs(above - NODES[i, TOUCHED]) <= SAME_PITCH and wish in (NONE, string):
+        if abs(above - NODES[i, TOUCHED]) <= SAME_PITCH and command in (NONE, string):
             return i
     return NONE
 

@@ -30,7 +30,7 @@ def in_tables(p: Any, string: int, pitch: float) -> float:
 def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float) -> float:
     """Finger position (m) for a pitch (fractional MIDI note) on string 0 or 1.
 
-    A faster bow changes the pitch: `speed` (m/s) is the one the player wishes for. Notes
+    A faster bow changes the pitch: `speed` (m/s) is the one the player commands for. Notes
     that are bowed more slowly were measured so. `sharper` (cents) is what the ear adds to the
     measured sharpening.
     """
@@ -44,7 +44,7 @@ def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float)
 
 @compiled_exactly
 def balance_db(p: Any, string: int, pitch: float, speed: float) -> float:
-    """Gain (dB) that makes a note as loud as the average note, at a wished `speed` (m/s).
+    """Gain (dB) that makes a note as loud as the average note, at a requested `speed` (m/s).
 
     The pitch of an open string is that of its note. The average is of the notes of a yehu.
     """

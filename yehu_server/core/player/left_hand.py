@@ -79,7 +79,7 @@ def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide
 
 @compiled_exactly
 def press(p: Any, c: Any, least_press: float, landing_ms: float) -> None:
-    """Set the wished finger force, or lift the finger where the string is open."""
+    """Set the requested finger force, or lift the finger where the string is open."""
     force = 0.0
     if p.string >= 0 and p.position != OPEN:
         force = max(p.value[PRESS], least_press) if p.gesture.node == NONE else TOUCH_N

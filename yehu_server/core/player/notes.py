@@ -46,7 +46,7 @@ from yehu_server.core.player.phrasing import (
     vary_next_note,
 )
 from yehu_server.core.player.record import SILENT
-from yehu_server.core.player.right_hand import SLURRED_MS, wished_speed
+from yehu_server.core.player.right_hand import SLURRED_MS, requested_speed
 from yehu_server.core.player.rows import (
     ASSIST,
     ATTACK,
@@ -149,7 +149,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
         p.hurry = 0.0 if is_legato else hurry_of(p, c)
     p.pace = 1.0
     begin_gesture(p, c, is_slur)
-    turns = plan_stroke(p, c, wished_speed(p), is_legato)
+    turns = plan_stroke(p, c, requested_speed(p), is_legato)
     slide_ms = 0.0 if at_once and not is_touched(p) else slide_into_note_ms(p, c)
     p.note_began = c.frame
     if slide_ms > 0.0 and p.string >= 0:
@@ -164,11 +164,11 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
         if low < high:  # on the string that has all of the slide
             aim = pitch - p.gesture.bend
             low, high = aim + low, aim + high
-            string, position = choose_for_slide(p, pitch, low, high, wished_speed(p), True)
+            string, position = choose_for_slide(p, pitch, low, high, requested_speed(p), True)
         else:
             beats = BEATS[p.gesture.row]
             shakes = not (beats or is_plucked(p)) and vibrato.is_sure(p)
-            string, position = choose(p, pitch, beats, shakes, wished_speed(p))
+            string, position = choose(p, pitch, beats, shakes, requested_speed(p))
     crosses_strings = string != p.string
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
@@ -207,11 +207,11 @@ def begin_from_last(p: Any, slide_ms: float) -> tuple[int, float]:
 
     A slide from a note that both strings have to one of the inner string alone stays on that.
     """
-    wished = note_pitch(p)
-    begin_slide(p, p.finger_pitch - wished, p.gesture.bend, 0.0, 1e-3 * slide_ms)
+    requested = note_pitch(p)
+    begin_slide(p, p.finger_pitch - requested, p.gesture.bend, 0.0, 1e-3 * slide_ms)
     pitch = note_pitch(p)
-    low, high = min(pitch, wished), max(pitch, wished)
-    return choose_for_slide(p, pitch, low, high, wished_speed(p), False)
+    low, high = min(pitch, requested), max(pitch, requested)
+    return choose_for_slide(p, pitch, low, high, requested_speed(p), False)
 
 
 @compiled_exactly
@@ -271,7 +271,7 @@ def is_touched(p: Any) -> bool:
 
 @compiled_exactly
 def set_assist(p: Any, c: Any) -> None:
-    """Let the bow's force follow its speed as far as wished."""
+    """Let the bow's force follow its speed as far as requested."""
     move(p, c, BOW_ASSIST, p.value[ASSIST], USUAL_MS)
 
 
@@ -292,7 +292,7 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 
 @compiled_exactly
 def draw_on(p: Any, c: Any) -> None:
-    """Draw as parameters wish by now, but let a move of the gesture take its time."""
+    """Draw as parameters command by now, but let a move of the gesture take its time."""
     left_ms = 1e3 * (p.gesture.move_ends - (c.frame - p.note_began) / p.rate)
     draw(p, c, max(left_ms, SMOOTH_MS[BOW_SPEED]))
 
@@ -318,7 +318,7 @@ def even_out(p: Any, c: Any) -> None:
     """Set colour, and the gain that evens out the loudness of notes, as the bow is drawn."""
     if p.sounding >= 0 or p.is_direct != 0:
         pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
-        speed, effort = wished_speed(p), wished_speed(p) * p.value[PRESSURE]
+        speed, effort = requested_speed(p), requested_speed(p) * p.value[PRESSURE]
         if p.is_direct != 0:
             speed, effort = p.speed, p.effort
         velocity.even_out(p, c, pitch, speed, effort)
@@ -349,7 +349,7 @@ def follow_pitch(p: Any, c: Any, slide_ms: float) -> None:
     if is_touched(p):
         even_out(p, c)
         return
-    string, position = stay(p, pitch, slide_ms == STEP_MS, wished_speed(p))
+    string, position = stay(p, pitch, slide_ms == STEP_MS, requested_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     if string != before:
         begin_tuning(p, pitch)

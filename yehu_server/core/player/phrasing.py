@@ -1,6 +1,6 @@
 """What the player adds to plain notes: vibrato, slides, and small random differences. Compiled.
 
-Vibrato and slides only as far as `/playing/phrasing` says, and where nothing else is wished.
+Vibrato and slides only as far as `/playing/phrasing` says, and where nothing else is requested.
 docs/playing.md has the rules.
 """
 

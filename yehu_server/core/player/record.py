@@ -45,7 +45,7 @@ NOTES = len(PITCHES[0])  # measured on each string
 PLAYER = np.dtype(
     [
         ("rate", np.float64),  # Hz
-        ("value", np.float64, ROWS),  # of each parameter, as wished
+        ("value", np.float64, ROWS),  # of each parameter, as requested
         # Ownership, by parameter: see ``ownership``.
         ("taken", np.int64, ROWS),
         ("is_held", np.int64, ROWS),
@@ -76,7 +76,7 @@ PLAYER = np.dtype(
         ("side_heard", np.int64),  # of its place: 1 where the finger was too low
         ("times_heard", np.int64),  # there
         ("sharper", np.float64),  # cents: correction of the sharpening of this note
-        ("first_press", np.float64),  # N: wished as the note began
+        ("first_press", np.float64),  # N: requested as the note began
         ("first_error", np.float64),  # cents: heard first; NaN: nothing yet
         ("first_sharper", np.float64),  # the correction then
         ("learnt", np.float64, (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES)),  # cents

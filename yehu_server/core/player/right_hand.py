@@ -71,8 +71,8 @@ USUAL_PLUCK = find("/pluck/position").default
 
 
 @compiled_exactly
-def wished_speed(p: Any) -> float:
-    """Bow speed (m/s) that the player wishes for."""
+def requested_speed(p: Any) -> float:
+    """Bow speed (m/s) that the player commands for."""
     share = SOFTEST + (1.0 - SOFTEST) * p.value[DYNAMICS]
     return float(p.value[SPEED] * share * struck_speed(p) * p.speed_variation * p.pace)
 
@@ -82,19 +82,19 @@ def bowing_of(p: Any, pitch: float, column: int) -> float:
     """One value of how a pitch is bowed on the string of the fingering; see `bowing_value`."""
     string = max(p.string, 0)
     stopped = in_tables(p, string, pitch)
-    return bowing_value(p.bowing_table, string, wished_place(p), stopped, column)
+    return bowing_value(p.bowing_table, string, requested_place(p), stopped, column)
 
 
 @compiled_exactly
-def wished_place(p: Any) -> float:
-    """The bow's place that the player wishes for, as a share of the sounding length."""
+def requested_place(p: Any) -> float:
+    """The bow's place that the player commands for, as a share of the sounding length."""
     return float(p.value[POSITION] if p.gesture.node == NONE else PLACE)
 
 
 @compiled_exactly
 def speed_at(p: Any, pitch: float) -> float:
-    """Bow speed (m/s) for a pitch: as wished and moved, up to the highest at which it speaks."""
-    return float(min(wished_speed(p) * p.gesture.speed, bowing_of(p, pitch, TOP_SPEED)))
+    """Bow speed (m/s) for a pitch: as requested and moved, up to the highest at which it speaks."""
+    return float(min(requested_speed(p) * p.gesture.speed, bowing_of(p, pitch, TOP_SPEED)))
 
 
 @compiled_exactly
@@ -108,7 +108,7 @@ def is_bowed_alike(p: Any, pitch: float) -> bool:
 
 @compiled_exactly
 def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
-    """Set bow pressure and position, as wished and adapted to the sounding pitch, if any."""
+    """Set bow pressure and position, as requested and adapted to the sounding pitch, if any."""
     pressure = p.value[PRESSURE] * p.weight * p.gesture.weight * hurried(p, HURRIED_WEIGHT)
     if is_sounding:
         for column in range(BOWING_SIZE):
@@ -117,7 +117,7 @@ def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
         pressure = share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, max(p.string, 0))
         pressure *= p.pressure_factor
     move(p, c, BOW_PRESSURE, pressure, USUAL_MS)
-    move(p, c, BOW_POSITION, wished_place(p) * p.bowing[DISTANCE_FACTOR], USUAL_MS)
+    move(p, c, BOW_POSITION, requested_place(p) * p.bowing[DISTANCE_FACTOR], USUAL_MS)
 
 
 @compiled_exactly

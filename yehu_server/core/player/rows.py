@@ -32,7 +32,7 @@ BODY_BRILLIANCE = ROW["/body/brilliance"]
 BRILLIANCE_FREQUENCY = ROW["/body/brilliance_frequency"]
 OUTPUT_LEVEL, OUTPUT_BALANCE = ROW["/output/level"], ROW["/output/balance"]
 
-# What it is wished.
+# What it is requested.
 EVENNESS, BRILLIANCE = ROW["/body/evenness"], ROW["/playing/brilliance"]
 DYNAMICS, SPEED = ROW["/playing/dynamics"], ROW["/playing/speed"]
 PRESSURE, POSITION = ROW["/playing/pressure"], ROW["/playing/bow_position"]

@@ -39,9 +39,9 @@ def plan_stroke(p: Any, c: Any, speed: float, is_slur: bool) -> bool:
         Whether the bow changes its direction.
     """
     before = p.direction
-    wish = np.rint(p.value[DIRECTION])
+    command = np.rint(p.value[DIRECTION])
     if not is_slur:
-        p.direction = wish if wish != 0.0 else -p.direction
+        p.direction = command if command != 0.0 else -p.direction
     length = p.value[BOW_LENGTH]
     p.pace = 1.0
     if length == 0.0:
@@ -49,13 +49,13 @@ def plan_stroke(p: Any, c: Any, speed: float, is_slur: bool) -> bool:
     c.place = min(max(c.place, 0.0), length)
     is_known = p.value[NOTE_LENGTH] > 0.0
     needed = speed * (p.value[NOTE_LENGTH] if is_known else USUAL_S)
-    if not is_slur and (p.side == 0.0 or wish != 0.0):
+    if not is_slur and (p.side == 0.0 or command != 0.0):
         begin = START if needed < (1.0 - START - END) * length else END
         behind = length - hair_left(p, c, p.direction) - END * length
-        if wish != 0.0 or hair_left(p, c, p.direction) < needed or behind < begin * length:
+        if command != 0.0 or hair_left(p, c, p.direction) < needed or behind < begin * length:
             c.place = length * (begin if p.direction > 0.0 else 1.0 - begin)
     left, other = hair_left(p, c, p.direction), hair_left(p, c, -p.direction)
-    if left < SLOWEST * needed and left < other and wish == 0.0:
+    if left < SLOWEST * needed and left < other and command == 0.0:
         p.direction, left = -p.direction, other
     if is_known and left < needed:
         p.pace = max(SLOWEST, left / needed)

@@ -13,7 +13,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.ear import SURE, learning_bin, learnt_cents
 from yehu_server.core.player.intonation import position_of
 from yehu_server.core.player.ownership import move
-from yehu_server.core.player.right_hand import wished_speed
+from yehu_server.core.player.right_hand import requested_speed
 from yehu_server.core.player.rows import FINGER_POSITION, LISTENING, PRESS
 
 # Of an error, so much is corrected in a second: of a small one (cents), and of a large one. Some
@@ -93,5 +93,5 @@ def jumps(p: Any, wanted: float) -> int:
 @compiled_exactly
 def place_finger(p: Any, c: Any, pitch: float) -> None:
     """Move the finger that is down to where the corrected pitch is."""
-    p.position = position_of(p, p.string, pitch, wished_speed(p), p.sharper)
+    p.position = position_of(p, p.string, pitch, requested_speed(p), p.sharper)
     move(p, c, FINGER_POSITION[p.finger], p.position, 1e3 * p.ear.hop / p.rate)

@@ -1,4 +1,4 @@
-"""The vibrato of a note: as wished, as its articulation wants it, or the player's own. Compiled.
+"""The vibrato of a note: as requested, as its articulation wants it, or the player's own. Compiled.
 
 Styles of vibrato are articulations (``params.articulations``). A vibrato is narrower, and off the
 note's middle, where the body would swing its level (``vibrato_table``).
@@ -48,10 +48,10 @@ FRAMES_FROM = 3 << 30  # of the seed's numbers: those that frames have; `drift` 
 
 @compiled_exactly
 def set_vibrato(p: Any, c: Any) -> None:
-    """Set depth, middle and rate of the vibrato as wished."""
+    """Set depth, middle and rate of the vibrato as requested."""
     row = VIBRATOS[p.gesture.row]
     own = has_vibrato(p)
-    cents, upward = row[CENTS] if own else wished_cents(p), row[UPWARD_SHARE] if own else 0.0
+    cents, upward = row[CENTS] if own else requested_cents(p), row[UPWARD_SHARE] if own else 0.0
     if upward == 0.0:
         at = vibrato_row(p)
         cents = min(cents, p.vibrato_table[at, DEPTH_SHARE] * max(cents, USUAL))
@@ -67,7 +67,7 @@ def set_vibrato(p: Any, c: Any) -> None:
 @compiled_exactly
 def begin_vibrato(p: Any, c: Any) -> None:
     """Fade in the vibrato of a new note; players of a section begin at other phases of it."""
-    delay_ms = VIBRATOS[p.gesture.row, DELAY_MS] if has_vibrato(p) else wished_delay_ms(p)
+    delay_ms = VIBRATOS[p.gesture.row, DELAY_MS] if has_vibrato(p) else requested_delay_ms(p)
     delay_ms *= other_factor(p, 2, OTHER_DELAY)
     if p.player_number != 0 and p.value[VARIATION] > 0.0 and delay_ms > 0.0:
         c.vibrato = phase_of(p, c)
@@ -98,8 +98,8 @@ def is_sure(p: Any) -> bool:
 
 
 @compiled_exactly
-def wished_cents(p: Any) -> float:
-    """Depth of the vibrato: as wished, else the player's own."""
+def requested_cents(p: Any) -> float:
+    """Depth of the vibrato: as requested, else the player's own."""
     if p.value[VIBRATO] > 0.0:
         return float(p.value[VIBRATO])
     above = vibrated_pitch(p) - p.open_note[max(p.string, 0)]
@@ -108,8 +108,8 @@ def wished_cents(p: Any) -> float:
 
 
 @compiled_exactly
-def wished_delay_ms(p: Any) -> float:
-    """Time in which the vibrato of a new note comes: as wished; the player's own comes late."""
+def requested_delay_ms(p: Any) -> float:
+    """Time in which the vibrato of a new note comes: as requested; the player's own comes late."""
     if p.value[VIBRATO] > 0.0 or p.value[PHRASING] == 0.0:
         return float(p.value[PLAYING_VIBRATO_DELAY])
     return float(max(p.value[PLAYING_VIBRATO_DELAY], LATE_MS))

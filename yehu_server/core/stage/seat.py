@@ -87,11 +87,11 @@ def pan_to(ear: int, pan: float) -> float:
 def set_direct(s: Any, distance: float, pan: float, frames: int) -> None:
     """Move the direct sound to a distance (m) and direction within some frames, from now."""
     for ear in range(EARS):
-        wished = pan_to(ear, pan) * REFERENCE / distance
+        requested = pan_to(ear, pan) * REFERENCE / distance
         s.send[ear] = pan_to(ear, pan)
         if math.isnan(s.direct[ear]):
-            s.direct[ear] = wished
-        s.direct_step[ear] = (wished - s.direct[ear]) / frames
+            s.direct[ear] = requested
+        s.direct_step[ear] = (requested - s.direct[ear]) / frames
 
 
 @compiled_exactly

@@ -1,1 +1,1 @@
-"""Following a voice as it sings: what is heard of it, and the wishes that it comes to. Compiled."""
+"""Follows a voice as it sings: its pitch, its notes, and the commands they become. Compiled."""

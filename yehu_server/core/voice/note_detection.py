@@ -1,4 +1,4 @@
-"""Detects notes, slides and dynamics in the pitch and level of a voice, as wishes. Compiled.
+"""Detects notes, slides and dynamics in the pitch and level of a voice, as commands. Compiled.
 
 A note begins where two hearings agree, goes on through a short doubt, and ends with the voice. Its
 pitch slides with the voice; a leap is another note, slurred; a level that falls and rises again is
@@ -15,11 +15,11 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.tables import KEYS
 from yehu_server.core.physics.elementary import each, exp, log, log10
+from yehu_server.core.player.commands import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.notes import DYNAMICS_EXPONENT
 from yehu_server.core.player.right_hand import SOFTEST
 from yehu_server.core.player.rows import DYNAMICS, STRING
-from yehu_server.core.player.wishes import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.voice.pitch_detection import HEARING, HOP_S, prepare_hearing
 
 # -- when it is sure ------------------------------------------------------------------------------
@@ -53,7 +53,7 @@ ON_INNER, ON_OUTER = 2.5, 0.3
 INNER, EITHER = 1.0, 0.0
 VOICE = -2  # the channel of its notes
 VOICE_KEYS = (0.0, 1.0)  # which it has in turn: of two that are slurred, both are held for a moment
-MOST_WISHES = 8
+MOST_COMMANDS = 8
 
 
 def dynamics_of(level_db: Any) -> Any:
@@ -101,11 +101,11 @@ FOLLOWER = np.dtype(
         ("before_db", np.float64),  # the level of the last hearing since it fell
         ("least", np.float64),  # certainty since it fell
         # What it has come to, in this hearing.
-        ("wishes", np.int64),
-        ("kind", np.int64, MOST_WISHES),
-        ("index", np.int64, MOST_WISHES),
-        ("value", np.float64, MOST_WISHES),
-        ("other", np.float64, MOST_WISHES),
+        ("commands", np.int64),
+        ("kind", np.int64, MOST_COMMANDS),
+        ("index", np.int64, MOST_COMMANDS),
+        ("value", np.float64, MOST_COMMANDS),
+        ("other", np.float64, MOST_COMMANDS),
     ],
     align=True,
 )
@@ -138,16 +138,16 @@ def prepare_follower(f: Any, rate: float, transpose: float, correct: float) -> N
 
 @compiled_exactly
 def send(f: Any, kind: int, index: int, value: float, other: float) -> None:
-    """Add a wish to those of this hearing."""
-    n = f.wishes
+    """Add a command to those of this hearing."""
+    n = f.commands
     f.kind[n], f.index[n], f.value[n], f.other[n] = kind, index, value, other
-    f.wishes = n + 1
+    f.commands = n + 1
 
 
 @compiled_exactly
 def decide(f: Any) -> None:
     """Decide what the last hearing comes to. Real time: safe."""
-    f.wishes = 0
+    f.commands = 0
     h = f.hearing
     f.full_db = max(f.full_db - FORGOTTEN_DB, QUIETEST_FULL_DB)
     if f.is_open == 0:

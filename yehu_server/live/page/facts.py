@@ -17,9 +17,9 @@ from yehu_server.core.midi import registered_parameters, tables
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.midi.tables import MOST_BINDS, TABLES
 from yehu_server.core.player import fingering
+from yehu_server.core.player.commands import KINDS
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import KINDS
 from yehu_server.errors import ParameterError
 from yehu_server.live.page.examples import examples
 from yehu_server.params.articulations import ARTICULATIONS

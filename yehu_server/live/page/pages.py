@@ -29,7 +29,7 @@ class PageOptions:
 
     address: Address
     networks: Sequence[str] = ()  # that are answered; without any, all are
-    is_wished: bool = False  # whether the port has to be this one; else a free one may do
+    is_required: bool = False  # whether the port has to be this one; else a free one may do
     guests: Guests | None = None  # on other machines; None: they may do all, without a PIN
 
 
@@ -64,7 +64,7 @@ class Pages(Supervisor):
         try:
             self._listening = listen(NAME, host, port)
         except DeviceError:
-            if options.is_wished:
+            if options.is_required:
                 raise
             self._listening = listen(NAME, host, 0)
         self.host, self.port = self._listening.getsockname()[:2]

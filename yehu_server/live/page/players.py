@@ -1,4 +1,4 @@
-"""Posts what pages wish to the ring from which the audio callback takes it.
+"""Posts what pages command to the ring from which the audio callback takes it.
 
 A page reads MIDI and mappings itself, and sends what it would post. Its keys lie on channels of
 its own, so that they are not mistaken for those of another page, or of MIDI.
@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.midi.events import LEAVE, RELEASE_ALL, SET
+from yehu_server.core.player.commands import BEGIN, DRAW, END, EXPRESS, HOLD, LIFT, STOP, WRITE
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.player.wishes import BEGIN, DRAW, END, EXPRESS, HOLD, LIFT, STOP, WRITE
 from yehu_server.live.page.guests import LISTEN, OWN
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.params.table import TABLE
@@ -21,7 +21,7 @@ from yehu_server.playing.delay import Arrivals
 
 FIRST, CHANNELS = 1 << 16, 1 << 12  # channels of the first page, and of each
 LOWEST = -(CHANNELS // 2)  # of them, as a page numbers its own
-AHEAD_S = 3.0  # by which a wish may lie ahead
+AHEAD_S = 3.0  # by which a command may lie ahead
 FIRST_PART = 0
 # What is the instrument's, the room's or the output's, and no player's.
 OWNED = sorted(
@@ -44,21 +44,21 @@ class PagePlayers:
         self._view = view
         self._rigs = rigs
         self._arrivals = Arrivals(view.frame_of, view.rate)
-        # The parts that each page played: frame of its latest wish, and whether it draws the bow.
+        # Parts that each page played: frame of its latest command, and whether it draws the bow.
         self._played: dict[int, dict[int, tuple[int, bool]]] = {}
 
-    def post(self, page: int, part: int, wishes: Array, arrived_ns: int) -> None:
-        """Post wishes of a page, for the frames that they name or for now.
+    def post(self, page: int, part: int, commands: Array, arrived_ns: int) -> None:
+        """Post commands of a page, for the frames that they name or for now.
 
         `part`: counted from 0; what all parts share goes to the first.
-        `wishes` (ndarray [shape=(n, 5)]): frame, kind, index, value and other of each, as
-        ``sockets.read_wishes`` has them.
+        `commands` (ndarray [shape=(n, 5)]): frame, kind, index, value and other of each, as
+        ``sockets.read_commands`` has them.
         `arrived_ns`: when they came (``time.monotonic_ns()``).
         """
         now = self._arrivals.frame_of(arrived_ns)
         most = now + round(AHEAD_S * self._view.rate)
         parts = self._played.setdefault(page, {})
-        for at, kind, index, value, other in wishes.tolist():
+        for at, kind, index, value, other in commands.tolist():
             frame = int(min(max(at, now), most))
             target_part = FIRST_PART if kind in (WRITE, HOLD) and index in SHARED else part
             latest, draws = parts.get(target_part, (frame, False))
@@ -80,7 +80,7 @@ class PagePlayers:
         self._view.post(rig, frame, kind, index, value, other)
 
     def leave(self, page: int, left_ns: int) -> None:
-        """End all that a page holds which is gone, after all that it wished ahead."""
+        """End all that a page holds which is gone, after all that it requested ahead."""
         now = self._arrivals.frame_of(left_ns)
         for part, (latest, draws) in self._played.pop(page, {}).items():
             rig, frame = self._rigs[part], max(now, latest)
@@ -89,17 +89,17 @@ class PagePlayers:
                 self._view.post(rig, frame, LIFT)
 
 
-def permitted(role: str, wishes: Any) -> tuple[Any, bool]:
-    """The wishes that a role may have fulfilled, and whether its own notes are to end.
+def permitted(role: str, commands: Any) -> tuple[Any, bool]:
+    """The commands that a role may have applied, and whether its own notes are to end.
 
     A player's silence is that of the player; a player changes how notes are played, but neither
     what the owner holds nor the instrument, the room and the output.
     """
     if role == OWN:
-        return wishes, False
+        return commands, False
     if role == LISTEN:
-        return wishes[:0], False
-    kinds, indices = wishes[:, 1], wishes[:, 2]
+        return commands[:0], False
+    kinds, indices = commands[:, 1], commands[:, 2]
     is_stop = kinds == STOP
     is_owned = np.isin(kinds, (WRITE, EXPRESS)) & np.isin(indices, OWNED)
-    return wishes[~(is_stop | is_owned | (kinds == HOLD))], bool(is_stop.any())
+    return commands[~(is_stop | is_owned | (kinds == HOLD))], bool(is_stop.any())

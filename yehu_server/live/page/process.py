@@ -1,6 +1,6 @@
 """The process that serves pages: ``python -m yehu_server.live.page.process``.
 
-It reads the instruments in shared memory, and posts wishes there itself. So neither pictures nor
+It reads the instruments in shared memory, and posts commands there itself. So neither pictures nor
 sound for twenty pages delay a note.
 """
 

@@ -1,4 +1,4 @@
-"""The instruments of the server, from the pages' process: it reads them, and posts wishes."""
+"""The instruments of the server, from the pages' process: it reads them, and posts commands."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""The WebSockets of pages: they get looks, sound and each other's wishes, and send wishes.
+"""The WebSockets of pages: they get looks, sound and each other's commands, and send commands.
 
 Messages to a client that does not read are dropped; other clients are not delayed.
 
-A message of numbers is a sequence of float64, little-endian. From a page it is wishes, of WISH
-numbers each. To a page its first number says what follows: LOOK or WISHES, or it comes from the
+A message of numbers is a sequence of float64, little-endian. From a page it is commands, of COMMAND
+numbers each. To a page its first number says what follows: LOOK or COMMANDS, or it comes from the
 socket of sound: then it is one frame number, and float32 samples from there on, left and right in
 turn. A page plays one part, which its address names: `/socket?part=2`; without, the first.
 """
@@ -21,7 +21,7 @@ import numpy as np
 from aiohttp import WSMsgType, web
 
 from yehu_server.core.engine.telemetry import TELEMETRY_S
-from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
+from yehu_server.core.player.commands import EXPRESS, HOLD, KINDS, RAMP, WRITE
 from yehu_server.live import limits
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitted
 from yehu_server.live.page.shared_view import SharedView
@@ -54,12 +54,12 @@ def write(transport: asyncio.WriteTransport | None, frame: bytes, most_unsent: i
     return True
 
 
-LOOK, WISHES = 0.0, 1.0
-WISH = 5  # numbers: frame or NOW, kind, index, value, other
+LOOK, COMMANDS = 0.0, 1.0
+COMMAND = 5  # numbers: frame or NOW, kind, index, value, other
 NOW = -1.0
 SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is the row of a parameter
 SOUND_S, STATUS_S = 0.001, 1.0
-MESSAGE_BYTES = 8 * WISH * limits.PAGE_EVENTS
+MESSAGE_BYTES = 8 * COMMAND * limits.PAGE_EVENTS
 HEARTBEAT_S, CLOSING_S = 10.0, 0.3
 # Close codes: against the rules; the PIN is missing or wrong; there is no such part.
 WRONG, NO_PIN, NO_PART = 1008, 4401, 4404
@@ -124,15 +124,15 @@ class PageSockets:
             self._send_status(page)
             async for message in socket:
                 if message.type is WSMsgType.BINARY:
-                    wishes = read_wishes(message.data)
+                    commands = read_commands(message.data)
                 elif message.type is WSMsgType.TEXT and self._obey(page, message.data):
                     continue
                 else:
-                    wishes = None
-                if wishes is None:
+                    commands = None
+                if commands is None:
                     await socket.close(code=WRONG)
                     break
-                await self._pass_on(page, wishes)
+                await self._pass_on(page, commands)
         finally:
             del self._pages[socket]
             if not self._pages:
@@ -175,20 +175,20 @@ class PageSockets:
             return False
         return True
 
-    async def _pass_on(self, page: Page, wishes: Any) -> None:
-        """Post wishes, and tell other pages that sound as this part; a hasty page waits."""
-        count = len(wishes)
-        wishes, ends = permitted(page.role, wishes)
-        self._players.post(page.number, page.part, wishes, time.monotonic_ns())
+    async def _pass_on(self, page: Page, commands: Any) -> None:
+        """Post commands, and tell other pages that sound as this part; a hasty page waits."""
+        count = len(commands)
+        commands, ends = permitted(page.role, commands)
+        self._players.post(page.number, page.part, commands, time.monotonic_ns())
         if ends:
             self._players.leave(page.number, time.monotonic_ns())
         own = self._own.get(page.part, {})
-        for _, kind, row, value, _ in wishes:
+        for _, kind, row, value, _ in commands:
             if kind in (WRITE, HOLD) and row in own:
                 own[int(row)] = value  # at once: the control process tells it later
-        frame = frame_of(struct.pack("<2d", WISHES, page.number) + wishes.tobytes())
+        frame = frame_of(struct.pack("<2d", COMMANDS, page.number) + commands.tobytes())
         for other in self._pages.values():
-            if len(wishes) and other is not page and other.sounds and other.part == page.part:
+            if len(commands) and other is not page and other.sounds and other.part == page.part:
                 write(other.transport, frame, limits.PAGE_UNSENT)
         page.bucket.spend(count)
         if (left := page.bucket.left(time.monotonic())) < 0.0:
@@ -254,24 +254,24 @@ class PageSockets:
         write(page.transport, frame_of(text.encode(), TEXT), limits.PAGE_UNSENT)
 
 
-def read_wishes(data: bytes) -> Any:
-    """The wishes of a message, in rows of WISH numbers; None where one is wrong."""
-    if not data or len(data) % (8 * WISH) or len(data) > MESSAGE_BYTES:
+def read_commands(data: bytes) -> Any:
+    """The commands of a message, in rows of COMMAND numbers; None where one is wrong."""
+    if not data or len(data) % (8 * COMMAND) or len(data) > MESSAGE_BYTES:
         return None
-    wishes = np.frombuffer(data, "<f8").reshape(-1, WISH)
-    frames, kinds, indices = wishes[:, 0], wishes[:, 1], wishes[:, 2]
+    commands = np.frombuffer(data, "<f8").reshape(-1, COMMAND)
+    frames, kinds, indices = commands[:, 0], commands[:, 1], commands[:, 2]
     is_right = (
-        np.isfinite(wishes).all()
+        np.isfinite(commands).all()
         and (frames >= NOW).all()
         and ((kinds > RAMP) & (kinds < len(KINDS))).all()
-        and (wishes[:, :3] == np.rint(wishes[:, :3])).all()
+        and (commands[:, :3] == np.rint(commands[:, :3])).all()
         and (np.where(np.isin(kinds, SETTINGS), indices, 0) < len(TABLE)).all()
         and (np.where(np.isin(kinds, SETTINGS), indices, 0) >= 0).all()
         and (indices >= LOWEST).all()
         and (indices < LOWEST + CHANNELS).all()
         and (frames < 1 << 53).all()
     )
-    return wishes if is_right else None
+    return commands if is_right else None
 
 
 async def every(period_s: float, is_wanted: asyncio.Event) -> AsyncIterator[None]:

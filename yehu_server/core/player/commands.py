@@ -66,7 +66,7 @@ KINDS = (
 RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, DRAW, LIFT, STOP, RELEASE = range(len(KINDS))
 LONGEST = 1e9  # frames of a ramp, ms of a glide
 
-WISH = np.dtype(
+COMMAND = np.dtype(
     [
         ("frame", np.int64),
         ("kind", np.int64),
@@ -78,10 +78,10 @@ WISH = np.dtype(
 
 
 @native
-def fulfil(
+def apply(
     p: Player, c: Controls, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
-    """Fulfil a wish, given by its fields, within the ranges of what it moves.
+    """Apply a command, given by its fields, within the ranges of what it moves.
 
     One of no kind, for no parameter, or with a number that is not finite changes nothing.
 

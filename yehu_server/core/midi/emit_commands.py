@@ -1,7 +1,7 @@
-"""Emits wishes for all players of a part: parameters, notes, a bow drawn directly. Compiled.
+"""Emits commands for all players of a part: parameters, notes, a bow drawn directly. Compiled.
 
-It knows what is held and kept, and passes each wish on to the one player of the part, or to those
-of a section.
+It knows what is held and kept, and passes each command on to the one player of the part, or to
+those of a section.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from yehu_server.core.midi.section import (
     set_playing_count,
 )
 from yehu_server.core.midi.section_players import DISTANCE_ROW, GAIN_ROW, PAN_ROW, begin_sequence
+from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RELEASE, STOP, WRITE
 from yehu_server.core.player.rows import HIGHEST, IS_PLAYER_CONTROLLED, LOWEST, SEED
-from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, HOLD, RELEASE, STOP, WRITE
 
 # -- parameters -----------------------------------------------------------------------------------
 
@@ -35,7 +35,7 @@ def in_range(row: int, value: float) -> float:
 
 @compiled_exactly
 def pass_on(m: Any, frame: int, kind: int, index: int, value: float, other: float) -> None:
-    """Wish something of all who play the part."""
+    """Command something of all who play the part."""
     if m.players == 1:
         emit(m, 0, frame, kind, index, value, other)
     else:
@@ -145,7 +145,7 @@ def end_listed(m: Midi, frame: int) -> None:
 
 @compiled_exactly
 def end_key(m: Any, frame: int, channel: int, key: float, more: bool) -> None:
-    """End a note of a section that somebody wished for directly; `more` end at the same time."""
+    """End a note of a section that somebody asked for directly; `more` end at the same time."""
     n = find_key(m, channel, key)
     if n != NONE:
         list_key(m, n)
@@ -155,8 +155,8 @@ def end_key(m: Any, frame: int, channel: int, key: float, more: bool) -> None:
 
 
 @compiled_exactly
-def record_wish(m: Any, kind: int, index: int, value: float, other: float) -> None:
-    """Record what a wish does that goes directly to the only player of the part."""
+def record_command(m: Any, kind: int, index: int, value: float, other: float) -> None:
+    """Record what a command does that goes directly to the only player of the part."""
     if kind in (WRITE, HOLD, EXPRESS):
         if kind == HOLD:
             m.is_held[index] = 1

@@ -1,4 +1,4 @@
-"""Wishes are kept within range by the player itself: programs without Python can post anything."""
+"""The player itself keeps commands within range: programs without Python can post anything."""
 
 import math
 
@@ -7,15 +7,15 @@ import pytest
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.commands import BEGIN, DRAW, EXPRESS, HOLD, KINDS, SLIDE, WRITE
 from yehu_server.core.player.note_range import HIGHEST_NOTE, LOWEST_NOTE
-from yehu_server.core.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, KINDS, SLIDE, WRITE
 from yehu_server.params.table import SLOT, TABLE, find
 
 
-def after(*wishes: tuple[int, int, float, float]):
-    """The player's record, and the controls', after some wishes."""
+def after(*commands: tuple[int, int, float, float]):
+    """The player's record, and the controls', after some commands."""
     instrument = Instrument(InstrumentSpec(44100.0))
-    for kind, index, value, other in wishes:
+    for kind, index, value, other in commands:
         assert instrument.post(kind, index=index, value=value, other=other)
     instrument.process(np.zeros(64, np.float32))
     return instrument._rig["player"][0].copy(), instrument._rig["controls"][0].copy()

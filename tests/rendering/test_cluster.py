@@ -164,8 +164,9 @@ def copy(tmp_path) -> Path:
     package = Path(yehu_server.__file__).parent
     other = tmp_path / "other" / "yehu_server"
     shutil.copytree(package / "util", other / "util")
-    (other / "rendering").mkdir()
-    for name in ("__init__", "errors", "rendering/__init__", "rendering/workers"):
+    modules = ("compile/__init__", "compile/levels", "rendering/__init__", "rendering/workers")
+    for name in ("__init__", "errors", *modules):
+        (other / name).parent.mkdir(exist_ok=True)
         shutil.copy(package / f"{name}.py", other / f"{name}.py")
     worker = (package / "rendering" / "cluster_worker.py").read_text("utf-8")
     (other / "rendering" / "cluster_worker.py").write_text(worker + "CHANGED = True\n", "utf-8")

@@ -163,6 +163,7 @@ KINDS: dict[str, Attack] = {
     ),
     # Small datagrams: what a busy program may send, and more than Python handles.
     "two_thousand": partial(flood, packet=FORCE, a_second=2000),
+    "five_thousand": partial(flood, packet=FORCE, a_second=5000),
     "twenty_thousand": partial(flood, packet=FORCE, a_second=20_000),
     "of_two_hundred_ports": partial(flood, packet=FORCE, ports=200, a_second=20_000),
     "as_fast_as_it_goes": partial(flood, packet=FORCE),

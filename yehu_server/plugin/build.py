@@ -24,7 +24,7 @@ COMMON = ("engine.cpp", "instrument.cpp", "resampler.cpp", "text.cpp")
 CLAP = ("clap.cpp", "clap_notes.cpp")
 VST3 = ("vst3.cpp", "vst3_processor.cpp", "vst3_controller.cpp")
 # Of the window, where a system has one (`System.window`).
-FACE = ("canvas.cpp", "face.cpp")
+EDITOR = ("canvas.cpp", "editor.cpp")
 HEADER_FILE = "carried.h"
 # Where headers of the formats may lie, a file by which they are known, and their Debian packages.
 SYSTEM, DPF = Path("/usr/include"), Path("/usr/share/dpf/distrho/src")
@@ -48,11 +48,11 @@ class Format:
     package: str
     # Puts linked libraries, by system, into a folder; returns what it wrote.
     put: Callable[[Path, Mapping[System, Path]], Path]
-    face: tuple[str, ...] = ()  # the source files of its window
+    editor: tuple[str, ...] = ()  # the source files of its window
 
 
 FORMATS = (
-    Format("CLAP", CLAP, DPF, Path("clap/entry.h"), "dpf-source", put_clap, ("clap_face.cpp",)),
+    Format("CLAP", CLAP, DPF, Path("clap/entry.h"), "dpf-source", put_clap, ("clap_editor.cpp",)),
     Format("LV2", ("lv2.cpp",), SYSTEM, Path("lv2/core/lv2.h"), "lv2-dev", put_lv2),
     Format("VST3", VST3, DPF, Path("travesty/base.h"), "dpf-source", put_vst3, ("vst3_view.cpp",)),
 )
@@ -134,7 +134,7 @@ def compile_file(source: Path, into: Path, system: System, headers: Path) -> Non
         [
             *compiler_of(system),
             *FLAGS,
-            *(("-DYEHU_FACE",) if system.window else ()),
+            *(("-DYEHU_EDITOR",) if system.window else ()),
             f"-I{SOURCE}",
             f"-I{headers}",
             "-c",
@@ -150,8 +150,8 @@ def link(made: Format, system: System, work: Path) -> Path:
     place = work / f"{system.triple}-{made.name}"
     place.mkdir(exist_ok=True)
     objects = []
-    face = (*FACE, system.window, *made.face) if system.window else ()
-    for name in (*COMMON, *made.files, *face):
+    editor = (*EDITOR, system.window, *made.editor) if system.window else ()
+    for name in (*COMMON, *made.files, *editor):
         objects.append(work / f"{system.triple}-{name}.o")
         if not objects[-1].exists():  # of another format
             compile_file(SOURCE / name, objects[-1], system, work)

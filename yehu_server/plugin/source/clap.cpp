@@ -184,7 +184,7 @@ void CLAP_ABI reset(const clap_plugin_t *plugin) { of(plugin).instrument.reset()
 
 void CLAP_ABI destroy(const clap_plugin_t *plugin) {
     Plugin *made = &of(plugin);
-    close_face(*made);
+    close_editor(*made);
     made->~Plugin();
     free(made);
 }
@@ -217,7 +217,7 @@ const void *CLAP_ABI get_extension(const clap_plugin_t *, const char *id) {
         {CLAP_EXT_LATENCY, &latency},         {"clap.tail", &tail},
     };
     if (const void *extension = note_extension(id)) return extension;
-    if (const void *extension = face_extension(id)) return extension;
+    if (const void *extension = editor_extension(id)) return extension;
     for (const auto &each : known)
         if (!strcmp(id, each.id)) return each.extension;
     return nullptr;

@@ -11,14 +11,14 @@
 
 namespace yehu {
 
-class Face;
+class Editor;
 
 struct Plugin {
     clap_plugin_t clap;
     const clap_host_t *host;
     Instrument instrument;
     double rate;
-    Face *face; /* null while there is none */
+    Editor *editor; /* null while there is none */
     clap_id timer;
     bool has_timer;
     std::atomic<double> named; /* the mapping whose keys the host knows the names of */
@@ -33,13 +33,13 @@ const void *note_extension(const char *id);
 void watch_names(Plugin &plugin);
 void report_names(const Plugin &plugin);
 
-#ifdef YEHU_FACE
+#ifdef YEHU_EDITOR
 /* The extension of a window, by its name, or null. */
-const void *face_extension(const char *id);
-void close_face(Plugin &plugin);
+const void *editor_extension(const char *id);
+void close_editor(Plugin &plugin);
 #else
-inline const void *face_extension(const char *) { return nullptr; }
-inline void close_face(Plugin &) {}
+inline const void *editor_extension(const char *) { return nullptr; }
+inline void close_editor(Plugin &) {}
 #endif
 
 } /* namespace yehu */

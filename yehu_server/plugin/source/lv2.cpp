@@ -13,11 +13,11 @@
 #include <lv2/urid/urid.h>
 
 #include "instrument.hpp"
-#ifdef YEHU_FACE
+#ifdef YEHU_EDITOR
 #include <lv2/instance-access/instance-access.h>
 #include <lv2/ui/ui.h>
 
-#include "face.hpp"
+#include "editor.hpp"
 #endif
 
 namespace {
@@ -108,7 +108,7 @@ void run(LV2_Handle handle, uint32_t frames) {
 
 const LV2_Descriptor descriptor = {YEHU_LV2_URI, instantiate, connect, activate, run, nullptr, cleanup, nullptr};
 
-#ifdef YEHU_FACE
+#ifdef YEHU_EDITOR
 /* -- its window, in the host's process: it sees the instrument, and writes ports ---------------- */
 
 struct Ui {
@@ -116,7 +116,7 @@ struct Ui {
     LV2UI_Write_Function write;
     LV2UI_Controller controller;
     const LV2UI_Resize *resize;
-    Face face;
+    Editor editor;
 };
 
 void edit(void *owner, int parameter, double value) {
@@ -146,9 +146,9 @@ LV2UI_Handle open_ui(const LV2UI_Descriptor *, const char *, const char *, LV2UI
     void *memory = parent && plugin ? malloc(sizeof(Ui)) : nullptr;
     if (!memory) return nullptr;
     Ui *made = new (memory) Ui{&plugin->instrument, write, controller, resizes, {plugin->instrument, {memory, edit, resize}}};
-    if (!made->face.open((uintptr_t)parent)) return made->~Ui(), free(memory), nullptr;
-    if (resizes) resizes->ui_resize(resizes->handle, made->face.width(), made->face.height());
-    *widget = (LV2UI_Widget)made->face.handle();
+    if (!made->editor.open((uintptr_t)parent)) return made->~Ui(), free(memory), nullptr;
+    if (resizes) resizes->ui_resize(resizes->handle, made->editor.width(), made->editor.height());
+    *widget = (LV2UI_Widget)made->editor.handle();
     return made;
 }
 
@@ -157,10 +157,10 @@ void close_ui(LV2UI_Handle handle) {
     free(handle);
 }
 
-int idle(LV2UI_Handle handle) { return ((Ui *)handle)->face.tick(), 0; }
+int idle(LV2UI_Handle handle) { return ((Ui *)handle)->editor.tick(), 0; }
 
 int set_size(LV2UI_Feature_Handle handle, int width, int height) {
-    return ((Ui *)handle)->face.set_size(width, height), 0;
+    return ((Ui *)handle)->editor.set_size(width, height), 0;
 }
 
 const void *extension(const char *id) {
@@ -176,7 +176,7 @@ const LV2UI_Descriptor ui_descriptor = {YEHU_LV2_URI "#window", open_ui, close_u
 
 } /* namespace */
 
-#ifdef YEHU_FACE
+#ifdef YEHU_EDITOR
 extern "C" LV2_SYMBOL_EXPORT const LV2UI_Descriptor *lv2ui_descriptor(uint32_t index) {
     return index == 0 ? &ui_descriptor : nullptr;
 }

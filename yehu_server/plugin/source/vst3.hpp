@@ -55,7 +55,7 @@ template <int place> constexpr v3_funknown unknown() {
 /* Controllers of MIDI are parameters, too: by channel, the 128 control changes, pressure, bend. */
 enum { PRESSURE = 128, BEND = 129, OF_CHANNEL = 130, CHANNELS = 16, OF_MIDI = OF_CHANNEL * CHANNELS };
 
-#ifdef YEHU_FACE
+#ifdef YEHU_EDITOR
 v3_plugin_view **make_view(Vst3 &plugin);
 #else
 inline v3_plugin_view **make_view(Vst3 &) { return nullptr; }

@@ -7,7 +7,7 @@
 
 #include <travesty/view.h>
 
-#include "face.hpp"
+#include "editor.hpp"
 
 namespace yehu {
 
@@ -21,7 +21,7 @@ struct View {
     Vst3 *plugin;
     v3_plugin_frame **frame;
     v3_run_loop **loop;
-    Face face;
+    Editor editor;
 };
 
 template <int place> View &viewed(void *self) { return *(View *)((const void **)self - place); }
@@ -75,16 +75,16 @@ v3_result V3_API attached(void *self, void *parent, const char *kind) {
     if (is_supported(self, kind) != V3_TRUE) return V3_INVALID_ARG;
     if (!Window::has_timer() && view.frame)
         v3_cpp_obj_query_interface(view.frame, v3_run_loop_iid, &view.loop);
-    if ((!Window::has_timer() && !view.loop) || !view.face.open((uintptr_t)parent)) return V3_FALSE;
+    if ((!Window::has_timer() && !view.loop) || !view.editor.open((uintptr_t)parent)) return V3_FALSE;
     if (view.loop)
-        v3_cpp_obj(view.loop)->register_timer(view.loop, (v3_timer_handler **)&view.tables[TIMER], Face::INTERVAL_MS);
+        v3_cpp_obj(view.loop)->register_timer(view.loop, (v3_timer_handler **)&view.tables[TIMER], Editor::INTERVAL_MS);
     return V3_OK;
 }
 
 v3_result V3_API removed(void *self) {
     View &view = viewed<VIEW>(self);
     stop(view);
-    view.face.close();
+    view.editor.close();
     return V3_OK;
 }
 
@@ -93,13 +93,13 @@ v3_result V3_API on_key(void *, int16_t, int16_t, int16_t) { return V3_FALSE; } 
 v3_result V3_API on_focus(void *, v3_bool) { return V3_OK; }
 
 v3_result V3_API get_size(void *self, v3_view_rect *size) {
-    const Face &face = viewed<VIEW>(self).face;
-    *size = {0, 0, face.width(), face.height()};
+    const Editor &editor = viewed<VIEW>(self).editor;
+    *size = {0, 0, editor.width(), editor.height()};
     return V3_OK;
 }
 
 v3_result V3_API on_size(void *self, v3_view_rect *size) {
-    viewed<VIEW>(self).face.set_size(size->right - size->left, size->bottom - size->top);
+    viewed<VIEW>(self).editor.set_size(size->right - size->left, size->bottom - size->top);
     return V3_OK;
 }
 
@@ -112,17 +112,17 @@ v3_result V3_API can_resize(void *) { return V3_TRUE; }
 
 v3_result V3_API constrain(void *, v3_view_rect *size) {
     int width = size->right - size->left, height = size->bottom - size->top;
-    Face::fit(&width, &height);
+    Editor::fit(&width, &height);
     size->right = size->left + width, size->bottom = size->top + height;
     return V3_TRUE;
 }
 
 v3_result V3_API set_scale(void *self, float scale) {
-    viewed<SCALING>(self).face.set_size((int)(scale * Face::WIDTH), (int)(scale * Face::HEIGHT));
+    viewed<SCALING>(self).editor.set_size((int)(scale * Editor::WIDTH), (int)(scale * Editor::HEIGHT));
     return V3_OK;
 }
 
-void V3_API on_timer(void *self) { viewed<TIMER>(self).face.tick(); }
+void V3_API on_timer(void *self) { viewed<TIMER>(self).editor.tick(); }
 
 /* The host sets the processor, too, which reports what else moves. */
 void edit(void *owner, int parameter, double value) {

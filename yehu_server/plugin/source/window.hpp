@@ -1,5 +1,5 @@
 /* A window in that of a host, as each system has it (window_x11.cpp, window_windows.cpp): shows
- * pixels, and reports to a face what the user does. All of it is for the host's main thread.
+ * pixels, and reports to an editor what the user does. All of it is for the host's main thread.
  */
 #ifndef YEHU_WINDOW_HPP
 #define YEHU_WINDOW_HPP
@@ -8,13 +8,13 @@
 
 namespace yehu {
 
-class Face;
+class Editor;
 enum class Key { LEFT, RIGHT, UP, DOWN, NEXT, FIRST, LAST, LARGER, SMALLER };
 
 class Window {
 public:
     ~Window() { close(); }
-    bool open(Face &face, uintptr_t parent, int width, int height);
+    bool open(Editor &editor, uintptr_t parent, int width, int height);
     void close();
     bool is_open() const { return native != nullptr; }
     uintptr_t handle() const; /* as hosts know it */
@@ -23,7 +23,7 @@ public:
     void put(const uint32_t *pixels, int width, int height);
     /* Report what has happened, where the system does not by itself. */
     void poll();
-    /* Whether the system calls `Face::tick`; else a timer of the host has to. */
+    /* Whether the system calls `Editor::tick`; else a timer of the host has to. */
     static bool has_timer();
 
 private:

@@ -5,12 +5,12 @@
 #include <windows.h>
 #include <windowsx.h>
 
-#include "face.hpp"
+#include "editor.hpp"
 
 namespace yehu {
 
 namespace {
-constexpr char CLASS[] = "yehu-server.yehu.face";
+constexpr char CLASS[] = "yehu-server.yehu.editor";
 constexpr UINT_PTR TIMER = 1;
 
 bool key_of(WPARAM code, Key *key) {
@@ -26,7 +26,7 @@ bool key_of(WPARAM code, Key *key) {
 } /* namespace */
 
 struct Window::Native {
-    Face *face;
+    Editor *editor;
     HWND window;
     const uint32_t *pixels;
     int width, height;
@@ -37,7 +37,7 @@ struct Window::Native {
 
 bool Window::has_timer() { return true; }
 
-bool Window::open(Face &face, uintptr_t parent, int width, int height) {
+bool Window::open(Editor &editor, uintptr_t parent, int width, int height) {
     if (native) return false;
     HMODULE self = nullptr; /* this library: others of its kind may be loaded */
     GetModuleHandleExA(GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT,
@@ -48,10 +48,10 @@ bool Window::open(Face &face, uintptr_t parent, int width, int height) {
     const bool is_first = RegisterClassExA(&kind) != 0; /* of a library; its code stays while it is loaded */
     Native *made = (Native *)calloc(1, sizeof *made);
     if (!made || (!is_first && GetLastError() != ERROR_CLASS_ALREADY_EXISTS)) return free(made), false;
-    const HWND window = CreateWindowExA(0, CLASS, Face::NAME, WS_CHILD | WS_VISIBLE, 0, 0, width, height, (HWND)parent,
+    const HWND window = CreateWindowExA(0, CLASS, Editor::NAME, WS_CHILD | WS_VISIBLE, 0, 0, width, height, (HWND)parent,
                                         nullptr, self, nullptr);
     if (!window) return free(made), false;
-    *made = {&face, window, nullptr, 0, 0};
+    *made = {&editor, window, nullptr, 0, 0};
     native = made;
     SetWindowLongPtrA(window, GWLP_USERDATA, (LONG_PTR)made);
     show(true);
@@ -76,7 +76,7 @@ void Window::resize(int width, int height) {
 void Window::show(bool is_shown) {
     if (!native) return;
     ShowWindow(native->window, is_shown ? SW_SHOWNA : SW_HIDE);
-    if (is_shown) SetTimer(native->window, TIMER, Face::INTERVAL_MS, nullptr);
+    if (is_shown) SetTimer(native->window, TIMER, Editor::INTERVAL_MS, nullptr);
     else KillTimer(native->window, TIMER);
 }
 
@@ -103,21 +103,21 @@ LRESULT CALLBACK Window::Native::receive(HWND window, UINT message, WPARAM one, 
     Key key;
     if (!native) return DefWindowProcA(window, message, one, two);
     switch (message) {
-    case WM_TIMER: native->face->tick(); return 0;
+    case WM_TIMER: native->editor->tick(); return 0;
     case WM_PAINT: native->paint(); return 0;
     case WM_ERASEBKGND: return 1;
     case WM_GETDLGCODE: return DLGC_WANTARROWS | DLGC_WANTTAB | DLGC_WANTCHARS;
     case WM_LBUTTONDOWN:
         SetFocus(window);
-        native->face->press(place.x, place.y);
+        native->editor->press(place.x, place.y);
         return 0;
     case WM_MOUSEWHEEL: /* its place is of the screen */
         ScreenToClient(window, &place);
-        native->face->turn(place.x, place.y, GET_WHEEL_DELTA_WPARAM(one) > 0 ? -1 : 1);
+        native->editor->turn(place.x, place.y, GET_WHEEL_DELTA_WPARAM(one) > 0 ? -1 : 1);
         return 0;
     case WM_KEYDOWN:
         if (!key_of(one, &key)) break;
-        native->face->key(key);
+        native->editor->key(key);
         return 0;
     }
     return DefWindowProcA(window, message, one, two);

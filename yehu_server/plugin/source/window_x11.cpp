@@ -8,7 +8,7 @@
 #include <string.h>
 #include <xcb/xcb.h>
 
-#include "face.hpp"
+#include "editor.hpp"
 
 namespace yehu {
 
@@ -60,7 +60,7 @@ bool key_of(uint32_t symbol, Key *key) {
 
 struct Window::Native {
     const Xcb *x;
-    Face *face;
+    Editor *editor;
     xcb_connection_t *connection;
     xcb_window_t window;
     xcb_gcontext_t pen;
@@ -81,7 +81,7 @@ void Window::Native::make_picture(int width, int height) {
 
 bool Window::has_timer() { return false; }
 
-bool Window::open(Face &face, uintptr_t parent, int width, int height) {
+bool Window::open(Editor &editor, uintptr_t parent, int width, int height) {
     const Xcb *x = library();
     if (native || !x) return false;
     xcb_connection_t *c = x->connect(nullptr, nullptr);
@@ -89,7 +89,7 @@ bool Window::open(Face &face, uintptr_t parent, int width, int height) {
     if (!made) return x->disconnect(c), false;
     const xcb_setup_t *setup = x->get_setup(c);
     const xcb_screen_t *screen = x->setup_roots_iterator(setup).data;
-    *made = {x, &face, c, x->generate_id(c), x->generate_id(c), 0, screen->root_depth, nullptr,
+    *made = {x, &editor, c, x->generate_id(c), x->generate_id(c), 0, screen->root_depth, nullptr,
              setup->min_keycode};
     const uint32_t wanted = XCB_EVENT_MASK_BUTTON_PRESS | XCB_EVENT_MASK_KEY_PRESS;
     const uint32_t values[] = {0, wanted, screen->default_colormap};
@@ -156,17 +156,17 @@ void Window::poll() {
         const auto *press = (const xcb_button_press_event_t *)event;
         if (kind == XCB_BUTTON_PRESS && press->detail == LEFT_BUTTON) {
             native->x->set_input_focus(native->connection, XCB_INPUT_FOCUS_PARENT, native->window, press->time);
-            native->face->press(press->event_x, press->event_y);
+            native->editor->press(press->event_x, press->event_y);
         }
         if (kind == XCB_BUTTON_PRESS && (press->detail == WHEEL_UP || press->detail == WHEEL_DOWN))
-            native->face->turn(press->event_x, press->event_y, press->detail == WHEEL_UP ? -1 : 1);
+            native->editor->turn(press->event_x, press->event_y, press->detail == WHEEL_UP ? -1 : 1);
         if (kind == XCB_KEY_PRESS && native->keys) {
             const int each = native->keys->keysyms_per_keycode, at = each * (press->detail - native->first);
             const xcb_keysym_t *symbols = native->x->get_keyboard_mapping_keysyms(native->keys);
             Key key;
             if (at + 1 < native->x->get_keyboard_mapping_keysyms_length(native->keys) &&
                 (key_of(symbols[at], &key) || (each > 1 && key_of(symbols[at + 1], &key))))
-                native->face->key(key);
+                native->editor->key(key);
         }
         free(event);
     }

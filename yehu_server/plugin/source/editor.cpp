@@ -1,4 +1,4 @@
-#include "face.hpp"
+#include "editor.hpp"
 
 #include <math.h>
 #include <stdio.h>
@@ -42,14 +42,14 @@ float share_of(double value, double lo, double hi) { return (float)fmin(fmax((va
 float force_share(double force) { return share_of(log10(fmax(force, 1e-9)), -2.0, 1.0); }
 } /* namespace */
 
-bool Face::open(uintptr_t parent) {
+bool Editor::open(uintptr_t parent) {
     if (!canvas.resize(wide, high, (float)wide / WIDTH) || !window.open(*this, parent, wide, high)) return false;
     is_stale = true;
     tick(); /* hosts may be late with their first */
     return true;
 }
 
-void Face::fit(int *width, int *height) {
+void Editor::fit(int *width, int *height) {
     const int least = WIDTH / 2, most = 4 * WIDTH;
     const int by_height = ((*height + 1) * WIDTH - 1) / HEIGHT;
     int fitting = by_height < *width ? by_height : *width;
@@ -57,7 +57,7 @@ void Face::fit(int *width, int *height) {
     *width = fitting, *height = fitting * HEIGHT / WIDTH;
 }
 
-void Face::set_size(int width, int height) {
+void Editor::set_size(int width, int height) {
     fit(&width, &height);
     if (width == wide && height == high) return;
     wide = width, high = height;
@@ -69,20 +69,20 @@ void Face::set_size(int width, int height) {
 
 /* -- what the user does ----------------------------------------------------------------------- */
 
-int Face::chooser_at(float x, float y) const {
+int Editor::chooser_at(float x, float y) const {
     const float place = (x - CHOOSERS_X) / CHOOSER_STEP;
     const bool is_inside = y >= CHOOSERS_Y && y < CHOOSERS_Y + CHOOSER_HEIGHT && place >= 0 && place < CHOOSERS;
     return is_inside ? (int)place : -1;
 }
 
-void Face::choose(int chooser, int choice) {
+void Editor::choose(int chooser, int choice) {
     const int most = parameters[CHOSEN[chooser]].steps;
     choice = choice < 0 ? 0 : choice > most ? most : choice;
     focus = chooser, is_stale = true;
     if (choice != (int)instrument.value(CHOSEN[chooser])) host.edit(host.owner, CHOSEN[chooser], choice);
 }
 
-void Face::press(int px, int py) {
+void Editor::press(int px, int py) {
     const float scale = (float)wide / WIDTH, x = (float)px / scale, y = (float)py / scale;
     const int chooser = chooser_at(x, y);
     if (chooser >= 0) {
@@ -91,13 +91,13 @@ void Face::press(int px, int py) {
     } else if (y < 2 * ZOOM_Y && x > ZOOM_X - 12) zoom(wide >= 2 * WIDTH ? -1000 : 1);
 }
 
-void Face::turn(int px, int py, int steps) {
+void Editor::turn(int px, int py, int steps) {
     const float scale = (float)wide / WIDTH;
     const int chooser = chooser_at((float)px / scale, (float)py / scale);
     if (chooser >= 0) choose(chooser, (int)instrument.value(CHOSEN[chooser]) + steps);
 }
 
-void Face::key(Key key) {
+void Editor::key(Key key) {
     const int now = (int)instrument.value(CHOSEN[focus]);
     switch (key) {
     case Key::LEFT: case Key::UP: return choose(focus, now - 1);
@@ -111,7 +111,7 @@ void Face::key(Key key) {
 }
 
 /* To the next larger or smaller size; far down is the size at first. */
-void Face::zoom(int steps) {
+void Editor::zoom(int steps) {
     const int count = sizeof PERCENTS / sizeof *PERCENTS;
     int at = 0;
     while (at + 1 < count && PERCENTS[at + 1] * WIDTH <= 100 * wide) at++;
@@ -124,12 +124,12 @@ void Face::zoom(int steps) {
 
 /* -- what is drawn ---------------------------------------------------------------------------- */
 
-void Face::tick() {
+void Editor::tick() {
     window.poll();
     if (window.is_open() && (follow() || is_stale)) put();
 }
 
-void Face::put() {
+void Editor::put() {
     if (canvas.width() == 0) return; /* there was no memory */
     draw();
     window.put(canvas.pixels(), canvas.width(), canvas.height());
@@ -137,7 +137,7 @@ void Face::put() {
 }
 
 /* Take a snapshot; whether what is shown has changed. */
-bool Face::follow() {
+bool Editor::follow() {
     bool has_changed = false;
     for (int i = 0; i < CHOOSERS; i++) {
         const int now = (int)instrument.value(CHOSEN[i]);
@@ -156,7 +156,7 @@ bool Face::follow() {
     return true;
 }
 
-void Face::draw() {
+void Editor::draw() {
     canvas.fill(PAPER);
     canvas.box(12, 10, PANEL_X - 17, 234, 8, SURFACE);
     draw_instrument();
@@ -164,7 +164,7 @@ void Face::draw() {
     for (int i = 0; i < CHOOSERS; i++) draw_chooser(i);
 }
 
-void Face::draw_instrument() {
+void Editor::draw_instrument() {
     const float ring[] = {BRIDGE_X + 22, MIDDLE};
     canvas.box(16, LANES[0] - 14, BRIDGE_X - 40, LANES[1] - LANES[0] + 28, 14, EDGE);
     canvas.box(17, LANES[0] - 13, BRIDGE_X - 42, LANES[1] - LANES[0] + 26, 13, WOOD);
@@ -193,7 +193,7 @@ void Face::draw_instrument() {
 }
 
 /* Its motion about the middle of the latest snapshots, which are seen behind the last one. */
-void Face::draw_string(int string) {
+void Editor::draw_string(int string) {
     float points[2 * POINTS], middle[POINTS] = {};
     const bool moves = seen.rms > SILENT && (seen.string < 0 || seen.string == string);
     for (int i = 0; moves && i < POINTS; i++) {
@@ -210,7 +210,7 @@ void Face::draw_string(int string) {
     }
 }
 
-void Face::draw_gauges() {
+void Editor::draw_gauges() {
     static const char *const names[] = {"C", "C#", "D", "Eb", "E", "F", "F#", "G", "G#", "A", "Bb", "B"};
     const double speed = fabs(seen.speed), beta = seen.beta;
     const double least = seen.lower * speed / (beta * beta), most = seen.upper * speed / beta;
@@ -241,7 +241,7 @@ void Face::draw_gauges() {
 }
 
 /* `from` and `to`: where it is good. */
-void Face::draw_gauge(int row, const char *name, const char *value, float share, float from, float to) {
+void Editor::draw_gauge(int row, const char *name, const char *value, float share, float from, float to) {
     const float y = GAUGES_Y + GAUGE_HEIGHT * (float)row;
     canvas.text(PANEL_X, y + 12, 12, name, SOFT);
     canvas.text(PANEL_X + PANEL_WIDTH - canvas.text(0, 0, 12, value, INK, false), y + 12, 12, value, INK);
@@ -251,7 +251,7 @@ void Face::draw_gauge(int row, const char *name, const char *value, float share,
     else if (share > 0) canvas.box(PANEL_X, y + 18, fmaxf(PANEL_WIDTH * share, 6), 6, 3, SOFT);
 }
 
-void Face::draw_chooser(int chooser) {
+void Editor::draw_chooser(int chooser) {
     const Parameter &p = parameters[CHOSEN[chooser]];
     const float x = CHOOSERS_X + CHOOSER_STEP * (float)chooser, y = CHOOSERS_Y, room = CHOOSER_WIDTH - 2 * ARROW;
     const char *name = p.choices[chosen[chooser]];

@@ -9,7 +9,7 @@
 #include <clap/ext/params.h>
 #include <clap/ext/timer-support.h>
 
-#include "face.hpp"
+#include "editor.hpp"
 
 namespace yehu {
 
@@ -49,50 +49,50 @@ bool CLAP_ABI get_preferred(const clap_plugin_t *, const char **api, bool *is_fl
 }
 
 bool CLAP_ABI create(const clap_plugin_t *plugin, const char *api, bool is_floating) {
-    if (!is_supported(plugin, api, is_floating) || of(plugin).face) return false;
-    void *memory = malloc(sizeof(Face));
-    if (memory) of(plugin).face = new (memory) Face(of(plugin).instrument, {&of(plugin), edit, resize});
+    if (!is_supported(plugin, api, is_floating) || of(plugin).editor) return false;
+    void *memory = malloc(sizeof(Editor));
+    if (memory) of(plugin).editor = new (memory) Editor(of(plugin).instrument, {&of(plugin), edit, resize});
     return memory != nullptr;
 }
 
 void keep_time(Plugin &plugin, bool runs) {
     const auto *timers = Window::has_timer() ? nullptr : of_host<clap_host_timer_support_t>(plugin, CLAP_EXT_TIMER_SUPPORT);
     if (!timers || runs == plugin.has_timer) return;
-    if (runs) plugin.has_timer = timers->register_timer(plugin.host, Face::INTERVAL_MS, &plugin.timer);
+    if (runs) plugin.has_timer = timers->register_timer(plugin.host, Editor::INTERVAL_MS, &plugin.timer);
     else plugin.has_timer = !timers->unregister_timer(plugin.host, plugin.timer);
 }
 
-void CLAP_ABI destroy(const clap_plugin_t *plugin) { close_face(of(plugin)); }
+void CLAP_ABI destroy(const clap_plugin_t *plugin) { close_editor(of(plugin)); }
 
 bool CLAP_ABI set_size(const clap_plugin_t *plugin, uint32_t width, uint32_t height) {
-    return of(plugin).face->set_size((int)width, (int)height), true;
+    return of(plugin).editor->set_size((int)width, (int)height), true;
 }
 
 bool CLAP_ABI set_scale(const clap_plugin_t *plugin, double scale) {
-    return set_size(plugin, (uint32_t)(scale * Face::WIDTH), (uint32_t)(scale * Face::HEIGHT));
+    return set_size(plugin, (uint32_t)(scale * Editor::WIDTH), (uint32_t)(scale * Editor::HEIGHT));
 }
 
 bool CLAP_ABI get_size(const clap_plugin_t *plugin, uint32_t *width, uint32_t *height) {
-    const Face *face = of(plugin).face;
-    return *width = (uint32_t)face->width(), *height = (uint32_t)face->height(), true;
+    const Editor *editor = of(plugin).editor;
+    return *width = (uint32_t)editor->width(), *height = (uint32_t)editor->height(), true;
 }
 
 bool CLAP_ABI can_resize(const clap_plugin_t *) { return true; }
 
 bool CLAP_ABI get_hints(const clap_plugin_t *, clap_gui_resize_hints_t *hints) {
     hints->can_resize_horizontally = hints->can_resize_vertically = hints->preserve_aspect_ratio = true;
-    hints->aspect_ratio_width = Face::WIDTH, hints->aspect_ratio_height = Face::HEIGHT;
+    hints->aspect_ratio_width = Editor::WIDTH, hints->aspect_ratio_height = Editor::HEIGHT;
     return true;
 }
 
 bool CLAP_ABI adjust_size(const clap_plugin_t *, uint32_t *width, uint32_t *height) {
     int w = (int)*width, h = (int)*height;
-    Face::fit(&w, &h);
+    Editor::fit(&w, &h);
     return *width = (uint32_t)w, *height = (uint32_t)h, true;
 }
 
 bool CLAP_ABI set_parent(const clap_plugin_t *plugin, const clap_window_t *window) {
-    if (!of(plugin).face->open((uintptr_t)window->ptr)) return false;
+    if (!of(plugin).editor->open((uintptr_t)window->ptr)) return false;
     keep_time(of(plugin), true);
     return true;
 }
@@ -101,17 +101,17 @@ bool CLAP_ABI set_transient(const clap_plugin_t *, const clap_window_t *) { retu
 void CLAP_ABI suggest_title(const clap_plugin_t *, const char *) {}
 
 bool CLAP_ABI show(const clap_plugin_t *plugin) {
-    of(plugin).face->show(true);
+    of(plugin).editor->show(true);
     return keep_time(of(plugin), true), true;
 }
 
 bool CLAP_ABI hide(const clap_plugin_t *plugin) {
-    of(plugin).face->show(false);
+    of(plugin).editor->show(false);
     return keep_time(of(plugin), false), true;
 }
 
 void CLAP_ABI on_timer(const clap_plugin_t *plugin, clap_id) {
-    if (of(plugin).face) of(plugin).face->tick();
+    if (of(plugin).editor) of(plugin).editor->tick();
 }
 
 const clap_plugin_gui_t window = {
@@ -120,16 +120,16 @@ const clap_plugin_gui_t window = {
 const clap_plugin_timer_support_t timer = {on_timer};
 } /* namespace */
 
-const void *face_extension(const char *id) {
+const void *editor_extension(const char *id) {
     return !strcmp(id, CLAP_EXT_GUI) ? (const void *)&window : !strcmp(id, CLAP_EXT_TIMER_SUPPORT) ? &timer : nullptr;
 }
 
-void close_face(Plugin &plugin) {
-    if (!plugin.face) return;
+void close_editor(Plugin &plugin) {
+    if (!plugin.editor) return;
     keep_time(plugin, false);
-    plugin.face->~Face();
-    free(plugin.face);
-    plugin.face = nullptr;
+    plugin.editor->~Editor();
+    free(plugin.editor);
+    plugin.editor = nullptr;
 }
 
 } /* namespace yehu */

@@ -2,8 +2,8 @@
  * and tuning to choose. It takes snapshots of the instrument (`yehu_snapshot`) on the host's main thread, and
  * is nothing while it is closed: no memory, window or timer.
  */
-#ifndef YEHU_FACE_HPP
-#define YEHU_FACE_HPP
+#ifndef YEHU_EDITOR_HPP
+#define YEHU_EDITOR_HPP
 
 #include "canvas.hpp"
 #include "instrument.hpp"
@@ -11,19 +11,19 @@
 
 namespace yehu {
 
-/* What a format does for its face. */
-struct FaceHost {
+/* What a format does for its editor. */
+struct EditorHost {
     void *owner;
     void (*edit)(void *owner, int parameter, double value);
     bool (*resize)(void *owner, int width, int height); /* ask for it; the host may set the size */
 };
 
-class Face {
+class Editor {
 public:
     static constexpr int WIDTH = 680, HEIGHT = 330, INTERVAL_MS = 33;
     static constexpr const char *NAME = "Yehu";
 
-    Face(const Instrument &instrument, const FaceHost &host) : instrument(instrument), host(host) {}
+    Editor(const Instrument &instrument, const EditorHost &host) : instrument(instrument), host(host) {}
     bool open(uintptr_t parent);
     void close() { window.close(); }
     void show(bool is_shown) { window.show(is_shown); }
@@ -56,7 +56,7 @@ private:
     void zoom(int percent);
 
     const Instrument &instrument;
-    const FaceHost host;
+    const EditorHost host;
     Window window;
     Canvas canvas;
     int wide = WIDTH, high = HEIGHT;

@@ -48,7 +48,7 @@ def ardour(built, tmp_path):
 
 
 def scan(ardour, folder: Path) -> None:
-    """Let Ardour's scanner look at the VST3 plug-in, whose word has to be newer than the file."""
+    """Let Ardour's scanner check the VST3 plug-in, whose word has to be newer than the file."""
     programs = SCANNER.parent
     environment = ("env", f"LD_LIBRARY_PATH={programs}", f"ARDOUR_DLL_PATH={programs}")
     done = ardour(*environment, SCANNER, "-f", folder / ".vst3" / "Yehu.vst3")

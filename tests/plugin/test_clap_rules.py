@@ -1,6 +1,6 @@
 """What free-audio's clap-validator checks of a plug-in, by the small host.
 
-The host itself looks at factory, features and texts, and at every sample that is written.
+The host itself checks factory, features and texts, and at every sample that is written.
 """
 
 import random

@@ -16,7 +16,7 @@ LARGEST, LARGEST_LIMITED = 1e14, 2.0
 def limit(x: float, soft: float) -> float:
     """Soft clipping: above `soft` (0 to 1) peaks are bent, so that none exceeds `CEILING`.
 
-    Odd, memoryless, so that no note waits for a look ahead, and smooth where `soft` is below the
+    Odd, memoryless, so that no note waits for a look-ahead, and smooth where `soft` is below the
     ceiling. Real time: safe.
     """
     size = abs(x)

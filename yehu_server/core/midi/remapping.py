@@ -49,7 +49,7 @@ def change_binds(m: Midi, before: Tables, t: Tables, frame: int) -> None:
     for bind in range(int(t.binds)):
         keep_target(m, int(t.target[bind]))
     for row in range(ROWS):
-        m.found_number[row] = 0  # until its start value has been looked at
+        m.found_number[row] = 0  # until its start value has been checked
     for i in range(int(before.starts)):
         change_start(m, before, t, frame, int(before.start_row[i]))
     for i in range(int(t.starts)):

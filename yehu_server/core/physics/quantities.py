@@ -261,7 +261,7 @@ def override(
         ``{"bow": {"epsilon_0": 3e4}, "string_1": {"T": 51.0}, "bridge_x": 0.3}``;
         ``body`` names a body file, ``base`` an instrument file that takes the place of `base`.
     folder : Path
-        Where relative files are looked for.
+        Where relative files are searched for.
 
     Raises
     ------

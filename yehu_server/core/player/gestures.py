@@ -1,7 +1,7 @@
 """The gesture of a note: the steps of both hands that its articulation asks for. Compiled.
 
 The steps are those of ``params.articulations``. A note's gesture begins with it; each 5 ms
-``articulating`` looks which steps are due. An ordinary note is shaped too, as far as phrasing says.
+``articulating`` checks which steps are due. An ordinary note is shaped as phrasing says.
 """
 
 from __future__ import annotations

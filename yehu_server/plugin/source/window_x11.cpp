@@ -1,5 +1,5 @@
 /* The window on Linux, by XCB: its errors are events, where Xlib ends the host's process. The library
- * is looked for when a window is opened, so that the plug-in loads where there is none.
+ * is searched for when a window is opened, so that the plug-in loads where there is none.
  */
 #include "window.hpp"
 

@@ -80,7 +80,7 @@ Array = Any
 
 
 @compiled_with_aliasing
-def apply(rig: Any, mail: Any, p: Any, c: Any) -> None:
+def apply_due(rig: Any, mail: Any, p: Any, c: Any) -> None:
     """Fulfil the wishes that are due at this frame, and report them."""
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
     for _ in range(APPLIED_AT_ONCE):
@@ -209,7 +209,7 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
         first, start = c.frame, done
         silenced, retuned, ends = False, False, False
         while done < wanted and not (silenced or retuned or ends):
-            apply(rig, mail, p, c)
+            apply_due(rig, mail, p, c)
             if c.frame == p.ear.next:
                 update_player(p, c, at(rig, EAR_BUFFER_AT))
             silenced = write_row(c, o, done)

@@ -30,7 +30,7 @@ from load import JACK, compute, dummy_jack, helper, midi_out, start
 from yehu_server.core.engine.mailbox import MIDI_INPUTS, SMALL_RING
 from yehu_server.core.midi.packing import PORT_AT, packed
 from yehu_server.core.player.commands import WRITE
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.midi.ports import MidiOptions
 from yehu_server.live.options import ServeOptions
@@ -147,7 +147,7 @@ class Witness:
     def shares(self) -> list[float]:
         """Time from arrival to application (ms) of each message that opened the volume."""
         commands: Any = self._instrument.applied_commands()
-        is_volume = (commands["kind"] == WRITE) & (commands["index"] == ROW["/playing/volume"])
+        is_volume = (commands["kind"] == WRITE) & (commands["index"] == INDEX["/playing/volume"])
         opened = commands["frame"][is_volume & (commands["value"] == 1.0)]
         nexts = np.searchsorted(opened, self._arrived)
         return [

@@ -11,7 +11,7 @@ import aiohttp
 import numpy as np
 
 from yehu_server.core.player.commands import WRITE
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 
 COMMAND_S = 0.05
 PARAMETER, STEPS = "/playing/variation", 10_000  # whose values tell commands apart
@@ -52,11 +52,11 @@ async def _listen(session: aiohttp.ClientSession, url: str, heard: list[tuple[in
 
 async def _play(session: aiohttp.ClientSession, url: str, sent: list[tuple[float, float]]) -> None:
     async with session.ws_connect(f"{url}socket") as socket:
-        await socket.send_str('{"looks": true, "sounds": false}')
+        await socket.send_str('{"snapshots": true, "sounds": false}')
         reading = asyncio.ensure_future(_read(socket))
         for number in itertools.count():
             value = (number % STEPS) / STEPS
-            command = [-1.0, WRITE, ROW[PARAMETER], value, 0.0]
+            command = [-1.0, WRITE, INDEX[PARAMETER], value, 0.0]
             sent.append((value, time.monotonic()))
             await socket.send_bytes(np.array(command, "<f8").tobytes())
             await asyncio.sleep(COMMAND_S)

@@ -14,8 +14,8 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
 from yehu_server.core.player.commands import apply
 from yehu_server.core.player.notes import sounding_pitch
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.core.player.record import SILENT
-from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import ENGINE, FINGERS, SLOT, find
 from yehu_server.playing.part_state import Key
 from yehu_server.playing.player import Player
@@ -137,7 +137,7 @@ class Watched(Instrument):
 
     def requested(self, address: str) -> float:
         """The value that the player has for a parameter."""
-        return float(self._player[0]["value"][ROW[address]])
+        return float(self._player[0]["value"][INDEX[address]])
 
     def of(self, address: str) -> list[Move]:
         """The moves of a parameter."""

@@ -9,7 +9,7 @@ import numpy as np
 from yehu_server.core.controls.slots import FINGER_POSITION, PLUCK, SHARE, SPEED
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.player.commands import apply
-from yehu_server.core.player.rows import LISTENING
+from yehu_server.core.player.parameter_indices import LISTENING
 from yehu_server.params.table import SLOT
 
 BY_EAR = [*FINGER_POSITION, SHARE]

@@ -22,7 +22,7 @@ import soundfile
 from yehu_server.cli import main
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN, COMMAND, DRAW, END, EXPRESS, HOLD, SLIDE
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
 
@@ -77,10 +77,10 @@ def captured(path: Path) -> Path:
     """A capture of a player without calibration: notes, a slide, vibrato, a bow drawn by hand."""
     second = RATE
     commands = [
-        (0, HOLD, ROW["/playing/vibrato"], 0.8, 0.0),
+        (0, HOLD, INDEX["/playing/vibrato"], 0.8, 0.0),
         (0, BEGIN, 0, 69.0, 69.0),
         (second, SLIDE, 0, 72.5, 0.0),
-        (2 * second, EXPRESS, ROW["/playing/dynamics"], 0.4, 0.0),
+        (2 * second, EXPRESS, INDEX["/playing/dynamics"], 0.4, 0.0),
         (2 * second + 7, BEGIN, 0, 76.0, 76.0),
         (3 * second, END, 0, 76.0, 0.0),
         (3 * second + 1, DRAW, 0, -0.25, 0.8),

@@ -36,7 +36,7 @@ export function addressOf({ kind, index }) {
  * @param {string} address
  */
 export function indexOf(kind, address) {
-  if (kind !== RAMP) return find(address).row;
+  if (kind !== RAMP) return find(address).index;
   return address === SILENCE ? OF_SLOT.length : OF_SLOT.indexOf(find(address).address);
 }
 

@@ -73,9 +73,9 @@ export class Instrument extends EventTarget {
   /** @param {string} address */
   wasSet = (address) => this.others?.wasSet?.(address);
 
-  /** Take what others have set. @param {number} row @param {number} value */
-  follow(row, value) {
-    if (!this.sound?.reported) this.sound?.post(null, facts.kinds.WRITE, row, value, 0);
+  /** Take what others have set. @param {number} index @param {number} value */
+  follow(index, value) {
+    if (!this.sound?.reported) this.sound?.post(null, facts.kinds.WRITE, index, value, 0);
   }
 
   get people() {

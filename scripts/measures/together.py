@@ -6,7 +6,7 @@ import numpy as np
 
 from yehu_server.core.midi.record import MIDI, prepare_midi
 from yehu_server.core.midi.section_players import begin_sequence, plan_onset, plan_release
-from yehu_server.core.player.rows import VARIATION
+from yehu_server.core.player.parameter_indices import VARIATION
 from yehu_server.params.table import TABLE
 
 

@@ -3,7 +3,7 @@
 //
 //   node fuzz.mjs JOB.json
 //
-// A job has: wasm, rate, snapshotLength, seed, count, rows, kinds.
+// A job has: wasm, rate, snapshotLength, seed, count, parameters, kinds.
 
 import { readFileSync } from "node:fs";
 import { Kernel, NOW } from "../../web/sound/kernel.js";
@@ -38,7 +38,7 @@ while (posted < job.count) {
   for (let i = 0; i < AT_ONCE && posted < job.count; i += 1) {
     const isWild = random() < 0.01;
     const kind = isWild ? whole(1000) - 500 : whole(job.kinds);
-    const index = isWild ? whole(1e9) - 5e8 : whole(job.rows);
+    const index = isWild ? whole(1e9) - 5e8 : whole(job.parameters);
     const frame = random() < 0.9 ? NOW : Math.max(0, kernel.frame + whole(4000) - 1000);
     if (kernel.post(frame, kind, index, number(), number())) posted += 1;
   }

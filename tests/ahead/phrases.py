@@ -4,7 +4,7 @@ import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.commands import BEGIN, END, HOLD
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 
@@ -16,11 +16,11 @@ OPEN_STRING = [(0, BEGIN, 0, 65.0, 65.0)]
 STOPPED = [(0, BEGIN, 0, 69.0, 69.0)]
 SLUR = [(0, BEGIN, 0, 74.0, 74.0), (SECOND // 2, BEGIN, 0, 77.0, 77.0)]
 PLUCK = [
-    (0, HOLD, ROW["/playing/pizzicato"], 1.0, 0.0),
+    (0, HOLD, INDEX["/playing/pizzicato"], 1.0, 0.0),
     *((at, BEGIN, 0, note, note) for at, note in ((0, 72.0), (SECOND // 2, 79.0))),
 ]
 TREMOLO = [
-    (0, HOLD, ROW["/playing/tremolo"], 12.0, 0.0),
+    (0, HOLD, INDEX["/playing/tremolo"], 12.0, 0.0),
     (0, BEGIN, 0, 76.0, 76.0),
     (SECOND, END, 0, 76.0, 0.0),
 ]

@@ -31,7 +31,7 @@ process.stdout.write(
     lost: kernel.lost,
     finite: samples.every(Number.isFinite),
     snapshot: [...kernel.snapshot()],
-    values: Array.from({ length: job.rows ?? 0 }, (_, row) => kernel.value(row)),
+    values: Array.from({ length: job.parameters ?? 0 }, (_, index) => kernel.value(index)),
     seconds: times.reduce((sum, time) => sum + time, 0) / 1e6,
     medianUs: sorted[sorted.length >> 1],
     worstUs: sorted[sorted.length - 1],

@@ -22,7 +22,7 @@ from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
 from yehu_server.core.midi.tables import SLOTS
 from yehu_server.core.player import commands
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.table import find
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
@@ -139,7 +139,7 @@ class Maker:
             self._step("control", (number, argument), (events.CONTROL, number, argument, 0.0))
         elif kind == 2:
             param = chance.choice(calls.FREE)
-            self._post(commands.HOLD, ROW[param.address], chance.uniform(param.lo, param.hi), 0.0)
+            self._post(commands.HOLD, INDEX[param.address], chance.uniform(param.lo, param.hi), 0.0)
         else:
             self._post(events.RELEASE_ALL, 0, 1.0, 0.0)
             self._post(events.START, 0, 1.0, 0.0)
@@ -184,7 +184,7 @@ class Maker:
             self._map()
         elif name == "applyPreset":
             for address, value in self._presets.load(given[0]).values.items():
-                self._post(events.LOAD, ROW[address], value, 0.0)
+                self._post(events.LOAD, INDEX[address], value, 0.0)
         else:
             self._by_hand(name, arguments)
 
@@ -209,7 +209,7 @@ class Maker:
     def _by_hand(self, name: str, given: list[Any]) -> None:
         if name == "write":
             address, value = given
-            self._post(events.SET, ROW[address], find(address).clamped(value), 0.0)
+            self._post(events.SET, INDEX[address], find(address).clamped(value), 0.0)
         elif name == "fingerOn":
             self._key = given[1]
             self._post(events.FINGER_ON, -1, given[1], given[2])

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="there is n
 def by_node(node, tmp_path):
     def play(commands, frames=FRAMES, rate=RATE, block=BLOCK):
         job = {"rate": rate, "frames": frames, "block": block, "commands": commands}
-        report = node("play.mjs", **job, rows=len(TABLE), samples=str(tmp_path / "samples"))
+        report = node("play.mjs", **job, parameters=len(TABLE), samples=str(tmp_path / "samples"))
         return np.fromfile(tmp_path / "samples", np.float32).reshape(-1, 2), report
 
     return play
@@ -71,7 +71,7 @@ def test_a_rate_that_it_was_not_built_for_is_refused(node, tmp_path):
 
 def test_no_random_events_make_a_trap_or_a_number_that_is_not_finite(node, everything):
     kinds, count = len(KINDS) + len(EVENTS), 1_000_000 if everything else 60_000
-    report = node("fuzz.mjs", rate=RATE, seed=1, count=count, rows=len(TABLE), kinds=kinds)
+    report = node("fuzz.mjs", rate=RATE, seed=1, count=count, parameters=len(TABLE), kinds=kinds)
     assert report["posted"] == count
     assert report["finite"]
     assert report["loudest"] > 0.01

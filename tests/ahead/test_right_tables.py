@@ -12,7 +12,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi import tables as layout
 from yehu_server.core.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, TABLES
-from yehu_server.core.player.rows import ROW, ROWS
+from yehu_server.core.player.parameter_indices import INDEX, PARAMETER_COUNT
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
 from yehu_server.playing.bind import Bind, Breakpoints
@@ -76,7 +76,7 @@ WRONG = [
     ("source", BEND, 1),  # whose first bind is another
     ("first", POINTED, 1),
     ("first", BEND, MOST_BINDS),
-    ("target", BEND, ROWS),
+    ("target", BEND, PARAMETER_COUNT),
     ("target", BEND, -1),
     ("lo", EXPONENTIAL, SPEED.lo - 1e-9),
     ("hi", EXPONENTIAL, SPEED.hi + 1e-9),
@@ -95,17 +95,17 @@ WRONG = [
     ("channels", BEND, -1),
     ("soft", BEND, 2),
     ("input_hi", BEND, 1e308),
-    ("starts", 0, ROWS + 1),
-    ("start_row", 0, ROWS),
+    ("starts", 0, PARAMETER_COUNT + 1),
+    ("start_row", 0, PARAMETER_COUNT),
     ("start_value", 0, 1.5),
-    ("usual", ROW["/playing/speed"], SPEED.hi + 1.0),
-    ("usual", ROW["/playing/volume"], 1e-300),  # something is divided by it
+    ("usual", INDEX["/playing/speed"], SPEED.hi + 1.0),
+    ("usual", INDEX["/playing/volume"], 1e-300),  # something is divided by it
     ("pitch", KEYS - 1, 1e308),
     ("policy", 0, 3),
     ("received", 0, 1 << 16),
     ("received", 0, -2),
     ("has_program", 0, 0.5),
-    ("program_row", 0, ROWS),
+    ("program_row", 0, PARAMETER_COUNT),
     ("program_row", 0, -1),
     ("program_value", 0, math.inf),
 ]

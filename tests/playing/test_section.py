@@ -19,7 +19,7 @@ from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import IN_PORT, MIDI, clear_held, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.player import commands as kinds
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
@@ -248,7 +248,7 @@ def test_a_key_that_sounds_again_has_its_expression_again(four):
     address = "/playing/pressure"
     on(four, 67, frame=0, values={address: 0.6})
     on(four, 69, frame=BEAT, values={address: 0.2})
-    four.commands.post(kinds.EXPRESS, 2 * BEAT, ROW[address], 0.6)
+    four.commands.post(kinds.EXPRESS, 2 * BEAT, INDEX[address], 0.6)
     off(four, 69, frame=2 * BEAT)
     for told in four.told:
         express, end = [w for w in told.all if w.kind in (kinds.EXPRESS, kinds.END)][-2:]
@@ -343,7 +343,7 @@ def test_fewer_and_more_may_play_but_not_more_than_there_are(four):
 def test_a_gain_that_is_held_stays_so_as_players_rest(four):
     four.commands.write("/output/gain", -5.0, hold=True)
     four.commands.write("/playing/section", 1.0)
-    last = [w for w in four.told[0].all if w.index == ROW["/output/gain"]][-1]
+    last = [w for w in four.told[0].all if w.index == INDEX["/output/gain"]][-1]
     assert (last.kind, last.value) == (kinds.HOLD, -5.0)
 
 

@@ -14,7 +14,7 @@ from yehu_server.core.midi.section_players import DISTANCE, GAIN, OWN_SEED, PAN,
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.radiation import response
 from yehu_server.core.player.calibration import wave_speed
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.part_state import Key
 from yehu_server.playing.section_instruments import (
@@ -30,7 +30,7 @@ SEEDS = range(20)
 
 
 def own(address, value, people):
-    return [own_value(ROW[address], value, number, people) for number in range(people)]
+    return [own_value(INDEX[address], value, number, people) for number in range(people)]
 
 
 def test_a_section_has_the_power_of_one_player_at_the_distance_of_the_part():
@@ -43,7 +43,7 @@ def test_a_section_has_the_power_of_one_player_at_the_distance_of_the_part():
     assert min(distances) < 4.0 < max(distances)
     power = np.mean([(4.0 / distance) ** 2 for distance in distances])
     assert abs(10.0 * np.log10(power)) < 0.25
-    assert [own_value(ROW[a], 0.3, 0, 1) for a in (GAIN, PAN, DISTANCE)] == [0.3] * 3
+    assert [own_value(INDEX[a], 0.3, 0, 1) for a in (GAIN, PAN, DISTANCE)] == [0.3] * 3
 
 
 def test_players_sit_beside_each_other_around_the_place_of_the_part():

@@ -11,7 +11,7 @@ from ahead.test_streams import assert_near
 from plugin.sounds import PHRASE, played, prepared, script, write_midi
 
 from yehu_server.core.engine.rig import RIG
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.rendering import performance
 from yehu_server.rendering.options import Options, Part
 from yehu_server.scores.smf.reader import read_score
@@ -48,7 +48,7 @@ def by_render(file, monkeypatch):
     playing = performance.Performance([Part(read_score(file))], options, reports=True)
     samples = np.concatenate(list(playing.blocks()))[:FRAMES]
     commands = commands_in(playing.ensemble.first._rig)
-    return samples, commands[commands["index"] != ROW["/playing/phrasing"]]
+    return samples, commands[commands["index"] != INDEX["/playing/phrasing"]]
 
 
 def by_library(path, messages):

@@ -38,13 +38,13 @@ def test_numbers_and_order_of_choices_are_for_ever(shown):
 
 def test_every_parameter_of_the_table_is_there_as_it_is(shown):
     assert set(shown) - set(CHOICES) == {param.address for param in TABLE} - LEFT_OUT
-    for row, param in enumerate(TABLE):
+    for index, param in enumerate(TABLE):
         assert param.curve in (Curve.LIN, Curve.EXP)
         if param.address in LEFT_OUT:
             continue
         each = shown[param.address]
-        found = each.row, each.lo, each.hi, each.default
-        assert found == (row, param.lo, param.hi, param.default)
+        found = each.index, each.lo, each.hi, each.default
+        assert found == (index, param.lo, param.hi, param.default)
         assert each.is_exponential == (param.curve is Curve.EXP)
         assert (each.steps > 0) == param.is_choice
         assert each.unit == ("" if param.unit == "1" else param.unit)
@@ -62,7 +62,7 @@ def test_names_numbers_and_symbols_are_of_one_parameter_each(shown):
 def test_the_header_has_each_parameter_and_preset(shown):
     text = header(list(shown.values()), carried())
     for each in shown.values():
-        assert f"{{{each.number}u, {each.row}, {each.steps}, " in text
+        assert f"{{{each.number}u, {each.index}, {each.steps}, " in text
     assert "static const Values presets[]" in text
     assert text == header(parameters(*carried().names), carried())  # the same each time
 

@@ -37,7 +37,7 @@ from yehu_server.core.player.commands import (
     WRITE,
 )
 from yehu_server.core.player.fingering import OpenStrings
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.errors import OutputError, ScoreError, YehuError
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.options import PlayingOptions
@@ -115,9 +115,9 @@ EACH_KIND = {
         *((1, RAMP, SLOT[param.address], param.lo, 0.0) for param in ENGINE),
         (2, RAMP, SILENCE, 0.0, 0.0),
     ],
-    "write": [(0, WRITE, row, odd(param), 100.0 / 7.0) for row, param in enumerate(TABLE)],
-    "hold": [(0, HOLD, row, odd(param), 0.0) for row, param in enumerate(TABLE)],
-    "express": [(0, EXPRESS, row, odd(param), 0.0) for row, param in enumerate(TABLE)],
+    "write": [(0, WRITE, index, odd(param), 100.0 / 7.0) for index, param in enumerate(TABLE)],
+    "hold": [(0, HOLD, index, odd(param), 0.0) for index, param in enumerate(TABLE)],
+    "express": [(0, EXPRESS, index, odd(param), 0.0) for index, param in enumerate(TABLE)],
     "begin": [(0, BEGIN, -1, 200.0 / 3.0, 617.0 / 9.0), (0, BEGIN, 1 << 20, 127.0, 0.0)],
     "end": [(5, END, -1, 200.0 / 3.0, 1.0), (5, END, 3, 0.0, 0.0)],
     "slide": [(5, SLIDE, 0, 617.0 / 9.0, 0.0)],
@@ -257,7 +257,7 @@ def command_something(instrument, commands, chance) -> None:
     elif what < 6:
         ending = commands.held()[: chance.randrange(1, 3)]
         if ending:
-            commands.post(EXPRESS, frame, ROW["/playing/speed"], 0.2)
+            commands.post(EXPRESS, frame, INDEX["/playing/speed"], 0.2)
         commands.notes_off(ending, frame=frame)
     elif what < 9:
         param = find(chance.choice(ADDRESSES))

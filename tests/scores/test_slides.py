@@ -12,7 +12,7 @@ from shaping import phrased
 
 import yehu_server as yehu
 from yehu_server.api.notes import score_of as score_of_notes
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Options, Part
@@ -146,7 +146,7 @@ def test_the_second_note_takes_the_finger_where_it_is(overlap_s):
 
 def test_everybody_of_a_section_slides_and_is_on_the_note():
     bends = np.array([
-        [each._rig["player"][0]["value"][ROW[BEND]] for each in performance.ensemble.instruments]
+        [each._rig["player"][0]["value"][INDEX[BEND]] for each in performance.ensemble.instruments]
         for performance in watched((0.5, 0.5), PlayingOptions(start=(("/playing/section", 3.0),)))
     ])  # fmt: skip
     assert bends.shape[1] == 3

@@ -12,7 +12,7 @@ import pytest
 
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN, COMMAND, END, EXPRESS, STOP, WRITE
-from yehu_server.core.player.rows import ROW, VELOCITY
+from yehu_server.core.player.parameter_indices import INDEX, VELOCITY
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
@@ -162,7 +162,7 @@ def test_a_capture_is_written_as_its_players_played(tmp_path):
         (0, BEGIN, 0, 67.0, 67.0),
         (second, BEGIN, 0, 60.0, 72.0),  # C4, moved into range; it begins while G4 is held
         (second + 500, END, 0, 67.0, 0.0),
-        (2 * second - 1, WRITE, ROW["/bow/force"], 1.0, 0.0),  # which no score has
+        (2 * second - 1, WRITE, INDEX["/bow/force"], 1.0, 0.0),  # which no score has
         (2 * second, STOP, 0, 0.0, 0.0),
     ]
     writer.commands(np.array(commands, COMMAND))

@@ -35,9 +35,9 @@ export class Interpreter {
     const memory = exported.memory.buffer; // it grows no more
     this.numbers = new Float64Array(memory, at);
     this.halves = new Int32Array(memory, at);
-    /** The values of parameters, by row. */
+    /** The values of parameters, by index. */
     this.values = this.#of(record.value);
-    /** Values that binds came to last, by row; one of how many play is as large as was asked. */
+    /** Values that binds came to last, by index; one of how many play is as large as was asked. */
     this.found = this.#of(record.found_value);
   }
 
@@ -48,10 +48,10 @@ export class Interpreter {
 
   /**
    * Whether notes and controllers give a parameter its value, or it was set.
-   * @param {number} row
+   * @param {number} index
    */
-  isTarget(row) {
-    return this.#whole(record.is_target, row) !== 0;
+  isTarget(index) {
+    return this.#whole(record.is_target, index) !== 0;
   }
 
   /** @param {number[]} field */

@@ -6,7 +6,7 @@ import { writeTables, writeTuning } from "./tables.js";
 
 const { WRITE, DRAW, STOP } = facts.kinds;
 const { SET, TABLES_TO } = facts.events;
-const { row: SECTION } = find("/playing/section");
+const { index: SECTION } = find("/playing/section");
 const [BOW_SPEED, BOW_FORCE, BOW_ASSIST] = ["/bow/speed", "/bow/force", "/bow/assist"].map(find);
 // Within this time the sound has a write, and tells the value that it moves to.
 const TOLD_WITHIN_S = 0.1;
@@ -22,7 +22,7 @@ const TOLD_WITHIN_S = 0.1;
  * @property {number} [rate] Hz
  * @property {(address: string) => number | undefined} [wasSet] the value of a parameter that was set, which notes
  *   and controllers move from
- * @property {(row: number, value: number) => unknown} [follow] take what others have set
+ * @property {(index: number, value: number) => unknown} [follow] take what others have set
  *
  * @typedef {Pick<SoundMembers, "post" | "frame" | "target" | "reported" | "people"> & Others} Sink What commands
  *   are posted to.
@@ -32,9 +32,9 @@ const TOLD_WITHIN_S = 0.1;
 export class Part {
   #sink;
   #now = 0; // frame of the last event for now
-  /** The last writes, by row. @type {Map<number, {value: number, frame: number}>} */
+  /** The last writes, by index. @type {Map<number, {value: number, frame: number}>} */
   #written = new Map();
-  /** What others, or this page, set last, by row. @type {Map<number, number>} */
+  /** What others, or this page, set last, by index. @type {Map<number, number>} */
   #told = new Map();
   /** Before there is one, events come to nothing. @type {Interpreter | null} */
   interpreter = null;
@@ -71,29 +71,29 @@ export class Part {
   /** Let the interpreter know what others have set. @param {Interpreter} interpreter */
   #learnValues(interpreter) {
     const { values } = interpreter;
-    for (const { address, row } of FREE) {
-      if (this.#isRecent(row)) continue;
-      const wasSet = this.#news(address, row);
-      if (wasSet !== undefined && row !== SECTION) {
-        this.#told.set(row, wasSet);
+    for (const { address, index } of FREE) {
+      if (this.#isRecent(index)) continue;
+      const wasSet = this.#news(address, index);
+      if (wasSet !== undefined && index !== SECTION) {
+        this.#told.set(index, wasSet);
         // Notes to come begin with it; what it comes to now, others have requested already.
-        if (interpreter.isTarget(row)) interpreter.take(--this.#now, SET, row, wasSet, 0);
-        else values[row] = wasSet;
-        this.#sink.follow?.(row, wasSet);
+        if (interpreter.isTarget(index)) interpreter.take(--this.#now, SET, index, wasSet, 0);
+        else values[index] = wasSet;
+        this.#sink.follow?.(index, wasSet);
       }
       const reported = this.#sink.reported?.(address);
-      if (reported !== undefined) values[row] = reported;
+      if (reported !== undefined) values[index] = reported;
     }
   }
 
   /**
    * What others have set a parameter to since this page knew; undefined: nothing.
    * @param {string} address
-   * @param {number} row
+   * @param {number} index
    */
-  #news(address, row) {
+  #news(address, index) {
     const wasSet = this.#sink.wasSet?.(address);
-    return wasSet === this.#told.get(row) ? undefined : wasSet;
+    return wasSet === this.#told.get(index) ? undefined : wasSet;
   }
 
   /** Frames are of another sound from now on: what was written before is no longer on its way. */
@@ -124,31 +124,31 @@ export class Part {
       this.#told.set(index, value);
     }
     if (kind === DRAW) {
-      this.#note(BOW_SPEED.row, value, frame);
-      this.#note(BOW_FORCE.row, other, frame);
+      this.#note(BOW_SPEED.index, value, frame);
+      this.#note(BOW_FORCE.index, other, frame);
     }
     // Raw newtons are heard only without assist.
-    if (kind === DRAW || (kind === WRITE && index === BOW_FORCE.row)) {
-      this.#note(BOW_ASSIST.row, 0, frame);
+    if (kind === DRAW || (kind === WRITE && index === BOW_FORCE.index)) {
+      this.#note(BOW_ASSIST.index, 0, frame);
     }
     this.#sink.post(frame, kind, index, value, other);
   }
 
   /**
-   * @param {number} row
+   * @param {number} index
    * @param {number} value
    * @param {number | null} frame
    */
-  #note(row, value, frame) {
-    this.#written.set(row, { value, frame: frame ?? this.#frame });
+  #note(index, value, frame) {
+    this.#written.set(index, { value, frame: frame ?? this.#frame });
   }
 
   /**
    * Whether a parameter was written so lately that the sound may not tell it yet.
-   * @param {number} row
+   * @param {number} index
    */
-  #isRecent(row) {
-    const written = this.#written.get(row);
+  #isRecent(index) {
+    const written = this.#written.get(index);
     return (
       written !== undefined && this.#frame < written.frame + TOLD_WITHIN_S * (this.#sink.rate ?? 0)
     );
@@ -162,12 +162,12 @@ export class Part {
    */
   value(address) {
     const param = find(address);
-    const { row, playerControlled } = param;
-    const known = playerControlled ? this.#written.get(row)?.value : this.interpreter?.values[row];
+    const { index, playerControlled } = param;
+    const known = playerControlled ? this.#written.get(index)?.value : this.interpreter?.values[index];
     const reported = playerControlled
       ? this.#sink.target?.(address)
-      : (this.#sink.reported?.(address) ?? this.#news(address, row));
-    return (this.#isRecent(row) ? known : (reported ?? known)) ?? param.default;
+      : (this.#sink.reported?.(address) ?? this.#news(address, index));
+    return (this.#isRecent(index) ? known : (reported ?? known)) ?? param.default;
   }
 
   /**
@@ -176,12 +176,12 @@ export class Part {
    * @param {import('./table.js').Param} param
    * @param {number} value within its range
    */
-  set(frame, { row }, value) {
+  set(frame, { index }, value) {
     const { interpreter } = this;
-    if (interpreter && row === SECTION && (this.#sink.people ?? 1) > 1) {
+    if (interpreter && index === SECTION && (this.#sink.people ?? 1) > 1) {
       interpreter.found[SECTION] = value;
       this.#post(frame, WRITE, SECTION, this.#people(interpreter, 1), 0);
-    } else this.take(frame, SET, row, value);
+    } else this.take(frame, SET, index, value);
   }
 
   /**

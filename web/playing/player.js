@@ -123,7 +123,7 @@ export class Player {
   applyPreset(name, frame = null) {
     const { values } = named(PRESETS, name);
     for (const [address, value] of Object.entries(values)) {
-      this.#part.take(this.#at(frame), LOAD, find(address).row, value);
+      this.#part.take(this.#at(frame), LOAD, find(address).index, value);
     }
   }
 

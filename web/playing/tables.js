@@ -34,7 +34,7 @@ export function writeTables(tables, { mpe, keySwitches, start, x, y, binds }, tu
   binds.forEach((bind, number) => {
     const row = rowOf(bind);
     if (!firsts.has(row.source)) firsts.set(row.source, number);
-    const found = { first: firsts.get(row.source) ?? 0, target: find(bind.target).row };
+    const found = { first: firsts.get(row.source) ?? 0, target: find(bind.target).index };
     for (const [name, value] of Object.entries({ ...row, ...found })) {
       tables[AT[name] + number] = value;
     }
@@ -49,9 +49,9 @@ export function writeTables(tables, { mpe, keySwitches, start, x, y, binds }, tu
     AT.usual,
   );
   Object.entries(start).forEach(([address, value], place) => {
-    const { row } = find(address);
-    tables[AT.usual + row] = tables[AT.start_value + place] = value;
-    tables[AT.start_row + place] = row;
+    const { index } = find(address);
+    tables[AT.usual + index] = tables[AT.start_value + place] = value;
+    tables[AT.start_row + place] = index;
   });
   tables[AT.starts] = Object.keys(start).length;
   tables[AT.lowest] = facts.notes.LOWEST_NOTE;

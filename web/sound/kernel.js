@@ -136,9 +136,9 @@ export class Kernel {
     return Number(this.exported.yehu_lost(this.at.rig));
   }
 
-  /** The value that a parameter has, or moves to. @param {number} row */
-  value(row) {
-    return this.exported.yehu_value(this.at.rig, BigInt(row));
+  /** The value that a parameter has, or moves to. @param {number} index */
+  value(index) {
+    return this.exported.yehu_value(this.at.rig, BigInt(index));
   }
 
   /**

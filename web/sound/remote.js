@@ -36,14 +36,14 @@ export class Remote extends EventTarget {
     this.state = snapshotOf(this.seen);
     this.analyser = listener?.analyser ?? null;
     this.post = new CommandBatch((commands) => line.send(commands)).post;
-    this.look = (/** @type {Event} */ event) => {
+    this.onSnapshot = (/** @type {Event} */ event) => {
       this.seen.set(/** @type {CustomEvent<Float64Array>} */ (event).detail);
       this.isSeen = true;
       this.state = snapshotOf(this.seen);
       this.dispatchEvent(new Event("state"));
     };
-    line.addEventListener("look", this.look);
-    line.want({ looks: true, sounds: false });
+    line.addEventListener("snapshot", this.onSnapshot);
+    line.want({ snapshots: true, sounds: false });
   }
 
   get frame() {
@@ -57,8 +57,8 @@ export class Remote extends EventTarget {
 
   /** The value of any other parameter, whoever set it. @param {string} address */
   reported(address) {
-    const { row, playerControlled } = find(address);
-    return playerControlled || !this.isSeen ? undefined : this.seen[facts.snapshotLength + row];
+    const { index, playerControlled } = find(address);
+    return playerControlled || !this.isSeen ? undefined : this.seen[facts.snapshotLength + index];
   }
 
   /** @returns {Status} */
@@ -81,8 +81,8 @@ export class Remote extends EventTarget {
   }
 
   close() {
-    this.line.removeEventListener("look", this.look);
-    this.line.want({ looks: false, sounds: false });
+    this.line.removeEventListener("snapshot", this.onSnapshot);
+    this.line.want({ snapshots: false, sounds: false });
     this.listener?.close();
   }
 }

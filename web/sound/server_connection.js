@@ -6,7 +6,7 @@ import { COMMAND } from "./kernel.js";
 
 const AGAIN_MS = 500;
 const AGAIN_AT_MOST_MS = 5000;
-const LOOK = 0; // what the first number of a message says
+const SNAPSHOT = 0; // what the first number of a message says
 const COMMANDS = 1;
 const MOST_UNSENT = 1 << 16; // bytes
 const FIRST_PART = "1";
@@ -55,7 +55,7 @@ export function socketUrl(name) {
 }
 
 /**
- * Tells by events: 'open', 'break', 'status', 'look' (detail: the numbers), 'commands' of another
+ * Tells by events: 'open', 'break', 'status', 'snapshot' (detail: the numbers), 'commands' of another
  * page (detail: {page, commands}), 'refuse' where a PIN is missing or wrong, and 'left' (detail: the number of a page that went).
  */
 export class ServerConnection extends EventTarget {
@@ -64,8 +64,8 @@ export class ServerConnection extends EventTarget {
     this.status = { ...UNKNOWN };
     this.heardAt = 0; // ms, of the last status
     this.isOpen = false;
-    this.wanted = { looks: false, sounds: false };
-    /** The latest look, while looks come. @type {Float64Array | null} */
+    this.wanted = { snapshots: false, sounds: false };
+    /** The latest snapshot, while snapshots come. @type {Float64Array | null} */
     this.seen = null;
     this.wait = AGAIN_MS;
     this.part = new URLSearchParams(location.search).get("part") ?? FIRST_PART;
@@ -90,18 +90,18 @@ export class ServerConnection extends EventTarget {
    * @param {string} address
    */
   wasSet(address) {
-    return this.seen?.[facts.snapshotLength + facts.parameters.length + find(address).row];
+    return this.seen?.[facts.snapshotLength + facts.parameters.length + find(address).index];
   }
 
-  /** Applied by the first look. @returns {Promise<void>} */
-  get looked() {
+  /** Fulfilled with the first snapshot. @returns {Promise<void>} */
+  get first() {
     if (this.seen) return Promise.resolve();
-    return new Promise((resolve) => this.addEventListener("look", () => resolve(), { once: true }));
+    return new Promise((resolve) => this.addEventListener("snapshot", () => resolve(), { once: true }));
   }
 
   /**
-   * What this page wants to get: looks at the server's instrument, and other pages' commands.
-   * @param {{looks: boolean, sounds: boolean}} wanted
+   * What this page wants to get: snapshots of the server's instrument, and other pages' commands.
+   * @param {{snapshots: boolean, sounds: boolean}} wanted
    */
   want(wanted) {
     this.wanted = wanted;
@@ -120,8 +120,8 @@ export class ServerConnection extends EventTarget {
 
   #ask() {
     if (!this.isOpen) return;
-    const { looks, sounds } = this.wanted;
-    this.socket?.send(JSON.stringify({ looks: looks && !document.hidden, sounds }));
+    const { snapshots, sounds } = this.wanted;
+    this.socket?.send(JSON.stringify({ snapshots: snapshots && !document.hidden, sounds }));
   }
 
   #open() {
@@ -168,9 +168,9 @@ export class ServerConnection extends EventTarget {
   /** @param {Float64Array} numbers */
   #read(numbers) {
     const [what, page] = numbers;
-    if (what === LOOK) {
+    if (what === SNAPSHOT) {
       this.seen = numbers.subarray(1);
-      this.dispatchEvent(new CustomEvent("look", { detail: this.seen }));
+      this.dispatchEvent(new CustomEvent("snapshot", { detail: this.seen }));
     } else if (what === COMMANDS) {
       const commands = [];
       for (let i = 2; i < numbers.length; i += COMMAND) commands.push(numbers.subarray(i, i + COMMAND));

@@ -35,7 +35,7 @@ export class Sharing {
     line.addEventListener("commands", this.others);
     line.addEventListener("left", this.left);
     line.addEventListener("break", this.broken);
-    line.want({ looks: true, sounds: true }); // looks tell what others set
+    line.want({ snapshots: true, sounds: true }); // they have what others set
   }
 
   /** @param {Command} command */
@@ -86,6 +86,6 @@ export class Sharing {
     this.line.removeEventListener("commands", this.others);
     this.line.removeEventListener("left", this.left);
     this.line.removeEventListener("break", this.broken);
-    this.line.want({ looks: false, sounds: false });
+    this.line.want({ snapshots: false, sounds: false });
   }
 }

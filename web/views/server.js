@@ -16,7 +16,7 @@ import { onLanguage, translate } from "../i18n.js";
 /** @type {Way[]} */
 const WAYS = ["here", "there", "listen"];
 const { LOWEST_NOTE, HIGHEST_NOTE } = facts.notes;
-const LOOKED_MS = 1000; // a server that is away is not waited for any longer
+const FIRST_MS = 1000; // a server that is away is not waited for any longer
 
 /** The choice, and the state of the server. @param {Instrument} instrument */
 export function showServer(instrument) {
@@ -53,10 +53,10 @@ export function showServer(instrument) {
   /** The sound of this page, with the parameters that the server has. */
   async function openAlike() {
     const sound = await instrument.openHere();
-    await Promise.race([line.looked, new Promise((resolve) => setTimeout(resolve, LOOKED_MS))]);
-    for (const { address, row } of FREE) {
+    await Promise.race([line.first, new Promise((resolve) => setTimeout(resolve, FIRST_MS))]);
+    for (const { address, index } of FREE) {
       const value = line.wasSet(address) ?? instrument.player.value(address);
-      sound.post(null, facts.kinds.WRITE, row, value, 0);
+      sound.post(null, facts.kinds.WRITE, index, value, 0);
     }
     return sound;
   }

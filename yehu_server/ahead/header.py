@@ -133,13 +133,13 @@ def header(
     )
 
 
-def _parameter(row: int) -> str:
-    param = TABLE[row]
+def _parameter(index: int) -> str:
+    param = TABLE[index]
     name = re.sub(r"[^A-Z0-9]+", "_", param.address.upper()).strip("_")
     unit = f" {param.unit}" if param.unit else ""
     return (
         f"    /* {param.doc} {param.lo:g} to {param.hi:g}{unit}; at first {param.default:g}. */\n"
-        f"    YEHU_{name} = {row},"
+        f"    YEHU_{name} = {index},"
     )
 
 

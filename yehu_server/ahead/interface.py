@@ -38,8 +38,13 @@ from yehu_server.core.midi.values import NO_KEY, find_values
 from yehu_server.core.physics.layout import STATE
 from yehu_server.core.player.commands import COMMAND, HOLD, RAMP, WRITE
 from yehu_server.core.player.notes import sounding_pitch
+from yehu_server.core.player.parameter_indices import (
+    IS_ENGINES,
+    IS_PLAYER_CONTROLLED,
+    PARAMETER_COUNT,
+    SLOT_OF,
+)
 from yehu_server.core.player.record import MOST_HELD, PLAYER
-from yehu_server.core.player.rows import IS_ENGINES, IS_PLAYER_CONTROLLED, ROWS, SLOT_OF
 from yehu_server.core.stage.delay_lines import LINES
 from yehu_server.core.stage.record import STAGE, TAPE_AT
 
@@ -79,7 +84,7 @@ def frame(rig: Any) -> int:
 @native
 def value(rig: Any, parameter: int) -> float:
     """The value that a parameter has, or moves to; NaN for none."""
-    if not 0 <= parameter < ROWS:
+    if not 0 <= parameter < PARAMETER_COUNT:
         return np.nan
     if SLOT_OF[parameter] >= 0:
         controls = record_at(rig, memory.CONTROLS_AT, CONTROLS)
@@ -263,23 +268,23 @@ def reset(rig: Any) -> None:
     if m.has_last != 0:  # values as they are for no note, without its velocity
         find_values(m, t, m.last_channel, NO_KEY)
         for n in range(m.targets):
-            row = m.target[n]
-            if m.is_held[row] == 0:
-                m.value[row] = m.found_value[row]
+            index = m.target[n]
+            if m.is_held[index] == 0:
+                m.value[index] = m.found_value[index]
     # The image has an event, for start values, which are not wanted here.
     carray(at(rig, memory.POSTED_AT), (1,), np.int64)[0] = 0
     last[0] = tables
     if tables != m.tables:
         post_to(rig, SERVER, 0, TABLES_TO, tables, 0.0, 0.0)
     p = record_at(rig, memory.PLAYER_AT, PLAYER)
-    for row in range(ROWS):
-        requested, is_held = m.value[row], m.is_held[row] != 0
+    for index in range(PARAMETER_COUNT):
+        requested, is_held = m.value[index], m.is_held[index] != 0
         if is_held:
-            post_to(rig, SERVER, 0, HOLD, row, requested, 0.0)
-        elif not IS_PLAYER_CONTROLLED[row] and requested != p.value[row]:
-            if IS_ENGINES[row]:  # at once
-                post_to(rig, SERVER, 0, RAMP, SLOT_OF[row], requested, 0.0)
-            post_to(rig, SERVER, 0, WRITE, row, requested, 0.0)
+            post_to(rig, SERVER, 0, HOLD, index, requested, 0.0)
+        elif not IS_PLAYER_CONTROLLED[index] and requested != p.value[index]:
+            if IS_ENGINES[index]:  # at once
+                post_to(rig, SERVER, 0, RAMP, SLOT_OF[index], requested, 0.0)
+            post_to(rig, SERVER, 0, WRITE, index, requested, 0.0)
 
 
 def sources_function(sources: str) -> Native:

@@ -30,7 +30,7 @@ from yehu_server.core.midi.tables import (
     TABLES,
     Tables,
 )
-from yehu_server.core.player.rows import HIGHEST, LOWEST, ROWS
+from yehu_server.core.player.parameter_indices import HIGHEST, LOWEST, PARAMETER_COUNT
 
 PAIRS, NRPNS = 32, 1 << 14
 MOST = 1e9
@@ -42,7 +42,7 @@ FIELDS = {
     "binds": (WHOLE, 0, MOST_BINDS),
     "source": (WHOLE, 0, MOST),
     "first": (WHOLE, 0, MOST_BINDS - 1),
-    "target": (WHOLE, 0, ROWS - 1),
+    "target": (WHOLE, 0, PARAMETER_COUNT - 1),
     "lo": (ANY, -MOST, MOST),
     "hi": (ANY, -MOST, MOST),
     "curve": (WHOLE, 0, POINTS),
@@ -56,8 +56,8 @@ FIELDS = {
     "x": (ANY, 0, 1),
     "y": (ANY, 0, 1),
     "first_switch": (WHOLE_OR_NONE, 0, KEYS - 1),
-    "starts": (WHOLE, 0, ROWS),
-    "start_row": (WHOLE, 0, ROWS - 1),
+    "starts": (WHOLE, 0, PARAMETER_COUNT),
+    "start_row": (WHOLE, 0, PARAMETER_COUNT - 1),
     "start_value": (ANY, -MOST, MOST),
     "usual": (ANY, -MOST, MOST),
     "pitch": (ANY_OR_NONE, -MOST, MOST),
@@ -66,7 +66,7 @@ FIELDS = {
     "highest": (ANY, -MOST, MOST),
     "received": (WHOLE, -1, (1 << IN_PORT) - 1),
     "has_program": (WHOLE, 0, 1),
-    "program_row": (WHOLE_OR_NONE, 0, ROWS - 1),
+    "program_row": (WHOLE_OR_NONE, 0, PARAMETER_COUNT - 1),
     "program_value": (ANY, -MOST, MOST),
     **dict.fromkeys(SWITCHES, (WHOLE, 0, 1)),
 }
@@ -104,12 +104,12 @@ def checking_fields(rules: dict[str, tuple[int, float, float]]) -> Any:
 def check_values(t: Tables) -> int:
     """Return whether values are within the ranges of their parameters, once each field is right."""
     for n in range(int(t.starts)):
-        row = int(t.start_row[n])
-        if not LOWEST[row] <= t.start_value[n] <= HIGHEST[row]:
+        index = int(t.start_row[n])
+        if not LOWEST[index] <= t.start_value[n] <= HIGHEST[index]:
             return 0
-    for row in range(ROWS):
-        usual = t.usual[row]
-        if not LOWEST[row] <= usual <= HIGHEST[row] or 0.0 < usual < TINY:
+    for index in range(PARAMETER_COUNT):
+        usual = t.usual[index]
+        if not LOWEST[index] <= usual <= HIGHEST[index] or 0.0 < usual < TINY:
             return 0
     return 1
 
@@ -118,7 +118,7 @@ def check_values(t: Tables) -> int:
 def check_binds(t: Tables) -> int:
     """Return whether sources and targets of binds are right, once each field is."""
     for n in range(int(t.binds)):
-        source, row = int(t.source[n]), int(t.target[n])
+        source, index = int(t.source[n]), int(t.target[n])
         is_change = source < KEYS or PAIR <= source < PAIR + PAIRS
         is_other = BEND <= source <= NOTE or NRPN <= source < NRPN + NRPNS or source >= CONTROL
         first = 0
@@ -126,7 +126,7 @@ def check_binds(t: Tables) -> int:
             first += 1
         if not (is_change or is_other) or int(t.first[n]) != first:
             return 0
-        if not LOWEST[row] <= min(t.lo[n], t.hi[n]) <= max(t.lo[n], t.hi[n]) <= HIGHEST[row]:
+        if not LOWEST[index] <= min(t.lo[n], t.hi[n]) <= max(t.lo[n], t.hi[n]) <= HIGHEST[index]:
             return 0
     return 1
 

@@ -21,7 +21,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.midi.channels import plays
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE
 from yehu_server.core.player.note_range import NoteRange
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.spec import Param
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.bind import Bind
@@ -117,7 +117,7 @@ class PartState:
             return pending.value
         if param.player_controlled:
             return self._instrument.target(param.address)
-        return float(self.record["value"][ROW[param.address]])
+        return float(self.record["value"][INDEX[param.address]])
 
     def values(self) -> dict[str, float]:
         """The values of all parameters, by address."""
@@ -127,7 +127,7 @@ class PartState:
         """Whether a parameter was written with ``hold``."""
         pending = self._waiting(find(address))
         is_held = pending is not None and pending.is_held
-        return is_held or bool(self.record["is_held"][ROW[find(address).address]])
+        return is_held or bool(self.record["is_held"][INDEX[find(address).address]])
 
     def expect(self, values: Values[str, float], frame: int | None) -> None:
         """Answer with these values, but for held ones, until the audio side has what sets them."""
@@ -239,9 +239,9 @@ class PartState:
         values = {param.address: self.value(param.address) for param in free}
         record = self.record
         for bind in self.mapping.of(VELOCITY):
-            row = ROW[find(bind.target).address]
-            if bind.target in values and record["is_target"][row]:
-                values[bind.target] = float(record["set_to"][row])
+            index = INDEX[find(bind.target).address]
+            if bind.target in values and record["is_target"][index]:
+                values[bind.target] = float(record["set_to"][index])
         return values
 
 

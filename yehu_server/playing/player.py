@@ -20,7 +20,7 @@ from yehu_server.core.midi.packing import packed
 from yehu_server.core.midi.record import SECTION
 from yehu_server.core.midi.tables import SLOTS, plain_tables
 from yehu_server.core.player import commands
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.errors import ParameterError
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import SLOT, TABLE, find
@@ -159,8 +159,8 @@ class Player(PartState):
         """
         param = find(address)
         accepted = param.clamped(value)
-        row = ROW[param.address]
-        if row == SECTION:
+        index = INDEX[param.address]
+        if index == SECTION:
             accepted = min(float(round(accepted)), float(self.people))
         with self._lock:
             if not param.player_controlled and not hold and self.keeps(address):
@@ -168,7 +168,7 @@ class Player(PartState):
             self._note(param.address, accepted, frame, is_held=hold)
             if param.address == "/bow/force":  # raw newtons are heard only without assist
                 self._note("/bow/assist", 0.0, frame, is_held=hold)
-            self.post(commands.HOLD if hold else kind, frame, row, accepted, glide_ms)
+            self.post(commands.HOLD if hold else kind, frame, index, accepted, glide_ms)
         return accepted
 
     def set(
@@ -230,7 +230,7 @@ class Player(PartState):
         has_note = tuned is not None or self.has(key)
         with self._lock:
             for address, value in (values or {}).items() if has_note else ():
-                self.post(commands.EXPRESS, frame, ROW[address], find(address).clamped(value))
+                self.post(commands.EXPRESS, frame, INDEX[address], find(address).clamped(value))
             if tuned is None:
                 self.post(events.NOTE_ON, frame, key.channel, key.note, OWN_VALUES)
             else:

@@ -17,7 +17,7 @@ from yehu_server.core.physics.elementary import exp2, sin_and_cos
 from yehu_server.core.physics.quantities import Body, Quantities, StringQuantities
 from yehu_server.core.physics.radiation import pole_of
 from yehu_server.core.player.calibration import Calibration
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.table import find
 from yehu_server.playing.options import PlayingOptions
 
@@ -71,10 +71,10 @@ def section_specs(
     base = playing.quantities
 
     def spec(number: int) -> InstrumentSpec:
-        seed = round(own_value(ROW[OWN_SEED], float(playing.seed), number, people))
+        seed = round(own_value(INDEX[OWN_SEED], float(playing.seed), number, people))
         tuned, own = (calibration, base) if number == 0 else vary(calibration, base, seed)
         values = {
-            address: own_value(ROW[address], find(address).default, number, people)
+            address: own_value(INDEX[address], find(address).default, number, people)
             for address in (GAIN, PAN, DISTANCE)
         }
         player, body = replace(playing, seed=seed, quantities=own), seed if number else 0

@@ -11,7 +11,7 @@ import numpy as np
 
 from yehu_server.core.midi import tables
 from yehu_server.core.player.note_range import YEHU, NoteRange
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
@@ -72,11 +72,12 @@ def make_tables(
     t["mpe"] = float(mapping.mpe)
     t["first_switch"] = math.nan if mapping.key_switches is None else mapping.key_switches
     for address, value in mapping.start:
-        t["usual"][ROW[address]] = value
+        t["usual"][INDEX[address]] = value
     starts = dict(mapping.start) | dict(start)
     t["starts"] = len(starts)
     for place, (address, value) in enumerate(starts.items()):
-        t["start_row"][place], t["start_value"][place] = ROW[address], find(address).clamped(value)
+        t["start_row"][place] = INDEX[address]
+        t["start_value"][place] = find(address).clamped(value)
     t["is_equal"] = float(tuning.keys is None)
     pitches = (tuning.pitch(float(key), a4) for key in KEYS)
     t["pitch"] = [math.nan if pitch is None else pitch for pitch in pitches]
@@ -94,7 +95,7 @@ def _write_binds(t: Array, mapping: Binds, controls: Controls) -> None:
     for n, bind in enumerate(mapping.binds):
         t["source"][n] = source_code(bind.source, controls)
         t["first"][n] = firsts.setdefault(bind.source, n)
-        t["target"][n] = ROW[bind.target]
+        t["target"][n] = INDEX[bind.target]
         t["lo"][n], t["hi"][n] = bind.ends
         if isinstance(bind.curve, Breakpoints):
             end = points + len(bind.curve.points)
@@ -137,5 +138,5 @@ def _write_programs(t: Array, programs: Mapping[int, Preset] | None) -> None:
     for program, preset in (programs or {}).items():
         t["has_program"][program - 1] = 1.0
         for place, (address, value) in enumerate(preset.values.items()):
-            t["program_row"][program - 1, place] = ROW[address]
+            t["program_row"][program - 1, place] = INDEX[address]
             t["program_value"][program - 1, place] = find(address).clamped(value)

@@ -51,7 +51,7 @@ namespace yehu {{
 
 struct Parameter {{
     uint32_t number;   /* for ever */
-    int32_t row;       /* in the instrument; -1: a choice of the plug-in's own */
+    int32_t index;     /* in the instrument; -1: a choice of the plug-in's own */
     int32_t steps;     /* 0: continuous */
     bool exponential;  /* equal steps are equal ratios */
     double lo, hi, usual;
@@ -149,7 +149,7 @@ def _parameter(index: int, each: HostParameter) -> str:
     choices = f"choices_{index}" if each.choices else "nullptr"
     is_exponential = str(each.is_exponential).lower()
     return (
-        f"    {{{each.number}u, {each.row}, {each.steps}, {is_exponential}, {numbers}, "
+        f"    {{{each.number}u, {each.index}, {each.steps}, {is_exponential}, {numbers}, "
         f"{texts}, {choices}}},"
     )
 

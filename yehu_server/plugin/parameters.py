@@ -9,7 +9,7 @@ from __future__ import annotations
 import zlib
 from dataclasses import dataclass
 
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.articulations import ARTICULATIONS, LAST
 from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import TABLE
@@ -35,7 +35,7 @@ class HostParameter:
     hi: float
     default: float
     doc: str
-    row: int = -1  # in the parameter table; -1 for a choice of the plug-in's own
+    index: int = -1  # in the parameter table; -1 for a choice of the plug-in's own
     # How many steps there are from the lowest to the highest value; 0: it is continuous.
     steps: int = 0
     is_exponential: bool = False
@@ -108,7 +108,7 @@ def _of_table(param: Param) -> HostParameter:
         param.hi,
         param.default,
         param.doc,
-        row=ROW[param.address],
+        index=INDEX[param.address],
         steps=round(param.hi - param.lo) if param.is_choice else 0,
         is_exponential=param.curve is Curve.EXP,
         choices=ARTICULATION_NAMES if param.address == ARTICULATION else (),

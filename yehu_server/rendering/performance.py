@@ -13,7 +13,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import EXPRESS
-from yehu_server.core.player.rows import BEND, ROW
+from yehu_server.core.player.parameter_indices import BEND, INDEX
 from yehu_server.params.table import find
 from yehu_server.playing.parts import number_of_instruments
 from yehu_server.playing.section_instruments import part_specs
@@ -67,7 +67,7 @@ class PartPlayer:
     def _receive(self, number: int, event: ScoreEvent, frame: int) -> None:
         if number in self._lengths_s:
             for address in self._passing:
-                self.player.post(EXPRESS, frame, ROW[address], self._usual(address))
+                self.player.post(EXPRESS, frame, INDEX[address], self._usual(address))
             self._passing.clear()
             self.player.write("/playing/note_length", self._lengths_s[number], frame=frame)
         if isinstance(event.message, Setting):

@@ -22,7 +22,7 @@ HIGHEST_KEY = 127.0
 SILENCED = "silence"
 ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: SILENCED}
 INDICES = {address: slot for slot, address in ADDRESSES.items()}
-ROWS = {param.address: row for row, param in enumerate(TABLE)}
+INDEX = {param.address: index for index, param in enumerate(TABLE)}
 NUMBERS = {name: kind for kind, name in enumerate(commands.KINDS)}
 
 CommandRow = tuple[int, int, int, float, float]  # of a command
@@ -117,8 +117,8 @@ def _whole(value: Any, lo: int, hi: int) -> int:
 
 
 def _setting(address: str, value: Any) -> tuple[int, float]:
-    row = ROWS[address]
-    return row, _within(value, TABLE[row].lo, TABLE[row].hi)
+    index = INDEX[address]
+    return index, _within(value, TABLE[index].lo, TABLE[index].hi)
 
 
 def _within(value: Any, lo: float, hi: float) -> float:

@@ -19,7 +19,7 @@ import numpy as np
 
 from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, STOP
-from yehu_server.core.player.rows import VELOCITY
+from yehu_server.core.player.parameter_indices import VELOCITY
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture import Capture, read_capture
 from yehu_server.scores.chosen_parts import says_mpe

@@ -15,7 +15,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN, KINDS, RAMP
-from yehu_server.core.player.rows import ROWS
+from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.core.stage.directivity import SIDES
 from yehu_server.core.stage.late_field import ROOM
 from yehu_server.core.stage.seat import SEAT
@@ -144,7 +144,7 @@ def test_whatever_is_asked_for_every_sample_is_finite(instrument, playing, sound
         instrument._rig[:] = playing
         if sounds:
             instrument.post(BEGIN, value=69.0, other=69.0)
-        for index in range(ROWS):
+        for index in range(PARAMETER_COUNT):
             instrument.post(kind, index=index, value=bad, other=bad)
             instrument.post(kind, index=index, value=0.5, other=bad)
             instrument.post(kind, index=index, value=bad, other=0.0)

@@ -38,7 +38,7 @@ from yehu_server.core.engine.mailbox import (
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import TABLES_TO
 from yehu_server.core.player.commands import BEGIN, EXPRESS, HOLD, RAMP, WRITE
-from yehu_server.core.player.rows import ROW, ROWS
+from yehu_server.core.player.parameter_indices import INDEX, PARAMETER_COUNT
 from yehu_server.params.table import ENGINE, SLOT
 
 RATE = 22050
@@ -48,7 +48,7 @@ INERT = [SLOT["/bow/force"], SLOT["/bow/pressure"]]
 # Kind and index of commands that are not heard either, of even and of odd number.
 (EVEN_KIND, EVEN), (ODD_KIND, ODD) = UNHEARD = [
     (RAMP, SLOT["/bow/force"]),
-    (EXPRESS, ROW["/playing/vibrato_rate"]),
+    (EXPRESS, INDEX["/playing/vibrato_rate"]),
 ]
 run = partial(sound.run, block=4096)
 FAR = 10**9  # a frame that never comes
@@ -394,8 +394,8 @@ def test_a_command_of_no_kind_or_for_no_parameter_changes_nothing():
     wild = (-1, -2, 2**62, -(2**62))
     none = [
         *product([RAMP], [*wild, SILENCE + 1, SILENCE + 5]),
-        *product([WRITE, HOLD, EXPRESS], [*wild, ROWS, ROWS + 5]),
-        *product([*wild, LAST + 1, LAST + 5], [0, ROW["/playing/speed"]]),
+        *product([WRITE, HOLD, EXPRESS], [*wild, PARAMETER_COUNT, PARAMETER_COUNT + 5]),
+        *product([*wild, LAST + 1, LAST + 5], [0, INDEX["/playing/speed"]]),
     ]
     instrument, usual = offline(), offline()
     for each in (instrument, usual):

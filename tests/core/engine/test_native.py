@@ -20,8 +20,8 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.warming import all_functions, functions_beside
 from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
 from yehu_server.core.player.commands import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.core.player.record import SILENT
-from yehu_server.core.player.rows import ROW
 
 RATE = 22050
 FOR_STUDIES = [call for called in compile_all.MORE.values() for call in functions_beside(called)]
@@ -290,7 +290,7 @@ def drawn_by_hand(instrument: Instrument) -> None:
 
 def kept_while_notes_sound(instrument: Instrument) -> None:
     for address in ("/bow/speed", "/bow/side", "/finger/3/press"):
-        instrument.post(HOLD, index=ROW[address], value=0.4)
+        instrument.post(HOLD, index=INDEX[address], value=0.4)
     play(instrument)
 
 
@@ -300,7 +300,7 @@ def play(instrument: Instrument, *keys: float) -> None:
 
 
 def pluck(instrument: Instrument) -> None:
-    instrument.post(WRITE, index=ROW["/playing/pizzicato"], value=1.0)
+    instrument.post(WRITE, index=INDEX["/playing/pizzicato"], value=1.0)
     play(instrument)
 
 

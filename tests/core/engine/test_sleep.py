@@ -17,7 +17,7 @@ from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.sleep import QUIET, WINDOW
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN, END, HOLD, WRITE
-from yehu_server.core.player.rows import EXPRESSION, ROW, TREMOLO
+from yehu_server.core.player.parameter_indices import EXPRESSION, INDEX, TREMOLO
 from yehu_server.core.stage.seat import SPAN
 
 RATE = 44100.0
@@ -151,8 +151,8 @@ def test_a_note_is_the_same_after_a_silence_that_was_slept_through_and_one_that_
     for keeps_awake in (False, True):
         ensemble = alone(RATE, seed=7)
         one = ensemble.first
-        one.post(HOLD, index=ROW["/playing/vibrato"], value=1.0)
-        one.post(HOLD, index=ROW["/playing/variation"], value=1.0)
+        one.post(HOLD, index=INDEX["/playing/vibrato"], value=1.0)
+        one.post(HOLD, index=INDEX["/playing/variation"], value=1.0)
         one.write("/vibrato/depth", 20.0, ramp_ms=0.0)
         one.write("/bow/tremolo", speed, ramp_ms=0.0)
         for frame in range(0, 3 * WINDOW, 50) if keeps_awake else ():

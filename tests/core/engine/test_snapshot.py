@@ -10,7 +10,7 @@ from yehu_server.core.engine.snapshot import NO_STRING, SNAPSHOT, snapshot
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.layout import V_B, X_B
 from yehu_server.core.player.commands import BEGIN, END, HOLD
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 
 RATE = 44100.0
 
@@ -65,8 +65,8 @@ def test_of_a_bowed_note_it_tells_pitch_bow_fingers_and_strings():
 
 def test_the_speed_turns_with_the_tremolo_and_after_the_note_the_bow_is_lifted():
     instrument = Instrument(InstrumentSpec(RATE))
-    instrument.post(HOLD, index=ROW["/playing/tremolo"], value=10.0)
-    instrument.post(HOLD, index=ROW["/playing/bow_length"], value=0.0)
+    instrument.post(HOLD, index=INDEX["/playing/tremolo"], value=10.0)
+    instrument.post(HOLD, index=INDEX["/playing/bow_length"], value=0.0)
     instrument.post(BEGIN, value=76.0, other=76.0)
     signs = set()
     for _ in range(100):
@@ -83,7 +83,7 @@ def test_the_speed_turns_with_the_tremolo_and_after_the_note_the_bow_is_lifted()
 def test_the_string_is_at_its_place_on_the_hair_and_goes_as_the_bow_is_drawn(length):
     """To the tip and back, within a bow that turns before its ends."""
     instrument = Instrument(InstrumentSpec(RATE))
-    instrument.post(HOLD, index=ROW["/playing/bow_length"], value=length)
+    instrument.post(HOLD, index=INDEX["/playing/bow_length"], value=length)
     instrument.post(BEGIN, value=69.0, other=69.0)
     snapshots = np.zeros(200, SNAPSHOT)
     for number in range(len(snapshots)):

@@ -11,7 +11,7 @@ import pytest
 from yehu_server.core.engine.voice_callback import COMMAND_NUMBERS, follow_voice, voice_prepare
 from yehu_server.core.player.commands import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.player.note_range import HIGHEST_NOTE, LOWEST_NOTE
-from yehu_server.core.player.rows import DYNAMICS
+from yehu_server.core.player.parameter_indices import DYNAMICS
 from yehu_server.core.voice.note_detection import FOLLOWER
 
 RATE = 48000.0

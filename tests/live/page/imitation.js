@@ -13,7 +13,7 @@ const POINTS = 64;
 const LENGTH = 0.38; // m
 const LIMIT = 7.3; // Schelleng's greatest force, for each m/s at a beta of 0.13
 const OPEN = facts.notes.OPEN;
-const ROWS = new Map(facts.parameters.map(({ address, row }) => [address, row]));
+const INDEX = new Map(facts.parameters.map(({ address, index }) => [address, index]));
 
 export class Sound extends EventTarget {
   static async open() {
@@ -26,7 +26,7 @@ export class Sound extends EventTarget {
     this.commands = [];
     /** @type {{key: string, pitch: number}[]} */
     this.notes = [];
-    this.values = new Map(facts.parameters.map((param) => [param.row, param.default]));
+    this.values = new Map(facts.parameters.map((param) => [param.index, param.default]));
     this.pitch = NaN;
     this.drawn = { isOn: false, speed: 0, force: 0 };
     this.begun = performance.now();
@@ -107,7 +107,7 @@ export class Sound extends EventTarget {
 
   /** @param {string} address */
   target(address) {
-    return this.values.get(ROWS.get(address) ?? -1);
+    return this.values.get(INDEX.get(address) ?? -1);
   }
 
   /** The frame that is played now; those of the states are some milliseconds old. */
@@ -119,8 +119,8 @@ export class Sound extends EventTarget {
   #snapshot() {
     const time = (performance.now() - this.begun) / 1000;
     const isBowed = this.drawn.isOn || this.notes.length > 0;
-    const beta = this.values.get(ROWS.get("/playing/bow_position") ?? -1) ?? 0.13;
-    const share = this.values.get(ROWS.get("/playing/pressure") ?? -1) ?? 0.4;
+    const beta = this.values.get(INDEX.get("/playing/bow_position") ?? -1) ?? 0.13;
+    const share = this.values.get(INDEX.get("/playing/pressure") ?? -1) ?? 0.4;
     const speed = this.drawn.isOn
       ? this.drawn.speed
       : isBowed

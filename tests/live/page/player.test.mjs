@@ -21,7 +21,7 @@ const { ParameterError } = await import(new URL("playing/table.js", web).href);
 const { Kernel, NOW } = await import(new URL("sound/kernel.js", web).href);
 
 const { BEGIN, END, STOP, LIFT, WRITE, EXPRESS } = facts.kinds;
-const ROW = Object.fromEntries(facts.parameters.map(({ address, row }) => [address, row]));
+const INDEX = Object.fromEntries(facts.parameters.map(({ address, index }) => [address, index]));
 const NAMES = Object.fromEntries(Object.entries(facts.kinds).map(([name, kind]) => [kind, name]));
 const RATE = 48000;
 const LOUDNESS = "/playing/dynamics";
@@ -41,7 +41,7 @@ async function playing(members = {}) {
   const of = (...kinds) => commands.filter((command) => kinds.includes(command.kind));
   const values = (kind, address) =>
     of(kind)
-      .filter(({ index }) => index === ROW[address])
+      .filter(({ index }) => index === INDEX[address])
       .map(({ value }) => value);
   return { player, commands, sink, of, values };
 }
@@ -322,7 +322,7 @@ test("without an interpreter only silence can be requested, and what was chosen 
   player.remap(MAPPINGS.wind);
   player.panic();
   assert.deepEqual(commands, [[null, STOP, 0, 1, 0]]);
-  assert.equal(player.value(LOUDNESS), facts.parameters[ROW[LOUDNESS]].default);
+  assert.equal(player.value(LOUDNESS), facts.parameters[INDEX[LOUDNESS]].default);
   player.playBy(await Interpreter.open(module));
   player.midi([0xb0, 2, 127]); // a breath controller
   player.midi([0x90, 67, 90]);

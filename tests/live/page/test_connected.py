@@ -24,11 +24,11 @@ from web_client import Refused, WebSocket, ask
 
 from yehu_server.ahead.interpreter import snapshot_layout, snapshot_length
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live import limits
 from yehu_server.live.options import PartOptions
 from yehu_server.live.page.players import CHANNELS, LOWEST
-from yehu_server.live.page.sockets import COMMANDS, LOOK, NO_PART, NOW, WRONG
+from yehu_server.live.page.sockets import COMMANDS, NO_PART, NOW, SNAPSHOT, WRONG
 from yehu_server.live.server import Server
 from yehu_server.params.table import TABLE
 from yehu_server.playing.options import PlayingOptions
@@ -94,8 +94,8 @@ class Page:
         self.socket = socket
         self.status: dict[str, Any] = {}
 
-    async def want(self, *, looks: bool = False, sounds: bool = False) -> None:
-        await self.socket.send_str(json.dumps({"looks": looks, "sounds": sounds}))
+    async def want(self, *, snapshots: bool = False, sounds: bool = False) -> None:
+        await self.socket.send_str(json.dumps({"snapshots": snapshots, "sounds": sounds}))
 
     async def command(self, *commands: Any) -> None:
         await self.socket.send_bytes(packed(*commands))
@@ -108,14 +108,14 @@ class Page:
                 return np.frombuffer(message.data, "<f8")
             assert message.type is aiohttp.WSMsgType.TEXT, message
 
-    async def look(self, address: str, expected: Callable[[float], bool]) -> Any:
-        """The first look in which a parameter's value is as expected."""
-        await self.want(looks=True)
+    async def snapshot(self, address: str, expected: Callable[[float], bool]) -> Any:
+        """The first snapshot in which a parameter's value is as expected."""
+        await self.want(snapshots=True)
         while True:
-            kind, *look = await self.numbers()
-            assert kind == LOOK
-            if expected(look[snapshot_length() + ROW[address]]):
-                return look
+            kind, *snapshot = await self.numbers()
+            assert kind == SNAPSHOT
+            if expected(snapshot[snapshot_length() + INDEX[address]]):
+                return snapshot
 
     async def end(self) -> tuple[int, str]:
         """The code and the reason with which the server closes the connection."""
@@ -231,21 +231,21 @@ def test_oscquery_leads_to_the_page(server) -> None:
     assert (answer.status // 100, answer.headers["Location"]) == (3, url(server))
 
 
-# ---------------------------------------------------------------- looks
+# ---------------------------------------------------------------- snapshots
 
 
-def test_looks_come_sixty_times_a_second_to_pages_that_want_them(server) -> None:
+def test_snapshots_come_sixty_times_a_second_to_pages_that_want_them(server) -> None:
     async def watch(page: Page, other: Page) -> Any:
-        await page.want(looks=True)
-        looks = [await page.numbers() for _ in range(62)][2:]
+        await page.want(snapshots=True)
+        snapshots = [await page.numbers() for _ in range(62)][2:]
         with pytest.raises(TimeoutError):
             await asyncio.wait_for(other.numbers(), 0.2)
-        return looks
+        return snapshots
 
-    looks = with_pages(server, watch, 1, 1)
+    snapshots = with_pages(server, watch, 1, 1)
     length = 1 + snapshot_length() + 2 * len(TABLE)
-    assert {(look[0], len(look)) for look in looks} == {(LOOK, length)}
-    frames = np.array([look[1 + snapshot_layout()["frame"][0]] for look in looks])
+    assert {(snapshot[0], len(snapshot)) for snapshot in snapshots} == {(SNAPSHOT, length)}
+    frames = np.array([snapshot[1 + snapshot_layout()["frame"][0]] for snapshot in snapshots])
     assert (np.diff(frames) >= 0).all()
     assert 40 < 59 / ((frames[-1] - frames[0]) / server.instrument.rate) < 70
 
@@ -272,7 +272,7 @@ def test_a_command_ahead_is_applied_at_its_frame(server) -> None:
 
     async def lateness(page: Page, ahead: int) -> int:
         frame = server.instrument.frame + ahead
-        await page.command(command(WRITE, ROW[PRESSURE], 0.75, at=frame))
+        await page.command(command(WRITE, INDEX[PRESSURE], 0.75, at=frame))
         await asyncio.to_thread(until, lambda: server.instrument.frame > frame + 480, "no time")
         applied = server.instrument.applied_commands()
         found = applied[(applied["kind"] == WRITE) & (applied["value"] == 0.75)]
@@ -295,7 +295,7 @@ def test_what_is_no_command_and_no_question_ends_the_connection(server, subtests
         return (await page.end())[0]
 
     for said in [
-        *("", "[]", "{}", '{"looks": 1}', "[" * 5000),
+        *("", "[]", "{}", '{"snapshots": 1}', "[" * 5000),
         packed(command(RAMP, 0, 1.0)),
         packed(command(11)),
         packed(command(-1)),
@@ -367,28 +367,28 @@ def test_silence_in_a_page_silences_its_part(server) -> None:
     assert server.players[0].pitch is not None
 
 
-def test_a_look_is_at_the_parts_own_instrument_and_the_level_that_of_the_mix(server) -> None:
+def test_a_snapshot_is_of_the_parts_own_instrument_and_the_level_that_of_the_mix(server) -> None:
     for player, value in zip(server.players, (25.0, 75.0), strict=True):
         player.set(VIBRATO, value, frame=player.frame_of())
     server.player.key_on(69.0, 90.0, frame=server.player.frame_of())
 
-    async def look(page: Page, value: float) -> None:
-        while (await page.look(VIBRATO, value.__eq__))[snapshot_layout()["rms"][0]] < 1e-3:
+    async def snapshot(page: Page, value: float) -> None:
+        while (await page.snapshot(VIBRATO, value.__eq__))[snapshot_layout()["rms"][0]] < 1e-3:
             pass
 
     for part, value in ((1, 25.0), (2, 75.0)):
-        with_pages(server, lambda page, value=value: look(page, value), part)
+        with_pages(server, lambda page, value=value: snapshot(page, value), part)
 
 
 def test_the_room_is_one_for_all_and_a_section_tells_the_parts_place(server) -> None:
     first, second = server.players
 
     async def furnish(page: Page) -> None:
-        await page.command(command(WRITE, ROW[SIZE], 12.0))
-        await page.look(SIZE, (12.0).__eq__)
-        await page.look(PAN, second.value(PAN).__eq__)
-        await page.command(command(WRITE, ROW[PAN], 0.25))
-        await page.look(PAN, (0.25).__eq__)
+        await page.command(command(WRITE, INDEX[SIZE], 12.0))
+        await page.snapshot(SIZE, (12.0).__eq__)
+        await page.snapshot(PAN, second.value(PAN).__eq__)
+        await page.command(command(WRITE, INDEX[PAN], 0.25))
+        await page.snapshot(PAN, (0.25).__eq__)
 
     with_pages(server, furnish, 2)
     assert first.value(SIZE) == 12.0

@@ -17,7 +17,7 @@ from yehu_server.core.midi import events
 from yehu_server.core.midi.record import MIDI
 from yehu_server.core.midi.tables import MOST_BINDS, TABLES
 from yehu_server.core.player.commands import KINDS
-from yehu_server.core.player.rows import IS_ENGINES, IS_PLAYER_CONTROLLED, ROW
+from yehu_server.core.player.parameter_indices import INDEX, IS_ENGINES, IS_PLAYER_CONTROLLED
 from yehu_server.errors import ParameterError
 from yehu_server.live.page import examples, facts
 from yehu_server.live.page.facts import tunings
@@ -60,10 +60,10 @@ def test_each_parameter_is_there_with_its_numbers(known):
     assert [row["address"] for row in rows] == [param.address for param in TABLE]
     for row in rows:
         param = find(row["address"])
-        assert row["row"] == ROW[param.address]
+        assert row["index"] == INDEX[param.address]
         assert row["slot"] == SLOT.get(param.address)
-        assert row["playerControlled"] == IS_PLAYER_CONTROLLED[row["row"]]
-        assert (row["slot"] is not None) == IS_ENGINES[row["row"]]
+        assert row["playerControlled"] == IS_PLAYER_CONTROLLED[row["index"]]
+        assert (row["slot"] is not None) == IS_ENGINES[row["index"]]
         assert Curve(row["curve"]) is param.curve
         assert (row["lo"], row["hi"], row["default"]) == (param.lo, param.hi, param.default)
         assert (row["unit"], row["doc"]) == (param.unit, param.doc)

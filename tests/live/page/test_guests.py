@@ -13,7 +13,7 @@ from wire import StillTime
 
 from yehu_server.core.midi.events import LEAVE, RELEASE_ALL
 from yehu_server.core.player.commands import BEGIN, DRAW, EXPRESS, HOLD, STOP, WRITE
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live import limits
 from yehu_server.live.page import guests as admitting
 from yehu_server.live.page import sockets as serving
@@ -61,13 +61,13 @@ def test_however_many_machines_guess_few_are_remembered() -> None:
 
 COMMANDS = {
     "a note": (BEGIN, 1, 69.0),
-    "its value": (EXPRESS, ROW["/playing/pressure"], 0.4),
-    "a controller": (WRITE, ROW["/playing/vibrato"], 20.0),
+    "its value": (EXPRESS, INDEX["/playing/pressure"], 0.4),
+    "a controller": (WRITE, INDEX["/playing/vibrato"], 20.0),
     "a bow": (DRAW, 0, 0.2),
-    "the room": (WRITE, ROW["/room/size"], 20.0),
-    "the body": (WRITE, ROW["/body/gain"], 1.0),
-    "the output": (EXPRESS, ROW["/output/gain"], 6.0),
-    "a held value": (HOLD, ROW["/playing/vibrato"], 20.0),
+    "the room": (WRITE, INDEX["/room/size"], 20.0),
+    "the body": (WRITE, INDEX["/body/gain"], 1.0),
+    "the output": (EXPRESS, INDEX["/output/gain"], 6.0),
+    "a held value": (HOLD, INDEX["/playing/vibrato"], 20.0),
     "silence": (STOP, 0, 1.0),
 }
 

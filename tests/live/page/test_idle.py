@@ -34,7 +34,7 @@ def test_without_a_page_nothing_is_looked_at_and_nothing_wakes_the_process() -> 
     sockets = PageSockets(view, [0], dict)
 
     async def serve() -> None:
-        tasks = (sockets.send_looks, sockets.send_sound, sockets.send_status)
+        tasks = (sockets.send_snapshots, sockets.send_sound, sockets.send_status)
         running = [asyncio.ensure_future(task()) for task in tasks]
         for _ in range(10):
             await asyncio.sleep(0)

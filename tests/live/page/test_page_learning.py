@@ -11,8 +11,8 @@ from live.page.browser import drive
 from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import load
 
-ROW = {param.address: row for row, param in enumerate(TABLE)}
-VIBRATO, BOW_POSITION = ROW["/playing/vibrato"], ROW["/playing/bow_position"]
+INDEX = {param.address: index for index, param in enumerate(TABLE)}
+VIBRATO, BOW_POSITION = INDEX["/playing/vibrato"], INDEX["/playing/bow_position"]
 
 
 @pytest.fixture(scope="module")

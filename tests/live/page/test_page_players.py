@@ -21,8 +21,8 @@ from yehu_server.core.player.commands import (
     STOP,
     WRITE,
 )
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.core.player.record import MOST_HELD
-from yehu_server.core.player.rows import ROW
 from yehu_server.live.page.players import PagePlayers
 from yehu_server.params.table import FINGERS
 from yehu_server.playing.calibration_store import calibration_for
@@ -89,7 +89,7 @@ def test_values_for_a_note_come_before_it_are_known_and_its_pitch_is_as_the_page
     player, pages
 ) -> None:
     requested(player)
-    command(pages, 0, EXPRESS, ROW[VELOCITY], 0.25)
+    command(pages, 0, EXPRESS, INDEX[VELOCITY], 0.25)
     command(pages, 0, BEGIN, 0, 69.0, 69.3)
     (before, *_), (kind, _, *pitches) = requested(player)
     assert (before, kind, pitches) == (EXPRESS, BEGIN, [69.0, 69.3])
@@ -124,9 +124,9 @@ def test_a_page_that_leaves_holds_nothing_and_draws_no_bow(player, pages) -> Non
 
 
 def test_what_it_sets_all_know(player, pages) -> None:
-    command(pages, 0, WRITE, ROW[PRESSURE], 0.25)
+    command(pages, 0, WRITE, INDEX[PRESSURE], 0.25)
     assert player.value(PRESSURE) == 0.25
-    command(pages, 0, HOLD, ROW[PRESSURE], 0.75)
+    command(pages, 0, HOLD, INDEX[PRESSURE], 0.75)
     player.set(PRESSURE, 0.5, frame=player.instrument.frame)
     assert player.value(PRESSURE) == 0.75
     command(pages, 0, RELEASE)
@@ -138,8 +138,8 @@ def test_what_it_moves_slowly_the_next_note_keeps(player, pages) -> None:
     moved = mido.Message("control_change", control=16, value=10)
     receive(player, moved, frame=player.instrument.frame, port=0)
     requested(player)
-    command(pages, 0, WRITE, ROW[SPEED], 0.25, 40.0)
-    assert requested(player) == [(WRITE, ROW[SPEED], 0.25, 40.0)]
+    command(pages, 0, WRITE, INDEX[SPEED], 0.25, 40.0)
+    assert requested(player) == [(WRITE, INDEX[SPEED], 0.25, 40.0)]
     note = mido.Message("note_on", note=69)
     receive(player, note, frame=player.instrument.frame, port=0)
     assert player.value(SPEED) == 0.25
@@ -161,8 +161,8 @@ def test_a_note_asked_for_ahead_ends_though_the_page_has_left(player, pages) -> 
 
 
 def test_frames_lie_at_most_some_seconds_ahead(player, pages) -> None:
-    command(pages, 0, WRITE, ROW[PRESSURE], 0.25, at=1e12)
-    command(pages, 0, WRITE, ROW[PRESSURE], 0.5)
+    command(pages, 0, WRITE, INDEX[PRESSURE], 0.25, at=1e12)
+    command(pages, 0, WRITE, INDEX[PRESSURE], 0.5)
     requested(player)
     assert player.value(PRESSURE) == 0.5
     out = np.zeros((48000, 1), np.float32)

@@ -12,7 +12,7 @@ from live.page.browser import ROOT, drive
 from yehu_server.params.table import TABLE
 from yehu_server.playing.preset_folders import Presets
 
-ROW = {param.address: row for row, param in enumerate(TABLE)}
+INDEX = {param.address: index for index, param in enumerate(TABLE)}
 # What every language writes with Latin letters, or that is no word.
 LATIN = re.compile(
     r"yehu-server serve --mapping|/[a-z_/]+|Keys|Switch to English|English|MIDI|MPE|AudioWorklet|"
@@ -56,8 +56,8 @@ def test_load_and_latency_are_told_where_they_are_high(found) -> None:
 def test_the_diagram_places_the_bow_until_it_is_let_go(found) -> None:
     *placed, end = found["placed"]
     assert [command[:2] for command in placed] == 2 * [
-        ["WRITE", ROW["/bow/position"]],
-        ["WRITE", ROW["/bow/force"]],
+        ["WRITE", INDEX["/bow/position"]],
+        ["WRITE", INDEX["/bow/force"]],
     ]
     (near, light, far, firm) = (value for _kind, _row, value, *_ in placed)
     assert 0.04 <= near < far <= 0.5
@@ -75,7 +75,7 @@ def test_the_tuner_measures_from_the_notes_of_the_tuning(found) -> None:
 def test_presets_and_parameters_write_their_values(found) -> None:
     third = sorted(Presets().all()[0], key=lambda preset: preset.program or 0)[2]
     assert {row: value for _kind, row, value, *_ in found["preset"]} == {
-        ROW[address]: value for address, value in third.values.items()
+        INDEX[address]: value for address, value in third.values.items()
     }
     assert {"/bow/speed", "/playing/speed"} <= set(found["search"])
     assert "/output/gain" not in found["search"]
@@ -83,7 +83,7 @@ def test_presets_and_parameters_write_their_values(found) -> None:
     for name, value in (("clamped", 500), ("reset", 40)):
         assert found[name]["shown"] == str(value)
         commands = [command[:3] for command in found[name]["commands"]]
-        assert commands == [["WRITE", ROW["/playing/attack"], value]]
+        assert commands == [["WRITE", INDEX["/playing/attack"], value]]
 
 
 def test_what_was_kept_is_played_again_and_what_is_no_performance_is_refused(found) -> None:

@@ -37,8 +37,8 @@ from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.layout import MAX_FINGERS, MODEL, STATE, STRINGS
 from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
 from yehu_server.core.player.notes import sounding_pitch
+from yehu_server.core.player.parameter_indices import BOW_LENGTH
 from yehu_server.core.player.record import PLAYER
-from yehu_server.core.player.rows import BOW_LENGTH
 from yehu_server.core.stage.record import STAGE
 
 NO_STRING = -1

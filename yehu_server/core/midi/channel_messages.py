@@ -19,7 +19,7 @@ from yehu_server.core.midi.record import CHANNELS, IN_PORT, PORTS, Midi
 from yehu_server.core.midi.resets import disconnect_channel, forget_all_moves
 from yehu_server.core.midi.sources import move, press_key, set_directly
 from yehu_server.core.midi.tables import BEND, PRESSURE, Tables
-from yehu_server.core.player.rows import ROWS
+from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 
 # High halves of status bytes.
 NOTE_OFF, NOTE_ON, POLY_PRESSURE, CONTROL_CHANGE = 0x80, 0x90, 0xA0, 0xB0
@@ -94,12 +94,12 @@ def change_program(m: Any, t: Any, frame: int, channel: int, program: int) -> No
     if t.has_program[program] == 0.0:
         m.unknown_program[program] += 1
         return
-    for i in range(ROWS):
+    for i in range(PARAMETER_COUNT):
         if math.isnan(t.program_row[program, i]):
             return
-        row = int(t.program_row[program, i])
-        if m.is_held[row] == 0:
-            set_directly(m, frame, row, t.program_value[program, i], 0.0)
+        index = int(t.program_row[program, i])
+        if m.is_held[index] == 0:
+            set_directly(m, frame, index, t.program_value[program, i], 0.0)
 
 
 # -- ends -----------------------------------------------------------------------------------------

@@ -14,14 +14,14 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE
 from yehu_server.core.midi.tables import MOST_BINDS
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 
 LOWER_MASTER, UPPER_MASTER = 0, 15  # in a port
 MOST_MEMBERS = 15
 MEMBER_BEND, MASTER_BEND = 48.0, 2.0  # semitones, until RPN 0 sets another range
 PERCUSSION = 9  # channel 10, counted from 0
 ALL_BUT_PERCUSSION = -1  # of channels that are received
-BEND_RANGE = ROW["/playing/bend_range"]
+BEND_RANGE = INDEX["/playing/bend_range"]
 
 
 @compiled_exactly

@@ -20,17 +20,22 @@ from yehu_server.core.midi.section import (
     end_together,
     set_playing_count,
 )
-from yehu_server.core.midi.section_players import DISTANCE_ROW, GAIN_ROW, PAN_ROW, begin_sequence
+from yehu_server.core.midi.section_players import (
+    DISTANCE_INDEX,
+    GAIN_INDEX,
+    PAN_INDEX,
+    begin_sequence,
+)
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RELEASE, STOP, WRITE
-from yehu_server.core.player.rows import HIGHEST, IS_PLAYER_CONTROLLED, LOWEST, SEED
+from yehu_server.core.player.parameter_indices import HIGHEST, IS_PLAYER_CONTROLLED, LOWEST, SEED
 
 # -- parameters -----------------------------------------------------------------------------------
 
 
 @compiled_exactly
-def in_range(row: int, value: float) -> float:
+def in_range(index: int, value: float) -> float:
     """The value nearest to one that a parameter can have."""
-    return float(min(max(value, LOWEST[row]), HIGHEST[row]))
+    return float(min(max(value, LOWEST[index]), HIGHEST[index]))
 
 
 @compiled_exactly
@@ -44,7 +49,7 @@ def pass_on(m: Any, frame: int, kind: int, index: int, value: float, other: floa
 
 @native
 def write(
-    m: Midi, frame: int, row: int, value: float, hold: bool, glide_ms: float, of_key: int
+    m: Midi, frame: int, index: int, value: float, hold: bool, glide_ms: float, of_key: int
 ) -> float:
     """Set a parameter; return the value it then has.
 
@@ -55,54 +60,54 @@ def write(
     of_key : int
         Where a section divides: the number of the held key that it is for, or NONE for all.
     """
-    value = in_range(row, value)
-    if row == SECTION:
+    value = in_range(index, value)
+    if index == SECTION:
         value = min(np.rint(value), float(m.players))
-    if not IS_PLAYER_CONTROLLED[row]:
-        if m.is_held[row] != 0 and not hold:
-            value = m.value[row]
-            if row == SEED and m.players > 1:
+    if not IS_PLAYER_CONTROLLED[index]:
+        if m.is_held[index] != 0 and not hold:
+            value = m.value[index]
+            if index == SEED and m.players > 1:
                 begin_sequence(m, int(np.rint(value)))
             return value
-        m.value[row] = value
+        m.value[index] = value
     if hold:
-        m.is_held[row] = 1
+        m.is_held[index] = 1
     kind = HOLD if hold else WRITE
     if m.players == 1:
-        emit(m, 0, frame, kind, row, value, glide_ms)
+        emit(m, 0, frame, kind, index, value, glide_ms)
         return value
     if of_key == NONE:
-        emit_to_all(m, frame, kind, row, value, glide_ms, False, 0, 0.0)
+        emit_to_all(m, frame, kind, index, value, glide_ms, False, 0, 0.0)
     else:
         channel, key = m.held_channel[of_key], m.held_key[of_key]
-        emit_to_all(m, frame, kind, row, value, glide_ms, True, channel, key)
-    if row == SECTION and int(value) != m.playing:
+        emit_to_all(m, frame, kind, index, value, glide_ms, True, channel, key)
+    if index == SECTION and int(value) != m.playing:
         set_playing_count(m, int(value), frame)
-        for own in (GAIN_ROW, PAN_ROW, DISTANCE_ROW):
+        for own in (GAIN_INDEX, PAN_INDEX, DISTANCE_INDEX):
             own_kind = HOLD if m.is_held[own] != 0 else WRITE
             emit_to_all(m, frame, own_kind, own, m.value[own], 0.0, False, 0, 0.0)
-    elif row == SEED:
+    elif index == SEED:
         begin_sequence(m, int(np.rint(value)))
     return value
 
 
 @compiled_exactly
-def express(m: Any, frame: int, row: int, value: float) -> None:
+def express(m: Any, frame: int, index: int, value: float) -> None:
     """Set a parameter for the note that begins next, or sounds again."""
-    if m.is_held[row] != 0:
+    if m.is_held[index] != 0:
         return
-    m.value[row] = in_range(row, value)
+    m.value[index] = in_range(index, value)
     if m.players == 1:
-        emit(m, 0, frame, EXPRESS, row, m.value[row], 0.0)
+        emit(m, 0, frame, EXPRESS, index, m.value[index], 0.0)
     else:
-        add_value(m, row, m.value[row])
+        add_value(m, index, m.value[index])
 
 
 @compiled_exactly
 def release_held(m: Any) -> None:
     """Hold no parameter any more."""
-    for row in range(len(LOWEST)):
-        m.is_held[row] = 0
+    for index in range(len(LOWEST)):
+        m.is_held[index] = 0
 
 
 # -- notes ----------------------------------------------------------------------------------------

@@ -9,8 +9,8 @@ the players of the part. Beside them:
 | NOTE_ON | channel, or below 0 for none | key | velocity (0 to 1); below 0: it has its values |
 | FINGER_ON | the same; for a pitch, whatever the tuning | pitch | velocity |
 | NOTE_OFF | the channel of the note | its key | |
-| SET | row of a parameter | value, until a controller moves it | least time of the moves (ms) |
-| LOAD | row of a parameter | value of a preset, unless it is held | |
+| SET | index of a parameter | value, until a controller moves it | least time of the moves (ms) |
+| LOAD | index of a parameter | value of a preset, unless it is held | |
 | CONTROL | number of a named control of the mapping | its argument | |
 | DISCONNECT | port that is gone | | |
 | LEAVE | first of the channels of somebody who left | how many channels | |

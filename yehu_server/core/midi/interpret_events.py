@@ -55,13 +55,13 @@ from yehu_server.core.player.commands import (
     STOP,
     WRITE,
 )
-from yehu_server.core.player.rows import ROW, ROWS
+from yehu_server.core.player.parameter_indices import INDEX, PARAMETER_COUNT
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE
 
-# Rows in the order in which all parameters are given their start values, and those.
+# Parameters in the order in which all are given their start values, and those values.
 PLAYERS_FIRST = sorted(TABLE, key=lambda param: param.place is Place.ENGINE)
-START_ROWS = np.array([ROW[param.address] for param in PLAYERS_FIRST])
+START_INDICES = np.array([INDEX[param.address] for param in PLAYERS_FIRST])
 START_VALUES = np.array([param.default for param in PLAYERS_FIRST])
 
 
@@ -93,7 +93,7 @@ def interpret(
         m.tables = index  # from now on the others may be written
     elif kind in (NOTE_ON, FINGER_ON, NOTE_OFF):
         act_on_key(m, t, frame, kind, index, value, min(other, 1.0))
-    elif kind in (SET, LOAD) and 0 <= index < ROWS:
+    elif kind in (SET, LOAD) and 0 <= index < PARAMETER_COUNT:
         if kind == SET or m.is_held[index] == 0:
             set_directly(m, frame, index, value, max(other, 0.0))
     elif kind == CONTROL and index >= 0:
@@ -132,8 +132,8 @@ def act_on_end(m: Any, t: Any, frame: int, kind: int, index: int, value: float) 
 def apply_start_values(m: Any, t: Any, frame: int, with_all: bool) -> None:
     """Set parameters to the start values of the tables; first `with_all` to those of their own."""
     if with_all:
-        for i in range(len(START_ROWS)):
-            set_directly(m, frame, START_ROWS[i], START_VALUES[i], 0.0)
+        for i in range(len(START_INDICES)):
+            set_directly(m, frame, START_INDICES[i], START_VALUES[i], 0.0)
     start(m, t, frame)
 
 
@@ -142,7 +142,7 @@ def command(m: Any, frame: int, kind: int, index: int, value: float, other: floa
     """Pass on what somebody commands who knows the player (``player.commands``)."""
     is_right = math.isfinite(value) and math.isfinite(other)
     if kind in (WRITE, HOLD, EXPRESS):
-        is_right = is_right and 0 <= index < ROWS
+        is_right = is_right and 0 <= index < PARAMETER_COUNT
     if m.players == 1:  # as it is: it may be one of a replay
         if is_right:
             record_command(m, kind, index, value, other)

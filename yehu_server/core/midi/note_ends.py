@@ -23,8 +23,8 @@ def express_key(m: Any, t: Any, frame: int, channel: int, key: float) -> None:
     """Give a note that begins, or sounds again, its own values of parameters."""
     find_values(m, t, channel, key)
     for i in range(m.targets):
-        row = m.target[i]
-        express(m, frame, row, m.found_value[row])
+        index = m.target[i]
+        express(m, frame, index, m.found_value[index])
 
 
 @native

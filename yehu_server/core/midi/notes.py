@@ -23,7 +23,7 @@ from yehu_server.core.midi.sources import set_directly
 from yehu_server.core.midi.tables import CLAMP, KEYS, NOTE, SKIP, VELOCITY, Tables
 from yehu_server.core.midi.values import keep_targets_of
 from yehu_server.core.player.fingering import OPEN_WITHIN
-from yehu_server.core.player.rows import ARTICULATION
+from yehu_server.core.player.parameter_indices import ARTICULATION
 from yehu_server.params.articulations import ARTICULATIONS
 
 # -- pitches, which Python asks for as well, uncompiled (``playing.tuning``) -----------------------

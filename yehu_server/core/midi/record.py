@@ -9,8 +9,8 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.tables import KEYS, MOST_BINDS
+from yehu_server.core.player.parameter_indices import INDEX, PARAMETER_COUNT
 from yehu_server.core.player.record import MOST_HELD
-from yehu_server.core.player.rows import ROW, ROWS
 from yehu_server.params.table import TABLE
 
 PORTS, IN_PORT = 16, 16
@@ -20,14 +20,14 @@ MOST_CHORD = 32  # notes that a section divides
 ONSETS = 64  # that a section remembers
 MOST_COMMANDS = 8192  # that one event comes to
 NONE = -1
-SECTION = ROW["/playing/section"]
+SECTION = INDEX["/playing/section"]
 
 MIDI = np.dtype(
     [
         ("tables", np.int64),  # number of those in use
-        # What was requested of parameters, by row; and which are held.
-        ("value", np.float64, ROWS),
-        ("is_held", np.int64, ROWS),
+        # What was requested of parameters, by index; and which are held.
+        ("value", np.float64, PARAMETER_COUNT),
+        ("is_held", np.int64, PARAMETER_COUNT),
         # Held keys, in the order pressed, and the one that sounds: its number, or NONE.
         ("held", np.int64),
         ("held_channel", np.int64, MOST_HELD),
@@ -69,15 +69,15 @@ MIDI = np.dtype(
         ("has_fader", np.int64, MOST_BINDS),
         ("fader", np.float64, MOST_BINDS),
         ("fader_wrote", np.float64, MOST_BINDS),  # value it last gave its target; NaN: none
-        # Targets as set last, or as before their first move: rows in that order; the number of
+        # Targets as set last, or as before their first move: indices in that order; the number of
         # that write.
         ("targets", np.int64),
-        ("target", np.int64, ROWS),
-        ("is_target", np.int64, ROWS),
-        ("set_number", np.int64, ROWS),
-        ("set_to", np.float64, ROWS),
-        ("found_number", np.int64, ROWS),  # of `values.find_values`: numbers and values
-        ("found_value", np.float64, ROWS),
+        ("target", np.int64, PARAMETER_COUNT),
+        ("is_target", np.int64, PARAMETER_COUNT),
+        ("set_number", np.int64, PARAMETER_COUNT),
+        ("set_to", np.float64, PARAMETER_COUNT),
+        ("found_number", np.int64, PARAMETER_COUNT),  # of `values.find_values`: numbers and values
+        ("found_value", np.float64, PARAMETER_COUNT),
         # Channels.
         ("bend_range", np.float64, CHANNELS),  # semitones; NaN: RPN 0 has not set it
         ("coarse_tuning", np.float64, CHANNELS),  # semitones, by RPN 2
@@ -122,16 +122,16 @@ MIDI = np.dtype(
         ("chord_key", np.float64, MOST_CHORD),
         ("chord_pitch", np.float64, MOST_CHORD),
         ("chord_values", np.int64, MOST_CHORD),
-        ("chord_row", np.int64, (MOST_CHORD, ROWS)),
-        ("chord_value", np.float64, (MOST_CHORD, ROWS)),
+        ("chord_index", np.int64, (MOST_CHORD, PARAMETER_COUNT)),
+        ("chord_value", np.float64, (MOST_CHORD, PARAMETER_COUNT)),
         ("is_divided", np.int64),
         ("assigned", np.int64),
         ("assigned_player", np.int64, MAX_PLAYERS),
         ("order", np.int64, MOST_CHORD),
         # Values for the note that begins next, or sounds again.
         ("values", np.int64),
-        ("values_row", np.int64, ROWS),
-        ("values_value", np.float64, ROWS),
+        ("values_index", np.int64, PARAMETER_COUNT),
+        ("values_value", np.float64, PARAMETER_COUNT),
         # Onsets: see ``section_players``.
         ("stream", np.int64),  # of random numbers; 0: not begun
         ("drawn", np.int64),

@@ -23,7 +23,7 @@ from yehu_server.core.midi.notes import end_channel
 from yehu_server.core.midi.record import IN_PORT, NONE
 from yehu_server.core.midi.sources import follow, move_coarse, move_fine, step
 from yehu_server.core.midi.tables import BEND, NRPN
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 
 # Control changes that select a parameter, and enter its value.
 DATA_ENTRY, DATA_ENTRY_FINE = 6, 38
@@ -31,7 +31,7 @@ INCREMENT, DECREMENT = 96, 97
 NRPN_FINE, NRPN_COARSE, RPN_FINE, RPN_COARSE = 98, 99, 100, 101
 BEND_RANGE, FINE_TUNING, COARSE_TUNING, MPE_CONFIGURATION = 0, 1, 2, 6  # registered parameters
 CENTRE, FINE_STEPS = 64, 8192.0  # no tuning, of 7 bits; and the steps of a semitone, of 14
-BEND_RANGE_ROW = ROW["/playing/bend_range"]
+BEND_RANGE_INDEX = INDEX["/playing/bend_range"]
 
 
 @compiled_exactly
@@ -102,7 +102,7 @@ def set_bend_range(m: Any, t: Any, frame: int, channel: int, control: int, value
         cents = min(value, 99)
     else:
         semitones += 1 if control == INCREMENT else -1
-    found = in_range(BEND_RANGE_ROW, semitones + cents / 100.0)
+    found = in_range(BEND_RANGE_INDEX, semitones + cents / 100.0)
     m.bend_range[channel] = found
     master = master_of(m, channel)
     if master != NONE:

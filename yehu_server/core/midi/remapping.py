@@ -18,7 +18,7 @@ from yehu_server.core.midi.resets import restore_moves
 from yehu_server.core.midi.sources import set_directly
 from yehu_server.core.midi.tables import KEYS, MOST_BINDS, POLY_PRESSURE, Tables
 from yehu_server.core.midi.values import find_values, keep_target
-from yehu_server.core.player.rows import ROWS
+from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.params.table import TABLE
 
 DEFAULTS = np.array([param.default for param in TABLE])
@@ -32,12 +32,12 @@ def start(m: Any, t: Any, frame: int) -> None:
 
 
 @compiled_exactly
-def start_value(t: Any, row: int) -> float:
+def start_value(t: Any, index: int) -> float:
     """The value that a parameter starts with."""
     for i in range(int(t.starts)):
-        if int(t.start_row[i]) == row:
+        if int(t.start_row[i]) == index:
             return float(t.start_value[i])
-    return float(DEFAULTS[row])
+    return float(DEFAULTS[index])
 
 
 @native
@@ -48,8 +48,8 @@ def change_binds(m: Midi, before: Tables, t: Tables, frame: int) -> None:
     change_faders(m, before, t)
     for bind in range(int(t.binds)):
         keep_target(m, int(t.target[bind]))
-    for row in range(ROWS):
-        m.found_number[row] = 0  # until its start value has been checked
+    for index in range(PARAMETER_COUNT):
+        m.found_number[index] = 0  # until its start value has been checked
     for i in range(int(before.starts)):
         change_start(m, before, t, frame, int(before.start_row[i]))
     for i in range(int(t.starts)):
@@ -57,23 +57,23 @@ def change_binds(m: Midi, before: Tables, t: Tables, frame: int) -> None:
     if m.has_last != 0:
         find_values(m, t, m.last_channel, m.last_key)
         for i in range(m.targets):
-            row = m.target[i]
-            write(m, frame, row, m.found_value[row], False, 0.0, NONE)
+            index = m.target[i]
+            write(m, frame, index, m.found_value[index], False, 0.0, NONE)
 
 
 @compiled_exactly
-def change_start(m: Any, before: Any, t: Any, frame: int, row: int) -> None:
+def change_start(m: Any, before: Any, t: Any, frame: int, index: int) -> None:
     """Give a parameter its new start value, once, if it still has the old one."""
-    if m.found_number[row] != 0:
+    if m.found_number[index] != 0:
         return
-    m.found_number[row] = 1
-    old, new = start_value(before, row), start_value(t, row)
-    now = m.set_to[row] if m.is_target[row] != 0 else m.value[row]
+    m.found_number[index] = 1
+    old, new = start_value(before, index), start_value(t, index)
+    now = m.set_to[index] if m.is_target[index] != 0 else m.value[index]
     if old != new and now == old:
-        keep_target(m, row)
-        m.set_number[row], m.set_to[row] = 0, new  # moves made before still count
+        keep_target(m, index)
+        m.set_number[index], m.set_to[index] = 0, new  # moves made before still count
         if m.has_last == 0:
-            write(m, frame, row, new, False, 0.0, NONE)
+            write(m, frame, index, new, False, 0.0, NONE)
 
 
 @compiled_exactly

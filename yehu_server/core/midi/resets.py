@@ -18,10 +18,10 @@ from yehu_server.core.midi.tables import (
     VELOCITY,
     Tables,
 )
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 
 # "Reset all controllers" leaves volume, as the recommended practice RP-015 asks.
-VOLUME, PAN = ROW["/playing/volume"], ROW["/room/pan"]
+VOLUME, PAN = INDEX["/playing/volume"], INDEX["/room/pan"]
 
 
 @native
@@ -99,5 +99,5 @@ def forget_all_moves(m: Any, frame: int) -> None:
     m.last_strike_number = 0
     m.strike_number[CHANNELS] = 0
     for i in range(m.targets):
-        row = m.target[i]
-        write(m, frame, row, m.set_to[row], False, 0.0, NONE)
+        index = m.target[i]
+        write(m, frame, index, m.set_to[index], False, 0.0, NONE)

@@ -18,12 +18,12 @@ from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import MOST_CHORD, NONE, emit
 from yehu_server.core.midi.section_players import own_value, plan_onset, plan_release
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, SLIDE, WRITE
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.core.player.record import MOST_HELD
-from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import ENGINE
 
 CHORD_MS = 30.0  # keys struck within this time are a chord
-ROW_OF_SLOT = np.array([ROW[param.address] for param in ENGINE])
+INDEX_OF_SLOT = np.array([INDEX[param.address] for param in ENGINE])
 
 
 # -- when -----------------------------------------------------------------------------------------
@@ -72,12 +72,12 @@ def emit_to_all(
 @compiled_exactly
 def own_of(m: Any, who: int, kind: int, index: int, value: float) -> float:
     """The value of a parameter that is a player's own."""
-    row = NONE
+    parameter = NONE
     if kind in (WRITE, HOLD, EXPRESS):
-        row = index
-    elif kind == RAMP and 0 <= index < len(ROW_OF_SLOT):
-        row = ROW_OF_SLOT[index]
-    return float(own_value(row, value, who, m.playing))
+        parameter = index
+    elif kind == RAMP and 0 <= index < len(INDEX_OF_SLOT):
+        parameter = INDEX_OF_SLOT[index]
+    return float(own_value(parameter, value, who, m.playing))
 
 
 @compiled_exactly
@@ -99,13 +99,13 @@ def sounds(m: Any, number: int) -> bool:
 
 
 @compiled_exactly
-def add_value(m: Any, row: int, value: float) -> None:
+def add_value(m: Any, index: int, value: float) -> None:
     """Keep a value for the note that begins next, or sounds again."""
     for i in range(m.values):
-        if m.values_row[i] == row:
+        if m.values_index[i] == index:
             m.values_value[i] = value
             return
-    m.values_row[m.values], m.values_value[m.values] = row, value
+    m.values_index[m.values], m.values_value[m.values] = index, value
     m.values += 1
 
 
@@ -150,7 +150,7 @@ def begin_together(m: Any, frame: int, channel: int, key: float, pitch: float) -
     m.chord_channel[n], m.chord_key[n], m.chord_pitch[n] = channel, key, pitch
     m.chord_values[n] = m.values
     for i in range(m.values):
-        m.chord_row[n, i], m.chord_value[n, i] = m.values_row[i], m.values_value[i]
+        m.chord_index[n, i], m.chord_value[n, i] = m.values_index[i], m.values_value[i]
     m.values = 0
     m.chord = n + 1
     if n > 0:
@@ -235,9 +235,9 @@ def begin_of(m: Any, who: int, note: int, at: int) -> None:
     m.holds_channel[who, n], m.holds_key[who, n], m.holds_from[who, n] = channel, key, at
     m.holds[who] += 1
     for i in range(m.chord_values[note]):
-        row = m.chord_row[note, i]
-        own = own_of(m, who, EXPRESS, row, m.chord_value[note, i])
-        emit(m, who, at, EXPRESS, row, own, 0.0)
+        index = m.chord_index[note, i]
+        own = own_of(m, who, EXPRESS, index, m.chord_value[note, i])
+        emit(m, who, at, EXPRESS, index, own, 0.0)
     emit(m, who, at, BEGIN, channel, key, m.chord_pitch[note])
 
 
@@ -291,9 +291,9 @@ def end_together(m: Any, frame: int) -> None:
         at = act(m, who, frame, max(m.late[who], begun - frame))
         if m.values > 0 and last >= 0 and next_sounding_key_of(m, who) == last:
             for i in range(m.values):
-                row = m.values_row[i]
-                value = own_of(m, who, EXPRESS, row, m.values_value[i])
-                emit(m, who, at, EXPRESS, row, value, 0.0)
+                index = m.values_index[i]
+                value = own_of(m, who, EXPRESS, index, m.values_value[i])
+                emit(m, who, at, EXPRESS, index, value, 0.0)
         for i in range(m.listed):
             n = m.list[i]
             hold = find_hold(m, who, m.held_channel[n], m.held_key[n])

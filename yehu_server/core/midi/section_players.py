@@ -16,11 +16,11 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.record import ONSETS
 from yehu_server.core.physics.elementary import log10, pseudorandom
-from yehu_server.core.player.rows import HIGHEST, LOWEST, ROW, SEED, VARIATION
+from yehu_server.core.player.parameter_indices import HIGHEST, INDEX, LOWEST, SEED, VARIATION
 
 OWN_SEED, GAIN, PAN, DISTANCE = "/engine/seed", "/output/gain", "/room/pan", "/room/distance"
 OWN = (OWN_SEED, GAIN, PAN, DISTANCE)
-SEED_ROW, GAIN_ROW, PAN_ROW, DISTANCE_ROW = (ROW[address] for address in OWN)
+SEED_INDEX, GAIN_INDEX, PAN_INDEX, DISTANCE_INDEX = (INDEX[address] for address in OWN)
 SEEDS = 1 << 16
 APART = 7919  # seeds of two players; a prime, so that they meet no other section's soon
 
@@ -32,33 +32,33 @@ NEIGHBOUR, TO_EITHER_SIDE = 0.12, 0.35
 
 
 @compiled_exactly
-def own_value(row: int, value: float, number: int, players: int) -> float:
+def own_value(index: int, value: float, number: int, players: int) -> float:
     """The value that a player has of a parameter, of what their part has.
 
     All of them together are as loud as one alone.
 
     Parameters
     ----------
-    row : int
+    index : int
         Of the parameter; -1 for none.
     number : int
         The player, counted from 0.
     players : int
         How many of them play.
     """
-    if row == SEED_ROW:
+    if index == SEED_INDEX:
         return float((int(np.rint(value)) + APART * number) % SEEDS)
     if players == 1:
         return value
-    if row == GAIN_ROW:
+    if index == GAIN_INDEX:
         own = value - 10.0 * log10(players)
-        return float(min(max(own, LOWEST[GAIN_ROW]), HIGHEST[GAIN_ROW]))
-    if row == DISTANCE_ROW:
+        return float(min(max(own, LOWEST[GAIN_INDEX]), HIGHEST[GAIN_INDEX]))
+    if index == DISTANCE_INDEX:
         from_outside = min(number, players - 1 - number)
         factor = BACK if from_outside % 2 != 0 else FRONT
         own = value * (factor if players > 2 else 1.0)
-        return float(min(max(own, LOWEST[DISTANCE_ROW]), HIGHEST[DISTANCE_ROW]))
-    if row == PAN_ROW:
+        return float(min(max(own, LOWEST[DISTANCE_INDEX]), HIGHEST[DISTANCE_INDEX]))
+    if index == PAN_INDEX:
         side = min(0.5 * NEIGHBOUR * (players - 1), TO_EITHER_SIDE)
         middle = min(max(value, side - 1.0), 1.0 - side)
         return float(middle + side * (2.0 * min(number, players - 1) / (players - 1) - 1.0))

@@ -30,7 +30,7 @@ from yehu_server.core.midi.values import (
     receives,
     set_target,
 )
-from yehu_server.core.player.rows import IS_PLAYER_CONTROLLED
+from yehu_server.core.player.parameter_indices import IS_PLAYER_CONTROLLED
 
 FINE_BITS, FINEST = 7, 16383.0
 
@@ -98,17 +98,17 @@ def write_found(
             continue
         if has_key and not is_for(m, t, bind, channel, key_channel):
             continue
-        row = int(t.target[bind])
-        glide_ms = glide_of(m, t, source, channel, row) if glides else 0.0
-        write(m, frame, row, m.found_value[row], False, glide_ms, of_key)
+        index = int(t.target[bind])
+        glide_ms = glide_of(m, t, source, channel, index) if glides else 0.0
+        write(m, frame, index, m.found_value[index], False, glide_ms, of_key)
 
 
 @compiled_exactly
-def glide_of(m: Any, t: Any, source: int, channel: int, row: int) -> float:
+def glide_of(m: Any, t: Any, source: int, channel: int, index: int) -> float:
     """The smoothing of a target (ms): that of the last bind which moves it."""
     glide_ms = 0.0
     for bind in range(int(t.binds)):
-        is_moved = int(t.source[bind]) == source and int(t.target[bind]) == row
+        is_moved = int(t.source[bind]) == source and int(t.target[bind]) == index
         if is_moved and (source == POLY_PRESSURE or is_receiving(m, t, bind, channel)):
             glide_ms = t.smoothing_ms[bind]
     return glide_ms
@@ -251,20 +251,20 @@ def move_control(m: Any, t: Any, frame: int, source: int, argument: float) -> No
         position = 0.0
         if lo != hi:
             position = (min(max(argument, min(lo, hi)), max(lo, hi)) - lo) / (hi - lo)
-        row = int(t.target[bind])
-        present, wrote = m.value[row], m.fader_wrote[bind]
+        index = int(t.target[bind])
+        present, wrote = m.value[index], m.fader_wrote[bind]
         is_waiting = t.soft[bind] != 0.0 and present != wrote
         before = m.fader[bind] if m.has_fader[bind] != 0 else math.nan
         m.has_fader[bind], m.fader[bind] = 1, position
         if not is_waiting or picks_up(t, bind, position, before, present):
             value = from_unit(t, bind, position)
-            m.fader_wrote[bind] = set_directly(m, frame, row, value, t.smoothing_ms[bind])
+            m.fader_wrote[bind] = set_directly(m, frame, index, value, t.smoothing_ms[bind])
 
 
 @compiled_exactly
-def set_directly(m: Any, frame: int, row: int, value: float, glide_ms: float) -> float:
+def set_directly(m: Any, frame: int, index: int, value: float, glide_ms: float) -> float:
     """Set a parameter for all channels, until a controller moves it; return the value it has."""
-    accepted = write(m, frame, row, value, False, glide_ms, NONE)
-    if not IS_PLAYER_CONTROLLED[row]:
-        set_target(m, row, accepted)
+    accepted = write(m, frame, index, value, False, glide_ms, NONE)
+    if not IS_PLAYER_CONTROLLED[index]:
+        set_target(m, index, accepted)
     return float(accepted)

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from yehu_server.core.player.note_range import YEHU
-from yehu_server.core.player.rows import ROWS
+from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.params.table import TABLE
 
 MOST_BINDS, MOST_POINTS = 256, 2048
@@ -33,7 +33,7 @@ TABLES = np.dtype(
         ("binds", np.float64),
         ("source", np.float64, MOST_BINDS),
         ("first", np.float64, MOST_BINDS),  # number of the first bind of the same source
-        ("target", np.float64, MOST_BINDS),  # row of a parameter
+        ("target", np.float64, MOST_BINDS),  # index of a parameter
         ("lo", np.float64, MOST_BINDS),  # the target's values at the ends of the span
         ("hi", np.float64, MOST_BINDS),
         ("curve", np.float64, MOST_BINDS),
@@ -52,11 +52,11 @@ TABLES = np.dtype(
         ("y", np.float64, MOST_POINTS),
         ("mpe", np.float64),  # 1: every port starts as an MPE zone
         ("first_switch", np.float64),  # lowest of the keys that choose an articulation; NaN: none
-        # Start values, in order; and by row what the mapping starts with, or the default.
+        # Start values, in order; and by index what the mapping starts with, or the default.
         ("starts", np.float64),
-        ("start_row", np.float64, ROWS),
-        ("start_value", np.float64, ROWS),
-        ("usual", np.float64, ROWS),
+        ("start_row", np.float64, PARAMETER_COUNT),
+        ("start_value", np.float64, PARAMETER_COUNT),
+        ("usual", np.float64, PARAMETER_COUNT),
         # The tuning: pitches of keys, NaN for none; 1: each sounds its own number.
         ("is_equal", np.float64),
         ("pitch", np.float64, KEYS),
@@ -66,11 +66,11 @@ TABLES = np.dtype(
         ("highest", np.float64),
         # A bit for each channel that is received; -1: all, but for percussion.
         ("received", np.float64),
-        # Values of presets by program, in order: rows, and NaN for the end.
+        # Values of presets by program, in order: indices, and NaN for the end.
         ("has_programs", np.float64),
         ("has_program", np.float64, PROGRAMS),
-        ("program_row", np.float64, (PROGRAMS, ROWS)),
-        ("program_value", np.float64, (PROGRAMS, ROWS)),
+        ("program_row", np.float64, (PROGRAMS, PARAMETER_COUNT)),
+        ("program_value", np.float64, (PROGRAMS, PARAMETER_COUNT)),
     ]
 )
 Tables = Annotated[Any, TABLES]

@@ -33,13 +33,13 @@ def is_of_note(source: int) -> bool:
 
 
 @compiled_exactly
-def keep_target(m: Any, row: int) -> None:
+def keep_target(m: Any, index: int) -> None:
     """Record the present value of a target, before its first move."""
-    if m.is_target[row] == 0:
-        m.is_target[row] = 1
-        m.target[m.targets] = row
+    if m.is_target[index] == 0:
+        m.is_target[index] = 1
+        m.target[m.targets] = index
         m.targets += 1
-        m.set_number[row], m.set_to[row] = 0, m.value[row]
+        m.set_number[index], m.set_to[index] = 0, m.value[index]
 
 
 @compiled_exactly
@@ -51,11 +51,11 @@ def keep_targets_of(m: Any, t: Any, source: int) -> None:
 
 
 @compiled_exactly
-def set_target(m: Any, row: int, value: float) -> None:
+def set_target(m: Any, index: int, value: float) -> None:
     """Record a direct write."""
-    keep_target(m, row)
+    keep_target(m, index)
     m.moves += 1
-    m.set_number[row], m.set_to[row] = m.moves, value
+    m.set_number[index], m.set_to[index] = m.moves, value
 
 
 @compiled_exactly
@@ -119,8 +119,8 @@ def find_values(m: Midi, t: Tables, channel: int, key: float) -> None:
     that of the note's channel, of the master, and for all notes.
     """
     for i in range(m.targets):
-        row = m.target[i]
-        m.found_number[row], m.found_value[row] = m.set_number[row], m.set_to[row]
+        index = m.target[i]
+        m.found_number[index], m.found_value[index] = m.set_number[index], m.set_to[index]
     master = master_of(m, channel)
     for bind in range(int(t.binds)):
         number, position = move_of(m, t, bind, channel, key)
@@ -129,30 +129,30 @@ def find_values(m: Midi, t: Tables, channel: int, key: float) -> None:
         other, at, other_channel = latest_for_all(m, t, bind, channel)
         if other > number:
             number, position = other, at
-        row = int(t.target[bind])
-        if number == 0 or number < m.found_number[row]:
+        index = int(t.target[bind])
+        if number == 0 or number < m.found_number[index]:
             continue
         value = from_unit(t, bind, position)
         if int(t.source[bind]) == VELOCITY:
-            value *= velocity_factor(m, t, row)
+            value *= velocity_factor(m, t, index)
         elif t.by_range[bind] != 0.0:
             value = bend_of(m, t, bind, channel)
             if master != NONE:
                 value += bend_of(m, t, bind, master)
             if other_channel not in (NONE, master):
                 value += bend_of(m, t, bind, other_channel)
-        m.found_number[row], m.found_value[row] = number, value
+        m.found_number[index], m.found_value[index] = number, value
 
 
 @compiled_exactly
-def velocity_factor(m: Any, t: Any, row: int) -> float:
+def velocity_factor(m: Any, t: Any, index: int) -> float:
     """Ratio of a target's set value to its start value.
 
     Velocity comes with every note: without this factor a preset's value would last only until the
     next note.
     """
-    start = t.usual[row]
-    return float(m.set_to[row] / start if start > 0.0 else 1.0)
+    start = t.usual[index]
+    return float(m.set_to[index] / start if start > 0.0 else 1.0)
 
 
 @compiled_exactly

@@ -14,8 +14,8 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.bowing import FIRM, FLAUTANDO, SCRATCHY
 from yehu_server.core.player.ear import SURE, learning_bin
 from yehu_server.core.player.gestures import tremolo_of
+from yehu_server.core.player.parameter_indices import LISTENING, PRESSURE
 from yehu_server.core.player.right_hand import set_bow_pressure
-from yehu_server.core.player.rows import LISTENING, PRESSURE
 
 FEW, MANY = 0.6, 1.5  # slips in a period: between them the string speaks
 ROUGH = 0.8  # certainty below which it has no period

@@ -19,7 +19,7 @@ from yehu_server.core.physics.elementary import exp2, log2
 from yehu_server.core.player.calibration import ABOVE, GAINS, PLAIN
 from yehu_server.core.player.intonation import ALL, in_tables, place_in
 from yehu_server.core.player.ownership import USUAL_MS, move
-from yehu_server.core.player.rows import (
+from yehu_server.core.player.parameter_indices import (
     BODY_BRILLIANCE,
     BRILLIANCE,
     BRILLIANCE_FREQUENCY,

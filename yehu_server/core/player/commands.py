@@ -3,9 +3,9 @@
 | kind | index | value | other |
 |---|---|---|---|
 | RAMP | slot of the engine, or SILENCE | target | length of the ramp (frames) |
-| WRITE | row of a parameter | value | least time of the moves that follow (ms) |
+| WRITE | index of a parameter | value | least time of the moves that follow (ms) |
 | HOLD | the same, kept through notes | value | the same |
-| EXPRESS | row of a parameter | value for the note that begins next | |
+| EXPRESS | index of a parameter | value for the note that begins next | |
 | BEGIN | channel | key | pitch (fractional MIDI note within range) |
 | END | channel | key | 1 where more keys end at the same time |
 | SLIDE | | pitch within range | |
@@ -27,9 +27,7 @@ from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.record import Controls
 from yehu_server.core.player import direct_bowing, left_hand, notes, vibrato
 from yehu_server.core.player.ownership import forget, ramp_to, release, write_directly
-from yehu_server.core.player.phrasing import begin_sequence
-from yehu_server.core.player.record import Player
-from yehu_server.core.player.rows import (
+from yehu_server.core.player.parameter_indices import (
     ASSIST,
     BEND,
     BOW_FORCE,
@@ -43,13 +41,13 @@ from yehu_server.core.player.rows import (
     IS_PLAYER_CONTROLLED,
     LISTENING,
     LOWEST,
+    PARAMETER_COUNT,
     PHRASING,
     PLAYING_VIBRATO_PRESS,
     PLAYING_VIBRATO_RATE,
     POSITION,
     PRESS,
     PRESSURE,
-    ROWS,
     SEED,
     SHARPENING_CORRECTION,
     SMOOTH_MS,
@@ -59,6 +57,8 @@ from yehu_server.core.player.rows import (
     VIBRATO,
     VOLUME,
 )
+from yehu_server.core.player.phrasing import begin_sequence
+from yehu_server.core.player.record import Player
 
 KINDS = (
     "ramp", "write", "hold", "express", "begin", "end", "slide", "draw", "lift", "stop", "release",
@@ -106,7 +106,7 @@ def apply(
     elif kind == RELEASE:
         release(p)
         p.is_direct = 0
-    elif 0 <= index < ROWS:
+    elif 0 <= index < PARAMETER_COUNT:
         if kind in (WRITE, HOLD):
             glide_ms = bounded(other, 0.0, LONGEST)
             write(p, c, index, in_range(index, value), kind == HOLD, glide_ms)
@@ -127,72 +127,72 @@ def playable(p: Any, pitch: float) -> float:
 
 
 @compiled_exactly
-def in_range(row: int, value: float) -> float:
+def in_range(index: int, value: float) -> float:
     """The value nearest to one that a parameter can have."""
-    return bounded(value, LOWEST[row], HIGHEST[row])
+    return bounded(value, LOWEST[index], HIGHEST[index])
 
 
 @compiled_exactly
-def write(p: Any, c: Any, row: int, value: float, hold: bool, glide_ms: float) -> None:
+def write(p: Any, c: Any, index: int, value: float, hold: bool, glide_ms: float) -> None:
     """Set a parameter; the moves of bow and fingers that follow take at least `glide_ms`."""
-    if IS_PLAYER_CONTROLLED[row]:
-        write_directly(p, c, row, value, hold)
+    if IS_PLAYER_CONTROLLED[index]:
+        write_directly(p, c, index, value, hold)
         return
     if hold:
-        p.is_held[row] = 1
-        forget(p, row)
-    elif p.is_held[row] != 0:
+        p.is_held[index] = 1
+        forget(p, index)
+    elif p.is_held[index] != 0:
         return
-    if p.value[row] == value:
+    if p.value[index] == value:
         return
-    p.value[row] = value
-    if IS_ENGINES[row]:
-        ramp_to(p, c, row, value, max(SMOOTH_MS[row], glide_ms))
+    p.value[index] = value
+    if IS_ENGINES[index]:
+        ramp_to(p, c, index, value, max(SMOOTH_MS[index], glide_ms))
     p.glide_ms = glide_ms
-    follow(p, c, row)
+    follow(p, c, index)
     p.glide_ms = 0.0
 
 
 @compiled_exactly
-def express(p: Any, c: Any, row: int, value: float) -> None:
+def express(p: Any, c: Any, index: int, value: float) -> None:
     """Set a parameter for the note that begins next; what it moves, the note will."""
-    if IS_ENGINES[row]:
-        write(p, c, row, value, False, 0.0)
-    elif p.is_held[row] == 0:
-        p.value[row] = value
+    if IS_ENGINES[index]:
+        write(p, c, index, value, False, 0.0)
+    elif p.is_held[index] == 0:
+        p.value[index] = value
 
 
 @compiled_exactly
-def follow(p: Any, c: Any, row: int) -> None:
+def follow(p: Any, c: Any, index: int) -> None:
     """Move what follows a parameter of the player while a note sounds."""
-    if row in (BEND, SHARPENING_CORRECTION):
+    if index in (BEND, SHARPENING_CORRECTION):
         notes.follow_bend(p, c)
-    elif row == PRESS:
+    elif index == PRESS:
         left_hand.press(p, c, notes.least_press(p, max(p.string, 0)), left_hand.LANDING_MS)
-    elif row == DYNAMICS:
+    elif index == DYNAMICS:
         notes.draw_on(p, c)
         notes.follow_bend(p, c)
         notes.set_level(p, c)
-    elif row == SPEED:  # a faster bow changes the pitch
+    elif index == SPEED:  # a faster bow changes the pitch
         notes.draw_on(p, c)
         notes.follow_bend(p, c)
-    elif row in (PRESSURE, POSITION):
+    elif index in (PRESSURE, POSITION):
         notes.set_bow_pressure(p, c)
-    elif row == TREMOLO:
+    elif index == TREMOLO:
         notes.draw_on(p, c)
-    elif row in (VIBRATO, PLAYING_VIBRATO_PRESS, PLAYING_VIBRATO_RATE, PHRASING):
+    elif index in (VIBRATO, PLAYING_VIBRATO_PRESS, PLAYING_VIBRATO_RATE, PHRASING):
         vibrato.set_vibrato(p, c)
-    elif row == ASSIST:
+    elif index == ASSIST:
         notes.set_assist(p, c)
-    elif row in (VOLUME, EXPRESSION):
+    elif index in (VOLUME, EXPRESSION):
         notes.set_level(p, c)
-    elif row in (BRILLIANCE, EVENNESS):
+    elif index in (BRILLIANCE, EVENNESS):
         notes.even_out(p, c)
-    elif row == VELOCITY:
+    elif index == VELOCITY:
         notes.draw_on(p, c)
         notes.follow_bend(p, c)
         notes.even_out(p, c)
-    elif row == LISTENING and p.value[LISTENING] == 0.0:
+    elif index == LISTENING and p.value[LISTENING] == 0.0:
         notes.reset_corrections(p, c)
-    elif row == SEED:
+    elif index == SEED:
         begin_sequence(p, int(p.value[SEED]))

@@ -10,8 +10,8 @@ from yehu_server.core.player.fingering import choose
 from yehu_server.core.player.left_hand import side_of
 from yehu_server.core.player.notes import BEND_RAMP_MS, even_out, follow_bend
 from yehu_server.core.player.ownership import USUAL_MS, ramp_to, take_all_back, write_directly
+from yehu_server.core.player.parameter_indices import BOW_FORCE, BOW_SIDE, BOW_SPEED, POSITION
 from yehu_server.core.player.right_hand import requested_speed
-from yehu_server.core.player.rows import BOW_FORCE, BOW_SIDE, BOW_SPEED, POSITION
 
 
 @compiled_exactly

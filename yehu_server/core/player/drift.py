@@ -24,7 +24,7 @@ from yehu_server.core.controls.record import (
 )
 from yehu_server.core.physics.elementary import cos, each, exp, pseudorandom
 from yehu_server.core.player.ear import HOP_S
-from yehu_server.core.player.rows import (
+from yehu_server.core.player.parameter_indices import (
     BOW_FORCE,
     BOW_POSITION,
     BOW_PRESSURE,
@@ -170,16 +170,16 @@ def is_playing(p: Any, drift: int) -> bool:
     """Whether the player moves what drifts, and nobody else."""
     if p.sounding < 0:
         return False
-    row = BOW_SPEED
+    index = BOW_SPEED
     if drift == FORCE_DRIFT:
-        row = BOW_PRESSURE if p.taken[BOW_FORCE] == 0 and p.is_held[BOW_FORCE] == 0 else BOW_FORCE
+        index = BOW_PRESSURE if p.taken[BOW_FORCE] == 0 and p.is_held[BOW_FORCE] == 0 else BOW_FORCE
     elif drift == PLACE_DRIFT:
-        row = BOW_POSITION
+        index = BOW_POSITION
     elif drift == CENTS_DRIFT:
-        row = FINGER_POSITION[p.finger]
+        index = FINGER_POSITION[p.finger]
     elif drift == PRESS_DRIFT:
-        row = FINGER_PRESS[p.finger]
-    return bool(p.taken[row] == 0 and p.is_held[row] == 0)
+        index = FINGER_PRESS[p.finger]
+    return bool(p.taken[index] == 0 and p.is_held[index] == 0)
 
 
 @compiled_exactly

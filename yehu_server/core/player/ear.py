@@ -17,7 +17,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled, compiled_exactly
 from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.physics.elementary import exp2, log2
-from yehu_server.core.player.rows import LISTENING, POSITION, SPEED
+from yehu_server.core.player.parameter_indices import LISTENING, POSITION, SPEED
 
 
 @compiled_exactly

@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.ear import learnt_cents
 from yehu_server.core.player.intonation import position_of
-from yehu_server.core.player.rows import STRING
+from yehu_server.core.player.parameter_indices import STRING
 
 # Semitones around an open string that are played without a finger: no finger fits nearer to the
 # loop than 8 mm, which is this interval.

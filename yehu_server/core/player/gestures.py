@@ -16,11 +16,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SPEED as BOW_SPEED
 from yehu_server.core.physics.elementary import exp, log10
 from yehu_server.core.player.harmonics import GAINS_DB, NONE, node_of, string_of
-from yehu_server.core.player.phrasing import (
-    HURRIED_ATTACK_MS,
-    deviate,
-)
-from yehu_server.core.player.rows import (
+from yehu_server.core.player.parameter_indices import (
     ARTICULATION,
     NOTE_LENGTH,
     PHRASING,
@@ -28,7 +24,11 @@ from yehu_server.core.player.rows import (
     TREMOLO_DEPTH,
     VARIATION,
 )
-from yehu_server.core.player.rows import ATTACK as ATTACK_MS
+from yehu_server.core.player.parameter_indices import ATTACK as ATTACK_MS
+from yehu_server.core.player.phrasing import (
+    HURRIED_ATTACK_MS,
+    deviate,
+)
 from yehu_server.core.player.velocity import struck_attack
 from yehu_server.params.articulations import ARTICULATIONS, Articulation, BowStep
 

@@ -10,7 +10,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.elementary import exp2, log
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, ROWS_OF_A_YEHU, SPEEDS
-from yehu_server.core.player.rows import SHARPENING_CORRECTION
+from yehu_server.core.player.parameter_indices import SHARPENING_CORRECTION
 
 Array = Any
 

@@ -12,13 +12,13 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.harmonics import NONE, TOUCH_N
 from yehu_server.core.player.ownership import move, take_back
-from yehu_server.core.player.phrasing import STEP_MS, varied_landing
-from yehu_server.core.player.rows import (
+from yehu_server.core.player.parameter_indices import (
     FINGER_COUNT,
     FINGER_POSITION,
     FINGER_PRESS,
     PRESS,
 )
+from yehu_server.core.player.phrasing import STEP_MS, varied_landing
 
 # Ramps of finger force. Chosen by trying landings of 1 to 5 ms and lifts of 3 to 25 ms on 24 steps
 # up and down both strings; half of these are within 10 cents of their pitch after 21 ms

@@ -17,8 +17,8 @@ from yehu_server.core.player.bowing_by_ear import correct_pressure
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
 from yehu_server.core.player.ear import BEHIND, EAR_SAMPLES, hear
 from yehu_server.core.player.notes import is_touched, reverse_bow_at_end, sounding_pitch
+from yehu_server.core.player.parameter_indices import LISTENING
 from yehu_server.core.player.record import Player
-from yehu_server.core.player.rows import LISTENING
 from yehu_server.core.player.tuning_by_ear import tune
 
 

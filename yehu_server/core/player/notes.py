@@ -36,18 +36,7 @@ from yehu_server.core.player.ownership import (
     take_all_back,
     take_back,
 )
-from yehu_server.core.player.phrasing import (
-    HURRIED_RELEASE,
-    STEP_MS,
-    hurried,
-    hurry_of,
-    slide_of_leap_ms,
-    varied_semitones,
-    vary_next_note,
-)
-from yehu_server.core.player.record import SILENT
-from yehu_server.core.player.right_hand import SLURRED_MS, requested_speed
-from yehu_server.core.player.rows import (
+from yehu_server.core.player.parameter_indices import (
     ASSIST,
     ATTACK,
     BEND,
@@ -66,6 +55,17 @@ from yehu_server.core.player.rows import (
     SMOOTH_MS,
     VOLUME,
 )
+from yehu_server.core.player.phrasing import (
+    HURRIED_RELEASE,
+    STEP_MS,
+    hurried,
+    hurry_of,
+    slide_of_leap_ms,
+    varied_semitones,
+    vary_next_note,
+)
+from yehu_server.core.player.record import SILENT
+from yehu_server.core.player.right_hand import SLURRED_MS, requested_speed
 from yehu_server.core.player.stroke import CHANGE_MS, is_at_its_end, plan_stroke
 from yehu_server.core.player.tuning_by_ear import begin_tuning
 from yehu_server.params.spec import TURNED_ON
@@ -249,9 +249,9 @@ def sounding_pitch(p: Any) -> float:
 
 
 @compiled_exactly
-def is_on(p: Any, row: int) -> bool:
+def is_on(p: Any, index: int) -> bool:
     """Whether a switch is on."""
-    return bool(p.value[row] >= TURNED_ON)
+    return bool(p.value[index] >= TURNED_ON)
 
 
 @compiled_exactly

@@ -14,74 +14,80 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import take
-from yehu_server.core.player.rows import BOW_ASSIST, BOW_FORCE, ROWS, SLOT_OF, SMOOTH_MS
+from yehu_server.core.player.parameter_indices import (
+    BOW_ASSIST,
+    BOW_FORCE,
+    PARAMETER_COUNT,
+    SLOT_OF,
+    SMOOTH_MS,
+)
 
 USUAL_MS = -1.0  # the ramp of a parameter's own
 
 
 @compiled_exactly
-def ramp_to(p: Any, c: Any, row: int, value: float, ramp_ms: float) -> None:
+def ramp_to(p: Any, c: Any, index: int, value: float, ramp_ms: float) -> None:
     """Move a parameter of the engine, whoever owns it; in `ramp_ms`, or USUAL_MS."""
-    ramp_ms = SMOOTH_MS[row] if ramp_ms < 0.0 else ramp_ms
-    take(c, SLOT_OF[row], value, int(np.rint(ramp_ms * 1e-3 * p.rate)))
+    ramp_ms = SMOOTH_MS[index] if ramp_ms < 0.0 else ramp_ms
+    take(c, SLOT_OF[index], value, int(np.rint(ramp_ms * 1e-3 * p.rate)))
 
 
 @compiled_exactly
-def move(p: Any, c: Any, row: int, value: float, ramp_ms: float) -> None:
+def move(p: Any, c: Any, index: int, value: float, ramp_ms: float) -> None:
     """Move a parameter, unless it is taken over or already moving to this value."""
-    if p.taken[row] != 0 or p.is_held[row] != 0 or p.sent[row] == value:
+    if p.taken[index] != 0 or p.is_held[index] != 0 or p.sent[index] == value:
         return
-    p.sent[row] = value
-    ramp_ms = SMOOTH_MS[row] if ramp_ms < 0.0 else ramp_ms
-    ramp_to(p, c, row, value, max(ramp_ms, p.glide_ms))
+    p.sent[index] = value
+    ramp_ms = SMOOTH_MS[index] if ramp_ms < 0.0 else ramp_ms
+    ramp_to(p, c, index, value, max(ramp_ms, p.glide_ms))
 
 
 @compiled_exactly
-def forget(p: Any, row: int) -> None:
+def forget(p: Any, index: int) -> None:
     """Forget the value last sent, so that the next move is sent in any case."""
-    p.sent[row] = math.nan
+    p.sent[index] = math.nan
 
 
 @compiled_exactly
-def write_directly(p: Any, c: Any, row: int, value: float, hold: bool) -> None:
+def write_directly(p: Any, c: Any, index: int, value: float, hold: bool) -> None:
     """Take a parameter over and move it; `hold` keeps it through notes.
 
     Newtons are heard only without assist.
     """
-    mark_taken(p, row, hold)
-    if row == BOW_FORCE:
+    mark_taken(p, index, hold)
+    if index == BOW_FORCE:
         mark_taken(p, BOW_ASSIST, hold)
         ramp_to(p, c, BOW_ASSIST, 0.0, USUAL_MS)
-    ramp_to(p, c, row, value, USUAL_MS)
+    ramp_to(p, c, index, value, USUAL_MS)
 
 
 @compiled_exactly
-def mark_taken(p: Any, row: int, hold: bool) -> None:
+def mark_taken(p: Any, index: int, hold: bool) -> None:
     """Mark a parameter as taken over by a direct write, until the next note or as held."""
     if hold:
-        p.is_held[row] = 1
+        p.is_held[index] = 1
     else:
-        p.taken[row] = 1
-    forget(p, row)
+        p.taken[index] = 1
+    forget(p, index)
 
 
 @compiled_exactly
-def take_back(p: Any, row: int) -> None:
+def take_back(p: Any, index: int) -> None:
     """Own a parameter again, unless it is held."""
-    p.taken[row] = 0
-    forget(p, row)
+    p.taken[index] = 0
+    forget(p, index)
 
 
 @compiled_exactly
 def take_all_back(p: Any) -> None:
     """Own all parameters again that are not held."""
-    for row in range(ROWS):
-        p.taken[row] = 0
+    for index in range(PARAMETER_COUNT):
+        p.taken[index] = 0
 
 
 @compiled_exactly
 def release(p: Any) -> None:
     """Own all parameters again, held ones too."""
     take_all_back(p)
-    for row in range(ROWS):
-        p.is_held[row] = 0
+    for index in range(PARAMETER_COUNT):
+        p.is_held[index] = 0

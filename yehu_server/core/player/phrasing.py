@@ -12,7 +12,7 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SIDE
 from yehu_server.core.physics.elementary import pseudorandom
-from yehu_server.core.player.rows import (
+from yehu_server.core.player.parameter_indices import (
     NOTE_LENGTH,
     PHRASING,
     VARIATION,

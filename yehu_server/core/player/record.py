@@ -23,13 +23,13 @@ from yehu_server.core.player.ear import EAR, prepare_ear, reset_ear
 from yehu_server.core.player.fingering import OPEN, OpenStrings
 from yehu_server.core.player.gestures import GESTURE, RESTING
 from yehu_server.core.player.note_range import NoteRange
-from yehu_server.core.player.rows import (
+from yehu_server.core.player.parameter_indices import (
     BOW_SIDE,
     BOW_SPEED,
     FINGER_COUNT,
     FINGER_PRESS,
+    PARAMETER_COUNT,
     PLUCK_FORCE,
-    ROWS,
     SLOT_OF,
 )
 from yehu_server.core.player.vibrato_table import STEPS, vibrato_table
@@ -45,11 +45,11 @@ NOTES = len(PITCHES[0])  # measured on each string
 PLAYER = np.dtype(
     [
         ("rate", np.float64),  # Hz
-        ("value", np.float64, ROWS),  # of each parameter, as requested
+        ("value", np.float64, PARAMETER_COUNT),  # of each parameter, as requested
         # Ownership, by parameter: see ``ownership``.
-        ("taken", np.int64, ROWS),
-        ("is_held", np.int64, ROWS),
-        ("sent", np.float64, ROWS),  # where the player last sent it; NaN: nowhere
+        ("taken", np.int64, PARAMETER_COUNT),
+        ("is_held", np.int64, PARAMETER_COUNT),
+        ("sent", np.float64, PARAMETER_COUNT),  # where the player last sent it; NaN: nowhere
         ("glide_ms", np.float64),  # the least time of each move
         # The held keys, in the order pressed.
         ("held", np.int64),  # their number
@@ -219,5 +219,5 @@ def end_all(player: Any, controls: Any) -> None:
     player["gesture"] = RESTING
     for name in DRIFT_STATE.names or ():
         player["drift_state"][name] = 0
-    for row in (BOW_SPEED, BOW_SIDE, PLUCK_FORCE, *FINGER_PRESS):
-        controls["target"][SLOT_OF[row]] = 0.0
+    for index in (BOW_SPEED, BOW_SIDE, PLUCK_FORCE, *FINGER_PRESS):
+        controls["target"][SLOT_OF[index]] = 0.0

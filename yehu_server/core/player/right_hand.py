@@ -29,8 +29,7 @@ from yehu_server.core.player.gestures import (
 from yehu_server.core.player.harmonics import NONE, PLACE
 from yehu_server.core.player.intonation import in_tables
 from yehu_server.core.player.ownership import USUAL_MS, forget, move
-from yehu_server.core.player.phrasing import HURRIED_WEIGHT, hurried
-from yehu_server.core.player.rows import (
+from yehu_server.core.player.parameter_indices import (
     BOW_POSITION,
     BOW_PRESSURE,
     BOW_SIDE,
@@ -47,6 +46,7 @@ from yehu_server.core.player.rows import (
     RELEASE,
     SPEED,
 )
+from yehu_server.core.player.phrasing import HURRIED_WEIGHT, hurried
 from yehu_server.core.player.velocity import BITE_MS, struck_bite, struck_speed
 from yehu_server.params.table import find
 

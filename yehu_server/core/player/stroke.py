@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.player.rows import BOW_LENGTH, BOW_SPEED, DIRECTION, NOTE_LENGTH
+from yehu_server.core.player.parameter_indices import BOW_LENGTH, BOW_SPEED, DIRECTION, NOTE_LENGTH
 
 USUAL_S = 0.4  # a note lasts, where nothing says so
 SLOWEST = 0.6  # factor on the speed of a bow that has to last

@@ -13,8 +13,8 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.ear import SURE, learning_bin, learnt_cents
 from yehu_server.core.player.intonation import position_of
 from yehu_server.core.player.ownership import move
+from yehu_server.core.player.parameter_indices import FINGER_POSITION, LISTENING, PRESS
 from yehu_server.core.player.right_hand import requested_speed
-from yehu_server.core.player.rows import FINGER_POSITION, LISTENING, PRESS
 
 # Of an error, so much is corrected in a second: of a small one (cents), and of a large one. Some
 # pitches swing about their place some eleven times a second, E5 above all: a quick hand would make

@@ -17,7 +17,7 @@ from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.intonation import balance_db
 from yehu_server.core.player.ownership import move
-from yehu_server.core.player.rows import EVENNESS, OUTPUT_BALANCE, VELOCITY
+from yehu_server.core.player.parameter_indices import EVENNESS, OUTPUT_BALANCE, VELOCITY
 from yehu_server.params.table import find
 
 # A gain that rises slowly does not amplify the end of a loud note before; with the bow off the

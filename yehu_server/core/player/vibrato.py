@@ -17,7 +17,7 @@ from yehu_server.core.player.gestures import CENTS, DELAY_MS, HAS_VIBRATO, HERTZ
 from yehu_server.core.player.gestures import PRESS as PRESS_SHARE
 from yehu_server.core.player.gestures import UPWARD as UPWARD_SHARE
 from yehu_server.core.player.ownership import USUAL_MS, forget, move
-from yehu_server.core.player.rows import (
+from yehu_server.core.player.parameter_indices import (
     BEND,
     NOTE_LENGTH,
     PHRASING,

@@ -18,8 +18,8 @@ from yehu_server.core.physics.elementary import each, exp, log, log10
 from yehu_server.core.player.commands import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.notes import DYNAMICS_EXPONENT
+from yehu_server.core.player.parameter_indices import DYNAMICS, STRING
 from yehu_server.core.player.right_hand import SOFTEST
-from yehu_server.core.player.rows import DYNAMICS, STRING
 from yehu_server.core.voice.pitch_detection import HEARING, HOP_S, prepare_hearing
 
 # -- when it is sure ------------------------------------------------------------------------------

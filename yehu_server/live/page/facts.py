@@ -19,7 +19,7 @@ from yehu_server.core.midi.tables import MOST_BINDS, TABLES
 from yehu_server.core.player import fingering
 from yehu_server.core.player.commands import KINDS
 from yehu_server.core.player.note_range import YEHU, NoteRange
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.errors import ParameterError
 from yehu_server.live.page.examples import examples
 from yehu_server.params.articulations import ARTICULATIONS
@@ -40,14 +40,14 @@ from yehu_server.util.files import shipped_folder, write_text
 
 
 def parameter(param: Param) -> dict[str, Any]:
-    """One row: its fields, and its numbers in the player (`row`) and in the engine (`slot`)."""
+    """One row: its fields, and its numbers in the player (`index`) and in the engine (`slot`)."""
     own = {field.name: getattr(param, field.name) for field in fields(param)}
     own = {camel(name): v.value if isinstance(v, Enum) else v for name, v in own.items()}
     group, *words = param.address.split("/")[1:]
     return own | {
         "group": group,
         "label": " ".join(words).replace("_", " "),
-        "row": ROW[param.address],
+        "index": INDEX[param.address],
         "slot": SLOT.get(param.address),
     }
 

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from yehu_server.core.midi.section_players import OWN
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.errors import DeviceError
 from yehu_server.live import limits
 from yehu_server.live.network import Address
@@ -100,7 +100,7 @@ class Pages(Supervisor):
     def _own(self) -> list[list[tuple[int, float]]]:
         """Of each part that is a section, what each of its players has a value of its own of."""
         return [
-            [(ROW[address], player.value(address)) for address in OWN]
+            [(INDEX[address], player.value(address)) for address in OWN]
             if player.value(SECTION) > 1
             else []
             for player in self._players

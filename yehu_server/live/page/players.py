@@ -13,7 +13,7 @@ import numpy as np
 
 from yehu_server.core.midi.events import LEAVE, RELEASE_ALL, SET
 from yehu_server.core.player.commands import BEGIN, DRAW, END, EXPRESS, HOLD, LIFT, STOP, WRITE
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live.page.guests import LISTEN, OWN
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.params.table import TABLE
@@ -25,11 +25,11 @@ AHEAD_S = 3.0  # by which a command may lie ahead
 FIRST_PART = 0
 # What is the instrument's, the room's or the output's, and no player's.
 OWNED = sorted(
-    ROW[param.address]
+    INDEX[param.address]
     for param in TABLE
     if param.is_shared or param.address.startswith(("/body/", "/string/", "/engine/", "/output/"))
 )
-SHARED = frozenset(ROW[param.address] for param in TABLE if param.is_shared)
+SHARED = frozenset(INDEX[param.address] for param in TABLE if param.is_shared)
 
 Array = Any
 

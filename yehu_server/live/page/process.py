@@ -87,7 +87,7 @@ class Pages:
     async def _serve(self) -> None:
         await serve_http(self._answer, self._listening, self._connections)
         sockets = self._sockets
-        await asyncio.gather(sockets.send_looks(), sockets.send_sound(), sockets.send_status())
+        await asyncio.gather(sockets.send_snapshots(), sockets.send_sound(), sockets.send_status())
 
     async def _answer(self, request: web.Request) -> web.StreamResponse:
         try:

@@ -15,7 +15,7 @@ from yehu_server.core.engine.mailbox import PAGES
 from yehu_server.core.engine.rig import RIG, RIG_BYTES
 from yehu_server.core.engine.snapshot import SNAPSHOT, snapshot
 from yehu_server.core.engine.telemetry import METERS
-from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.core.stage.record import STAGE, TAPE
 from yehu_server.params.table import TABLE
 
@@ -24,7 +24,7 @@ Array = Any
 _NOTHING: Mapping[int, float] = MappingProxyType({})
 
 MARGIN = TAPE // 8  # frames of the tape that may be overwritten during a copy
-SHARED_ROWS = [ROW[param.address] for param in TABLE if param.is_shared]
+SHARED_INDICES = [INDEX[param.address] for param in TABLE if param.is_shared]
 
 
 class SharedView:
@@ -65,13 +65,13 @@ class SharedView:
         address = self._address + rig * RIG_BYTES
         return bool(native.post_from.call(address, PAGES, frame, kind, index, value, other))
 
-    def look(self, rig: int = 0, own: Mapping[int, float] = _NOTHING) -> bytes:
+    def snapshot(self, rig: int = 0, own: Mapping[int, float] = _NOTHING) -> bytes:
         """A snapshot of an instrument (``engine.snapshot``) and, twice, the values of parameters.
 
         First come those that they have, then those that were set, from which controllers move them.
         Its level is that of the mix, and what all share is as the first instrument has it.
 
-        `own`: values of rows in place of those that it has.
+        `own`: values, by index, in place of those that it has.
         """
         midi = self._rigs["midi"][rig]
         is_moved = (midi["is_target"] != 0) & (midi["is_held"] == 0)
@@ -79,9 +79,9 @@ class SharedView:
         snapshot.call(self._address + rig * RIG_BYTES, self._record.ctypes.data)
         if rig:
             record["peak"], record["rms"] = self._stage["peak"], self._stage["rms"]
-            values[SHARED_ROWS] = self._rigs["player"]["value"][0, SHARED_ROWS]
-        for row, value in own.items():
-            values[row] = value
+            values[SHARED_INDICES] = self._rigs["player"]["value"][0, SHARED_INDICES]
+        for index, value in own.items():
+            values[index] = value
         was_set = np.where(is_moved, midi["set_to"], values)
         return self._record.tobytes() + bytes(values.tobytes()) + bytes(was_set.tobytes())
 

@@ -1,11 +1,11 @@
-"""The WebSockets of pages: they get looks, sound and each other's commands, and send commands.
+"""The WebSockets of pages: they get snapshots, sound and each other's commands, and send commands.
 
 Messages to a client that does not read are dropped; other clients are not delayed.
 
 A message of numbers is a sequence of float64, little-endian. From a page it is commands, of COMMAND
-numbers each. To a page its first number says what follows: LOOK or COMMANDS, or it comes from the
-socket of sound: then it is one frame number, and float32 samples from there on, left and right in
-turn. A page plays one part, which its address names: `/socket?part=2`; without, the first.
+numbers each. To a page its first number says what follows: SNAPSHOT or COMMANDS, or it comes from
+the socket of sound: then it is one frame number, and float32 samples from there on, left and right
+in turn. A page plays one part, which its address names: `/socket?part=2`; without, the first.
 """
 
 from __future__ import annotations
@@ -54,10 +54,10 @@ def write(transport: asyncio.WriteTransport | None, frame: bytes, most_unsent: i
     return True
 
 
-LOOK, COMMANDS = 0.0, 1.0
+SNAPSHOT, COMMANDS = 0.0, 1.0
 COMMAND = 5  # numbers: frame or NOW, kind, index, value, other
 NOW = -1.0
-SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is the row of a parameter
+SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is that of a parameter
 SOUND_S, STATUS_S = 0.001, 1.0
 MESSAGE_BYTES = 8 * COMMAND * limits.PAGE_EVENTS
 HEARTBEAT_S, CLOSING_S = 10.0, 0.3
@@ -75,7 +75,7 @@ class Page:
         self.part = part
         self.role = role  # of ``page.guests``
         self.transport = transport
-        self.looks = self.sounds = False  # whether it wants looks; whether it sounds itself
+        self.snapshots = self.sounds = False  # whether it wants snapshots; whether it sounds itself
         self.bucket = TokenBucket(limits.PAGE_EVENTS_A_SECOND, limits.PAGE_EVENTS_AT_ONCE)
 
 
@@ -170,7 +170,7 @@ class PageSockets:
         """Do what a page asks for; return whether that can be asked."""
         try:
             asked = json.loads(text)
-            page.looks, page.sounds = asked["looks"] is True, asked["sounds"] is True
+            page.snapshots, page.sounds = asked["snapshots"] is True, asked["sounds"] is True
         except (ValueError, KeyError, TypeError, RecursionError):
             return False
         return True
@@ -183,9 +183,9 @@ class PageSockets:
         if ends:
             self._players.leave(page.number, time.monotonic_ns())
         own = self._own.get(page.part, {})
-        for _, kind, row, value, _ in commands:
-            if kind in (WRITE, HOLD) and row in own:
-                own[int(row)] = value  # at once: the control process tells it later
+        for _, kind, index, value, _ in commands:
+            if kind in (WRITE, HOLD) and index in own:
+                own[int(index)] = value  # at once: the control process tells it later
         frame = frame_of(struct.pack("<2d", COMMANDS, page.number) + commands.tobytes())
         for other in self._pages.values():
             if len(commands) and other is not page and other.sounds and other.part == page.part:
@@ -199,17 +199,19 @@ class PageSockets:
     def set_own_values(self, own: Sequence[Sequence[Sequence[float]]]) -> None:
         """Take the values that parts have where their instruments have others.
 
-        `own`: of each part, rows and their values.
+        `own`: of each part, indices and values of parameters.
         """
-        self._own = {part: {int(row): value for row, value in of} for part, of in enumerate(own)}
+        self._own = {
+            part: {int(index): value for index, value in of} for part, of in enumerate(own)
+        }
 
-    async def send_looks(self) -> None:
-        """Send looks, for ever."""
+    async def send_snapshots(self) -> None:
+        """Send snapshots, for ever."""
         async for _ in every(TELEMETRY_S, self._has_pages):
-            viewers = [page for page in self._pages.values() if page.looks]
+            viewers = [page for page in self._pages.values() if page.snapshots]
             for part in {page.part for page in viewers}:
-                look = self._view.look(self._rigs[part], self._own.get(part, {}))
-                frame = frame_of(struct.pack("<d", LOOK) + look)
+                snapshot = self._view.snapshot(self._rigs[part], self._own.get(part, {}))
+                frame = frame_of(struct.pack("<d", SNAPSHOT) + snapshot)
                 for page in viewers:
                     if page.part == part:
                         write(page.transport, frame, limits.PAGE_UNSENT)

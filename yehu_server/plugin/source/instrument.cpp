@@ -42,7 +42,7 @@ bool Instrument::begin(double rate) {
     wants_zone = true;
     wants_tables = value(MAPPING) != 0.0 || value(TUNING) != 0.0; /* else it has them */
     for (int i = 0; i < PARAMETERS; i++)
-        if (parameters[i].row >= 0 && value(i) != parameters[i].usual) flag(set_bits, i);
+        if (parameters[i].index >= 0 && value(i) != parameters[i].usual) flag(set_bits, i);
     return true;
 }
 
@@ -120,8 +120,8 @@ bool Instrument::snapshot(struct yehu_snapshot *into) const {
 void Instrument::parameter(uint32_t offset, int parameter, double value) {
     const int64_t frame = frame_at(offset);
     /* Hosts send all values as they begin or load: what is so already is not taken from the player. */
-    const int row = parameters[parameter].row;
-    if (rig && row >= 0 && value == this->value(parameter) && value == code.value(rig, row)) return;
+    const int index = parameters[parameter].index;
+    if (rig && index >= 0 && value == this->value(parameter) && value == code.value(rig, index)) return;
     change(parameter, value, [=](int each) { apply(frame, each); });
 }
 
@@ -130,8 +130,8 @@ void Instrument::apply(int64_t frame, int parameter) {
     if (parameter == MAPPING || parameter == TUNING) {
         wants_tables = true;
         use_tables();
-    } else if (parameters[parameter].row >= 0) {
-        post(frame, YEHU_SET, parameters[parameter].row, value(parameter));
+    } else if (parameters[parameter].index >= 0) {
+        post(frame, YEHU_SET, parameters[parameter].index, value(parameter));
     }
 }
 

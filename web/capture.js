@@ -130,10 +130,14 @@ export async function readCapture(file) {
   }
   const told = lines.map((line) => JSON.parse(line)).filter(Array.isArray); // others are no commands
   const own = isOld ? told : told.filter(([, player]) => player === OWN);
-  const commands = own.map(([frame, ...command]) => commandOf([frame, ...command.slice(isOld ? 0 : 1)]));
+  const commands = own.map(([frame, ...command]) =>
+    commandOf([frame, ...command.slice(isOld ? 0 : 1)]),
+  );
   return checked({
     rate,
-    values: Object.fromEntries(Object.entries(values).filter(([address]) => !find(address).playerControlled)),
+    values: Object.fromEntries(
+      Object.entries(values).filter(([address]) => !find(address).playerControlled),
+    ),
     commands: commands.sort((one, other) => one.frame - other.frame),
     players: players.length,
   });
@@ -155,7 +159,8 @@ export function checked(performance) {
     finite(value);
     finite(other);
     const earlier = commands[at - MOST_A_SECOND];
-    if (earlier && frame - earlier.frame < rate) throw new RangeError("too many commands at a time");
+    if (earlier && frame - earlier.frame < rate)
+      throw new RangeError("too many commands at a time");
   });
   return performance;
 }

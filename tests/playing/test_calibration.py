@@ -127,7 +127,7 @@ def begun(
 ) -> Instrument:
     """An instrument on which a note begins."""
     tuned = calibration_for(rate, quantities, a4=a4)
-    instrument = Instrument(PlayingOptions().spec(rate, tuned, quantities))
+    instrument = Instrument(PlayingOptions(quantities=quantities).spec(rate, tuned))
     player = Player(instrument)
     for name, value in settings.items():
         player.write(f"/body/{name}", value)

@@ -78,7 +78,7 @@ def test_messages_of_one_source_keep_their_order_where_the_delay_becomes_shorter
         live.instrument.delay = 1072 if 20 <= number < 60 else 176
         frames.append(arrivals.frame_of(time.monotonic_ns() + 100_000 * number))
     assert frames == sorted(frames)
-    assert frames[30] - frames[10] > 1072 - 176
+    assert frames[30] - frames[10] >= 1072 - 176  # more, unless the clock has come to its end
 
 
 def test_what_arrives_is_played_before_what_is_tagged_for_later(live, instrument):

@@ -163,7 +163,9 @@ export class Part {
   value(address) {
     const param = find(address);
     const { index, playerControlled } = param;
-    const known = playerControlled ? this.#written.get(index)?.value : this.interpreter?.values[index];
+    const known = playerControlled
+      ? this.#written.get(index)?.value
+      : this.interpreter?.values[index];
     const reported = playerControlled
       ? this.#sink.target?.(address)
       : (this.#sink.reported?.(address) ?? this.#news(address, index));

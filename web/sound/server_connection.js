@@ -96,7 +96,9 @@ export class ServerConnection extends EventTarget {
   /** Fulfilled with the first snapshot. @returns {Promise<void>} */
   get first() {
     if (this.seen) return Promise.resolve();
-    return new Promise((resolve) => this.addEventListener("snapshot", () => resolve(), { once: true }));
+    return new Promise((resolve) =>
+      this.addEventListener("snapshot", () => resolve(), { once: true }),
+    );
   }
 
   /**
@@ -173,7 +175,8 @@ export class ServerConnection extends EventTarget {
       this.dispatchEvent(new CustomEvent("snapshot", { detail: this.seen }));
     } else if (what === COMMANDS) {
       const commands = [];
-      for (let i = 2; i < numbers.length; i += COMMAND) commands.push(numbers.subarray(i, i + COMMAND));
+      for (let i = 2; i < numbers.length; i += COMMAND)
+        commands.push(numbers.subarray(i, i + COMMAND));
       this.dispatchEvent(new CustomEvent("commands", { detail: { page, commands } }));
     }
   }

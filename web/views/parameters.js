@@ -17,7 +17,11 @@ export function showParameters({ instrument, taught, midi }) {
   const none = make("p", { class: "soft", role: "status" });
   const groups = GROUPS.map((name) => {
     const rows = TABLE.filter(({ group }) => group === name).map((param) =>
-      row(instrument, param, param.playerControlled ? [] : makeLearning(param.address, taught, midi)),
+      row(
+        instrument,
+        param,
+        param.playerControlled ? [] : makeLearning(param.address, taught, midi),
+      ),
     );
     const count = make("span", { class: "soft" }, [String(rows.length)]);
     const details = make("details", {}, [

@@ -113,7 +113,7 @@ def process(monkeypatch) -> Callable[..., list[str]]:
             def start(self) -> None:
                 done.append("plays")
 
-        parent = SimpleNamespace(tell=lambda event, **_details: done.append(event))
+        parent = SimpleNamespace(send=lambda event, **_details: done.append(event))
         given: queue.Queue = queue.Queue()
         for order in orders:
             given.put({"order": order, "kind": INPUT})

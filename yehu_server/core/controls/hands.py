@@ -59,11 +59,11 @@ PARK_X = 0.012  # m
 # A fast bow needs a larger share of Schelleng's limit, or notes jump to the octave. Measured from
 # F4 to F6: the least share that holds is 0.35 at 0.12 m/s, 0.5 at 0.2 m/s, 0.75 at 0.3 m/s.
 FAST_SHARE, FAST = 0.6, 0.35  # m/s
+MEETS_AT = 0.5  # of its speed, at which a bow meets the other string; tried at 0 to 1
 ONSET_FROM = 0.4  # of /vibrato/onset, below which there is no vibrato
 # In tremolo the bow's speed is a sine times this, clipped to -1..1: mostly full speed. The deeper
 # a tremolo is, the nearer its speed is to a sine squared.
 TURN = 3.0
-MEETS_AT = 0.5  # of its speed, at which a bow meets the other string; tried at 0 to 1
 LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction when tremolo ends
 ARRIVED = 1e-6  # m; as near as this to where the sounding length ends, the bow's place is there
 # A contact that moves costs more than one that stands, so places drift every so many samples, by

@@ -143,8 +143,8 @@ def write_page(folder: Path) -> list[Path]:
     """Write the whole page into a folder; return its files, relative to the folder.
 
     Where its module cannot be built, it is the page that was shipped, as it was then: parameters
-    and snapshots may lie elsewhere in a module of other sources. Raises OutputError where one cannot
-    be written; YehuError where there is no WebAssembly module, and nothing to build it with.
+    and snapshots may lie elsewhere in a module of other sources. Raises OutputError where one
+    cannot be written; YehuError where there is no WebAssembly module, and nothing to build it with.
     """
     try:
         module = page_module()

@@ -1,14 +1,12 @@
-"""Write yehu_server/playing/calibrations.json, the calibrations for the usual sample rates.
+"""Measure the calibrations for the usual sample rates anew: yehu_server/playing/calibrations.json.
 
-    .venv/bin/python scripts/calibrate.py [--keep]
+    .venv/bin/python scripts/calibrate.py
 
-With --keep nothing is measured: the stored values get the keys of the current code. Use it after
-changes that leave every sample as it was, such as new names or another order of the code.
+Where no sample changes, `scripts/generate` keeps the figures, under keys of the new code.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import time
 from dataclasses import asdict
@@ -19,22 +17,12 @@ from yehu_server.playing.calibration_store import SHIPPED
 
 RATES = (44100.0, 48000.0, 96000.0)
 
-
-def main() -> None:
-    """Measure the calibrations, or keep the stored ones, and write the file."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--keep", action="store_true", help="keep the stored values, with new keys")
-    keep = parser.parse_args().keep
-    kept = {data["rate"]: data for data in json.loads(SHIPPED.read_text(encoding="utf-8")).values()}
+if __name__ == "__main__":
     quantities = Quantities()
     shipped = {}
     for rate in RATES:
         start = time.perf_counter()
-        data = kept[rate] if keep else {"rate": rate, **asdict(calibrate(rate, quantities))}
+        data = {"rate": rate, **asdict(calibrate(rate, quantities))}
         shipped[calibration_key(rate, quantities, 440.0)] = data
         print(f"{rate:g} Hz: {time.perf_counter() - start:.1f} s", flush=True)
     SHIPPED.write_text(json.dumps(shipped, indent=1) + "\n", encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()

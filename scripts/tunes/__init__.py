@@ -1,1 +1,1 @@
-"""The scores that `scripts/make_examples.py` writes by rule, and the tunes that measures play."""
+"""The scores that `scripts/generate` writes by rule, and the tunes that measures play."""

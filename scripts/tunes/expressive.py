@@ -1,4 +1,4 @@
-"""Scores that show what each controller does to the sound: see `make_examples.py`.
+"""Scores that show what each controller does to the sound: see `examples.py`.
 
 The tunes were written for this project, in B flat: the open strings are its fifth and second
 degrees (sol and re). A flat or a lowered A, and E flat or a raised E flat, imitate the "heavy"

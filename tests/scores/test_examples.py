@@ -1,12 +1,10 @@
 """The scores in examples/: made again byte for byte, for a yehu, and as their makers say.
 
-What `scripts/make_examples.py` says of each score is tested.
+What `scripts/tunes/examples.py` says of each score is tested.
 """
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from collections import defaultdict
 from itertools import pairwise
 from pathlib import Path
@@ -41,14 +39,6 @@ def of(score: Score, kind: str, control: int | None = None) -> list[ScoreEvent]:
 
 def values(score: Score, control: int) -> list[int]:
     return [event.message.value for event in of(score, "control_change", control)]
-
-
-@pytest.mark.parametrize("names", [[], ["mpe_phrase"]])
-def test_making_them_again_gives_the_shipped_bytes(tmp_path, names):
-    script = ROOT / "scripts" / "make_examples.py"
-    subprocess.run([sys.executable, script, *names, "-o", tmp_path], check=True)
-    made = {path.stem: path.read_bytes() for path in tmp_path.iterdir()}
-    assert made == {name: (SHIPPED / f"{name}.mid").read_bytes() for name in names or SECONDS}
 
 
 @pytest.mark.parametrize("name", SECONDS)

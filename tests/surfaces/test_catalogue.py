@@ -3,19 +3,10 @@
 import subprocess
 import sys
 
-import pytest
-
-from yehu_server.surfaces.catalogue import SURFACES, is_up_to_date
+from yehu_server.surfaces.catalogue import SURFACES
 from yehu_server.util.files import shipped_folder
 
 NAMES = [surface.name for surface in SURFACES]
-
-
-@pytest.mark.parametrize("surface", SURFACES, ids=lambda surface: surface.name)
-def test_the_shipped_file_is_as_the_table_has_it(surface):
-    assert is_up_to_date(surface, shipped_folder("mappings")), (
-        f"mappings/{surface.name} is stale; run: yehu-server surfaces -o mappings"
-    )
 
 
 def test_all_are_written_and_fresh_over_older_ones(tmp_path, command):

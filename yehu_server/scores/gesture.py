@@ -29,7 +29,7 @@ MOST_BYTES = 16 * 2**20
 class Control:
     """One control of a gesture: its column in the kernel's array, bounds, default, unit, meaning.
 
-    scripts/generate.py writes the table of docs/simulate.md from them.
+    scripts/generate writes the table of docs/simulate.md from them.
     """
 
     column: int

@@ -1,4 +1,4 @@
-"""Types of the model's records; written by scripts/generate.py from layout.py.
+"""Types of the model's records; written by scripts/generate from layout.py.
 
 In compiled code a record of an array of layout.MODEL, layout.STATE or layout.REFINED has these
 attributes.

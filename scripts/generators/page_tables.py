@@ -1,27 +1,15 @@
-"""Write what pages and modules take from other code: tables, figures in prose, types of records.
-
-    .venv/bin/python scripts/generate.py
-
-In a page, a table stands between `<!-- table NAME -->` and `<!-- end -->`. A figure of a sentence
-stands behind `<!--=CONSTANT-->` or `<!--=CONSTANT:UNIT-->`: a constant by its path in yehu_server,
-such as `playing.delay.HANDLING_MS`, in a unit of UNITS where that is another than its own. What was
-measured is read from bench/results/.
-"""
+"""Tables of pages, by their names. What was measured is read from bench/results/."""
 
 from __future__ import annotations
 
 import json
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from yehu_server.core.physics import layout
-from yehu_server.core.physics.power import TABLES as POWER_TABLES
 from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.spec import Place
@@ -29,21 +17,7 @@ from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import load
 from yehu_server.scores.gesture import CONTROLS
 
-ROOT = Path(__file__).resolve().parent.parent
-PAGES = ("*.md", "docs/**/*.md", "mappings/*.md", "presets/*.md", "tunings/*.md")
-RECORDS = ROOT / "yehu_server" / "core" / "physics" / "records.py"
-UNITS: dict[str, Callable[[float], float]] = {
-    "kB": lambda value: value / 1024,
-    "MB": lambda value: value / 1024**2,
-    "ms": lambda value: 1e3 * value,
-    "percent": lambda value: 100.0 * value,
-    "a_second": lambda value: 1.0 / value,
-    "part": lambda value: 1.0 / value,
-}
-_TABLE = re.compile(r"(<!-- table ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
-_FIGURE = re.compile(r"(<!--=([\w.]+?)\.(\w+)(?::(\w+))?-->)(?:\d[\d,.]*\d|\d)?")
-
-# ---------------------------------------------------------------- pages
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def table(head: str, rows: Iterable[Iterable[str]]) -> str:
@@ -252,7 +226,7 @@ def followed_soon() -> str:
     )
 
 
-MADE: dict[str, Callable[[], str]] = {
+TABLES: dict[str, Callable[[], str]] = {
     "layers": layers,
     "parameters-of-the-player": lambda: parameters(Place.PLAYER),
     "parameters-of-the-engine": lambda: parameters(Place.ENGINE),
@@ -277,83 +251,3 @@ MADE: dict[str, Callable[[], str]] = {
         ),
     ),
 }
-
-
-def figure(module: str, name: str, unit: str | None) -> str:
-    value = getattr(import_module(f"yehu_server.{module}"), name)
-    if unit:
-        value = UNITS[unit](value)
-    return f"{value:,.10g}" if value >= 10000 else f"{value:.10g}"
-
-
-def page(text: str) -> str:
-    """Return a page with the tables and figures that the code has now."""
-    if lost := re.search(r"^\s*<!--=.*", text, re.MULTILINE):
-        raise ValueError(f"{lost[0]}: at the start of a line, Markdown ends the paragraph there")
-    text = _TABLE.sub(lambda found: f"{found[1]}\n{MADE[found[2]]()}\n\n{found[3]}", text)
-    return _FIGURE.sub(lambda found: found[1] + figure(*found.group(2, 3, 4)), text)
-
-
-# ---------------------------------------------------------------- types of the model's records
-
-KINDS = {
-    "Tables": (POWER_TABLES, "Tables of one power, power.py."),
-    "Model": (layout.MODEL, "Coefficients of one sample rate."),
-    "Motion": (layout.MOTION, "The state of the instrument."),
-    "Contacts": (layout.CONTACTS, "Where bow and fingers touch the strings."),
-    "Work": (layout.WORK, "Intermediate results of one step."),
-    "State": (layout.STATE, "All that a step changes."),
-    "Refined": (layout.REFINED, "What an instrument with torsion, or with wide hair, has besides."),
-}
-HEAD = '''"""Types of the model's records; written by scripts/generate.py from layout.py.
-
-In compiled code a record of an array of layout.MODEL, layout.STATE or layout.REFINED has these
-attributes.
-docs/notation.md has their symbols and units.
-"""
-
-from __future__ import annotations
-
-from typing import Protocol
-
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
-Records = NDArray[np.void]  # of layout.MODEL or layout.STATE
-'''
-
-
-def annotation(kind: np.dtype[np.void], name: str) -> str:
-    field = kind[name]
-    for record, (other, _) in KINDS.items():
-        if field == other:
-            return record
-    scalar = field.base.type.__name__
-    if field.shape:
-        return "Array" if scalar == "float64" else f"NDArray[np.{scalar}]"
-    return "float" if scalar == "float64" else "int"
-
-
-def records() -> str:
-    """Return the source text of the module of records."""
-    parts = [HEAD]
-    for record, (kind, doc) in KINDS.items():
-        fields = [f"    {name}: {annotation(kind, name)}\n" for name in kind.names or ()]
-        parts.append(f'\n\nclass {record}(Protocol):\n    """{doc}"""\n\n{"".join(fields)}')
-    return "".join(parts)
-
-
-def written() -> Iterator[tuple[Path, str]]:
-    """Yield each file that has something written by this, and the text it should have."""
-    yield RECORDS, records()
-    for pattern in PAGES:
-        for path in sorted(ROOT.glob(pattern)):
-            text = path.read_text(encoding="utf-8")
-            if "<!-- table " in text or "<!--=" in text:
-                yield path, page(text)
-
-
-if __name__ == "__main__":
-    for path, text in written():
-        path.write_text(text, encoding="utf-8")

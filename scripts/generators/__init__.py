@@ -1,0 +1,1 @@
+"""What `scripts/generate` writes; `written` has each file."""

@@ -30,8 +30,8 @@ from yehu_server.params.table import TABLE, UNIT
 OURS = ("yehu-server", "scripts/yehu")
 FOREIGN = (".venv/bin/pytest", ".venv/bin/mkdocs", "open-stage-control")
 SLOW = {"docs/body.md"}  # whose programs take half a minute
-# What there will be once the example of CONTRIBUTING.md is followed.
-EXAMPLE_ADDRESS, EXAMPLE_NAME = "/bow/turn", "TURN"
+# What there will be once the examples of CONTRIBUTING.md are followed.
+EXAMPLE_ADDRESSES, EXAMPLE_NAME = {"/bow/turn", "/lift"}, "TURN"
 
 
 # ---------------------------------------------------------------- what is written
@@ -211,7 +211,7 @@ def is_symbol(name: str) -> bool:
 @cache
 def addresses() -> set[str]:
     """Every address there is, and what is above it."""
-    found = {EXAMPLE_ADDRESS, *(row.address for row in (*TABLE, *CALLS)), "/status/NAME"}
+    found = {*EXAMPLE_ADDRESSES, *(row.address for row in (*TABLE, *CALLS)), "/status/NAME"}
     found |= {f"/status/{row.name}" for row in (*STATUS, *PART_STATUS)}
     for file in (PACKAGE / "live").rglob("*.py"):  # what is answered
         found |= set(re.findall(r'["}](/[a-z/]+)"', file.read_text(encoding="utf-8")))

@@ -57,7 +57,7 @@ class Server:
     written.
 
     `on_message`: called with a line for the player: about devices that appear or disappear, and
-    troubles.
+    problems.
     `progress`: called with the number of notes done and of all, while the instrument is calibrated.
     """
 
@@ -79,7 +79,7 @@ class Server:
             number = number_of_instruments(per_part)
             self.output = Output(replace(options.output, parts=number), on_message)
             undo.callback(self.output.end)
-            warm_up()  # meanwhile the device is looked for
+            warm_up()  # meanwhile the device is searched for
             rate = self.output.find()
             tuned = [playing.calibration(rate, progress) for playing in per_part]
             memory = self.output.memory.buffer

@@ -14,7 +14,7 @@ from pythonosc import slip
 from yehu_server.live.osc.answering import Framing, FramingError
 
 ESC, END = b"\xdb", b"\xc0"
-MOST_BYTES = 65_535  # of a packet: as long as UDP can tell
+MOST_BYTES = 65_535  # of a packet: as long as UDP allows
 
 
 def prefixed(packets: Iterable[bytes]) -> bytes:
@@ -37,7 +37,7 @@ def read(framing: Framing, *pieces: bytes) -> list[bytes]:
 
 FRAMINGS = [prefixed, slipped, slipped_bare]
 SOME = [b"/a\0\0", b"/" + END * 3 + ESC * 2, b"#bundle\0", b"/\xdb\xdc\xdb\xdd\0", b"/b" * 300]
-# The first byte tells the framing: SLIP without a leading END begins with that of a packet.
+# The first byte decides the framing: SLIP without a leading END begins with that of a packet.
 osc_like = st.builds(lambda start, rest: start + rest, st.sampled_from([b"/", b"#"]), st.binary())
 awkward = st.lists(st.sampled_from([END, ESC, b"\xdc", b"\xdd", b"\0", b"/"])).map(b"".join)
 packets = st.lists(osc_like | awkward.map(lambda rest: b"/" + rest), max_size=8)

@@ -64,7 +64,7 @@ def test_an_input_that_is_not_there_is_told_and_the_rest_plays(jackd, serve):
 def test_an_input_that_stalls_or_goes_holds_no_note_and_is_followed_again(
     number, jackd, serve, tmp_path, until
 ):
-    """A sound server that is stopped says nothing; the input's silence tells."""
+    """A sound server that is stopped says nothing; the input's silence shows it."""
     jackd.start(128)
     take = tmp_path / "take.jsonl"
 

@@ -1,8 +1,8 @@
 """Play live: by an audio device, or by a silent clock while there is none.
 
 Exactly one of them computes samples at any time. When the device is lost, the clock continues at
-the same frame within some hundredths of a second, and a new process looks for the device until it
-is back.
+the same frame within some hundredths of a second, and a new process searches for the device
+until it is back.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ log = logging.getLogger(__name__)
 
 NULL = "null"
 NULL_RATE = 48000.0
-FIRST_LOOK_S, COMPILING_S = 10.0, 300.0
+ANSWER_WITHIN_S, COMPILING_S = 10.0, 300.0
 HUNG_AFTER_S = 2.0
 LISTEN_S = 0.2  # to wait at a time for events of the device's process; within LONGEST_GAP_S
 AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 1.0, 30.0
@@ -117,7 +117,7 @@ class OutputState:
 
 
 class Output:
-    """Plays an ensemble on a device, which it looks for from its construction on.
+    """Plays an ensemble on a device, which it searches for from its construction on.
 
     Call `find`, make the ensemble with that rate in ``memory``, then call `begin`, and at last
     `end`.
@@ -143,9 +143,9 @@ class Output:
         self._heart = (0, 0.0)  # number of callbacks, and the awake time of the last one
         self._refused = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)  # the device refuses
         self._short = Backoff()  # files or memory for a process are short
-        self._look_at = 0.0  # monotonic s
+        self._search_at = 0.0  # monotonic s
         if options.device != NULL:
-            self._look()
+            self._search()
 
     def find(self) -> float:
         """Wait for the device; return the rate (Hz). Raises DeviceError: a named one is missing."""
@@ -191,8 +191,8 @@ class Output:
 
     # -- the device's process ----------------------------------------------------------------
 
-    def _look(self) -> None:
-        """Start a new process that looks for the device."""
+    def _search(self) -> None:
+        """Start a new process that searches for the device."""
         self._events = queue.Queue()
         try:
             self._child = Child(
@@ -201,7 +201,7 @@ class Output:
         except SHORTAGES as error:
             self._give_up(f"the audio process cannot be started: {why(error)}", self._short)
             return
-        self._child.send("look", kind=OUTPUT, device=self._options.device)
+        self._child.send("search", kind=OUTPUT, device=self._options.device)
 
     def _open(self, found: Message) -> None:
         ensemble = self._ensemble
@@ -249,16 +249,16 @@ class Output:
         return str(event.get("reason", "the audio process ended"))
 
     def _give_up(self, reason: str, backoff: Backoff) -> None:
-        """Stop looking for the device for a while, longer each time."""
+        """Stop searching for the device for a while, longer each time."""
         self._drop_child()
-        self._look_at = time.monotonic() + backoff.failed()
+        self._search_at = time.monotonic() + backoff.failed()
         if reason != self.state.problem:
             self.state.problem = reason
             self._changed(f"no sound: {reason}")
 
     def _await(self, kinds: set[str], what: str) -> Message:
         """The next event of some kinds; without one in time, as if the process had ended."""
-        deadline = self._awake() + FIRST_LOOK_S
+        deadline = self._awake() + ANSWER_WITHIN_S
         while not self._ending.is_set():
             try:
                 event = self._events.get(timeout=LISTEN_S)
@@ -294,9 +294,9 @@ class Output:
                 self._give_up(reason, self._refused)
         elif event["event"] in ("lost", "gone", "failed") or self._has_stopped():
             self._lose(self._reason(event))
-        is_time = self._child is None and time.monotonic() >= self._look_at
+        is_time = self._child is None and time.monotonic() >= self._search_at
         if is_time and not self._ending.is_set():
-            self._look()
+            self._search()
 
     def _has_stopped(self) -> bool:
         """Whether the callbacks have stopped, in time in which this process was awake."""

@@ -21,8 +21,8 @@ from yehu_server.live.midi.jack_watch import JackWatch
 from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted, stable_names
 from yehu_server.util.processes import Message, Parent
 
-LOOK_EVERY_S = 0.5
-SYSTEM_EVERY_S = 2.0  # between looks for a MIDI system, where there is none
+POLL_EVERY_S = 0.5
+SYSTEM_EVERY_S = 2.0  # between searches for a MIDI system, where there is none
 AGAIN_S = 5.0  # until a port is tried again that could not be opened: another program may have it
 SENSE_EVERY_S = 0.05
 SENSE_WITHIN_S = 0.33  # active sensing promises a message every 300 ms
@@ -36,7 +36,7 @@ APIS = {"alsa": "LINUX_ALSA", "jack": "UNIX_JACK", "core": "MACOSX_CORE", "windo
 class Input:
     """An open MIDI input.
 
-    `is_forwarded`: whether the parent is told of each message, too.
+    `is_forwarded`: whether each message is sent to the parent, too.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class Inputs:
         """Whether there is a MIDI system."""
         return self._finder is not None
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Open ports that appeared, close those that disappeared."""
         if self._finder is None and not self._start():
             return
@@ -127,14 +127,14 @@ class Inputs:
             is_due = self._refused.get(name, early) <= early
             if name not in self._open and is_due and self._wants(name):
                 self._add(name, full_name)
-        self._seek(stable)
+        self._report_missing(stable)
 
     def _wants(self, name: str) -> bool:
         named = bool(self._patterns) and is_wanted(name, self._patterns)
         return named or (self._others and is_wanted(name, ()))
 
-    def _seek(self, names: Iterable[str]) -> None:
-        """Report patterns that no port matches, at the first look."""
+    def _report_missing(self, names: Iterable[str]) -> None:
+        """Report patterns that no port matches, at the first poll."""
         present = list(names)
         for pattern in self._sought:
             if not any(is_wanted(name, [pattern]) for name in present):
@@ -151,7 +151,7 @@ class Inputs:
                 port.sense()
 
     def hear(self, is_forwarded: bool) -> None:
-        """Tell the parent of each message from now on, or no more; any thread may call."""
+        """Send the parent each message from now on, or none; any thread may call."""
         self._is_heard = is_forwarded
         for port in list(self._open.values()):
             port.is_forwarded = is_forwarded
@@ -196,7 +196,7 @@ class Inputs:
         self._parent.send("appeared", port=name, number=number)
 
     def _refuse(self, name: str, reason: str) -> None:
-        """Leave a port for now; the parent is told the first time."""
+        """Leave a port for now; it is reported the first time."""
         if name not in self._refused:
             self._parent.send("refused", port=name, reason=reason)
         self._refused[name] = time.monotonic()
@@ -279,13 +279,13 @@ def main() -> None:
         hung_up.set()
 
     threading.Thread(target=listen, daemon=True).start()
-    looked = -SYSTEM_EVERY_S
+    polled = -SYSTEM_EVERY_S
     while not hung_up.wait(SENSE_EVERY_S):
         inputs.sense()
-        pause = LOOK_EVERY_S if inputs.has_system else SYSTEM_EVERY_S
-        if time.monotonic() - looked > pause:
-            inputs.look()
-            looked = time.monotonic()
+        pause = POLL_EVERY_S if inputs.has_system else SYSTEM_EVERY_S
+        if time.monotonic() - polled > pause:
+            inputs.poll()
+            polled = time.monotonic()
     os._exit(0)
 
 

@@ -1,4 +1,4 @@
-"""Play from MIDI inputs as they are connected; tell of those that come and go."""
+"""Play from MIDI inputs as they are connected; report those that come and go."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class MidiOptions:
 class MidiPorts(Supervisor):
     """Keeps the process that holds the MIDI inputs, and plays all parts from them.
 
-    Its messages reach the audio callback by shared memory; the server hears of them only where
+    Its messages reach the audio callback by shared memory; the server receives them only where
     something is to be learned.
 
     `memory`: file descriptor of the memory that has the instruments.
@@ -95,7 +95,7 @@ class MidiPorts(Supervisor):
         gone.wait()
 
     def _send_forwarding(self) -> None:
-        """Have the process tell of messages while something is to be learned, and only then."""
+        """Have the process forward messages while something is to be learned, and only then."""
         if self._child is not None:
             self._child.send("hear", hear=any(player.learning.waits for player in self._players))
 
@@ -125,12 +125,12 @@ class MidiPorts(Supervisor):
         elif kind == "silent":
             log.info("MIDI: %s fell silent (active sensing)", event["port"])
         elif kind == "missing":
-            self._tell_missing(event["pattern"], event["present"])
+            self._report_missing(event["pattern"], event["present"])
         elif kind == "refused":
             self._on_message(f"MIDI: {event['port']} cannot be opened: {event['reason']}")
         elif kind == "none":
             self.problem = event["reason"]
-            self._on_message(f"MIDI: none ({event['reason']}); looking again now and then")
+            self._on_message(f"MIDI: none ({event['reason']}); searching again now and then")
         elif kind == "system":
             self.problem = ""
             log.info("MIDI: through %s", event["api"])
@@ -144,7 +144,7 @@ class MidiPorts(Supervisor):
             return ", and plays no part"
         return f" to part {parts[0]}" if len(parts) == 1 else f" to parts {', '.join(parts)}"
 
-    def _tell_missing(self, pattern: str, present: Sequence[str]) -> None:
+    def _report_missing(self, pattern: str, present: Sequence[str]) -> None:
         if pattern not in self._missing:  # once, however often the process starts
             self._missing.add(pattern)
             there = ", ".join(present) or "none"

@@ -177,7 +177,7 @@ class UdpPeer:
         return hash(self.address)
 
     def __hash__(self) -> int:
-        """Its address's, computed once: each message looks its peer up a dozen times."""
+        """Its address's, computed once: each message needs it a dozen times."""
         return self._hash
 
     @cached_property

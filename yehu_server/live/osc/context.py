@@ -65,7 +65,7 @@ class CallContext:
         return {address: values[address] for address in own}
 
     def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
-        """Tell a peer why what it sent to an address was refused."""
+        """Send a peer the reason why its message to an address was refused."""
         self.counts.errors += 1
         self.clients.send_error(peer, address, reason)
 
@@ -135,5 +135,5 @@ class GroupCalls:
         peer.send(pack(self._prefix + address, *arguments))
 
     def _send_error(self, peer: Peer, address: str, reason: str) -> None:
-        """Tell a peer why a call of the group was refused."""
+        """Send a peer the reason why a call of the group was refused."""
         self._context.send_error(peer, self._prefix + address, reason)

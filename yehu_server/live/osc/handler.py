@@ -119,18 +119,18 @@ class OscHandler:
         self.clients.flush()
 
     def wait_s(self) -> float:
-        """Seconds until `tick` has something to do, or to look for it again."""
+        """Seconds until `tick` has something to do, or has to check again."""
         waits = self._schedule.wait_s(), self.clients.wait_s(), LONGEST_WAIT_S
         return min(wait for wait in waits if wait is not None)
 
     def _actions(self, address: str, peer: Peer) -> list[Act]:
-        """What carries out the calls at an address; tells the peer where there is none."""
+        """What carries out the calls at an address; sends the peer an error where there is none."""
         try:
             actions = self._found(address)
         except YehuError as error:
             self.context.send_error(peer, address, str(error))
             return []
-        if not actions:  # a near address is looked for only where the error is sent
+        if not actions:  # a near address is searched for only where the error is sent
             self.context.send_error(peer, address, partial(self._unknown, address))
         return actions
 

@@ -135,7 +135,7 @@ def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[st
     """The addresses that a pattern matches; raises RefusedError if it is wrong or matches none."""
     if len(pattern) > limits.PATTERN:
         raise RefusedError("the pattern is too long")
-    literal = re.split(r"[*?\[{]", pattern, maxsplit=1)[0]  # by which most are told apart
+    literal = re.split(r"[*?\[{]", pattern, maxsplit=1)[0]  # which most lack
     matches(pattern, "")  # raises where it is wrong, whatever there is
     found = [
         address

@@ -40,8 +40,8 @@ class PartCalls(GroupCalls):
     def _echo(self, peer: Peer, addresses: Iterable[str]) -> None:
         """Send a peer the values that it has set, of those that the group has."""
         own = {param.address for param in self.params}
-        told = [self._addressed + one for one in addresses if one.removesuffix(UNIT) in own]
-        self._clients.echo(peer, told)
+        sent = [self._addressed + one for one in addresses if one.removesuffix(UNIT) in own]
+        self._clients.echo(peer, sent)
 
     # -- parameters --------------------------------------------------------------------------
 

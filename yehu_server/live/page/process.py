@@ -32,7 +32,7 @@ PREPARING, READY, NONE = "preparing", "ready", "none"
 
 
 class Pages:
-    """The site, the WebSockets, and what the control process tells them."""
+    """The site, the WebSockets, and what the control process sends them."""
 
     def __init__(self, order: Message) -> None:
         self._listening = socket.socket(fileno=order["socket"])
@@ -52,7 +52,7 @@ class Pages:
         self._finder: Child | None = None
 
     def _prepare(self) -> None:
-        """Have the module for pages found, or compiled, once a page is opened."""
+        """Find or compile the module for pages, once a page is opened."""
 
         def found(event: Message) -> None:
             self._loop.call_soon_threadsafe(self._found, event)
@@ -61,7 +61,7 @@ class Pages:
             self._finder = Child("yehu_server.live.page.module_process", found)
 
     def _found(self, event: Message) -> None:
-        """Hear of the module for pages."""
+        """Handle an event of the process that finds the module for pages."""
         if event["event"] == "module":
             self._site.add_module(Path(event["path"]).read_bytes())
             self._sounds = READY
@@ -72,7 +72,7 @@ class Pages:
             self._sounds = NONE
 
     def hear(self, orders: Iterator[Message]) -> None:
-        """Hear of the state of the server, until the control process hangs up."""
+        """Take the state of the server as it is sent, until the control process ends."""
         for order in orders:
             self._loop.call_soon_threadsafe(self._status.update, order["status"])
             self._loop.call_soon_threadsafe(self._sockets.set_own_values, order["own"])

@@ -167,7 +167,7 @@ class PageSockets:
         return words.index(word) if word in words else None
 
     def _obey(self, page: Page, text: str) -> bool:
-        """Do what a page asks for; return whether that can be asked."""
+        """Apply what a page asks for; return whether it can be asked for."""
         try:
             asked = json.loads(text)
             page.snapshots, page.sounds = asked["snapshots"] is True, asked["sounds"] is True
@@ -176,7 +176,7 @@ class PageSockets:
         return True
 
     async def _pass_on(self, page: Page, commands: Any) -> None:
-        """Post commands, and tell other pages that sound as this part; a hasty page waits."""
+        """Post commands, and send them to other pages of this part that sound; a fast one waits."""
         count = len(commands)
         commands, ends = permitted(page.role, commands)
         self._players.post(page.number, page.part, commands, time.monotonic_ns())
@@ -185,7 +185,7 @@ class PageSockets:
         own = self._own.get(page.part, {})
         for _, kind, index, value, _ in commands:
             if kind in (WRITE, HOLD) and index in own:
-                own[int(index)] = value  # at once: the control process tells it later
+                own[int(index)] = value  # at once: the control process sends it later
         frame = frame_of(struct.pack("<2d", COMMANDS, page.number) + commands.tobytes())
         for other in self._pages.values():
             if len(commands) and other is not page and other.sounds and other.part == page.part:
@@ -194,7 +194,7 @@ class PageSockets:
         if (left := page.bucket.left(time.monotonic())) < 0.0:
             await asyncio.sleep(-left / limits.PAGE_EVENTS_A_SECOND)
 
-    # -- telling all -------------------------------------------------------------------------
+    # -- sending to all ----------------------------------------------------------------------
 
     def set_own_values(self, own: Sequence[Sequence[Sequence[float]]]) -> None:
         """Take the values that parts have where their instruments have others.

@@ -99,8 +99,8 @@ class WebServer:
         self._listening.close()
 
     def tree_changed(self, path: str) -> None:
-        """Tell all WebSockets that the tree has changed at a path or below; any thread may call."""
-        self._thread.call(self._sockets.tell, "PATH_CHANGED", path)
+        """Report to all WebSockets that the tree has changed at a path; any thread may call."""
+        self._thread.call(self._sockets.broadcast, "PATH_CHANGED", path)
 
     async def _serve(self) -> None:
         # A copy, since it is closed at the end, and serving may have to start again.

@@ -125,7 +125,7 @@ class WebSockets:
                 await writing
         return socket
 
-    def tell(self, command: str, data: Any) -> None:
+    def broadcast(self, command: str, data: Any) -> None:
         """Send a command to all clients."""
         for peer in self._open.values():
             peer.send(_command(command, data))

@@ -128,8 +128,8 @@ export async function readCapture(file) {
     find(address);
     finite(value);
   }
-  const told = lines.map((line) => JSON.parse(line)).filter(Array.isArray); // others are no commands
-  const own = isOld ? told : told.filter(([, player]) => player === OWN);
+  const entries = lines.map((line) => JSON.parse(line)).filter(Array.isArray); // others are no commands
+  const own = isOld ? entries : entries.filter(([, player]) => player === OWN);
   const commands = own.map(([frame, ...command]) =>
     commandOf([frame, ...command.slice(isOld ? 0 : 1)]),
   );
@@ -187,7 +187,7 @@ function finite(value) {
   return value;
 }
 
-/** Plays a performance; tells by the event 'end'. */
+/** Plays a performance. Event: 'end'. */
 export class Replayer extends EventTarget {
   /** @param {Instrument} instrument @param {Performance} performance */
   constructor(instrument, { rate, values, commands }) {

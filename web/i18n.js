@@ -1,5 +1,5 @@
 /**
- * The page's words, in the language chosen. What parameters and presets do is told by the server's own
+ * The page's words, in the language chosen. What parameters and presets do is described by the server's own
  * tables (`facts.js`); other languages translate that too, under `about/...` and `preset.NAME.about`.
  */
 
@@ -35,11 +35,11 @@ export async function setLanguage(chosen) {
 /**
  * Do what puts words on the page, now and whenever the language has changed. For what stays as long
  * as the page.
- * @param {() => void} tell
+ * @param {() => void} update
  */
-export function onLanguage(tell) {
-  changes.addEventListener("change", tell);
-  tell();
+export function onLanguage(update) {
+  changes.addEventListener("change", update);
+  update();
 }
 
 /**

@@ -25,7 +25,7 @@ export class Output {
     this.context = context;
     this.analyser = new AnalyserNode(context, { fftSize: FFT, smoothingTimeConstant: 0.6 });
     this.gain = new GainNode(context, { gain: 1 });
-    /** Where the worklet hears and tells; null: it is on the page's thread. @type {MessagePort | null} */
+    /** The worklet's port; null: it is on the page's thread. @type {MessagePort | null} */
     this.port = null;
     /** @type {AudioNode | null} */
     this.node = null;

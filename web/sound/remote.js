@@ -1,5 +1,5 @@
 /**
- * The instrument of the server, for the page: posts commands to it, and tells what it does; the page
+ * The instrument of the server, for the page: posts commands to it, and reports what it does; the page
  * may also hear it. It has the same interface as `Sound`.
  */
 
@@ -12,7 +12,7 @@ import { CommandBatch } from "./kernel.js";
 /** @typedef {import('./server_connection.js').ServerConnection} ServerConnection */
 /** @typedef {import('../interfaces.js').Status} Status */
 
-/** Tells by events: 'state' of a new snapshot. */
+/** Event: 'state' of a new snapshot. */
 export class Remote extends EventTarget {
   /**
    * @param {ServerConnection} line to the server
@@ -32,7 +32,7 @@ export class Remote extends EventTarget {
     this.listener = listener;
     this.seen = new Float64Array(facts.snapshotLength + 2 * facts.parameters.length);
     this.isSeen = false;
-    this.people = Infinity; // the server knows how many there are
+    this.maxPlayers = Infinity; // the server limits them
     this.state = snapshotOf(this.seen);
     this.analyser = listener?.analyser ?? null;
     this.post = new CommandBatch((commands) => line.send(commands)).post;

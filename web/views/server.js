@@ -22,7 +22,7 @@ const FIRST_MS = 1000; // a server that is away is not waited for any longer
 export function showServer(instrument) {
   const line = new ServerConnection();
   instrument.others = line;
-  instrument.way = () => line.ready; // where to sound is chosen once the server tells what it has
+  instrument.way = () => line.ready; // where to sound is chosen once the server has sent its state
   showPart(line);
   const about = make("p", { class: "soft" });
   const state = make("p", { class: "soft", role: "status" });
@@ -47,7 +47,7 @@ export function showServer(instrument) {
     before?.close();
     if (way === "here") sharing = new Sharing(instrument, line);
     if (way === "there") instrument.start(); // a picture needs no touch
-    tell();
+    update();
   }
 
   /** The sound of this page, with the parameters that the server has. */
@@ -63,7 +63,7 @@ export function showServer(instrument) {
 
   const canBeHere = () => facts.isYehu && line.status.sounds === "ready";
 
-  function tell() {
+  function update() {
     const { device, pages, sounds, parts } = line.status;
     choice.show(chosen ?? "");
     choice.buttons[WAYS.indexOf("here")].disabled = !canBeHere();
@@ -78,14 +78,16 @@ export function showServer(instrument) {
       ready: "",
       none: translate("server.impossible"),
     };
-    const told = [
+    const sentences = [
       device ? translate("server.device", { device }) : translate("server.silent"),
       translate("server.pages", { count: pages }),
       facts.isYehu
         ? own[sounds]
         : translate("server.other", { low: nameOf(LOWEST_NOTE), high: nameOf(HIGHEST_NOTE) }),
     ];
-    state.textContent = line.isOpen ? told.filter(Boolean).join(" ") : translate("server.gone");
+    state.textContent = line.isOpen
+      ? sentences.filter(Boolean).join(" ")
+      : translate("server.gone");
   }
 
   line.addEventListener("status", () => {
@@ -97,12 +99,12 @@ export function showServer(instrument) {
       choose(chosen); // another server, at another rate
       instrument.start();
     }
-    tell();
+    update();
   });
-  onLanguage(tell);
+  onLanguage(update);
   line.addEventListener("break", () => {
     if (chosen !== "here") instrument.silence(); // the server has ended what this page held
-    tell();
+    update();
   });
   find("panel-connect", HTMLElement).prepend(
     section("server.name", choice.element, about, state, askForPin(line)),
@@ -137,7 +139,7 @@ function askForPin(line) {
  */
 function showPart(line) {
   const select = find("part", HTMLSelectElement);
-  const tell = () => {
+  const update = () => {
     const { part, parts } = line.status;
     select.hidden = parts < 2;
     const numbers = Array.from({ length: parts }, (_, i) => String(i + 1));
@@ -151,8 +153,8 @@ function showPart(line) {
   };
   // A player of its own, that knows nothing of the part before.
   select.addEventListener("change", () => reload("part", select.value));
-  line.addEventListener("status", tell);
-  onLanguage(tell);
+  line.addEventListener("status", update);
+  onLanguage(update);
 }
 
 /**

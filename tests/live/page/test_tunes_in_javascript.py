@@ -1,4 +1,4 @@
-"""Whoever plays a tune along is followed, answered, and told what went well."""
+"""Whoever plays a tune along is followed, answered, and sees what went well."""
 
 from __future__ import annotations
 
@@ -58,9 +58,9 @@ def test_tunes_are_written_in_their_own_key_and_slurs_are_seen(found) -> None:
 
 
 def test_the_challenge_counts_tone_from_the_first_stroke_and_after_a_scratch(found) -> None:
-    told = found["challenge"]
-    assert told["isOver"]
-    assert told["gone"] == pytest.approx(20.0)
-    assert told["tone"] == pytest.approx(3.0 + 4.0 + 8.5)
-    assert told["longest"] == pytest.approx(8.5)
-    assert told["found"] == pytest.approx(1.0)  # of a bow that was too light
+    state = found["challenge"]
+    assert state["isOver"]
+    assert state["gone"] == pytest.approx(20.0)
+    assert state["tone"] == pytest.approx(3.0 + 4.0 + 8.5)
+    assert state["longest"] == pytest.approx(8.5)
+    assert state["found"] == pytest.approx(1.0)  # of a bow that was too light

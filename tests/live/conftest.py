@@ -98,9 +98,9 @@ class Services:
             [self.changed.append],
         )
 
-    def states(self, addressed: str) -> dict[str, float | str]:
-        if addressed:
-            return dict.fromkeys((value.name for value in PART_STATUS), float(part_of(addressed)))
+    def states(self, group: str) -> dict[str, float | str]:
+        if group:
+            return dict.fromkeys((value.name for value in PART_STATUS), float(part_of(group)))
         status = dict.fromkeys((value.name for value in STATUS), 0.0)
         return status | {"load": 0.5, "recording": "".join(self.names[-1:])}
 

@@ -12,7 +12,7 @@ from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.live.osc import clients, handler
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import PART_STATUS, STATUS
-from yehu_server.live.part_addresses import OF_PARTS, group
+from yehu_server.live.part_addresses import OF_PARTS, group_of
 from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, is_listenable, node_at
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
@@ -114,7 +114,7 @@ def test_what_all_share_is_of_no_part(still, players):
     assert [player.values() for player in players] == before
 
 
-def test_a_part_that_is_not_there_is_told_with_those_that_are(still, players):
+def test_a_part_that_is_not_there_is_reported_with_those_that_are(still, players):
     for number in ("0", "4", "99", "123456789"):
         still.clock.now += clients.FORGIVEN_S
         for asked, words in [
@@ -295,7 +295,7 @@ def test_a_panic_drops_what_waits_for_its_part(still, players, wire, panic, kept
 def test_the_tree_has_each_part_with_all_that_is_its_own(still, players):
     states = {row.name: 0.0 for row in STATUS}
     own = {row.name: 0.0 for row in PART_STATUS}
-    sent = {group(n): Snapshot(player.values(), own) for n, player in enumerate(players)}
+    sent = {group_of(n): Snapshot(player.values(), own) for n, player in enumerate(players)}
     sent[""] = Snapshot(players[0].values(), states)
     root = node_at("/", sent.__getitem__, len(players))
     part = find(root, "/yehu/part/2")

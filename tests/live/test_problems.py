@@ -45,7 +45,7 @@ def test_a_flood_of_one_trouble_is_a_line_at_once_and_one_every_ten_seconds(cloc
     assert len(said) == 4
 
 
-def test_what_came_in_between_is_told_when_the_flood_is_over(clock):
+def test_what_came_in_between_is_reported_when_the_flood_is_over(clock):
     said = []
     seen = CounterReport(said.append)
     for count in (1, 7, 7):

@@ -282,9 +282,9 @@ class Server:
             if self._hurry.wait(0.005):
                 return
 
-    def states(self, addressed: str) -> dict[str, float | str]:
+    def states(self, group: str) -> dict[str, float | str]:
         """The status values of a group of addresses, by name; any thread may call."""
-        return {**self.part_status(part_of(addressed))} if addressed else self.status()
+        return {**self.part_status(part_of(group))} if group else self.status()
 
     def status(self) -> dict[str, float | str]:
         """The status values, by name; any thread may call."""

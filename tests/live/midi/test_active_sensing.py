@@ -64,7 +64,7 @@ def controller(monkeypatch) -> Controller:
 
 
 @pytest.mark.parametrize("slept_s", [0.4, 2.5, 3600.0])
-def test_a_controller_that_falls_silent_is_told_of_once_but_not_because_we_slept(
+def test_a_controller_that_falls_silent_is_reported_once_but_not_because_we_slept(
     controller, slept_s
 ):
     controller.sense_for(200)

@@ -135,7 +135,7 @@ def test_messages_of_a_bundle_are_heard_at_one_frame_and_in_order(still, wire):
     assert len(moves) == 20
 
 
-def test_when_too_much_waits_it_is_told_and_the_rest_plays(still, wire, monkeypatch):
+def test_when_too_much_waits_it_is_reported_and_the_rest_plays(still, wire, monkeypatch):
     shares = Shares(20 * (limits.OVERHEAD + 28))
     monkeypatch.setattr(still.handler._schedule, "_shares", shares)
     later = still.clock.time() + 0.1

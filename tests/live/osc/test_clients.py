@@ -67,7 +67,7 @@ def test_another_server_that_tells_us_its_values_is_not_answered_for_as_long(
 # ---------------------------------------------------------------- echoes
 
 
-def test_who_sets_something_is_told_its_value_once(clients, values, play, peer):
+def test_who_sets_something_is_sent_its_value_once(clients, values, play, peer):
     other = FakePeer(2)
     values.now["/a"] = 0.5
     assert clients.wait_s() is None
@@ -112,7 +112,7 @@ def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(clients, val
     assert min(counts) > 0.8 * max(counts)
 
 
-def test_who_takes_no_more_is_told_the_last_value_later(clients, values, play, peer):
+def test_who_takes_no_more_is_sent_the_last_value_later(clients, values, play, peer):
     clients.subscribe(peer, 60.0)
     play(20)
     peer.received()
@@ -129,7 +129,7 @@ def test_who_takes_no_more_is_told_the_last_value_later(clients, values, play, p
 # ---------------------------------------------------------------- changes
 
 
-def test_a_subscriber_is_told_all_and_then_what_changes(clients, values, play, peer):
+def test_a_subscriber_is_sent_all_and_then_what_changes(clients, values, play, peer):
     assert clients.subscribe(peer, 10.0)
     play(20)
     assert sent_to(peer) == [("/yehu/a", [0.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
@@ -140,7 +140,7 @@ def test_a_subscriber_is_told_all_and_then_what_changes(clients, values, play, p
     assert sent_to(peer) == [("/yehu/b", [1.0])]
 
 
-def test_a_subscriber_is_told_of_a_value_sixty_times_a_second_at_most(clients, values, play, peer):
+def test_a_subscriber_is_sent_a_value_sixty_times_a_second_at_most(clients, values, play, peer):
     def turn() -> None:
         values.now["/a"] += 1.0
         values.now["/b"] -= 1.0
@@ -175,7 +175,7 @@ def test_a_subscription_is_renewed_and_not_doubled_and_ends(clients, values, pla
 
 
 @pytest.mark.parametrize("end", [Clients.unsubscribe, Clients.forget])
-def test_who_unsubscribes_or_is_gone_is_told_no_more(clients, values, play, peer, end):
+def test_who_unsubscribes_or_is_gone_is_sent_no_more(clients, values, play, peer, end):
     clients.subscribe(peer, 10.0)
     play(20)
     peer.received()
@@ -226,7 +226,7 @@ def test_only_so_many_are_remembered_and_subscribers_not_forgotten_for_them(
 
 
 @pytest.mark.parametrize("is_subscribed", [False, True])
-def test_a_peer_that_is_gone_when_it_is_told_leaves_the_others_in_peace(
+def test_a_peer_that_is_gone_when_it_is_sent_leaves_the_others_in_peace(
     clients, play, peer, is_subscribed
 ):
     class Gone(FakePeer):
@@ -271,7 +271,7 @@ class Slow(FakePeer):
         super().send(packet)
 
 
-def test_who_is_told_much_is_told_in_slices_between_which_others_are_served(
+def test_who_is_sent_much_is_sent_in_slices_between_which_others_are_served(
     clients, values, still_time
 ):
     slow = Slow(still_time)
@@ -289,7 +289,9 @@ def test_who_is_told_much_is_told_in_slices_between_which_others_are_served(
     assert clients.wait_s() > 0.0  # until the next round
 
 
-def test_what_is_set_while_others_are_told_is_told_as_it_then_is(clients, values, still_time, peer):
+def test_what_is_set_while_others_are_answered_is_sent_as_it_then_is(
+    clients, values, still_time, peer
+):
     values.now = {f"/{number}": 0.0 for number in range(100)}
     clients.subscribe(Slow(still_time), 60.0)
     clients.listen(peer, "/0")
@@ -304,7 +306,7 @@ def test_what_is_set_while_others_are_told_is_told_as_it_then_is(clients, values
 
 
 @pytest.mark.parametrize("end", ["ignore", "forget"])
-def test_what_is_ended_between_slices_is_told_no_more(clients, values, still_time, end):
+def test_what_is_ended_between_slices_is_sent_no_more(clients, values, still_time, end):
     slow = Slow(still_time)
     values.now = {f"/{number}": 0.0 for number in range(100)}
     for address in values.now:
@@ -328,7 +330,7 @@ def test_what_is_ended_between_slices_is_told_no_more(clients, values, still_tim
 # ---------------------------------------------------------------- listeners
 
 
-def test_a_listener_is_told_its_address_now_and_once_for_each_change(clients, values, play, peer):
+def test_a_listener_is_sent_its_address_now_and_once_for_each_change(clients, values, play, peer):
     clients.listen(peer, "/status/none")
     clients.ignore(peer, "/status/none")
     clients.listen(peer, "/b")

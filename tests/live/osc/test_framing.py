@@ -148,7 +148,7 @@ def test_no_byte_of_a_slip_packet_that_comes_in_pieces_is_looked_at_again():
     assert read(framing, END) == [packet]
 
 
-def test_a_damaged_or_empty_packet_is_told_and_the_next_is_whole():
+def test_a_damaged_or_empty_packet_is_reported_and_the_next_is_whole():
     whole = [b"/a\0\0", b"", b"/b\0\0"]
     assert read(Framing(), prefixed(whole)) == whole
     for damaged in (b"/a" + ESC + b"b", b"/a" + ESC, b"#" + ESC + ESC, b"/" + ESC + b"\0\xdc"):

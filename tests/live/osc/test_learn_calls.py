@@ -127,7 +127,7 @@ def test_a_soft_one_waits_for_its_place(still, soft):
     assert still.value("/playing/speed") < 0.1
 
 
-def test_what_cannot_be_kept_is_told_and_changes_nothing(still, config_home):
+def test_what_cannot_be_kept_is_reported_and_changes_nothing(still, config_home):
     before = still.player.mapping
     still.ask("/learn", "/playing/vibrato")
     config_home.mkdir()
@@ -147,7 +147,7 @@ def test_what_was_learned_can_be_forgotten(still):
     assert answers(still.ask("/unlearn", "/playing/speed"), "/unlearned")[0][1] == 0
 
 
-def test_every_binding_is_told_with_where_it_is(still):
+def test_every_binding_is_reported_with_where_it_is(still):
     turn(still, 16, 127, channel=3)
     still.pass_time(0.01)
     heard = still.ask("/bindings")

@@ -184,7 +184,7 @@ def test_a_pattern_reaches_the_prefix_too(still, wire):
     assert still.player.value("/bow/force") == 0.75
 
 
-def test_of_a_pattern_one_that_refuses_is_told_and_does_not_hinder_the_others(still):
+def test_of_a_pattern_one_that_refuses_is_reported_and_does_not_hinder_the_others(still):
     for pattern, value in ("/{note,bend}", 1.5), ("/[nb]*", 2.5), ("/b{end,ow}", 3.5):
         assert errors(still.ask(pattern, value))[0] == "/yehu" + pattern
         assert still.player.value("/playing/bend") == value

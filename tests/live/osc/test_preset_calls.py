@@ -33,7 +33,7 @@ def by_address(heard) -> dict[str, list]:
     return {message.address.removeprefix("/yehu"): message.arguments for message in heard}
 
 
-def test_a_loaded_preset_is_told_value_by_value(still):
+def test_a_loaded_preset_is_sent_value_by_value(still):
     answer = by_address(still.ask("/preset/load", "flautando"))
     values = SHIPPED.load("flautando").values
     assert answer.pop("/preset/loaded") == ["flautando"]
@@ -56,7 +56,7 @@ def test_a_load_is_heard_at_the_frame_of_its_time_tag_and_at_no_other(still, wir
     assert still.late() == 0
 
 
-def test_a_held_parameter_is_told_where_it_stays(still):
+def test_a_held_parameter_is_sent_where_it_stays(still):
     still.player.hold("/playing/speed", 0.5)
     answer = by_address(still.ask("/preset/load", "flautando"))
     assert answer["/playing/speed"] == [0.5]
@@ -146,7 +146,7 @@ def test_files_are_written_aside_and_read_in_order(still, own, monkeypatch):
     assert still.player.value("/playing/vibrato") == 33.0
 
 
-def test_presets_are_listed_and_a_broken_one_is_reported(still, own):
+def test_presets_are_listed_and_a_broken_one_is_sent(still, own):
     (own / "mine.toml").write_text(HEAD + 'about = "wild"\n')
     (own / "bad.toml").write_text("version = 9\n")
     heard = still.ask("/preset/list")

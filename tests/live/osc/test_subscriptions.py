@@ -23,7 +23,7 @@ def test_a_subscriber_may_be_told_of_zero_to_one(still):
     assert values(still.peer.received()) == {"/yehu/playing/speed/unit": pytest.approx(0.7)}
 
 
-def test_a_subscriber_is_told_all_and_what_others_change(live):
+def test_a_subscriber_is_sent_all_and_what_others_change(live):
     client, other = live.client(), live.client()
     client.send("/subscribe")
     assert client.wait_for("/subscribed") == [60.0]
@@ -126,7 +126,7 @@ def test_the_status_is_asked_for_like_any_value(still):
     assert set(heard) == {f"/yehu/status/{value.name}" for value in STATUS}
 
 
-def test_who_subscribes_to_the_status_is_told_it_at_once_and_then_each_change(still):
+def test_who_subscribes_to_the_status_is_sent_it_at_once_and_then_each_change(still):
     heard = values(still.ask("/subscribe/status", 2.0))
     assert heard.pop("/yehu/subscribed") == 2.0
     assert set(heard) == {f"/yehu/status/{value.name}" for value in STATUS}
@@ -146,7 +146,7 @@ def test_who_subscribes_to_the_status_is_told_it_at_once_and_then_each_change(st
     assert still.handler.clients.subscribers == 0
 
 
-def test_who_subscribes_to_both_is_told_of_both_until_it_unsubscribes(still):
+def test_who_subscribes_to_both_is_sent_both_until_it_unsubscribes(still):
     still.ask("/subscribe", 60.0)
     still.ask("/subscribe/status", 60.0)
     still.player.set("/playing/attack", 50.0, frame=0)
@@ -161,7 +161,7 @@ def test_who_subscribes_to_both_is_told_of_both_until_it_unsubscribes(still):
     assert still.peer.received() == []
 
 
-def test_status_is_told_line_by_line(shared_server):
+def test_status_is_sent_line_by_line(shared_server):
     client = shared_server.client()
     client.send("/status")
     heard = values(client.all())

@@ -333,7 +333,7 @@ def test_pages_that_sound_get_the_commands_of_others_and_hear_that_they_left(ser
 # ---------------------------------------------------------------- parts
 
 
-def test_the_status_tells_which_part_it_is_and_one_that_is_not_there_ends_the_connection(server):
+def test_the_status_says_which_part_it_is_and_one_that_is_not_there_ends_the_connection(server):
     for part in (1, 2):
         status = with_pages(server, lambda page: page.value_of("status"), part)
         assert (status["part"], status["parts"]) == (part, 2)
@@ -380,7 +380,7 @@ def test_a_snapshot_is_of_the_parts_own_instrument_and_the_level_that_of_the_mix
         with_pages(server, lambda page, value=value: snapshot(page, value), part)
 
 
-def test_the_room_is_one_for_all_and_a_section_tells_the_parts_place(server) -> None:
+def test_the_room_is_one_for_all_and_a_section_says_the_parts_place(server) -> None:
     first, second = server.players
 
     async def furnish(page: Page) -> None:

@@ -71,7 +71,7 @@ def test_a_shipped_module_of_these_sources_goes_with_the_page_of_now(
     assert not caplog.records
 
 
-def test_without_any_page_the_error_tells_what_would_help(shipped, tmp_path) -> None:
+def test_without_any_page_the_error_says_what_would_help(shipped, tmp_path) -> None:
     (shipped / "yehu.wasm").unlink()
     with pytest.raises(YehuError, match="Debian's lld"):
         write_page(tmp_path / "page")

@@ -16,7 +16,7 @@ def found(run_node, page) -> Any:
     return json.loads(run_node("tune.test.mjs", page))
 
 
-def test_it_waits_for_each_note_and_tells_what_went_well_and_what_was_hard(found) -> None:
+def test_it_waits_for_each_note_and_says_what_went_well_and_what_was_hard(found) -> None:
     assert found["waiting"]["way"] == [1, 1, 2, 2, 3, 4]
     assert found["waiting"]["wrong"] == [69]
     assert not found["waiting"]["isOn"]
@@ -27,7 +27,7 @@ def test_it_waits_for_each_note_and_tells_what_went_well_and_what_was_hard(found
     assert found["bowed"] == [1, 2]  # another stroke of the hand repeats a note
 
 
-def test_in_time_it_goes_on_and_tells_how_late(found) -> None:
+def test_in_time_it_goes_on_and_says_how_late(found) -> None:
     result = found["timed"]["result"]
     assert (result["right"], result["count"]) == (3, 4)
     assert result["late"] == pytest.approx((0.1 + 0.0 + 0.0) / 3, abs=0.01)

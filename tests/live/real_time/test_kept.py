@@ -57,7 +57,7 @@ def test_ctrl_c_again_and_again_keeps_the_take(silent, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_full_disk_is_told_by_the_exit_code(silent, tmp_path):
+def test_a_full_disk_is_reported_by_the_exit_code(silent, tmp_path):
     take = tmp_path / "take.wav"
     server = silent("--record", take)
     server.osc()

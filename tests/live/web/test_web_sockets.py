@@ -74,12 +74,12 @@ def test_a_binary_frame_is_osc_and_who_sets_something_is_answered(web, port):
 # ---------------------------------------------------------------- LISTEN and IGNORE
 
 
-def test_a_listener_is_told_the_value_at_once_and_then_each_change(web, shared_web):
+def test_a_listener_is_sent_the_value_at_once_and_then_each_change(web, shared_web):
     web.listen(FORCE)
     assert web.next() == Message(FORCE, [0.5])
     client = shared_web.client()
     for value in (1.0, 1.5, 99.0):
-        client.message("/bow/force", value)
+        client.send("/bow/force", value)
         assert web.next() == Message(FORCE, [min(value, 5.0)])
     assert web.next(QUIET_S) is None
     for path, kind in (FORCE + "/unit", float), (DEVICE, str), (DEVICE + "_losses", int):
@@ -88,15 +88,15 @@ def test_a_listener_is_told_the_value_at_once_and_then_each_change(web, shared_w
         assert type(value) is kind
 
 
-def test_who_ignores_is_told_no_more(web, shared_web):
+def test_who_ignores_is_sent_no_more(web, shared_web):
     place = "/yehu/bow/position"
     for path in (FORCE, place):
         web.listen(path)
         assert web.next().address == path
     web.ignore(FORCE)
     web.sync()
-    shared_web.client().message("/bow/force", 2.0)
-    shared_web.client().message("/bow/position", 0.2)
+    shared_web.client().send("/bow/force", 2.0)
+    shared_web.client().send("/bow/position", 0.2)
     assert web.next() == Message(place, [pytest.approx(0.2)])
     assert web.next(QUIET_S) is None
 
@@ -220,7 +220,7 @@ def test_one_who_reads_nothing_holds_up_nobody(connect, shared_web, until):
     until(lambda: shared_web.server.status()["http_unsent"] > unsent, "some is dropped")
     well.listen(FORCE)
     well.next()
-    shared_web.client().message("/bow/force", 3.0)
+    shared_web.client().send("/bow/force", 3.0)
     assert well.next() == Message(FORCE, [3.0])  # though the deaf one still reads nothing
 
 
@@ -302,7 +302,7 @@ def test_twenty_who_come_and_go_at_random_leave_nothing_behind(shared_web, port,
 # ---------------------------------------------------------------- the end
 
 
-def test_the_end_of_the_server_is_told_and_soon(make_live):
+def test_the_end_of_the_server_is_reported_and_soon(make_live):
     live = make_live(http=WebOptions((HOST, 0)))
     webs = [WebSocket(live.server.web.port) for _ in range(5)]
     webs[0].sync()

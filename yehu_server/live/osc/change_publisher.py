@@ -22,8 +22,8 @@ from yehu_server.util.token_bucket import TokenBucket
 
 def topic_of(address: str) -> str:
     """The topic of an address (without the prefix): its group, or the status of its group."""
-    addressed, own = split_group(address)
-    return addressed + STATUS_PREFIX if own.startswith(STATUS_PREFIX) else addressed
+    group, own = split_group(address)
+    return group + STATUS_PREFIX if own.startswith(STATUS_PREFIX) else group
 
 
 @dataclass

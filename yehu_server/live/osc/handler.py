@@ -45,13 +45,13 @@ class OscHandler:
         self._tags = TagClock(self._players[0])
         self._arrivals = Arrivals(self._players[0].frame_of, self._players[0].instrument.rate)
         self._acts: dict[str, Act] = {}
-        for addressed in self._groups:
-            self._acts |= acts(addressed, context)
+        for group in self._groups:
+            self._acts |= acts(group, context)
         self.addresses = tuple(PREFIX + address for address in self._acts)
         # Messages of another server that was made to send us its values.
         self._answers: dict[str, Act] = {f"{PREFIX}/error": lambda _call: None}
-        for addressed in self._groups:
-            self._answers[f"{PREFIX}{addressed}/subscribed"] = lambda call: self.clients.mute(
+        for group in self._groups:
+            self._answers[f"{PREFIX}{group}/subscribed"] = lambda call: self.clients.mute(
                 call.peer, within_an_hour(call.numbers(1)[0])
             )
         self._mappings: list[Mapping] = []
@@ -159,20 +159,20 @@ class OscHandler:
         mappings = [player.mapping for player in self._players]
         if list(map(id, mappings)) != list(map(id, self._mappings)):
             self._mappings, self._own = mappings, {}
-            for addressed, mapping in zip(self._groups[1:], mappings, strict=True):
-                part = PartCalls(addressed, self.context)
-                for call in own_calls(mapping, addressed):
+            for group, mapping in zip(self._groups[1:], mappings, strict=True):
+                part = PartCalls(group, self.context)
+                for call in own_calls(mapping, group):
                     act = partial(call.act, part)
                     self._own.setdefault(call.address, act)
-                    self._own[PREFIX + addressed + call.address] = act
+                    self._own[PREFIX + group + call.address] = act
         return self._own
 
     def _learn_acts(self, address: str, own: dict[str, Act]) -> dict[str, Act]:
         """The same, where MIDI learn of a part waits for an address to hear."""
-        addressed, plain = split_group(address.removeprefix(PREFIX))
+        group, plain = split_group(address.removeprefix(PREFIX))
         players = self._players
-        if addressed:
-            players = players[part_of(addressed) :][:1] if addressed in self._groups else ()
+        if group:
+            players = players[part_of(group) :][:1] if group in self._groups else ()
         hearing = [player for player in players if player.learning.waits and is_own(plain)]
         move = own.get(address)
 

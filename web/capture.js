@@ -224,7 +224,7 @@ export class Replayer extends EventTarget {
     this.instrument.post(frame, kind, index, value, other);
   }
 
-  /** Leave the instrument to somebody who plays on: only what this plays ends. */
+  /** End only what this plays: somebody else plays on. */
   yield() {
     const at = Math.max(this.latest, this.instrument.frame);
     for (const { kind, index, value } of [...this.open.values()]) {

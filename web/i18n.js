@@ -24,7 +24,7 @@ export async function loadWords() {
   document.title = translate("title");
 }
 
-/** Speak another language from now on; nothing else changes. @param {'en' | 'zh'} chosen */
+/** Change the language; nothing else changes. @param {'en' | 'zh'} chosen */
 export async function setLanguage(chosen) {
   remember({ language: chosen });
   await loadWords();
@@ -33,8 +33,8 @@ export async function setLanguage(chosen) {
 }
 
 /**
- * Do what puts words on the page, now and whenever the language has changed. For what stays as long
- * as the page.
+ * Call a function that writes words on the page, now and whenever the language has changed. For what
+ * stays as long as the page.
  * @param {() => void} update
  */
 export function onLanguage(update) {

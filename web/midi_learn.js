@@ -85,7 +85,7 @@ export class MidiLearn extends EventTarget {
   }
 
   /**
-   * Hear a MIDI message, before it is played.
+   * Learn from a MIDI message, before it is played.
    * @param {Uint8Array} bytes
    * @param {number} port
    */

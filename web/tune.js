@@ -192,7 +192,7 @@ export class TuneGuide extends Course {
     return this.notes[this.at]?.pitch === this.notes[this.at - 1]?.pitch;
   }
 
-  /** How many notes of the same pitch come now. */
+  /** Number of notes of the same pitch that come now. */
   get repeats() {
     const same = this.notes
       .slice(this.at)
@@ -245,7 +245,7 @@ export class TuneGuide extends Course {
   }
 
   /**
-   * What came of it: null where it was left early.
+   * The result; null where it was ended early.
    * @returns {{right: number, count: number, run: number, late: number, hardest: Note[] | null} | null}
    */
   get result() {

@@ -1,4 +1,4 @@
-/** Makes of fingers and bow strokes what the player is asked for. */
+/** Turns touches of fingers and bow into calls of the player. */
 
 /** @typedef {import('../interfaces.js').Player} Player */
 /** @typedef {import('../interfaces.js').NoteId} NoteId */

@@ -28,7 +28,7 @@ const REPORTED_WITHIN_S = 0.1;
  *   are posted to.
  */
 
-/** Has events interpreted, and posts what they come to; a frame of null is now. */
+/** Interprets events, and posts the commands that result; a frame of null is now. */
 export class Part {
   #sink;
   #now = 0; // frame of the last event for now
@@ -36,7 +36,7 @@ export class Part {
   #written = new Map();
   /** What others, or this page, set last, by index. @type {Map<number, number>} */
   #lastSet = new Map();
-  /** Before there is one, events come to nothing. @type {Interpreter | null} */
+  /** Before there is one, events have no effect. @type {Interpreter | null} */
   interpreter = null;
 
   /** @param {Sink} sink */
@@ -49,7 +49,7 @@ export class Part {
   }
 
   /**
-   * Have an event interpreted, and post what it comes to.
+   * Interpret an event, and post the commands that result.
    * @param {number | null} frame
    * @param {number} kind
    * @param {number} [index]
@@ -74,7 +74,7 @@ export class Part {
     }
   }
 
-  /** Let the interpreter know what others have set. @param {Interpreter} interpreter */
+  /** Give the interpreter the values that others have set. @param {Interpreter} interpreter */
   #learnValues(interpreter) {
     const { values } = interpreter;
     for (const { address, index } of FREE) {
@@ -82,7 +82,7 @@ export class Part {
       const wasSet = this.#news(address, index);
       if (wasSet !== undefined && index !== SECTION) {
         this.#lastSet.set(index, wasSet);
-        // Notes to come begin with it; what it comes to now, others have requested already.
+        // Notes to come begin with it; its effect now, others have requested already.
         if (interpreter.isTarget(index)) interpreter.take(--this.#now, SET, index, wasSet, 0);
         else values[index] = wasSet;
         this.#sink.follow?.(index, wasSet);
@@ -214,7 +214,7 @@ export class Part {
   }
 
   /**
-   * End all that sounds, at once, whoever plays; also where nothing is interpreted.
+   * End all that sounds, at once, whoever plays; also without an interpreter.
    * @param {number | null} frame
    */
   stop(frame) {

@@ -1,5 +1,5 @@
 /**
- * The instrument as both ways of sounding run it: in an audio worklet, or on the page's own thread.
+ * The instrument as a page runs it: in an audio worklet, or on the page's own thread.
  * It takes messages and posts others.
  */
 
@@ -47,7 +47,7 @@ export class Engine {
     this.nextSnapshot = 0;
     this.frame = 0;
     this.restless = 0; // frame until which something was asked for, or sounded
-    this.sleeps = true; // nobody has asked for anything
+    this.sleeps = true; // no command has come yet
     this.busyMs = 0;
     this.measuredFrom = 0;
     /** @type {Float32Array | null} */

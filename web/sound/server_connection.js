@@ -1,4 +1,4 @@
-/** The line to the server: a WebSocket that is opened again whenever it breaks. */
+/** The connection to the server: a WebSocket that is opened again whenever it breaks. */
 
 import facts from "../facts.js";
 import { find } from "../playing/table.js";

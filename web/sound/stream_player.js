@@ -1,4 +1,4 @@
-/** Hears the server: its sound comes by a WebSocket, and is played by the page. */
+/** Plays the server's sound in the page; it comes by a WebSocket. */
 
 import { JitterBuffer } from "./jitter_buffer.js";
 import { Output } from "./output.js";

@@ -1,4 +1,4 @@
-/** The header: start, status, language, theme; and what stands in the way of playing. */
+/** The header: start, status, language, theme; and what prevents playing. */
 
 /** @typedef {import('../main.js').Page} Page */
 
@@ -45,7 +45,7 @@ export function showHeader({ instrument, gallery }) {
 }
 
 /**
- * What stands in the way of playing, in a line at the top.
+ * What prevents playing, in a line at the top.
  * @param {import('../instrument.js').Instrument} instrument
  */
 function showNotice(instrument) {

@@ -14,7 +14,7 @@ export function nameFor(address) {
   return translateOr(`parameter${address}`, find(address).label);
 }
 
-/** What a parameter is, in a sentence. @param {Parameter} param */
+/** The description of a parameter. @param {Parameter} param */
 export function aboutOf({ address, doc }) {
   return translateOr(`about${address}`, doc);
 }

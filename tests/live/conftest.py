@@ -89,7 +89,7 @@ class Services:
     def context(self, players: Sequence[Player]) -> CallContext:
         return CallContext(
             players,
-            self.states,
+            self.status,
             self.start_recording,
             self.stop_recording,
             self.said.append,
@@ -98,7 +98,7 @@ class Services:
             [self.changed.append],
         )
 
-    def states(self, group: str) -> dict[str, float | str]:
+    def status(self, group: str) -> dict[str, float | str]:
         if group:
             return dict.fromkeys((value.name for value in PART_STATUS), float(part_of(group)))
         status = dict.fromkeys((value.name for value in STATUS), 0.0)

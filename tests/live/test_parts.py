@@ -339,7 +339,7 @@ def test_a_server_of_three_plays_three(make_live, until):
     until(lambda: [player.pitch is None for player in players] == [True, False, False], "notes")
     status = live.server.status()
     assert (status["parts"], status["note"]) == (3, -1.0)
-    parts = [live.server.part_status(part) for part in range(3)]
+    parts = [live.server.status(group_of(part)) for part in range(3)]
     assert [part["keys"] for part in parts] == [0, 1, 1]
     assert status["applied_events"] == sum(part["applied_events"] for part in parts) > 0
     pans = [player.value("/room/pan") for player in players]

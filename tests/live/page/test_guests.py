@@ -118,7 +118,7 @@ def visit(
 
     async def meet() -> tuple[list[int], int | None, str]:
         view, own_role = View(), ""
-        sockets = PageSockets(view, [0], dict)
+        sockets = PageSockets(view, [0], {})
         app = web.Application()
 
         async def page(request: web.Request) -> web.StreamResponse:

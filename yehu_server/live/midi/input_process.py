@@ -71,7 +71,7 @@ class Input:
             self._feed.end_port_notes(self.name, time.monotonic_ns(), is_gone=False)
             self._parent.send("silent", port=self.name)
 
-    def wait_anew(self) -> None:
+    def restart_sensing(self) -> None:
         """Begin the time for active sensing again."""
         self._last = time.monotonic()
 
@@ -87,7 +87,7 @@ class Inputs:
     def __init__(self, parent: Parent, feed: MidiFeed, order: Message) -> None:
         self._parent = parent
         self._feed = feed
-        self._is_heard = False
+        self._forwards = False
         self._patterns: Sequence[str] = order["patterns"]
         # Whether all others but through ports are opened, too.
         self._others = bool(order.get("others", not self._patterns))
@@ -142,19 +142,19 @@ class Inputs:
         self._sought.clear()
 
     def sense(self) -> None:
-        """See `Input.sense`. What came while we were stopped is still to be heard."""
+        """See `Input.sense`. After a stop of this process, waiting begins anew."""
         before, self._sensed = self._sensed, time.monotonic()
         for port in list(self._open.values()):
             if self._sensed - before > SLEPT_S:
-                port.wait_anew()
+                port.restart_sensing()
             else:
                 port.sense()
 
-    def hear(self, is_forwarded: bool) -> None:
+    def forward(self, on: bool) -> None:
         """Send the parent each message from now on, or none; any thread may call."""
-        self._is_heard = is_forwarded
+        self._forwards = on
         for port in list(self._open.values()):
-            port.is_forwarded = is_forwarded
+            port.is_forwarded = on
 
     def _start(self) -> bool:
         finder, problem = open_client(self._api)
@@ -192,7 +192,7 @@ class Inputs:
             return
         self._refused.pop(name, None)
         self._open[name] = port
-        port.is_forwarded = self._is_heard
+        port.is_forwarded = self._forwards
         self._parent.send("appeared", port=name, number=number)
 
     def _refuse(self, name: str, reason: str) -> None:
@@ -271,16 +271,16 @@ def main() -> None:
     orders = parent.orders()
     order = next(orders)
     inputs = Inputs(parent, _feed(order), order)
-    hung_up = threading.Event()
+    ended = threading.Event()
 
     def listen() -> None:
         for later in orders:
-            inputs.hear(later["hear"])
-        hung_up.set()
+            inputs.forward(later["on"])
+        ended.set()
 
     threading.Thread(target=listen, daemon=True).start()
     polled = -SYSTEM_EVERY_S
-    while not hung_up.wait(SENSE_EVERY_S):
+    while not ended.wait(SENSE_EVERY_S):
         inputs.sense()
         pause = POLL_EVERY_S if inputs.has_system else SYSTEM_EVERY_S
         if time.monotonic() - polled > pause:

@@ -97,7 +97,8 @@ class MidiPorts(Supervisor):
     def _send_forwarding(self) -> None:
         """Have the process forward messages while something is to be learned, and only then."""
         if self._child is not None:
-            self._child.send("hear", hear=any(player.learning.waits for player in self._players))
+            waits = any(player.learning.waits for player in self._players)
+            self._child.send("forward", on=waits)
 
     def on_exit(self, *, by_itself: bool) -> None:
         """End the notes of all ports, whose process is gone."""
@@ -118,7 +119,7 @@ class MidiPorts(Supervisor):
         elif kind == "appeared":
             self._connected[event["port"]] = None
             self._number(event["port"], event["number"])
-            self._on_message(f"MIDI: {event['port']} is connected{self._whose(event['port'])}")
+            self._on_message(f"MIDI: {event['port']} is connected{self._plays_text(event['port'])}")
         elif kind == "vanished":
             self._connected.pop(event["port"], None)
             self._on_message(f"MIDI: {event['port']} is gone; its notes are ended")
@@ -135,8 +136,8 @@ class MidiPorts(Supervisor):
             self.problem = ""
             log.info("MIDI: through %s", event["api"])
 
-    def _whose(self, port: str) -> str:
-        """What a port plays, where there are several parts."""
+    def _plays_text(self, port: str) -> str:
+        """The parts that a port plays, as text, where there are several."""
         if len(self._players) == 1:
             return ""
         parts = [str(part + 1) for part in self._router.parts_of(port)]
@@ -156,7 +157,7 @@ class MidiPorts(Supervisor):
         self._numbers[port] = number
 
     def _learn_from(self, port: str, data: Sequence[int]) -> None:
-        """Hear a message that is played already, for what is to be learned."""
+        """Learn from a message, which is played already."""
         with contextlib.suppress(ValueError, IndexError):  # damaged
             message = mido.Message.from_bytes(data)
             for part in self._router.parts_of(port, getattr(message, "channel", None)):

@@ -34,7 +34,7 @@ class CallContext:
 
     players: Sequence[Player]  # those of all parts
     # Returns the status values of a group, by name; any thread may call.
-    states: Callable[[str], Mapping[str, float | str]]
+    status: Callable[[str], Mapping[str, float | str]]
     # Record to a file of a plain name, or end that; return the file's name. Raise YehuError.
     start_recording: Callable[[str], str]
     stop_recording: Callable[[], str]
@@ -56,7 +56,7 @@ class CallContext:
     def __post_init__(self) -> None:
         """Make what is sent to clients."""
         self.groups = (FIRST, *map(group_of, range(len(self.players))))
-        self.clients = Clients(self.values, PREFIX, self.states)
+        self.clients = Clients(self.values, PREFIX, self.status)
 
     def values(self, group: str) -> dict[str, float]:
         """The values of the parameters of a group, by address; any thread may call."""

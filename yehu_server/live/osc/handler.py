@@ -100,9 +100,7 @@ class OscHandler:
     def _keep(self, message: Message, peer: Peer) -> None:
         """Keep a message until its time."""
         packet = answer(message.address, message.payload)  # smaller than the message unpacked
-        if self._schedule.add(message.due_s or 0.0, packet, peer):
-            self.counts.scheduled += 1
-        else:
+        if not self._schedule.add(message.due_s or 0.0, packet, peer):
             self.context.send_error(peer, message.address, "too many messages wait for their time")
 
     def tick(self) -> None:
@@ -131,11 +129,9 @@ class OscHandler:
             self.context.send_error(peer, address, str(error))
             return []
         if not actions:  # a near address is searched for only where the error is sent
-            self.context.send_error(peer, address, partial(self._unknown, address))
+            reason = partial(near, address, len(self._players), self._acts)
+            self.context.send_error(peer, address, reason)
         return actions
-
-    def _unknown(self, address: str) -> str:
-        return near(address, len(self._players), self._acts)
 
     def _found(self, address: str) -> list[Act]:
         """What carries out the calls at an address; none where it is unknown."""

@@ -137,7 +137,7 @@ class PartCalls(GroupCalls):
     @osc_call("/status", "Sends all status values.")
     def _send_status(self, call: Request) -> None:
         call.check_peer()
-        for name, value in self._context.states(self._group).items():
+        for name, value in self._context.status(self._group).items():
             self._send(call.peer, STATUS_PREFIX + name, as_argument(value))
 
     @osc_call("/subscribe", "Sends all parameters, and for some time every change.", SECONDS)

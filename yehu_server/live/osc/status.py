@@ -43,7 +43,6 @@ class Counts:
     malformed: int = 0
     errors: int = 0  # wrong types, unknown addresses, refused calls
     late_bundles: int = 0
-    scheduled: int = 0
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ LOWEST = -(CHANNELS // 2)  # of them, as a page numbers its own
 AHEAD_S = 3.0  # by which a command may lie ahead
 FIRST_PART = 0
 # What is the instrument's, the room's or the output's, and no player's.
-OWNED = sorted(
+OWNER_ONLY = sorted(
     INDEX[param.address]
     for param in TABLE
     if param.is_shared or param.address.startswith(("/body/", "/string/", "/engine/", "/output/"))
@@ -101,5 +101,5 @@ def permitted(role: str, commands: Any) -> tuple[Any, bool]:
         return commands[:0], False
     kinds, indices = commands[:, 1], commands[:, 2]
     is_stop = kinds == STOP
-    is_owned = np.isin(kinds, (WRITE, EXPRESS)) & np.isin(indices, OWNED)
-    return commands[~(is_stop | is_owned | (kinds == HOLD))], bool(is_stop.any())
+    is_owner_only = np.isin(kinds, (WRITE, EXPRESS)) & np.isin(indices, OWNER_ONLY)
+    return commands[~(is_stop | is_owner_only | (kinds == HOLD))], bool(is_stop.any())

@@ -68,7 +68,7 @@ class Site:
 
     def __init__(self, notes: NoteRange = YEHU) -> None:
         self._files: dict[str, CachedFile] = {}
-        self._lacks: str | None = None
+        self._no_module_reason: str | None = None
         folder = page_folder()
         for name in map(Path.as_posix, page_files()):
             self._store(name, (folder / name).read_bytes())
@@ -83,7 +83,7 @@ class Site:
 
     def set_no_module(self, reason: str) -> None:
         """Answer with a reason that there is none, and that there won't be one."""
-        self._lacks = reason
+        self._no_module_reason = reason
 
     def add_capture_header(self, name: str, text: str) -> None:
         """Add a file that captures of pages begin with."""
@@ -93,8 +93,8 @@ class Site:
         """Answer with the file of a request's path."""
         cached = self._files.get(request.path.removeprefix("/") or INDEX)
         if cached is None and request.path == f"/{MODULE}":
-            if self._lacks is not None:
-                raise web.HTTPNotFound(text=f"{self._lacks}\n")
+            if self._no_module_reason is not None:
+                raise web.HTTPNotFound(text=f"{self._no_module_reason}\n")
             raise web.HTTPServiceUnavailable(headers={"Retry-After": "1"}, text="not built yet\n")
         if cached is None:
             raise web.HTTPNotFound(text="nothing here\n")

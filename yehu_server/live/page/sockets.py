@@ -14,7 +14,7 @@ import asyncio
 import json
 import struct
 import time
-from collections.abc import AsyncIterator, Callable, Mapping, Sequence
+from collections.abc import AsyncIterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -83,14 +83,15 @@ class PageSockets:
     """All WebSockets of pages.
 
     `rigs`: the instrument that shows each part.
-    `status`: the state of the server, beside what is in the record, of JSON's types.
+    `status`: the state of the server, beside what is in the record, of JSON's types; read anew
+    each time that it is sent.
     """
 
     def __init__(
         self,
         view: SharedView,
         rigs: Sequence[int],
-        status: Callable[[], Mapping[str, Any]],
+        status: Mapping[str, Any],
     ) -> None:
         self._view = view
         self._rigs = rigs
@@ -125,7 +126,7 @@ class PageSockets:
             async for message in socket:
                 if message.type is WSMsgType.BINARY:
                     commands = read_commands(message.data)
-                elif message.type is WSMsgType.TEXT and self._obey(page, message.data):
+                elif message.type is WSMsgType.TEXT and self._set_wanted(page, message.data):
                     continue
                 else:
                     commands = None
@@ -166,8 +167,8 @@ class PageSockets:
         word = request.query.get("part", "1")
         return words.index(word) if word in words else None
 
-    def _obey(self, page: Page, text: str) -> bool:
-        """Apply what a page asks for; return whether it can be asked for."""
+    def _set_wanted(self, page: Page, text: str) -> bool:
+        """Note what a page wants to be sent; return whether the text is right."""
         try:
             asked = json.loads(text)
             page.snapshots, page.sounds = asked["snapshots"] is True, asked["sounds"] is True
@@ -250,7 +251,7 @@ class PageSockets:
             "frame": self._view.taped(),
             "load": load,
             "dropouts": dropouts,
-            **self._status(),
+            **self._status,
         }
         text = json.dumps({"status": status}, allow_nan=False)
         write(page.transport, frame_of(text.encode(), TEXT), limits.PAGE_UNSENT)

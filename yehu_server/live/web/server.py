@@ -134,7 +134,7 @@ class WebServer:
         if (request.content_length or 0) > limits.WEB_BODY:
             raise web.HTTPRequestEntityTooLarge(limits.WEB_BODY, request.content_length or 0)
         if request.headers.get("Upgrade", "").lower() == "websocket":
-            with self._connections.talking(request):
+            with self._connections.web_socket(request):
                 return await self._sockets.serve(request)
         if request.path == "/metrics":
             body, content_type = self._metrics.text(request.headers.get("Accept", ""))

@@ -64,13 +64,8 @@ export class Part {
     const commands = interpreter.take(frame ?? --this.#now, kind, index, value, other);
     for (const [kind, index, value, other] of commands) {
       const isSection = kind === WRITE && index === SECTION;
-      this.#post(
-        frame,
-        kind,
-        index,
-        isSection ? this.#sectionSize(interpreter, value) : value,
-        other,
-      );
+      const posted = isSection ? this.#sectionSize(interpreter, value) : value;
+      this.#post(frame, kind, index, posted, other);
     }
   }
 

@@ -60,7 +60,7 @@ class Stream:
 
     @property
     def heard(self) -> int | None:
-        """How much an input has heard; None of an output."""
+        """Number of frames that an input has received; None of an output."""
         return None if self._own is None else int(self._own["hearing"]["heard"][0])
 
     @property

@@ -95,7 +95,7 @@ class MidiPorts(Supervisor):
         gone.wait()
 
     def _send_forwarding(self) -> None:
-        """Have the process forward messages while something is to be learned, and only then."""
+        """Let the process forward messages only while something is to be learned."""
         if self._child is not None:
             waits = any(player.learning.waits for player in self._players)
             self._child.send("forward", on=waits)

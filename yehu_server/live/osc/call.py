@@ -14,7 +14,7 @@ from yehu_server.params.table import find
 
 @dataclass(frozen=True)
 class Request:
-    """A message to carry out: its arguments, its sender, and the frame at which it is heard."""
+    """A message to carry out: its arguments, its sender, and the frame at which it takes effect."""
 
     arguments: Sequence[Any]
     payload: bytes

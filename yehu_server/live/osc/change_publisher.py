@@ -79,7 +79,7 @@ class Subscriber:
         yield from (*self.listens, *self.sending.values())
 
     def mark(self, topic: str, changed: Sequence[str], found: set[str], now: float) -> None:
-        """Have sent what it wants of the addresses that changed (`found` has all forms of them)."""
+        """Mark what it wants of changed addresses to be sent (`found` has all their forms)."""
         end, form = self.subscribed.get(topic, (0.0, ""))
         if end > now:
             self.sending.update((address + form, topic) for address in changed)

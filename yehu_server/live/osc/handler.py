@@ -69,8 +69,8 @@ class OscHandler:
     ) -> Iterator[None]:
         """Handle a packet in steps, between which others may be handled: a message is a step.
 
-        `frame`: of one message that waited for its time; without it, the packet is heard as it
-        arrived, and its bundles at their times.
+        `frame`: of one message that waited for its time; without it, the packet takes effect as
+        it arrived, and its bundles at their times.
         """
         now, is_late, is_due = time.time(), False, frame is not None
         frame = self._arrivals.frame_of(arrived_ns) if frame is None else frame

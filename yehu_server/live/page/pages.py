@@ -93,9 +93,9 @@ class Pages(Supervisor):
         )
         sent: Any = None
         while not gone.wait(STATUS_S):
-            if (news := (self._status(), self._own())) != sent:
-                child.send("state", status=news[0], own=news[1])
-                sent = news
+            if (state := (self._status(), self._own())) != sent:
+                child.send("state", status=state[0], own=state[1])
+                sent = state
 
     def _own(self) -> list[list[tuple[int, float]]]:
         """Of each part that is a section, the values that each of its players has of its own."""

@@ -70,7 +70,7 @@ class PagePlayers:
         self, page: int, part: int, frame: int, kind: int, index: int, value: float, other: float
     ) -> None:
         rig = self._rigs[part]
-        if kind == STOP and value != 0.0:  # a panic: whatever anybody holds ends
+        if kind == STOP and value != 0.0:  # a panic: all notes of the part end
             self._view.post(rig, frame, RELEASE_ALL, value=1.0)
             self._view.post(rig, frame, LIFT)
         elif kind == WRITE:

@@ -63,7 +63,7 @@ MESSAGE_BYTES = 8 * COMMAND * limits.PAGE_EVENTS
 HEARTBEAT_S, CLOSING_S = 10.0, 0.3
 # Close codes: against the rules; the PIN is missing or wrong; there is no such part.
 WRONG, NO_PIN, NO_PART = 1008, 4401, 4404
-# A page that is heard for the first time hears this much of what was just played.
+# What the first listener is sent of the sound that was just played.
 FIRST_FRAMES = 512
 
 

@@ -143,7 +143,7 @@ class WebSocket:
     def ignore(self, path: str) -> None:
         self.command("IGNORE", path)
 
-    def tell(self, address: str, *arguments: float | str | None) -> None:
+    def message(self, address: str, *arguments: float | str | None) -> None:
         self.send(BINARY, Wire.message(address, *arguments))
 
     def next(self, within_s: float = PATIENCE_S) -> Message | dict[str, Any] | None:
@@ -171,8 +171,8 @@ class WebSocket:
 
     def sync(self) -> None:
         """Wait until everything sent so far is done and answered; discard the answers."""
-        for _ in range(2):  # changes are told with the flush after
-            self.tell("/yehu/get", "/output/gain")
+        for _ in range(2):  # changes are sent with the flush after
+            self.message("/yehu/get", "/output/gain")
             self.wait_for("/yehu/output/gain")
 
     def close(self) -> None:

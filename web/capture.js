@@ -128,8 +128,8 @@ export async function readCapture(file) {
     find(address);
     finite(value);
   }
-  const told = lines.map((line) => JSON.parse(line)).filter(Array.isArray); // others are no commands
-  const own = isOld ? told : told.filter(([, player]) => player === OWN);
+  const entries = lines.map((line) => JSON.parse(line)).filter(Array.isArray); // others are no commands
+  const own = isOld ? entries : entries.filter(([, player]) => player === OWN);
   const commands = own.map(([frame, ...command]) =>
     commandOf([frame, ...command.slice(isOld ? 0 : 1)]),
   );
@@ -187,7 +187,7 @@ function finite(value) {
   return value;
 }
 
-/** Plays a performance; tells by the event 'end'. */
+/** Plays a performance. Event: 'end'. */
 export class Replayer extends EventTarget {
   /** @param {Instrument} instrument @param {Performance} performance */
   constructor(instrument, { rate, values, commands }) {
@@ -224,7 +224,7 @@ export class Replayer extends EventTarget {
     this.instrument.post(frame, kind, index, value, other);
   }
 
-  /** Leave the instrument to somebody who plays on: only what this plays ends. */
+  /** End only what this plays: somebody else plays on. */
   yield() {
     const at = Math.max(this.latest, this.instrument.frame);
     for (const { kind, index, value } of [...this.open.values()]) {

@@ -6,7 +6,7 @@ const BLINK = 0.15; // s that a turning bow may be in another way
 const HELD = 0.3; // s after which a tone is found
 
 /**
- * What a hand makes of the string: by the bow force, between Schelleng's limits.
+ * How the string is bowed: by the bow force, between Schelleng's limits.
  * @param {import('./interfaces.js').Snapshot} state
  * @returns {'scratch' | 'tone' | 'light' | 'none'}
  */

@@ -39,11 +39,11 @@ export function make(tag, attributes = {}, children = []) {
   return element;
 }
 
-/** @param {() => string} tell */
-function live(tell) {
+/** @param {() => string} read */
+function live(read) {
   const text = new Text();
   onLanguage(() => {
-    text.data = tell();
+    text.data = read();
   });
   return text;
 }
@@ -150,7 +150,7 @@ export function download(blob, name) {
  * @param {string} off key of its text
  * @param {string} on
  * @param {(isOn: boolean) => void | Promise<void>} change called once it is done with the change before;
- *   `isOn` tells it of presses meanwhile
+ *   `isOn` shows presses meanwhile
  */
 export function toggle(off, on, change) {
   let isOn = false;

@@ -1,5 +1,5 @@
 /**
- * The page's words, in the language chosen. What parameters and presets do is told by the server's own
+ * The page's words, in the language chosen. What parameters and presets do is described by the server's own
  * tables (`facts.js`); other languages translate that too, under `about/...` and `preset.NAME.about`.
  */
 
@@ -24,7 +24,7 @@ export async function loadWords() {
   document.title = translate("title");
 }
 
-/** Speak another language from now on; nothing else changes. @param {'en' | 'zh'} chosen */
+/** Change the language; nothing else changes. @param {'en' | 'zh'} chosen */
 export async function setLanguage(chosen) {
   remember({ language: chosen });
   await loadWords();
@@ -33,13 +33,13 @@ export async function setLanguage(chosen) {
 }
 
 /**
- * Do what puts words on the page, now and whenever the language has changed. For what stays as long
- * as the page.
- * @param {() => void} tell
+ * Call a function that writes words on the page, now and whenever the language has changed. For what
+ * stays as long as the page.
+ * @param {() => void} update
  */
-export function onLanguage(tell) {
-  changes.addEventListener("change", tell);
-  tell();
+export function onLanguage(update) {
+  changes.addEventListener("change", update);
+  update();
 }
 
 /**

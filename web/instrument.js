@@ -17,7 +17,7 @@ const AHEAD_S = 0.25;
 const AHEAD_HIDDEN_S = 1.5;
 
 /**
- * Tells by events: 'prepare' while a server prepares what the page plays by, 'ready' once it can be
+ * Events: 'prepare' while a server prepares what the page plays by, 'ready' once it can be
  * played, 'lack' when it cannot (with the error as `error`); 'start' when it sounds, 'fail' when it
  * cannot; 'way' when it is to sound in another one; 'state' of each new snapshot; 'silence' when all has to end, and 'command' of each command (a `CustomEvent<Command>`).
  *
@@ -78,8 +78,8 @@ export class Instrument extends EventTarget {
     if (!this.sound?.reported) this.sound?.post(null, facts.kinds.WRITE, index, value, 0);
   }
 
-  get people() {
-    return this.sound?.people;
+  get maxPlayers() {
+    return this.sound?.maxPlayers;
   }
 
   get rate() {
@@ -126,7 +126,7 @@ export class Instrument extends EventTarget {
   /** Load all that a sound of this page needs, so that the first touch is heard at once. */
   prepareHere() {
     this.here ??= this.openHere();
-    this.here.catch(() => (this.here = null)); // told when it is started
+    this.here.catch(() => (this.here = null)); // reported when it is started
   }
 
   /**
@@ -194,7 +194,7 @@ export class Instrument extends EventTarget {
 }
 
 /**
- * The instrument in WebAssembly, which a server may still be preparing. Throws an error that tells why there is none.
+ * The instrument in WebAssembly, which a server may still be preparing. Throws an error that says why there is none.
  * @param {() => void} waits called whenever it is still being prepared
  * @returns {Promise<ArrayBuffer>}
  */
@@ -210,10 +210,10 @@ async function fetchModule(waits) {
 }
 
 /**
- * Why there is none: a server of this instrument tells, others have their own pages for that.
+ * Why there is none: a server of this instrument says it, others have their own pages for that.
  * @param {Response} answer
  */
 async function reasonOf(answer) {
-  const isTold = answer.headers.get("Content-Type")?.startsWith("text/plain");
-  return isTold ? (await answer.text()).trim() : `${answer.status} ${answer.statusText}`;
+  const isReason = answer.headers.get("Content-Type")?.startsWith("text/plain");
+  return isReason ? (await answer.text()).trim() : `${answer.status} ${answer.statusText}`;
 }

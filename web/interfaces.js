@@ -56,7 +56,7 @@
  * @property {Post} post
  * @property {() => void} close
  * @property {() => void} [resume] go on after the browser has suspended it
- * @property {Snapshot} state the latest; the event 'state' tells of a new one
+ * @property {Snapshot} state the latest; the event 'state' is of a new one
  * @property {Status} status
  * @property {AnalyserNode | null} analyser null: the page hears nothing
  * @property {{start: () => void, stop: () => Blob | Promise<Blob>}} [record] writes WAV
@@ -67,7 +67,7 @@
  *   fingers moves to
  * @property {(address: string) => number | undefined} [reported] the value of any other parameter, where
  *   others set them too
- * @property {number} [people] most that may play the part; by default one
+ * @property {number} [maxPlayers] most that may play the part; by default one
  * @property {number} [frame] that sounds now, about; else that of the state
  *
  * @typedef {object} CapturedCommands

@@ -5,7 +5,7 @@
 
 const ALL = "";
 
-/** Tells by the event 'change' that inputs came or went. */
+/** Event: 'change' of the inputs there are. */
 export class Midi extends EventTarget {
   /** Inputs by their order of coming: each has 16 channels of its own. @type {string[]} */
   #ports = [];
@@ -22,7 +22,7 @@ export class Midi extends EventTarget {
     this.isRefused = false;
   }
 
-  /** Key of the words that tell why there is none. */
+  /** Key of the words that say why there is none. */
   get whyNot() {
     return window.isSecureContext ? "connect.none" : "connect.insecure";
   }

@@ -20,7 +20,7 @@ import { remember, settings } from "./settings.js";
 const PATIENCE = 60_000; // ms to wait for something to be moved
 
 /**
- * Tells by events: 'change' of the binds or the mapping, and 'wait' when a wait begins or ends.
+ * Events: 'change' of the binds or the mapping, and 'wait' when a wait begins or ends.
  *
  * @typedef {object} Wait
  * @property {string} target
@@ -85,7 +85,7 @@ export class MidiLearn extends EventTarget {
   }
 
   /**
-   * Hear a MIDI message, before it is played.
+   * Learn from a MIDI message, before it is played.
    * @param {Uint8Array} bytes
    * @param {number} port
    */

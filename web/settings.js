@@ -1,8 +1,8 @@
-/** What this browser remembers of how someone likes the page. */
+/** Settings of the page, which the browser remembers. */
 
 const KEY = "yehu";
 
-/** What is remembered, and what holds at first. */
+/** The settings, and their values at first. */
 const FIRST = {
   language: "", // '': the browser's
   theme: "", // '': the system's

@@ -32,7 +32,7 @@ const IN_TIME = 0.4; // s before or after its time
 const COUNT_IN = 2; // s before the first note
 const OVERLAP = 0.001; // s; notes that overlap by more are in one bow
 
-/** A tune that is on: tells by events 'move' as it goes on, and 'end'. */
+/** A tune that is on. Events: 'move' as it goes on, and 'end'. */
 class Course extends EventTarget {
   /**
    * @param {Instrument} instrument
@@ -123,7 +123,7 @@ export class TunePlayer extends Course {
   }
 }
 
-/** Follows whoever plays a tune: tells by events also 'wrong' of a note that is another (as `pitch`). */
+/** Follows whoever plays a tune. Events: also 'wrong' of a note that is another (as `pitch`). */
 export class TuneGuide extends Course {
   #begun = 0; // ms
   #tries = 0; // wrong ones of the next note
@@ -192,7 +192,7 @@ export class TuneGuide extends Course {
     return this.notes[this.at]?.pitch === this.notes[this.at - 1]?.pitch;
   }
 
-  /** How many notes of the same pitch come now. */
+  /** Number of notes of the same pitch that come now. */
   get repeats() {
     const same = this.notes
       .slice(this.at)
@@ -245,7 +245,7 @@ export class TuneGuide extends Course {
   }
 
   /**
-   * What came of it: null where it was left early.
+   * The result; null where it was ended early.
    * @returns {{right: number, count: number, run: number, late: number, hardest: Note[] | null} | null}
    */
   get result() {

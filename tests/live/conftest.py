@@ -89,7 +89,7 @@ class Services:
     def context(self, players: Sequence[Player]) -> CallContext:
         return CallContext(
             players,
-            self.states,
+            self.status,
             self.start_recording,
             self.stop_recording,
             self.said.append,
@@ -98,11 +98,11 @@ class Services:
             [self.changed.append],
         )
 
-    def states(self, addressed: str) -> dict[str, float | str]:
-        if addressed:
-            return dict.fromkeys((value.name for value in PART_STATUS), float(part_of(addressed)))
-        told = dict.fromkeys((value.name for value in STATUS), 0.0)
-        return told | {"load": 0.5, "recording": "".join(self.names[-1:])}
+    def status(self, group: str) -> dict[str, float | str]:
+        if group:
+            return dict.fromkeys((value.name for value in PART_STATUS), float(part_of(group)))
+        status = dict.fromkeys((value.name for value in STATUS), 0.0)
+        return status | {"load": 0.5, "recording": "".join(self.names[-1:])}
 
     def start_recording(self, name: str) -> str:
         self.names.append(name)
@@ -146,13 +146,13 @@ class StillServer:
         for _ in self.handler.handle(packet, peer or self.peer, self.clock.monotonic_ns()):
             pass
 
-    def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
+    def send(self, address: str, *arguments: Any, tags: str | None = None) -> None:
         self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
 
     def ask(self, address: str, *arguments: Any, tags: str | None = None) -> list[Message]:
         """Send a message; return the answers up to the next flush."""
         self.peer.received()
-        self.tell(address, *arguments, tags=tags)
+        self.send(address, *arguments, tags=tags)
         self.clock.now += 0.02
         self.handler.tick()
         return self.peer.received()
@@ -217,7 +217,7 @@ class Client:
     def take(self, packet: bytes) -> None:
         self.socket.sendto(packet, self.server)
 
-    def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
+    def send(self, address: str, *arguments: Any, tags: str | None = None) -> None:
         self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
 
     def next(self, within_s: float = PATIENCE_S) -> Message | None:
@@ -245,7 +245,7 @@ class Client:
     def sync(self) -> None:
         """Wait until all messages sent so far are handled; discard the answers."""
         token = time.monotonic_ns()
-        self.tell("/ping", token)
+        self.send("/ping", token)
         while self.wait_for("/pong") != [token]:
             pass
 
@@ -270,7 +270,7 @@ class Stream:
     def take(self, packet: bytes) -> None:
         self.socket.sendall(self.wrap(packet))
 
-    def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
+    def send(self, address: str, *arguments: Any, tags: str | None = None) -> None:
         self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
 
     def next(self, within_s: float = PATIENCE_S) -> Message | None:

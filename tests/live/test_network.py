@@ -69,8 +69,8 @@ def test_any_text_is_an_address_or_refused(text):
     [("192.168.5.5", "192.168.4.0/22"), ("10.1.2.3", "10.1.2.3/32")],
 )
 def test_the_network_is_as_wide_as_the_interface_says(monkeypatch, own, network):
-    told = [("::1", 128), ("127.0.0.1", 8), ("192.168.5.5", 22)]
-    ips = [SimpleNamespace(ip=ip, network_prefix=prefix) for ip, prefix in told]
+    found = [("::1", 128), ("127.0.0.1", 8), ("192.168.5.5", 22)]
+    ips = [SimpleNamespace(ip=ip, network_prefix=prefix) for ip, prefix in found]
     monkeypatch.setattr("yehu_server.live.network.lan_address", lambda: own)
     monkeypatch.setattr(ifaddr, "get_adapters", lambda: [SimpleNamespace(ips=ips)])
     assert str(lan_interface().network) == network

@@ -12,7 +12,7 @@ from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.live.osc import clients, handler
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import PART_STATUS, STATUS
-from yehu_server.live.part_addresses import OF_PARTS, group
+from yehu_server.live.part_addresses import OF_PARTS, group_of
 from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, is_listenable, node_at
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
@@ -77,16 +77,16 @@ def test_each_part_has_addresses_and_the_first_also_without_and_a_pattern_reache
 
 
 def test_notes_are_of_their_part(still, players):
-    still.tell("/part/2/note", 67.0, 90.0)
+    still.send("/part/2/note", 67.0, 90.0)
     assert keys(still, players) == [0, 1, 0]
-    still.tell("/note", 69.0, 90.0)
-    still.tell("/part/3/note", 71.0, 90.0)
-    still.tell("/part/1/note/off", 69.0)
+    still.send("/note", 69.0, 90.0)
+    still.send("/part/3/note", 71.0, 90.0)
+    still.send("/part/1/note/off", 69.0)
     assert keys(still, players) == [0, 1, 1]
-    still.tell("/part/3/panic")
+    still.send("/part/3/panic")
     assert keys(still, players) == [0, 1, 0]
-    still.tell("/part/3/note", 71.0, 90.0)
-    still.tell("/panic")
+    still.send("/part/3/note", 71.0, 90.0)
+    still.send("/panic")
     assert keys(still, players) == [0, 0, 0]
 
 
@@ -114,7 +114,7 @@ def test_what_all_share_is_of_no_part(still, players):
     assert [player.values() for player in players] == before
 
 
-def test_a_part_that_is_not_there_is_told_with_those_that_are(still, players):
+def test_a_part_that_is_not_there_is_reported_with_those_that_are(still, players):
     for number in ("0", "4", "99", "123456789"):
         still.clock.now += clients.FORGIVEN_S
         for asked, words in [
@@ -141,8 +141,8 @@ def test_a_part_that_is_not_there_is_told_with_those_that_are(still, players):
 def test_a_subscription_is_of_the_addresses_where_it_was_asked_for(still, players):
     heard = still.ask("/part/2/subscribe", 60.0)
     assert heard[0].address == "/yehu/part/2/subscribed"
-    told = {one.address for one in heard[1:]}
-    assert told == {f"/yehu/part/2{one}" for one in OF_PARTS if not one.endswith("/unit")}
+    sent = {one.address for one in heard[1:]}
+    assert sent == {f"/yehu/part/2{one}" for one in OF_PARTS if not one.endswith("/unit")}
     for part, player in enumerate(players):
         player.set(VOLUME, 0.1 * part + 0.3, frame=0)
     still.pass_time(0.05)
@@ -196,7 +196,7 @@ def test_ones_own_address_moves_the_first_part_that_binds_it_or_below_a_part_tha
     still.take(wire.message("/fader3", 0.25))
     still.pass_time(0.01)
     assert values(players) == [0.5, 1.0, 0.25]
-    still.tell("/part/2/fader1", 0.75)
+    still.send("/part/2/fader1", 0.75)
     still.pass_time(0.01)
     assert values(players) == [0.5, 0.75, 0.25]
     (error,) = errors(still.ask("/part/3/fader1", 0.5))
@@ -283,7 +283,7 @@ def test_a_panic_drops_what_waits_for_its_part(still, players, wire, panic, kept
     for address in ("/yehu/note", "/yehu/part/1/note", "/yehu/part/2/note", "/yehu/part/3/note"):
         still.take(wire.bundle(due, pack(address, 67.0, 90.0)))
     assert still.handler.waiting == 4
-    still.tell(panic)
+    still.send(panic)
     still.pass_time(0.2)
     assert [part for part, player in enumerate(players) if player.keys] == kept
     assert still.handler.waiting == 0
@@ -295,9 +295,9 @@ def test_a_panic_drops_what_waits_for_its_part(still, players, wire, panic, kept
 def test_the_tree_has_each_part_with_all_that_is_its_own(still, players):
     states = {row.name: 0.0 for row in STATUS}
     own = {row.name: 0.0 for row in PART_STATUS}
-    told = {group(n): Snapshot(player.values(), own) for n, player in enumerate(players)}
-    told[""] = Snapshot(players[0].values(), states)
-    root = node_at("/", told.__getitem__, len(players))
+    sent = {group_of(n): Snapshot(player.values(), own) for n, player in enumerate(players)}
+    sent[""] = Snapshot(players[0].values(), states)
+    root = node_at("/", sent.__getitem__, len(players))
     part = find(root, "/yehu/part/2")
     assert part["DESCRIPTION"].startswith("Part 2")
     with_value = {path for path, node in walk(part) if "VALUE" in node}
@@ -332,21 +332,21 @@ def test_parts_sit_side_by_side_within_the_room():
 def test_a_server_of_three_plays_three(make_live, until):
     live = make_live(parts=3)
     client = live.client()
-    client.tell("/part/2/note", 67.0, 90.0)
-    client.tell("/part/3/note", 72.0, 90.0)
+    client.send("/part/2/note", 67.0, 90.0)
+    client.send("/part/3/note", 72.0, 90.0)
     client.sync()
     players = live.server.players
     until(lambda: [player.pitch is None for player in players] == [True, False, False], "notes")
     status = live.server.status()
     assert (status["parts"], status["note"]) == (3, -1.0)
-    parts = [live.server.part_status(part) for part in range(3)]
+    parts = [live.server.status(group_of(part)) for part in range(3)]
     assert [part["keys"] for part in parts] == [0, 1, 1]
     assert status["applied_events"] == sum(part["applied_events"] for part in parts) > 0
     pans = [player.value("/room/pan") for player in players]
     assert pans[0] == -pans[2] < pans[1] == 0.0
     seeds = [player.value("/engine/seed") for player in players]
     assert len(set(seeds)) == 3
-    client.tell("/panic")
+    client.send("/panic")
     client.sync()
     live.settle()
     assert [player.keys for player in players] == [0, 0, 0]

@@ -26,7 +26,7 @@ def test_a_message_is_heard_a_constant_time_after_it_came(live, busy):
             # The delay follows the device's period, which grows on a machine that is held up.
             delay = live.player.delay
             before = live.instrument.frame_at(time.monotonic_ns())
-            client.tell("/bow/position", 0.1 + 0.001 * number)
+            client.send("/bow/position", 0.1 + 0.001 * number)
             after = live.instrument.frame_at(time.monotonic_ns())
             client.wait_for("/bow/position")
             moves = [frame for frame, address, _ in live.settle() if address == "/bow/position"]
@@ -76,7 +76,7 @@ def test_who_says_no_more_still_gets_its_answers(live, wire):
 def test_who_is_not_allowed_hears_nothing_and_does_nothing(make_live, until):
     live = make_live(allowed=Allowed(["192.0.2.0/24"]))
     client = live.client()
-    client.tell("/note", 67, 90)
+    client.send("/note", 67, 90)
     client.take(b"garbage")
     until(lambda: live.server.status()["osc_refused"] == 2, "refusals to be counted")
     assert client.all() == []
@@ -86,10 +86,10 @@ def test_who_is_not_allowed_hears_nothing_and_does_nothing(make_live, until):
 def test_stopping_while_notes_and_clients_are_there_ends_all(make_live):
     live = make_live()
     client, stream = live.client(), live.stream()
-    client.tell("/subscribe", 60)
+    client.send("/subscribe", 60)
     client.wait_for("/subscribed")
-    stream.tell("/note", 67, 90)
-    stream.tell("/record/start", "take")
+    stream.send("/note", 67, 90)
+    stream.send("/record/start", "take")
     stream.wait_for("/record/started")
     live.wait_frames(4800)  # the fixture checks that nothing is left
 

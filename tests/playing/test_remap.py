@@ -117,13 +117,13 @@ def watch(path):
 
 def settled(watch: MappingWatch) -> Mapping | None:
     """The result of polling the file until it no longer changes."""
-    return watch.look() or watch.look()
+    return watch.poll() or watch.poll()
 
 
 def refusal(watch: MappingWatch) -> str:
-    watch.look()
+    watch.poll()
     with pytest.raises(MappingError) as refused:
-        watch.look()
+        watch.poll()
     return str(refused.value)
 
 
@@ -140,8 +140,8 @@ def test_a_changed_file_is_read_once_it_stands_still_and_says_something_else(wat
     path.write_text("# mine\n" + BIND.format(1))
     assert settled(watch) is None
     path.write_text(BIND.format(1) + BIND.format(23))
-    assert watch.look() is None
-    changed = watch.look()
+    assert watch.poll() is None
+    changed = watch.poll()
     assert [bind.source for bind in changed.binds] == ["cc 1", "cc 23"]
     assert settled(watch) is None
 
@@ -172,7 +172,7 @@ def test_a_pipe_in_the_place_of_a_file_is_refused_and_not_waited_for(watch, path
     path.unlink()
     os.mkfifo(path)
     assert "is not a regular file" in refusal(watch)
-    assert watch.look() is None
+    assert watch.poll() is None
     os.mkfifo(below)
     path.unlink()
     path.write_text('base = "below"\n')

@@ -21,9 +21,9 @@ const ABOVE = 1.4;
 const WIDEST_LEAST = 0.5; // where there is no wedge, forces near the greatest do best
 /** With assist the force follows the speed, but a bow that turns stays on the string. */
 const LEAST_SPEED = 0.03;
-/** Schelleng's limit for each m/s until the instrument tells it: 2 Z / (beta (mu_S - mu_C)). */
+/** Schelleng's limit for each m/s until the instrument reports it: 2 Z / (beta (mu_S - mu_C)). */
 const USUAL_LIMIT = 7.3;
-/** The least force as a share of the greatest, until the instrument tells it. */
+/** The least force as a share of the greatest, until the instrument reports it. */
 const USUAL_LEAST = 0.03;
 const KEYS_SPEED = 0.2; // m/s
 const STROKES = { ArrowLeft: -1, ArrowRight: 1 };
@@ -56,7 +56,7 @@ export class Bow {
     element.addEventListener("keydown", (event) => this.#press(event));
     element.addEventListener("keyup", (event) => this.#release(event));
     element.addEventListener("blur", () => this.#stopKeys());
-    this.#tell();
+    this.#announce();
   }
 
   /**
@@ -99,7 +99,7 @@ export class Bow {
     this.hands.liftBow();
   }
 
-  /** Notice a finger that rests: no event tells of it. @param {number} now ms */
+  /** Notice a finger that rests: no event reports it. @param {number} now ms */
   #tick(now) {
     if (this.by === null) return;
     this.#draw(this.#speedAt(now));
@@ -183,7 +183,7 @@ export class Bow {
     } else {
       return;
     }
-    this.#tell();
+    this.#announce();
     event.preventDefault();
   }
 
@@ -199,8 +199,8 @@ export class Bow {
     this.hands.liftBow();
   }
 
-  /** Tell screen readers how firm the bow is. */
-  #tell() {
+  /** Announce to screen readers how firm the bow is. */
+  #announce() {
     this.element.setAttribute("aria-valuemin", "0");
     this.element.setAttribute("aria-valuemax", "100");
     this.element.setAttribute("aria-valuenow", String(Math.round(this.height * 100)));

@@ -63,7 +63,7 @@ export class Fingerboard extends EventTarget {
     const { board } = this.surface;
     this.scale = new Scale(board[1] - board[0], this.lowest);
     this.lowest = this.scale.first;
-    this.#tell();
+    this.#announce();
     this.dispatchEvent(new Event("change"));
   }
 
@@ -155,7 +155,7 @@ export class Fingerboard extends EventTarget {
       const size = event.shiftKey ? FINE : 1;
       this.place = Math.min(Math.max(this.place + step * size, LOWEST), HIGHEST);
       this.hands.slide(BY_KEYS, this.place);
-      this.#tell();
+      this.#announce();
     } else if ((event.key === " " || event.key === "Enter") && !event.repeat) {
       this.hands.begin();
       this.hands.touch(BY_KEYS, this.place, VELOCITY);
@@ -165,8 +165,8 @@ export class Fingerboard extends EventTarget {
     event.preventDefault();
   }
 
-  /** Tell screen readers where the finger is. */
-  #tell() {
+  /** Announce to screen readers where the finger is. */
+  #announce() {
     this.element.setAttribute("aria-valuemin", String(LOWEST));
     this.element.setAttribute("aria-valuemax", String(HIGHEST));
     this.element.setAttribute("aria-valuenow", this.place.toFixed(1));

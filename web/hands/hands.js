@@ -1,4 +1,4 @@
-/** Makes of fingers and bow strokes what the player is asked for. */
+/** Turns touches of fingers and bow into calls of the player. */
 
 /** @typedef {import('../interfaces.js').Player} Player */
 /** @typedef {import('../interfaces.js').NoteId} NoteId */
@@ -23,7 +23,7 @@ const RETURNS_AFTER = 600;
 /**
  * Both hands. With assist a finger is a note, which the player bows; without, and while the bow is
  * drawn by hand, fingers only stop the string. The last finger sounds; lifting it returns to the
- * one before. Tells by events: 'play' before a hand does something, 'change' after it, 'rock'.
+ * one before. Events: 'play' before a hand does something, 'change' after it, 'rock'.
  */
 export class Hands extends EventTarget {
   /** @param {Player} player */

@@ -73,7 +73,7 @@ export class Pointers {
   #move(event) {
     if (!this.down.has(event.pointerId)) return;
     if (event.pointerType === "mouse" && event.buttons === 0) {
-      this.#end(event.pointerId); // released where no event told of it
+      this.#end(event.pointerId); // released without an event
       return;
     }
     const events = event.getCoalescedEvents?.() ?? [];

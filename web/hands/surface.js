@@ -12,7 +12,7 @@ const OVER = 0.25; // of the radius that the bow may come over the coconut
 const NEAREST = 0.03;
 const FARTHEST = 0.5;
 
-/** Tells by the event 'change' that anything is elsewhere. */
+/** Event: 'change' when anything has moved. */
 export class Surface extends EventTarget {
   /**
    * @param {HTMLElement} stage

@@ -9,7 +9,7 @@
  * @property {boolean} isTouched a hand has changed something
  * @property {number} now s
  * @property {number} elapsed s since it was drawn last; 0 at first
- * @property {boolean} isCalm whoever looks wants as little motion as possible
+ * @property {boolean} isCalm whoever watches wants as little motion as possible
  *
  * @typedef {Record<Colour, string>} Colours
  * @typedef {'ink' | 'soft' | 'faint' | 'line' | 'paper' | 'surface' | 'inner' | 'outer' | 'accent'

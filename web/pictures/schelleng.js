@@ -183,7 +183,7 @@ export class Schelleng extends Picture {
   }
 }
 
-/** Schelleng's limits of the bow force at every place of the bow, as they are told of one place. */
+/** Schelleng's limits of the bow force at every place of the bow, from those that are reported for one place. */
 export class Limits {
   constructor() {
     this.beta = USUAL_BETA;
@@ -193,7 +193,7 @@ export class Limits {
   }
 
   /**
-   * Follow what is told of the bow.
+   * Follow what is reported of the bow.
    * @param {Pick<Snapshot, 'bow' | 'schelleng'>} state
    * @param {number} elapsed s
    */

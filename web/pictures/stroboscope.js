@@ -104,7 +104,7 @@ export class Stroboscope {
 }
 
 /**
- * Tells the motion of a string from where it rests: a finger that presses it, and the bow that
+ * Separates the motion of a string from where it rests: a finger that presses it, and the bow that
  * draws it aside, displace it by more than it swings.
  */
 export class RestShape {

@@ -1,4 +1,4 @@
-/** What of the yehu stands still: neck, pegs, coconut, and the places of the notes. */
+/** The parts of the yehu that do not move: neck, pegs, coconut, and the places of the notes. */
 
 /** @typedef {import("../hands/surface.js").Surface} Surface */
 /** @typedef {import("../hands/scale.js").Scale} Scale */

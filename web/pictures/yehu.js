@@ -80,7 +80,7 @@ export class Yehu extends Picture {
     else this.context.fillText(text, along, across);
   };
 
-  /** What stands still. */
+  /** The parts that do not move. */
   fitted() {
     const { canvas, backdrop, context, surface, fingerboard } = this;
     Object.assign(backdrop, { width: canvas.width, height: canvas.height });

@@ -1,5 +1,5 @@
 /**
- * What MIDI, mappings and hands mean: the server's own code, in WebAssembly, on the page's thread.
+ * Makes commands of MIDI, mappings and hands: the server's own code, in WebAssembly, on the page's thread.
  *
  * Events go in (`facts.events`), and commands come out (`facts.kinds`).
  */
@@ -37,7 +37,7 @@ export class Interpreter {
     this.halves = new Int32Array(memory, at);
     /** The values of parameters, by index. */
     this.values = this.#of(record.value);
-    /** Values that binds came to last, by index; one of how many play is as large as was asked. */
+    /** The last values of binds, by index; the size of a section is not limited here. */
     this.found = this.#of(record.found_value);
   }
 
@@ -70,7 +70,7 @@ export class Interpreter {
   }
 
   /**
-   * Interpret an event; return what it comes to.
+   * Interpret an event; return the commands that result.
    * @param {number} frame
    * @param {number} kind
    * @param {number} index

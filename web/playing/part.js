@@ -8,8 +8,8 @@ const { WRITE, DRAW, STOP } = facts.kinds;
 const { SET, TABLES_TO } = facts.events;
 const { index: SECTION } = find("/playing/section");
 const [BOW_SPEED, BOW_FORCE, BOW_ASSIST] = ["/bow/speed", "/bow/force", "/bow/assist"].map(find);
-// Within this time the sound has a write, and tells the value that it moves to.
-const TOLD_WITHIN_S = 0.1;
+// Within this time the sound has a write, and reports the value that it moves to.
+const REPORTED_WITHIN_S = 0.1;
 
 /**
  * @typedef {import('./interpreter.js').Interpreter} Interpreter
@@ -24,19 +24,19 @@ const TOLD_WITHIN_S = 0.1;
  *   and controllers move from
  * @property {(index: number, value: number) => unknown} [follow] take what others have set
  *
- * @typedef {Pick<SoundMembers, "post" | "frame" | "target" | "reported" | "people"> & Others} Sink What commands
+ * @typedef {Pick<SoundMembers, "post" | "frame" | "target" | "reported" | "maxPlayers"> & Others} Sink What commands
  *   are posted to.
  */
 
-/** Has events interpreted, and posts what they come to; a frame of null is now. */
+/** Interprets events, and posts the commands that result; a frame of null is now. */
 export class Part {
   #sink;
   #now = 0; // frame of the last event for now
   /** The last writes, by index. @type {Map<number, {value: number, frame: number}>} */
   #written = new Map();
   /** What others, or this page, set last, by index. @type {Map<number, number>} */
-  #told = new Map();
-  /** Before there is one, events come to nothing. @type {Interpreter | null} */
+  #lastSet = new Map();
+  /** Before there is one, events have no effect. @type {Interpreter | null} */
   interpreter = null;
 
   /** @param {Sink} sink */
@@ -49,7 +49,7 @@ export class Part {
   }
 
   /**
-   * Have an event interpreted, and post what it comes to.
+   * Interpret an event, and post the commands that result.
    * @param {number | null} frame
    * @param {number} kind
    * @param {number} [index]
@@ -64,19 +64,20 @@ export class Part {
     const commands = interpreter.take(frame ?? --this.#now, kind, index, value, other);
     for (const [kind, index, value, other] of commands) {
       const isSection = kind === WRITE && index === SECTION;
-      this.#post(frame, kind, index, isSection ? this.#people(interpreter, value) : value, other);
+      const posted = isSection ? this.#sectionSize(interpreter, value) : value;
+      this.#post(frame, kind, index, posted, other);
     }
   }
 
-  /** Let the interpreter know what others have set. @param {Interpreter} interpreter */
+  /** Give the interpreter the values that others have set. @param {Interpreter} interpreter */
   #learnValues(interpreter) {
     const { values } = interpreter;
     for (const { address, index } of FREE) {
       if (this.#isRecent(index)) continue;
       const wasSet = this.#news(address, index);
       if (wasSet !== undefined && index !== SECTION) {
-        this.#told.set(index, wasSet);
-        // Notes to come begin with it; what it comes to now, others have requested already.
+        this.#lastSet.set(index, wasSet);
+        // Notes to come begin with it; its effect now, others have requested already.
         if (interpreter.isTarget(index)) interpreter.take(--this.#now, SET, index, wasSet, 0);
         else values[index] = wasSet;
         this.#sink.follow?.(index, wasSet);
@@ -93,7 +94,7 @@ export class Part {
    */
   #news(address, index) {
     const wasSet = this.#sink.wasSet?.(address);
-    return wasSet === this.#told.get(index) ? undefined : wasSet;
+    return wasSet === this.#lastSet.get(index) ? undefined : wasSet;
   }
 
   /** Frames are of another sound from now on: what was written before is no longer on its way. */
@@ -102,13 +103,15 @@ export class Part {
   }
 
   /**
-   * How many shall play: the interpreter knows of one only.
+   * Number of players of the section: the interpreter knows of one only.
    * @param {Interpreter} interpreter
    * @param {number} one
    */
-  #people({ found, values }, one) {
-    const { people = 1 } = this.#sink;
-    return people > 1 ? (values[SECTION] = Math.min(Math.round(found[SECTION]), people)) : one;
+  #sectionSize({ found, values }, one) {
+    const { maxPlayers = 1 } = this.#sink;
+    return maxPlayers > 1
+      ? (values[SECTION] = Math.min(Math.round(found[SECTION]), maxPlayers))
+      : one;
   }
 
   /**
@@ -121,7 +124,7 @@ export class Part {
   #post(frame, kind, index, value, other) {
     if (kind === WRITE) {
       this.#note(index, value, frame);
-      this.#told.set(index, value);
+      this.#lastSet.set(index, value);
     }
     if (kind === DRAW) {
       this.#note(BOW_SPEED.index, value, frame);
@@ -144,13 +147,14 @@ export class Part {
   }
 
   /**
-   * Whether a parameter was written so lately that the sound may not tell it yet.
+   * Whether a parameter was written so lately that the sound may not report it yet.
    * @param {number} index
    */
   #isRecent(index) {
     const written = this.#written.get(index);
     return (
-      written !== undefined && this.#frame < written.frame + TOLD_WITHIN_S * (this.#sink.rate ?? 0)
+      written !== undefined &&
+      this.#frame < written.frame + REPORTED_WITHIN_S * (this.#sink.rate ?? 0)
     );
   }
 
@@ -180,9 +184,9 @@ export class Part {
    */
   set(frame, { index }, value) {
     const { interpreter } = this;
-    if (interpreter && index === SECTION && (this.#sink.people ?? 1) > 1) {
+    if (interpreter && index === SECTION && (this.#sink.maxPlayers ?? 1) > 1) {
       interpreter.found[SECTION] = value;
-      this.#post(frame, WRITE, SECTION, this.#people(interpreter, 1), 0);
+      this.#post(frame, WRITE, SECTION, this.#sectionSize(interpreter, 1), 0);
     } else this.take(frame, SET, index, value);
   }
 
@@ -205,7 +209,7 @@ export class Part {
   }
 
   /**
-   * End all that sounds, at once, whoever plays; also where nothing is interpreted.
+   * End all that sounds, at once, whoever plays; also without an interpreter.
    * @param {number | null} frame
    */
   stop(frame) {

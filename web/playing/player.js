@@ -22,7 +22,7 @@ const [BOW_SPEED, BOW_FORCE] = ["/bow/speed", "/bow/force"].map(find);
  * @typedef {import('./learned.js').Mapping} Mapping
  * @typedef {import('./tables.js').Tuning} Tuning
  *
- * @typedef {number | string} NoteId Tells notes that hands hold at one time apart.
+ * @typedef {number | string} NoteId Distinguishes notes that hands hold at one time.
  *
  * @typedef {object} Key
  * @property {number} channel

@@ -1,15 +1,15 @@
 /**
- * The instrument as both ways of sounding run it: in an audio worklet, or on the page's own thread.
- * It takes messages and tells others.
+ * The instrument as a page runs it: in an audio worklet, or on the page's own thread.
+ * It takes messages and posts others.
  */
 
 import { CHANNELS, Kernel, NOW, VOICE_COMMAND, COMMAND } from "./kernel.js";
 
 const SNAPSHOTS_A_SECOND = 60;
-const CHUNK = 4096; // recorded frames that are told at a time
+const CHUNK = 4096; // recorded frames that are posted at a time
 const FAINT = 1e-3; // of full scale; what is fainter dies away within the time that follows
 const SLEEPS_AFTER_S = 4; // without a command or a sound
-const MOST_SNAPSHOTS = 4; // that nobody has given back yet; then nobody is looking
+const MOST_SNAPSHOTS = 4; // that nobody has given back yet; then no page reads them
 
 /**
  * @typedef {object} Take
@@ -20,7 +20,7 @@ const MOST_SNAPSHOTS = 4; // that nobody has given back yet; then nobody is look
  * @property {number[] | null} [voice] begins following a voice, moved to these pitches if there are
  *   any; null ends it
  *
- * @typedef {object} Told
+ * @typedef {object} Report
  * @property {Float64Array} [seen] a snapshot
  * @property {number} [heard] pitch of the voice, where one is followed; NaN for none
  * @property {boolean} [sleeps] whether it has just gone to sleep
@@ -36,18 +36,18 @@ export class Engine {
    * @param {number} rate in Hz
    * @param {number} most frames of a block
    * @param {number} snapshotLength numbers of a snapshot
-   * @param {(told: Told, buffers: ArrayBufferLike[]) => void} tell
+   * @param {(report: Report, buffers: ArrayBufferLike[]) => void} post
    */
-  constructor(bytes, rate, most, snapshotLength, tell) {
+  constructor(bytes, rate, most, snapshotLength, post) {
     this.kernel = new Kernel(new WebAssembly.Module(bytes), rate, most, snapshotLength);
     this.rate = rate;
-    this.tell = tell;
+    this.post = post;
     /** @type {Float64Array[]} */
     this.free = Array.from({ length: MOST_SNAPSHOTS }, () => new Float64Array(snapshotLength));
     this.nextSnapshot = 0;
     this.frame = 0;
     this.restless = 0; // frame until which something was asked for, or sounded
-    this.sleeps = true; // nobody has asked for anything
+    this.sleeps = true; // no command has come yet
     this.busyMs = 0;
     this.measuredFrom = 0;
     /** @type {Float32Array | null} */
@@ -72,7 +72,7 @@ export class Engine {
     }
     if (keep === true) [this.kept, this.keptFrom] = [[], this.frame];
     else if (keep === false && this.kept) {
-      this.tell({ kept: { from: this.keptFrom, to: this.frame, commands: this.kept } }, []);
+      this.post({ kept: { from: this.keptFrom, to: this.frame, commands: this.kept } }, []);
       this.kept = null;
     }
     if (record === true) {
@@ -92,7 +92,7 @@ export class Engine {
   #follow(tuning) {
     if (this.follows) {
       this.hear(new Float32Array(0));
-      this.sleeps = false; // it tells anew that it sleeps, as the device may rest then
+      this.sleeps = false; // it reports anew that it sleeps, as the device may rest then
       this.restless = this.frame;
     }
     if (tuning) this.kernel.prepareVoice(this.rate, tuning);
@@ -143,7 +143,7 @@ export class Engine {
     this.sleeps = true;
     this.busyMs = 0;
     this.measuredFrom = this.frame;
-    this.tell({ sleeps: true }, []);
+    this.post({ sleeps: true }, []);
   }
 
   #snapshot() {
@@ -151,16 +151,16 @@ export class Engine {
     const seen = this.free.pop();
     if (!seen) return;
     seen.set(this.kernel.snapshot());
-    /** @type {Told} */
-    const told = { seen };
-    if (this.follows) told.heard = this.kernel.voicePitch;
+    /** @type {Report} */
+    const report = { seen };
+    if (this.follows) report.heard = this.kernel.voicePitch;
     const measured = this.frame - this.measuredFrom;
     if (measured >= this.rate) {
-      told.load = (1e-3 * this.busyMs * this.rate) / measured;
+      report.load = (1e-3 * this.busyMs * this.rate) / measured;
       this.measuredFrom = this.frame;
       this.busyMs = 0;
     }
-    this.tell(told, [seen.buffer]);
+    this.post(report, [seen.buffer]);
   }
 
   /** @param {number} frames that were computed */
@@ -173,7 +173,7 @@ export class Engine {
         const recorded = this.chunk;
         this.chunk = new Float32Array(CHANNELS * CHUNK);
         this.filled = 0;
-        this.tell({ recorded }, [recorded.buffer]);
+        this.post({ recorded }, [recorded.buffer]);
       }
     }
   }
@@ -182,6 +182,6 @@ export class Engine {
     if (!this.chunk) return;
     const recorded = this.chunk.slice(0, this.filled);
     this.chunk = null;
-    this.tell({ recorded, isLast: true }, [recorded.buffer]);
+    this.post({ recorded, isLast: true }, [recorded.buffer]);
   }
 }

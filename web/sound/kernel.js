@@ -1,7 +1,7 @@
 /**
  * The instrument in WebAssembly: post commands, compute samples, take snapshots.
  *
- * It is the very callback of the server, compiled ahead of time. It runs in an audio worklet, on the
+ * It is the server's audio callback, compiled ahead of time. It runs in an audio worklet, on the
  * page's own thread, and in Node.
  */
 
@@ -179,7 +179,7 @@ export class Kernel {
   }
 
   /**
-   * What the next samples of a voice come to: VOICE_COMMAND numbers for each command. None at all end
+   * The commands that the next samples of a voice result in: VOICE_COMMAND numbers each. No samples end
    * its note.
    * @param {Float32Array} samples at most `most`
    */

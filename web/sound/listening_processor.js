@@ -2,7 +2,7 @@
 
 import { JitterBuffer } from "./jitter_buffer.js";
 
-const TELL_S = 0.5;
+const REPORT_S = 0.5;
 
 /* global AudioWorkletProcessor, registerProcessor, sampleRate */
 
@@ -12,7 +12,7 @@ class Listening extends AudioWorkletProcessor {
     super();
     this.sound = new JitterBuffer(sampleRate, rate);
     this.isOpen = true;
-    this.untold = 0;
+    this.unreported = 0;
     this.port.onmessage = ({ data }) => {
       if (data.close) this.isOpen = false;
       else if (data.port) data.port.onmessage = this.port.onmessage;
@@ -24,9 +24,9 @@ class Listening extends AudioWorkletProcessor {
   process(_inputs, outputs) {
     const [left, right] = outputs[0];
     this.sound.fillIn(left, right);
-    this.untold += left.length;
-    if (this.untold > TELL_S * sampleRate) {
-      this.untold = 0;
+    this.unreported += left.length;
+    if (this.unreported > REPORT_S * sampleRate) {
+      this.unreported = 0;
       this.port.postMessage({ fill: this.sound.fill, gaps: this.sound.gaps });
     }
     return this.isOpen;

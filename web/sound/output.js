@@ -1,6 +1,6 @@
 /**
- * The way of a processor's sound to the loudspeakers: an audio worklet, on a thread of its own; and where a
- * page has none, being loaded over plain http from another machine, a script processor on the page's thread.
+ * Plays a processor's sound: by an audio worklet, on a thread of its own; and where a
+ * page has none, being loaded over plain http from another machine, by a script processor on the page's thread.
  */
 
 import { CHANNELS } from "./kernel.js";
@@ -25,13 +25,13 @@ export class Output {
     this.context = context;
     this.analyser = new AnalyserNode(context, { fftSize: FFT, smoothingTimeConstant: 0.6 });
     this.gain = new GainNode(context, { gain: 1 });
-    /** Where the worklet hears and tells; null: it is on the page's thread. @type {MessagePort | null} */
+    /** The worklet's port; null: it is on the page's thread. @type {MessagePort | null} */
     this.port = null;
     /** @type {AudioNode | null} */
     this.node = null;
   }
 
-  /** Let a processor sound. @param {Processor} processor */
+  /** Play a processor's sound. @param {Processor} processor */
   async connect({ name, file, options, inputs = 0, make }) {
     const { context } = this;
     if (context.audioWorklet) {

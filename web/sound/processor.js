@@ -10,8 +10,8 @@ class Processor extends AudioWorkletProcessor {
   /** @param {{processorOptions: {bytes: ArrayBuffer, snapshotLength: number}}} options */
   constructor({ processorOptions: { bytes, snapshotLength } }) {
     super();
-    this.engine = new Engine(bytes, sampleRate, MOST_FRAMES, snapshotLength, (told, buffers) =>
-      this.port.postMessage(told, /** @type {Transferable[]} */ (buffers)),
+    this.engine = new Engine(bytes, sampleRate, MOST_FRAMES, snapshotLength, (report, buffers) =>
+      this.port.postMessage(report, /** @type {Transferable[]} */ (buffers)),
     );
     this.isOpen = true;
     this.port.onmessage = ({ data }) => {

@@ -1,5 +1,5 @@
 /**
- * The instrument of the server, for the page: posts commands to it, and tells what it does; the page
+ * The instrument of the server, for the page: posts commands to it, and reports what it does; the page
  * may also hear it. It has the same interface as `Sound`.
  */
 
@@ -12,42 +12,42 @@ import { CommandBatch } from "./kernel.js";
 /** @typedef {import('./server_connection.js').ServerConnection} ServerConnection */
 /** @typedef {import('../interfaces.js').Status} Status */
 
-/** Tells by events: 'state' of a new snapshot. */
+/** Event: 'state' of a new snapshot. */
 export class Remote extends EventTarget {
   /**
-   * @param {ServerConnection} line to the server
+   * @param {ServerConnection} connection to the server
    * @param {boolean} listens whether the page hears the server; only after a touch
    * @returns {Promise<Remote>}
    */
-  static async open(line, listens) {
-    const opening = listens ? StreamPlayer.open(line.status.rate) : null; // while the touch counts
-    await line.ready;
-    return new Remote(line, await opening);
+  static async open(connection, listens) {
+    const opening = listens ? StreamPlayer.open(connection.status.rate) : null; // while the touch counts
+    await connection.ready;
+    return new Remote(connection, await opening);
   }
 
-  /** @param {ServerConnection} line @param {StreamPlayer | null} listener */
-  constructor(line, listener) {
+  /** @param {ServerConnection} connection @param {StreamPlayer | null} listener */
+  constructor(connection, listener) {
     super();
-    this.line = line;
+    this.connection = connection;
     this.listener = listener;
     this.seen = new Float64Array(facts.snapshotLength + 2 * facts.parameters.length);
     this.isSeen = false;
-    this.people = Infinity; // the server knows how many there are
+    this.maxPlayers = Infinity; // the server limits them
     this.state = snapshotOf(this.seen);
     this.analyser = listener?.analyser ?? null;
-    this.post = new CommandBatch((commands) => line.send(commands)).post;
+    this.post = new CommandBatch((commands) => connection.send(commands)).post;
     this.onSnapshot = (/** @type {Event} */ event) => {
       this.seen.set(/** @type {CustomEvent<Float64Array>} */ (event).detail);
       this.isSeen = true;
       this.state = snapshotOf(this.seen);
       this.dispatchEvent(new Event("state"));
     };
-    line.addEventListener("snapshot", this.onSnapshot);
-    line.want({ snapshots: true, sounds: false });
+    connection.addEventListener("snapshot", this.onSnapshot);
+    connection.want({ snapshots: true, sounds: false });
   }
 
   get frame() {
-    return Math.round(this.line.frame);
+    return Math.round(this.connection.frame);
   }
 
   /** @param {string} address of a parameter of bow or fingers */
@@ -63,7 +63,7 @@ export class Remote extends EventTarget {
 
   /** @returns {Status} */
   get status() {
-    const { rate, load, dropouts, latencyMs } = this.line.status;
+    const { rate, load, dropouts, latencyMs } = this.connection.status;
     const heard = this.listener?.status;
     return {
       backend: this.listener ? "listening" : "remote",
@@ -71,7 +71,7 @@ export class Remote extends EventTarget {
       loadPercent: 100 * load,
       latencyMs: latencyMs + (heard?.latencyMs ?? 0),
       dropouts: dropouts + (heard?.dropouts ?? 0),
-      running: this.line.isOpen && (heard?.running ?? true),
+      running: this.connection.isOpen && (heard?.running ?? true),
     };
   }
 
@@ -81,8 +81,8 @@ export class Remote extends EventTarget {
   }
 
   close() {
-    this.line.removeEventListener("snapshot", this.onSnapshot);
-    this.line.want({ snapshots: false, sounds: false });
+    this.connection.removeEventListener("snapshot", this.onSnapshot);
+    this.connection.want({ snapshots: false, sounds: false });
     this.listener?.close();
   }
 }

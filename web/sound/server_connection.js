@@ -1,4 +1,4 @@
-/** The line to the server: a WebSocket that is opened again whenever it breaks. */
+/** The connection to the server: a WebSocket that is opened again whenever it breaks. */
 
 import facts from "../facts.js";
 import { find } from "../playing/table.js";
@@ -14,7 +14,7 @@ const NO_PIN = 4401; // close codes: the server wants a PIN, or another one
 const NO_PART = 4404; // the server has no such part
 
 /**
- * What the server tells once a second.
+ * What the server sends once a second.
  * @typedef {object} ServerStatus
  * @property {number} page this page's number
  * @property {number} pages that are connected
@@ -55,7 +55,7 @@ export function socketUrl(name) {
 }
 
 /**
- * Tells by events: 'open', 'break', 'status', 'snapshot' (detail: the numbers), 'commands' of another
+ * Events: 'open', 'break', 'status', 'snapshot' (detail: the numbers), 'commands' of another
  * page (detail: {page, commands}), 'refuse' where a PIN is missing or wrong, and 'left' (detail: the number of a page that went).
  */
 export class ServerConnection extends EventTarget {

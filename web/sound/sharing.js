@@ -8,16 +8,16 @@ import facts from "../facts.js";
 import { NOW, CommandBatch } from "./kernel.js";
 
 const { BEGIN, END } = facts.kinds;
-// Channels of another page's keys, as the server keeps visitors apart.
+// Channels of another page's keys, as the server distinguishes visitors.
 const FIRST = 1 << 16;
 const CHANNELS = 1 << 12;
 
 export class Sharing {
-  /** @param {Instrument} instrument @param {ServerConnection} line */
-  constructor(instrument, line) {
+  /** @param {Instrument} instrument @param {ServerConnection} connection */
+  constructor(instrument, connection) {
     this.instrument = instrument;
-    this.line = line;
-    this.batch = new CommandBatch((commands) => line.send(commands));
+    this.connection = connection;
+    this.batch = new CommandBatch((commands) => connection.send(commands));
     /** Keys that other pages hold: pairs of channel and key. @type {Map<number, number[][]>} */
     this.held = new Map();
     this.own = (/** @type {Event} */ event) =>
@@ -27,22 +27,22 @@ export class Sharing {
       for (const command of commands) this.#play(page, command);
     };
     this.left = (/** @type {Event} */ event) =>
-      this.#let(/** @type {CustomEvent<number>} */ (event).detail);
+      this.#releaseKeys(/** @type {CustomEvent<number>} */ (event).detail);
     this.broken = () => {
-      for (const page of [...this.held.keys()]) this.#let(page);
+      for (const page of [...this.held.keys()]) this.#releaseKeys(page);
     };
     instrument.addEventListener("command", this.own);
-    line.addEventListener("commands", this.others);
-    line.addEventListener("left", this.left);
-    line.addEventListener("break", this.broken);
-    line.want({ snapshots: true, sounds: true }); // they have what others set
+    connection.addEventListener("commands", this.others);
+    connection.addEventListener("left", this.left);
+    connection.addEventListener("break", this.broken);
+    connection.want({ snapshots: true, sounds: true }); // they have what others set
   }
 
   /** @param {Command} command */
   #share({ frame, kind, index, value, other }) {
     const { sound, frame: here } = this.instrument;
     const ahead = (frame - here) / (sound?.status.rate ?? 1);
-    const there = Math.round(this.line.frame + ahead * this.line.status.rate);
+    const there = Math.round(this.connection.frame + ahead * this.connection.status.rate);
     this.batch.post(ahead > 0 ? Math.max(there, 0) : null, kind, index, value, other);
   }
 
@@ -50,7 +50,7 @@ export class Sharing {
   #play(page, [frame, kind, index, value, other]) {
     const { sound } = this.instrument;
     if (!sound) return;
-    const ahead = frame === NOW ? 0 : (frame - this.line.frame) / this.line.status.rate;
+    const ahead = frame === NOW ? 0 : (frame - this.connection.frame) / this.connection.status.rate;
     const at = ahead > 0 ? Math.round(this.instrument.frame + ahead * sound.status.rate) : null;
     const isKey = kind === BEGIN || kind === END;
     const channel = FIRST + page * CHANNELS + CHANNELS / 2 + index;
@@ -73,7 +73,7 @@ export class Sharing {
   }
 
   /** End what a page held that is gone. @param {number} page */
-  #let(page) {
+  #releaseKeys(page) {
     for (const [channel, key] of this.held.get(page) ?? []) {
       this.instrument.sound?.post(null, END, channel, key, 0);
     }
@@ -83,9 +83,9 @@ export class Sharing {
   close() {
     this.broken();
     this.instrument.removeEventListener("command", this.own);
-    this.line.removeEventListener("commands", this.others);
-    this.line.removeEventListener("left", this.left);
-    this.line.removeEventListener("break", this.broken);
-    this.line.want({ snapshots: false, sounds: false });
+    this.connection.removeEventListener("commands", this.others);
+    this.connection.removeEventListener("left", this.left);
+    this.connection.removeEventListener("break", this.broken);
+    this.connection.want({ snapshots: false, sounds: false });
   }
 }

@@ -1,4 +1,4 @@
-/** The sound of this page: posts commands to the instrument, and tells what it does. */
+/** The sound of this page: posts commands to the instrument, and reports what it does. */
 
 import facts from "../facts.js";
 import { Engine } from "./engine.js";
@@ -9,7 +9,7 @@ import { settings } from "../settings.js";
 
 /** @typedef {import('../interfaces.js').Status} Status */
 /** @typedef {import('./engine.js').Take} Take */
-/** @typedef {import('./engine.js').Told} Told */
+/** @typedef {import('./engine.js').Report} Report */
 
 const USUAL_RATE = 48000;
 const WATCH_MS = 500;
@@ -56,7 +56,7 @@ export class Sound extends EventTarget {
     /** @type {((blob: Blob) => void) | null} */
     this.recorded = null;
     this.record = { start: () => this.#startRecording(), stop: () => this.#stopRecording() };
-    /** @type {((kept: NonNullable<Told["kept"]>) => void) | null} */
+    /** @type {((kept: NonNullable<Report["kept"]>) => void) | null} */
     this.kept = null;
     this.heard = NaN; // pitch of a voice that is followed
     this.voice = {
@@ -83,7 +83,7 @@ export class Sound extends EventTarget {
       inputs: 1, // a voice
       options: { bytes, snapshotLength },
       make: (frames) => {
-        const hear = (/** @type {Told} */ told) => this.#hear(told);
+        const hear = (/** @type {Report} */ report) => this.#hear(report);
         const engine = (this.engine = new Engine(bytes, sampleRate, frames, snapshotLength, hear));
         return (left, right) => engine.fill(left, right);
       },
@@ -145,7 +145,7 @@ export class Sound extends EventTarget {
     this.output.close();
   }
 
-  /** @param {Told} told */
+  /** @param {Report} report */
   #hear({ seen, sleeps, load, recorded, isLast, kept, heard = NaN }) {
     if (seen) this.heard = heard;
     if (sleeps) this.#sleep();
@@ -197,7 +197,7 @@ export class Sound extends EventTarget {
     });
   }
 
-  /** @returns {Promise<NonNullable<Told["kept"]>>} */
+  /** @returns {Promise<NonNullable<Report["kept"]>>} */
   #stopKeeping() {
     return new Promise((resolve) => {
       this.kept = resolve;

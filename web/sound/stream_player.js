@@ -1,4 +1,4 @@
-/** Hears the server: its sound comes by a WebSocket, and is played by the page. */
+/** Plays the server's sound in the page; it comes by a WebSocket. */
 
 import { JitterBuffer } from "./jitter_buffer.js";
 import { Output } from "./output.js";
@@ -28,7 +28,7 @@ export class StreamPlayer {
     this.output = new Output(context);
     this.analyser = this.output.analyser;
     this.rate = rate;
-    this.told = { fill: 0, gaps: 0 };
+    this.reported = { fill: 0, gaps: 0 };
     this.worker = new Worker(new URL("./listening_worker.js", import.meta.url), { type: "module" });
   }
 
@@ -43,22 +43,22 @@ export class StreamPlayer {
         port2.onmessage = ({ data }) => sound.write(data.frame, data.samples);
         return (left, right) => {
           sound.fillIn(left, right);
-          this.told = { fill: sound.fill, gaps: sound.gaps };
+          this.reported = { fill: sound.fill, gaps: sound.gaps };
         };
       },
     });
     const { port } = this.output;
     if (port) {
       port.postMessage({ port: port2 }, [port2]);
-      port.onmessage = ({ data }) => (this.told = data);
+      port.onmessage = ({ data }) => (this.reported = data);
     }
     this.worker.postMessage({ url: socketUrl("sound"), port: port1 }, [port1]);
   }
 
   get status() {
     return {
-      latencyMs: this.output.latencyMs + (1e3 * this.told.fill) / this.rate,
-      dropouts: this.told.gaps,
+      latencyMs: this.output.latencyMs + (1e3 * this.reported.fill) / this.rate,
+      dropouts: this.reported.gaps,
       running: this.context.state === "running",
     };
   }

@@ -54,7 +54,7 @@ function sound(instrument) {
     instrument.start();
   });
   const recent = dropoutsOf(instrument);
-  const tell = () => {
+  const update = () => {
     const { backend, rate } = instrument.sound?.status ?? {};
     status.textContent = statusText(instrument);
     if (backend) status.textContent += ` · ${translate(`status.${backend}`)} · ${rate} Hz`;
@@ -65,8 +65,8 @@ function sound(instrument) {
     gaps.textContent = `${translate("connect.dropouts", { count })} ${advice}`;
     buffer.hidden = !isHere || (count === 0 && !settings.isBuffered);
   };
-  whileShown(status, tell, 500);
-  onLanguage(tell);
+  whileShown(status, update, 500);
+  onLanguage(update);
   return section("connect.sound", status, gaps, buffer);
 }
 
@@ -98,14 +98,14 @@ function inputs({ midi }) {
   const word = make("p", { class: "soft", role: "status" });
   const ask = makeButton(words("connect.ask"), () => midi.open());
   ask.disabled = !midi.isAble;
-  const told = () => {
+  const statusText = () => {
     if (!midi.isAble) return translate(midi.whyNot);
     if (midi.isRefused) return translate("connect.refused");
     if (!midi.isOpen) return translate("connect.about");
     const count = midi.inputs.length;
     return translate(count ? "connect.count" : "connect.waiting", { count });
   };
-  const tell = () => {
+  const update = () => {
     select.replaceChildren(
       new Option(translate("connect.all"), ALL),
       ...midi.inputs.map(({ id, name }) => new Option(name ?? id, id)),
@@ -113,21 +113,21 @@ function inputs({ midi }) {
     select.value = midi.chosen;
     select.hidden = !midi.isOpen;
     ask.hidden = midi.isOpen;
-    word.textContent = told();
+    word.textContent = statusText();
   };
-  midi.addEventListener("change", tell);
-  onLanguage(tell);
+  midi.addEventListener("change", update);
+  onLanguage(update);
   return section("connect.midi", word, ask, select);
 }
 
 /** @param {Page} page */
 function keyboard({ keys }) {
   const octave = make("output");
-  const tell = () => {
+  const update = () => {
     octave.textContent = translate("connect.octave", { octave: keys.octave / 12 });
   };
-  keys.addEventListener("octave", tell);
-  onLanguage(tell);
+  keys.addEventListener("octave", update);
+  onLanguage(update);
   const lines = ROWS.map((row, i) =>
     make("div", { class: i % 2 ? "line" : "line upper" }, row.map(key)),
   );

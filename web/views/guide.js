@@ -51,7 +51,7 @@ export function showGuide({ instrument, hands, bow, keys, yehu }, lesson) {
     const came = found === null ? "" : translate("guide.found", { found: found.toFixed(1) });
     return ["guide.result", `${came} ${translate("guide.result.about", values)}`, values];
   };
-  const tell = () => {
+  const update = () => {
     const name = STEPS[at];
     const [key, about, values] = name
       ? [`guide.${name}`, translate(`guide.${name}.about`)]
@@ -75,7 +75,7 @@ export function showGuide({ instrument, hands, bow, keys, yehu }, lesson) {
     if (!lesson.course) yehu.ask(STEPS[at] === "begin" ? FIRST_NOTE : null);
     if (at >= TONE) remember({ isTaught: true });
     if (at === TONE) challenge = new Challenge();
-    tell();
+    update();
   };
   const notice = (/** @type {string} */ name) => {
     if (STEPS[at] === name) go(at + 1);
@@ -113,7 +113,7 @@ export function showGuide({ instrument, hands, bow, keys, yehu }, lesson) {
   window.addEventListener("keydown", ({ key, target }) => {
     if (key === HELP && !(target instanceof HTMLInputElement)) help();
   });
-  onLanguage(tell);
+  onLanguage(update);
   if (!settings.isTaught) go(0);
 
   const begin = () => {

@@ -1,4 +1,4 @@
-/** The header: start, status, language, theme; and what stands in the way of playing. */
+/** The header: start, status, language, theme; and what prevents playing. */
 
 /** @typedef {import('../main.js').Page} Page */
 
@@ -7,7 +7,7 @@ import { remember, settings } from "../settings.js";
 import { onLanguage, language, translate, setLanguage } from "../i18n.js";
 
 const EVERY = 500; // ms
-/** From here on load and latency are told: else they are of no use to whoever plays. */
+/** From here on load and latency are shown: else they are of no use to whoever plays. */
 const HEAVY = 70; // %
 const LATE = 100; // ms
 
@@ -15,7 +15,7 @@ const LATE = 100; // ms
 export function showHeader({ instrument, gallery }) {
   const start = find("start", HTMLButtonElement);
   const status = find("status", HTMLElement);
-  const tell = () => {
+  const update = () => {
     start.textContent = translate(instrument.sound ? "header.silence" : "header.start");
     const { loadPercent = 0, latencyMs = 0 } = instrument.sound?.status ?? {};
     status.dataset.state = stateOf(instrument);
@@ -25,11 +25,11 @@ export function showHeader({ instrument, gallery }) {
   start.addEventListener("click", () => {
     if (instrument.sound?.status.running) instrument.silence();
     else instrument.start();
-    tell();
+    update();
   });
-  onLanguage(tell);
-  for (const event of ["start", "fail", "way"]) instrument.addEventListener(event, tell);
-  setInterval(() => document.hidden || tell(), EVERY);
+  onLanguage(update);
+  for (const event of ["start", "fail", "way"]) instrument.addEventListener(event, update);
+  setInterval(() => document.hidden || update(), EVERY);
   find("language", HTMLButtonElement).addEventListener("click", () =>
     setLanguage(language() === "zh" ? "en" : "zh"),
   );
@@ -45,24 +45,24 @@ export function showHeader({ instrument, gallery }) {
 }
 
 /**
- * What stands in the way of playing, in a line at the top.
+ * What prevents playing, in a line at the top.
  * @param {import('../instrument.js').Instrument} instrument
  */
 function showNotice(instrument) {
   const notice = find("notice", HTMLElement);
   let key = "";
-  const tell = () => {
+  const update = () => {
     notice.hidden = key === "";
     notice.textContent = key && translate(key, { why: String(instrument.error) });
   };
   for (const event of ["prepare", "ready", "lack", "fail"]) {
     instrument.addEventListener(event, () => {
       key = event === "ready" ? "" : `header.${event}`;
-      tell();
+      update();
       if (event !== "prepare") find("play", HTMLElement).removeAttribute("aria-busy");
     });
   }
-  onLanguage(tell);
+  onLanguage(update);
 }
 
 /** @param {import('../instrument.js').Instrument} instrument */

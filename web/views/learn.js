@@ -21,7 +21,7 @@ import { onLanguage, translate, translateOr } from "../i18n.js";
 import { nameFor, unitFor, written } from "./slider.js";
 
 /**
- * A button that teaches a control to move a parameter, and a line that tells which does.
+ * A button that teaches a control to move a parameter, and a line that names the one that does.
  * @param {string} target
  * @param {MidiLearn} taught
  * @param {Midi} midi
@@ -31,18 +31,18 @@ export function makeLearning(target, taught, midi) {
     class: "quiet knob",
     title: words("learn"),
   });
-  const told = make("p", { class: "soft told", role: "status" });
-  const tell = () => {
+  const line = make("p", { class: "soft learned", role: "status" });
+  const update = () => {
     const isAwaited = taught.awaited === target;
     const bind = taught.binds.find((own) => own.target === target);
     button.setAttribute("aria-label", `${translate("learn")}: ${nameFor(target)}`);
     button.setAttribute("aria-pressed", String(isAwaited));
     button.classList.toggle("taught", bind !== undefined);
-    if (isAwaited) told.textContent = translate("learn.move");
-    else told.textContent = bind ? translate("learn.by", { source: sourceName(bind.source) }) : "";
+    if (isAwaited) line.textContent = translate("learn.move");
+    else line.textContent = bind ? translate("learn.by", { source: sourceName(bind.source) }) : "";
   };
-  follow(taught, tell);
-  return [button, told];
+  follow(taught, update);
+  return [button, line];
 }
 
 /** All that was taught, as a part of the panel of connections. @param {Page} page */
@@ -60,7 +60,7 @@ export function showLearning({ taught, midi }) {
     make("div", { class: "row" }, [save]),
     note(words("learn.save.about")),
   ]);
-  const tell = () => {
+  const update = () => {
     const { awaited, found } = taught;
     button.textContent = translate(awaited ? "learn.stop" : "learn");
     button.setAttribute("aria-pressed", String(awaited !== null));
@@ -76,7 +76,7 @@ export function showLearning({ taught, midi }) {
     list.hidden = saving.hidden = rows.length === 0;
     if (hadFocus) (list.querySelector("button") ?? select).focus();
   };
-  follow(taught, tell);
+  follow(taught, update);
   taught.addEventListener("change", () => {
     const { binds } = taught;
     // Rows stay where only their values have changed: somebody may be writing in one.
@@ -96,13 +96,13 @@ export function showLearning({ taught, midi }) {
 }
 
 /**
- * Tell what is taught, now and whenever it changes.
+ * Call a function now and whenever what is taught changes.
  * @param {MidiLearn} taught
- * @param {() => void} tell
+ * @param {() => void} update
  */
-function follow(taught, tell) {
-  for (const event of ["change", "wait"]) taught.addEventListener(event, tell);
-  onLanguage(tell);
+function follow(taught, update) {
+  for (const event of ["change", "wait"]) taught.addEventListener(event, update);
+  onLanguage(update);
 }
 
 /**
@@ -192,7 +192,7 @@ function movedBy({ source }) {
   return translate("learn.by", { source: sourceName(source) });
 }
 
-/** The name of a source, for people. @param {string} source */
+/** The display name of a source. @param {string} source */
 export function sourceName(source) {
   return translateOr(`source.${source}`, source.toUpperCase()); // cc 74, nrpn 300
 }

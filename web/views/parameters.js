@@ -73,11 +73,11 @@ function row({ player }, param, learning) {
   const label = () => nameFor(address);
   const limits = { min: lo, max: hi, step: "any" };
   const number = make("input", { type: "number", ...limits, "aria-label": label });
-  const tell = (/** @type {number} */ value) => {
+  const update = (/** @type {number} */ value) => {
     number.value = written(param, value);
   };
   const { range, show } = makeRange(player, address, (value) => {
-    tell(value);
+    update(value);
     mark(value);
   });
   const title = () => translate("all.back", { value: written(param, param.default) });
@@ -102,18 +102,18 @@ function row({ player }, param, learning) {
   const follow = () => {
     const value = player.value(address);
     show(value);
-    if (document.activeElement !== number) tell(value);
+    if (document.activeElement !== number) update(value);
     mark(value);
   };
   const reset = () => {
     if (player.value(address) !== param.default) player.write(address, param.default);
-    tell(player.value(address));
+    update(player.value(address));
     follow();
   };
   number.addEventListener("change", () => {
     const value = number.valueAsNumber;
     if (Number.isFinite(value)) player.write(address, Math.min(Math.max(value, lo), hi));
-    tell(player.value(address));
+    update(player.value(address));
     follow();
   });
   onLanguage(follow);

@@ -35,20 +35,20 @@ function fileName(ending) {
  * @param {Instrument} instrument
  * @param {string} off key of its text
  * @param {(sound: Instrument["sound"]) => {start: () => void, stop: () => T} | null | undefined} choose
- * @param {(kept: Awaited<T> | null) => unknown} tell null: it begins
+ * @param {(kept: Awaited<T> | null) => unknown} report null: it begins
  */
-function keeping(instrument, off, choose, tell) {
+function keeping(instrument, off, choose, report) {
   /** @type {ReturnType<typeof choose>} */
   let keeper;
   const one = toggle(off, "keep.stop", async (isOn) => {
     if (!isOn) {
-      if (keeper) await tell(await keeper.stop());
+      if (keeper) await report(await keeper.stop());
       return;
     }
     await instrument.start();
     keeper = choose(instrument.sound);
     if (!keeper || !one.isOn) return one.set(false);
-    tell(null);
+    report(null);
     keeper.start();
   });
   instrument.addEventListener("way", () => one.isOn && one.press());
@@ -87,7 +87,7 @@ function performances({ instrument, hands }) {
     async (kept) => {
       offer.replaceChildren();
       word.textContent = "";
-      if (kept) await tellKept(kept);
+      if (kept) await showKept(kept);
     },
   );
   const label = words("keep.load");
@@ -124,7 +124,7 @@ function performances({ instrument, hands }) {
    * Offer what was kept: as a link, if it is short, and as a file.
    * @param {import('../capture.js').Performance & {frames: number}} kept
    */
-  async function tellKept(kept) {
+  async function showKept(kept) {
     const link = await linkOf(kept);
     const save = async () => download(await fileOf(kept), fileName("jsonl"));
     offer.replaceChildren(makeButton(translate("keep.save"), save));
@@ -202,12 +202,12 @@ async function invite(instrument, play) {
  */
 export function judge(instrument, button, isAble) {
   const lack = note(words("missing"));
-  const tell = () => {
+  const update = () => {
     lack.hidden = isAble(instrument.sound);
     allow(button, lack.hidden ? undefined : translate("missing"));
   };
-  for (const event of ["start", "way"]) instrument.addEventListener(event, tell);
-  onLanguage(tell);
+  for (const event of ["start", "way"]) instrument.addEventListener(event, update);
+  onLanguage(update);
   return lack;
 }
 

@@ -25,12 +25,12 @@ export function showSeeing({ instrument, tuned, yehu, surface }) {
   const tuner = find("tuner", HTMLCanvasElement);
   const schelleng = find("schelleng", HTMLCanvasElement);
   let soundedAt = -Infinity;
-  const tell = () => {
+  const update = () => {
     const name = regime.dataset.regime;
     regime.textContent = name ? translate(`regime.${name}`) : "";
     about.textContent = translate(`regime.${name ?? "silent"}.about`);
   };
-  onLanguage(tell);
+  onLanguage(update);
   const follow = () => {
     const { state } = instrument;
     if (!state) return;
@@ -40,14 +40,14 @@ export function showSeeing({ instrument, tuned, yehu, surface }) {
     const name = regimeOf(state);
     if (regime.dataset.regime !== name) {
       regime.dataset.regime = name;
-      tell();
+      update();
     }
     const pitch = soundingPitch(state);
     const note = tuned.nearest(pitch);
     const cents = Math.round((pitch - note) * 100);
     tuner.ariaLabel = Number.isNaN(pitch)
       ? translate("tuner.silent")
-      : translate("tuner.told", { note: nameOf(note), cents });
+      : translate("tuner.text", { note: nameOf(note), cents });
   };
   whileShown(panel, follow, EVERY);
   panel.append(

@@ -20,10 +20,10 @@ const FIRST_MS = 1000; // a server that is away is not waited for any longer
 
 /** The choice, and the state of the server. @param {Instrument} instrument */
 export function showServer(instrument) {
-  const line = new ServerConnection();
-  instrument.others = line;
-  instrument.way = () => line.ready; // where to sound is chosen once the server tells what it has
-  showPart(line);
+  const connection = new ServerConnection();
+  instrument.others = connection;
+  instrument.way = () => connection.ready; // where to sound is chosen once the server has sent its state
+  showPart(connection);
   const about = make("p", { class: "soft" });
   const state = make("p", { class: "soft", role: "status" });
   /** @type {Way | null} */
@@ -40,37 +40,37 @@ export function showServer(instrument) {
   /** @param {Way} way */
   function choose(way) {
     chosen = way;
-    rate = line.status.rate;
+    rate = connection.status.rate;
     const before = sharing;
     sharing = null;
-    instrument.change(way === "here" ? openAlike : () => Remote.open(line, way === "listen"));
+    instrument.change(way === "here" ? openAlike : () => Remote.open(connection, way === "listen"));
     before?.close();
-    if (way === "here") sharing = new Sharing(instrument, line);
+    if (way === "here") sharing = new Sharing(instrument, connection);
     if (way === "there") instrument.start(); // a picture needs no touch
-    tell();
+    update();
   }
 
   /** The sound of this page, with the parameters that the server has. */
   async function openAlike() {
     const sound = await instrument.openHere();
-    await Promise.race([line.first, new Promise((resolve) => setTimeout(resolve, FIRST_MS))]);
+    await Promise.race([connection.first, new Promise((resolve) => setTimeout(resolve, FIRST_MS))]);
     for (const { address, index } of FREE) {
-      const value = line.wasSet(address) ?? instrument.player.value(address);
+      const value = connection.wasSet(address) ?? instrument.player.value(address);
       sound.post(null, facts.kinds.WRITE, index, value, 0);
     }
     return sound;
   }
 
-  const canBeHere = () => facts.isYehu && line.status.sounds === "ready";
+  const canBeHere = () => facts.isYehu && connection.status.sounds === "ready";
 
-  function tell() {
-    const { device, pages, sounds, parts } = line.status;
+  function update() {
+    const { device, pages, sounds, parts } = connection.status;
     choice.show(chosen ?? "");
     choice.buttons[WAYS.indexOf("here")].disabled = !canBeHere();
-    document.documentElement.dataset.role = line.status.role; // hides what the owner alone may do
+    document.documentElement.dataset.role = connection.status.role; // hides what the owner alone may do
     about.textContent = chosen ? translate(`way.${chosen}.about`) : "";
-    if (line.status.role !== "own") {
-      about.textContent += ` ${translate(`server.role.${line.status.role}`)}`;
+    if (connection.status.role !== "own") {
+      about.textContent += ` ${translate(`server.role.${connection.status.role}`)}`;
     }
     if (chosen && parts > 1) about.textContent += ` ${translate("server.parts")}`;
     const own = {
@@ -78,42 +78,44 @@ export function showServer(instrument) {
       ready: "",
       none: translate("server.impossible"),
     };
-    const told = [
+    const sentences = [
       device ? translate("server.device", { device }) : translate("server.silent"),
       translate("server.pages", { count: pages }),
       facts.isYehu
         ? own[sounds]
         : translate("server.other", { low: nameOf(LOWEST_NOTE), high: nameOf(HIGHEST_NOTE) }),
     ];
-    state.textContent = line.isOpen ? told.filter(Boolean).join(" ") : translate("server.gone");
+    state.textContent = connection.isOpen
+      ? sentences.filter(Boolean).join(" ")
+      : translate("server.gone");
   }
 
-  line.addEventListener("status", () => {
-    const { device } = line.status;
+  connection.addEventListener("status", () => {
+    const { device } = connection.status;
     if (chosen === null) {
       const first = WAYS.find((way) => way === settings.way) ?? (device ? "there" : "listen");
       choose(first === "here" && !canBeHere() ? "there" : first);
-    } else if (chosen === "listen" && rate !== line.status.rate) {
+    } else if (chosen === "listen" && rate !== connection.status.rate) {
       choose(chosen); // another server, at another rate
       instrument.start();
     }
-    tell();
+    update();
   });
-  onLanguage(tell);
-  line.addEventListener("break", () => {
+  onLanguage(update);
+  connection.addEventListener("break", () => {
     if (chosen !== "here") instrument.silence(); // the server has ended what this page held
-    tell();
+    update();
   });
   find("panel-connect", HTMLElement).prepend(
-    section("server.name", choice.element, about, state, askForPin(line)),
+    section("server.name", choice.element, about, state, askForPin(connection)),
   );
 }
 
 /**
  * A question for the PIN, which shows where the server refuses the one it got.
- * @param {ServerConnection} line
+ * @param {ServerConnection} connection
  */
-function askForPin(line) {
+function askForPin(connection) {
   const label = words("server.pin");
   const pin = make("input", { inputmode: "numeric", "aria-label": label });
   const send = make("button", {}, [words("server.pin.send")]);
@@ -122,7 +124,7 @@ function askForPin(line) {
     event.preventDefault();
     reload("pin", pin.value.trim());
   });
-  line.addEventListener("refuse", () => {
+  connection.addEventListener("refuse", () => {
     form.hidden = false;
     // Else nobody would see it; a click on the tab that is shown would close it.
     if (find("panel-connect", HTMLElement).hidden) find("tab-connect", HTMLElement).click();
@@ -133,12 +135,12 @@ function askForPin(line) {
 
 /**
  * The choice of the part that this page plays, where a server has several.
- * @param {ServerConnection} line
+ * @param {ServerConnection} connection
  */
-function showPart(line) {
+function showPart(connection) {
   const select = find("part", HTMLSelectElement);
-  const tell = () => {
-    const { part, parts } = line.status;
+  const update = () => {
+    const { part, parts } = connection.status;
     select.hidden = parts < 2;
     const numbers = Array.from({ length: parts }, (_, i) => String(i + 1));
     if (select.length !== parts) {
@@ -151,8 +153,8 @@ function showPart(line) {
   };
   // A player of its own, that knows nothing of the part before.
   select.addEventListener("change", () => reload("part", select.value));
-  line.addEventListener("status", tell);
-  onLanguage(tell);
+  connection.addEventListener("status", update);
+  onLanguage(update);
 }
 
 /**

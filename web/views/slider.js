@@ -9,12 +9,12 @@ import { onLanguage, translateOr } from "../i18n.js";
 
 const STEPS = 1000;
 
-/** The name of a parameter, for people. @param {string} address */
+/** The display name of a parameter. @param {string} address */
 export function nameFor(address) {
   return translateOr(`parameter${address}`, find(address).label);
 }
 
-/** What a parameter is, in a sentence. @param {Parameter} param */
+/** The description of a parameter. @param {Parameter} param */
 export function aboutOf({ address, doc }) {
   return translateOr(`about${address}`, doc);
 }
@@ -40,7 +40,7 @@ export function written(param, value) {
  * @param {Parameter} param
  * @param {number} value
  */
-function told(param, value) {
+function valueText(param, value) {
   const isShare = param.unit === "1" && param.lo === 0 && param.hi === 1;
   if (isShare) return `${Math.round(100 * value)} %`;
   return `${written(param, value)} ${unitFor(param.unit)}`.trim();
@@ -58,8 +58,8 @@ export function makeRange(player, address, changed) {
   const label = () => nameFor(address);
   const range = make("input", { type: "range", min: 0, max, step: 1, "aria-label": label });
   let isHeld = false;
-  const tell = (/** @type {number} */ value) =>
-    range.setAttribute("aria-valuetext", told(param, value));
+  const update = (/** @type {number} */ value) =>
+    range.setAttribute("aria-valuetext", valueText(param, value));
   range.addEventListener("pointerdown", () => (isHeld = true));
   for (const end of ["pointerup", "pointercancel", "blur"]) {
     range.addEventListener(end, () => (isHeld = false));
@@ -67,7 +67,7 @@ export function makeRange(player, address, changed) {
   range.addEventListener("input", () => {
     const value = fromUnit(param, Number(range.value) / max);
     player.write(address, value);
-    tell(value);
+    update(value);
     changed(value);
   });
 
@@ -75,7 +75,7 @@ export function makeRange(player, address, changed) {
   function show(value) {
     if (isHeld) return;
     range.value = String(Math.round(toUnit(param, value) * max));
-    tell(value);
+    update(value);
   }
   show(player.value(address));
   return { range, show };
@@ -91,10 +91,10 @@ export function makeSliders(player, addresses, names = []) {
   const sliders = addresses.map((address, i) => {
     const param = find(address);
     const output = make("output");
-    const tell = (/** @type {number} */ value) => {
-      output.textContent = told(param, value);
+    const update = (/** @type {number} */ value) => {
+      output.textContent = valueText(param, value);
     };
-    const { range, show } = makeRange(player, address, tell);
+    const { range, show } = makeRange(player, address, update);
     const name = names[i] ?? (() => nameFor(address));
     const element = make("label", { class: "slider", title: () => aboutOf(param) }, [
       make("span", {}, [name]),
@@ -104,7 +104,7 @@ export function makeSliders(player, addresses, names = []) {
     const follow = () => {
       const value = player.value(address);
       show(value);
-      tell(value);
+      update(value);
     };
     onLanguage(follow);
     return { element, follow };

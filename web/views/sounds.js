@@ -94,22 +94,22 @@ function aboutMapping(name) {
  * @param {'tuning' | 'mapping'} what
  * @param {string[]} names
  * @param {string} first
- * @param {(name: string) => string} tellAbout
+ * @param {(name: string) => string} aboutOf
  * @param {(name: string) => void} apply
  */
-function chooser(what, names, first, tellAbout, apply) {
+function chooser(what, names, first, aboutOf, apply) {
   const options = names.map((name) =>
     make("option", { value: name }, [() => translateOr(`${what}.${name}`, name)]),
   );
   const about = make("p", { class: "soft lines" });
   const select = makeSelect(words(`sound.${what}`), options, (name) => {
     apply(name);
-    tell();
+    update();
   });
-  const tell = () => {
-    about.textContent = tellAbout(select.value);
+  const update = () => {
+    about.textContent = aboutOf(select.value);
   };
   select.value = first;
-  onLanguage(tell);
+  onLanguage(update);
   return section(`sound.${what}`, select, about);
 }

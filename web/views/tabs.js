@@ -16,7 +16,7 @@ export function showTabs({ gallery }) {
   const list = find("tabs", HTMLElement);
   const more = find("more", HTMLElement);
   const shown = find("shown", HTMLElement);
-  const tell = () => (shown.textContent = settings.panel && translate(`tab.${settings.panel}`));
+  const update = () => (shown.textContent = settings.panel && translate(`tab.${settings.panel}`));
   const tabs = PANELS.map((name) => {
     const tab = makeButton(
       words(`tab.${name}`),
@@ -46,7 +46,7 @@ export function showTabs({ gallery }) {
       tab.offsetLeft + tab.offsetWidth - list.clientWidth,
     );
     remember({ panel: chosen });
-    tell();
+    update();
     gallery.renew();
   }
 
@@ -66,7 +66,7 @@ export function showTabs({ gallery }) {
     choose("");
     tab?.focus();
   });
-  onLanguage(tell);
+  onLanguage(update);
   choose(PANELS.includes(settings.panel) ? settings.panel : "");
   return () => getComputedStyle(more).position === "fixed" && choose("");
 }

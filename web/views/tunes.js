@@ -26,7 +26,7 @@ export function showTunes(page, clear) {
   find("panel-tunes", HTMLElement).append(note(words("tunes.about")), slowly, list);
   import("../examples.js").then(
     ({ default: examples }) => {
-      // A JSON list has no type of its places, so that `events` is told here.
+      // The type of a JSON list does not have its places, so that `events` gets it here.
       const tunes = /** @type {Tune[]} */ (/** @type {unknown} */ (Object.values(examples)));
       list.append(...tunes.map((tune) => row(lesson, tune)));
       lesson.first = tunes[0];
@@ -44,15 +44,15 @@ function row(lesson, tune) {
   const name = () => nameOf(tune);
   const buttons = WAYS.map((way) => {
     const button = makeButton("", () => lesson.toggle(tune, way));
-    const tell = () => {
+    const update = () => {
       const isOn = lesson.isOn(tune, way);
       const word = translate(isOn ? "tunes.stop" : `tunes.${way}`);
       button.setAttribute("aria-label", `${word}: ${name()}`);
       button.setAttribute("aria-pressed", String(isOn));
       button.textContent = word;
     };
-    lesson.addEventListener("change", tell);
-    onLanguage(tell);
+    lesson.addEventListener("change", update);
+    onLanguage(update);
     return button;
   });
   const bar = make("progress", { max: 1, value: 0, "aria-label": name, hidden: true });
@@ -69,7 +69,7 @@ function row(lesson, tune) {
   ]);
 }
 
-/** What is on: tells by events 'change' of another tune or way, and 'move'. */
+/** What is on. Events: 'change' of another tune or way, and 'move'. */
 export class Lesson extends EventTarget {
   /** @type {TunePlayer | TuneGuide | null} */
   course = null;
@@ -96,7 +96,7 @@ export class Lesson extends EventTarget {
     this.stopper.addEventListener("click", () =>
       this.course ? this.course.stop() : this.#leave(),
     );
-    onLanguage(() => this.#tell());
+    onLanguage(() => this.#update());
     this.again.addEventListener("click", () => this.tune && this.toggle(this.tune, this.way));
   }
 
@@ -136,7 +136,7 @@ export class Lesson extends EventTarget {
     this.clear();
     score.take(course);
     course.start();
-    this.#tell();
+    this.#update();
   }
 
   #move() {
@@ -188,18 +188,18 @@ export class Lesson extends EventTarget {
     this.canvas.hidden = true;
     this.again.hidden = false;
     this.said.className = "";
-    this.said.textContent = told(result, course.isTimed);
-    this.#tell();
+    this.said.textContent = resultText(result, course.isTimed);
+    this.#update();
   }
 
   #leave() {
     this.bar.hidden = true;
     this.page.setTonic(null);
     this.tune = null;
-    this.#tell();
+    this.#update();
   }
 
-  #tell() {
+  #update() {
     const word = translate(this.course ? "tunes.stop" : "guide.close");
     this.stopper.textContent = word;
     this.stopper.setAttribute("aria-label", this.tune ? `${word}: ${nameOf(this.tune)}` : word);
@@ -213,7 +213,7 @@ export class Lesson extends EventTarget {
  * @param {NonNullable<TuneGuide["result"]>} result
  * @param {boolean} isTimed
  */
-function told({ right, count, run, late, hardest }, isTimed) {
+function resultText({ right, count, run, late, hardest }, isTimed) {
   const said = [translate(isTimed ? "tunes.intime" : "tunes.right", { right, count })];
   if (right === count) said.push(translate("tunes.all"));
   else if (run > 2) said.push(translate("tunes.run", { run }));

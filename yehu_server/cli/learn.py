@@ -20,7 +20,7 @@ from yehu_server.cli.arguments import add_command, add_options, add_server, serv
 from yehu_server.cli.converters import positive
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import ParameterError, YehuError
-from yehu_server.live.part_addresses import group
+from yehu_server.live.part_addresses import group_of
 from yehu_server.params.table import TABLE
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None:
-    own = "" if arguments.part is None else group(arguments.part - 1)
+    own = "" if arguments.part is None else group_of(arguments.part - 1)
     if arguments.forget:
         client.send(f"{own}/unlearn", address)
         _, count, *returned = client.answer(f"{own}/unlearned").arguments

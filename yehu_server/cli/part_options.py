@@ -13,7 +13,7 @@ from yehu_server.cli.converters import whole_within
 from yehu_server.cli.playing_options import mapping_of, playing_options_of
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError, YehuError
-from yehu_server.live.part_addresses import check_own, group, no_part
+from yehu_server.live.part_addresses import check_own, group_of, no_part
 from yehu_server.params.table import assignment, find
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def _options_of(own: argparse.Namespace, number: int) -> PlayingOptions:
         playing = playing_options_of(own, is_live=True)
         for part, text in own.part_set:
             if part == number:
-                check_own(group(part - 1), assignment(text)[0])
+                check_own(group_of(part - 1), assignment(text)[0])
     except YehuError as error:
         raise type(error)(f"part {number}: {error}") from error
     shared = [address for address, _ in playing.start if find(address).is_shared]

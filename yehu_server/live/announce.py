@@ -53,7 +53,7 @@ def _reached(host: str) -> str:
 class Announcer:
     """Announces services from `start` to `stop`, in a thread of its own.
 
-    `on_message`: called with a line that tells the name they are announced by, or why they are not.
+    `on_message`: called with the name they are announced by, or why they are not.
     """
 
     def __init__(self, services: Sequence[Service], on_message: Callable[[str], None]) -> None:

@@ -42,7 +42,7 @@ class MappingWatch:
         self._known = self._seen = _marks(mapping.files)
         self._refused: str | None = None
 
-    def look(self) -> Mapping | None:
+    def poll(self) -> Mapping | None:
         """Poll the files; return the mapping if it has changed.
 
         A wrong mapping is read again at each poll, as the cause may lie in a file not known yet.
@@ -87,7 +87,7 @@ def _mark(file: Path) -> tuple[int, int, int] | None:
 LINES_PER_S, LINES_AT_ONCE = 0.1, 1.0  # of each count
 UNDER_RUNS_EVERY_S = 60.0
 HINT = "a larger --blocksize, or --latency high, leaves more time"
-LOOK_EVERY_S = 0.5  # at files of mappings and presets, and at what went wrong
+POLL_EVERY_S = 0.5  # of files of mappings and presets, and of counters
 TURN_EVERY_S = 0.05
 
 
@@ -104,7 +104,7 @@ class CounterReport:
             partial(TokenBucket, LINES_PER_S, LINES_AT_ONCE)
         )
 
-    def look(self, counts: dict[str, int]) -> None:
+    def report(self, counts: dict[str, int]) -> None:
         """Report counts that have grown since they were last reported.
 
         `counts`: each by a phrase for what is counted.
@@ -125,19 +125,19 @@ class UnderRunReport:
     def __init__(self, on_message: Callable[[str], None]) -> None:
         self._on_message = on_message
         self._began = time.monotonic()
-        self._told_at: float | None = None  # of the last line
-        self._told = 0
+        self._reported_at: float | None = None  # of the last line
+        self._reported = 0
 
-    def look(self, under_runs: int) -> None:
+    def report(self, under_runs: int) -> None:
         """Report under-runs, if there are more: the first at once, then those of each minute."""
         now = time.monotonic()
-        is_due = self._told_at is None or now >= self._told_at + UNDER_RUNS_EVERY_S
-        if under_runs <= self._told or not is_due:
+        is_due = self._reported_at is None or now >= self._reported_at + UNDER_RUNS_EVERY_S
+        if under_runs <= self._reported or not is_due:
             return
-        new = _counted(under_runs - self._told, "under-run")
-        since = "" if self._told_at is None else f" in the last {now - self._told_at:.0f} s"
+        new = _counted(under_runs - self._reported, "under-run")
+        since = "" if self._reported_at is None else f" in the last {now - self._reported_at:.0f} s"
         self._on_message(f"{new}{since}: the sound had gaps ({under_runs} so far); {HINT}")
-        self._told_at, self._told = now, under_runs
+        self._reported_at, self._reported = now, under_runs
 
     def sum_up(self, under_runs: int, missed: int) -> None:
         """Report all at the end, if there were any."""
@@ -183,7 +183,7 @@ class Housekeeper:
         self._counters = CounterReport(on_message)
         self._under_runs = UnderRunReport(on_message)
         self._ending = threading.Event()
-        self._next_look = 0.0  # monotonic s
+        self._next_poll = 0.0  # monotonic s
         turns = (self._turn, self._ending, TURN_EVERY_S, "beside playing", on_message)
         self._thread = threading.Thread(None, run_forever, "housekeeper", turns, daemon=True)
 
@@ -221,9 +221,9 @@ class Housekeeper:
             player.finish_remap()
         if self.capture is not None:
             self.capture.keep_up()
-        if time.monotonic() > self._next_look:
-            self._next_look = time.monotonic() + LOOK_EVERY_S
-            self._counters.look(
+        if time.monotonic() > self._next_poll:
+            self._next_poll = time.monotonic() + POLL_EVERY_S
+            self._counters.report(
                 {
                     "the model lost its state and was put back to rest": self._ensemble.lost_states,
                     "events were dropped, as the ring was full or their time too far ahead": sum(
@@ -232,7 +232,7 @@ class Housekeeper:
                     "OSC packets were dropped by the system": self._osc_drops(),
                 }
             )
-            self._under_runs.look(self._gaps()[0])
+            self._under_runs.report(self._gaps()[0])
             for player, watch in self._watches:
                 self._follow(player, watch)
             for player in self._players:
@@ -241,7 +241,7 @@ class Housekeeper:
     def _follow(self, player: Player, watch: MappingWatch) -> None:
         """Give a player its mapping anew where the files have changed and are right."""
         try:
-            mapping = watch.look()
+            mapping = watch.poll()
         except MappingError as error:
             self._on_message(f"{error}; the mapping stays as it was")
             return

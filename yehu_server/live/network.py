@@ -14,7 +14,7 @@ from yehu_server.errors import ParameterError
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 Address = tuple[str, int]
 
-# Where a server listens by default, and where commands look for it.
+# Where a server listens by default, and where commands search for it.
 OSC_ADDRESS: Address = ("127.0.0.1", 9000)
 HTTP_ADDRESS: Address = ("127.0.0.1", 9001)
 MOST_KNOWN = 1 << 16

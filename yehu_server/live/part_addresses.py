@@ -16,14 +16,14 @@ PLAIN = frozenset(param.address + form for param in TABLE for form in ("", UNIT)
 OF_PARTS = frozenset(param.address + form for param in PART_PARAMS for form in ("", UNIT))
 
 
-def group(part: int) -> str:
+def group_of(part: int) -> str:
     """What comes before the addresses of a part, counted from 0."""
     return f"{PART}{part + 1}"
 
 
-def part_of(addressed: str) -> int:
+def part_of(group: str) -> int:
     """The part, counted from 0, of a group: of `FIRST`, the first."""
-    return int(addressed.removeprefix(PART)) - 1 if addressed else 0
+    return int(group.removeprefix(PART)) - 1 if group else 0
 
 
 def split_group(address: str) -> tuple[str, str]:
@@ -34,10 +34,10 @@ def split_group(address: str) -> tuple[str, str]:
     return (found[1], found[2]) if found else (FIRST, address)
 
 
-def check_part(addressed: str, parts: int) -> None:
+def check_part(group: str, parts: int) -> None:
     """Refuse a group that is not there; raises ParameterError where it is not."""
-    if addressed and not 1 <= int(addressed.removeprefix(PART)) <= parts:
-        raise ParameterError(no_part(addressed.removeprefix(PART), parts))
+    if group and not 1 <= int(group.removeprefix(PART)) <= parts:
+        raise ParameterError(no_part(group.removeprefix(PART), parts))
 
 
 def no_part(number: object, parts: int) -> str:
@@ -46,8 +46,8 @@ def no_part(number: object, parts: int) -> str:
     return f"no part {number}: {there}"
 
 
-def check_own(addressed: str, address: str) -> None:
+def check_own(group: str, address: str) -> None:
     """Refuse a parameter of a part that is one for all; raises ParameterError where it is."""
     param = BY_ADDRESS.get(address.removesuffix(UNIT))
-    if addressed and param is not None and param.is_shared:
+    if group and param is not None and param.is_shared:
         raise ParameterError(f"{param.address} is one for all parts: {PREFIX}{param.address}")

@@ -8,7 +8,7 @@ import logging
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -32,7 +32,7 @@ from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.osc.status import PartSources, StatusSources, read_part_status, read_status
 from yehu_server.live.osc.work_queue import Calls
 from yehu_server.live.page.pages import Pages
-from yehu_server.live.part_addresses import part_of
+from yehu_server.live.part_addresses import FIRST, part_of
 from yehu_server.live.web.query import Snapshot
 from yehu_server.live.web.server import Sources, WebServer
 from yehu_server.playing.calibration import Progress
@@ -57,7 +57,7 @@ class Server:
     written.
 
     `on_message`: called with a line for the player: about devices that appear or disappear, and
-    troubles.
+    problems.
     `progress`: called with the number of notes done and of all, while the instrument is calibrated.
     """
 
@@ -79,7 +79,7 @@ class Server:
             number = number_of_instruments(per_part)
             self.output = Output(replace(options.output, parts=number), on_message)
             undo.callback(self.output.end)
-            warm_up()  # meanwhile the device is looked for
+            warm_up()  # meanwhile the device is searched for
             rate = self.output.find()
             tuned = [playing.calibration(rate, progress) for playing in per_part]
             memory = self.output.memory.buffer
@@ -99,7 +99,7 @@ class Server:
             undo.callback(calls.close)
             self.context = CallContext(
                 self.players,
-                self.states,
+                self.status,
                 self.takes.start,
                 self.takes.stop,
                 on_message,
@@ -196,7 +196,7 @@ class Server:
         if self.options.http is None:
             return None
         sources = Sources(
-            lambda group: Snapshot(self.context.values(group), self.states(group)),
+            lambda group: Snapshot(self.context.values(group), self.status(group)),
             shipped_folder("mappings"),
             len(self.players),
             lambda: more_calls(self.players),
@@ -282,12 +282,10 @@ class Server:
             if self._hurry.wait(0.005):
                 return
 
-    def states(self, addressed: str) -> dict[str, float | str]:
+    def status(self, group: str = FIRST) -> Mapping[str, float | str]:
         """The status values of a group of addresses, by name; any thread may call."""
-        return {**self.part_status(part_of(addressed))} if addressed else self.status()
-
-    def status(self) -> dict[str, float | str]:
-        """The status values, by name; any thread may call."""
+        if group:
+            return read_part_status(PartSources.of(self.players[part_of(group)]))
         return read_status(
             StatusSources(
                 parts=[PartSources.of(player) for player in self.players],
@@ -305,10 +303,6 @@ class Server:
                 uptime_s=time.monotonic() - self._started,
             )
         )
-
-    def part_status(self, part: int) -> dict[str, float]:
-        """The status values of a part, counted from 0; any thread may call."""
-        return read_part_status(PartSources.of(self.players[part]))
 
     def _sound(self) -> dict[str, float | str | None]:
         """What pages show of the sound."""

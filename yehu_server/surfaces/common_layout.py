@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from yehu_server.core.player.note_range import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.live.osc.all_calls import CALLS
-from yehu_server.live.part_addresses import group as group_of_part
+from yehu_server.live.part_addresses import group_of as group_of_part
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE, UNIT, find
 

@@ -44,9 +44,9 @@ def tree_changed(path: str) -> None:
     assert path.startswith("/")
 
 
-def states(addressed: str) -> dict[str, float | str]:
-    if addressed:
-        return {"note": -1.0, "keys": float(part_of(addressed))}
+def states(group: str) -> dict[str, float | str]:
+    if group:
+        return {"note": -1.0, "keys": float(part_of(group))}
     return {"load": 0.5, "recording": ""}
 
 

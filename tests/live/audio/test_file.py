@@ -127,7 +127,7 @@ def test_one_channel_may_be_a_column_and_channels_may_lie_one_after_another(
 
 @few_and_many
 @matrix
-def test_a_disk_that_is_full_only_for_the_last_samples_is_told(
+def test_a_disk_that_is_full_only_for_the_last_samples_is_reported(
     tmp_path, kind, subtype, channels, limited
 ):
     target = tmp_path / "sound"

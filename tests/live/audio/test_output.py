@@ -19,7 +19,7 @@ from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.output import Output, OutputOptions
 
 ANSWERS = {
-    "look": {"event": "found", "name": "card", "rate": 48000.0, "channels": 2},
+    "search": {"event": "found", "name": "card", "rate": 48000.0, "channels": 2},
     "open": {"event": "ready", "latency_ms": 5.0},
     "start": {"event": "failed", "reason": "it does not start"},
 }
@@ -54,11 +54,11 @@ def test_while_a_device_does_not_start_time_goes_on(monkeypatch):
     try:
         way_out.begin(stage)  # waits once
         longest, own, last, since = 0.0, 0.0, instrument.frame, time.monotonic()
-        start = looked = since
+        start = checked = since
         while (now := time.monotonic()) < start + 2.5:
             if instrument.frame != last:
                 last, since = instrument.frame, now
-            longest, own, looked = max(longest, now - since), max(own, now - looked), now
+            longest, own, checked = max(longest, now - since), max(own, now - checked), now
             time.sleep(0.005)
     finally:
         way_out.end()
@@ -83,10 +83,10 @@ def test_a_block_that_a_device_died_in_as_it_started_is_put_in_order(monkeypatch
 
 @pytest.mark.parametrize(
     ("unanswered", "whose"),
-    [("look", "the sound system"), ("open", "the audio device"), ("start", "the audio device")],
+    [("search", "the sound system"), ("open", "the audio device"), ("start", "the audio device")],
 )
 def test_a_process_that_does_not_answer_is_waited_for_no_longer(monkeypatch, unanswered, whose):
-    clock = partial(iter, np.arange(0.0, 2.0 * output.FIRST_LOOK_S, 0.25))  # and then it fails
+    clock = partial(iter, np.arange(0.0, 2.0 * output.ANSWER_WITHIN_S, 0.25))  # and then it fails
     monkeypatch.setattr(output, "AwakeTime", lambda: clock().__next__)
     monkeypatch.setattr(output, "LISTEN_S", 0.0)
     answers = {order: answer for order, answer in ANSWERS.items() if order != unanswered}
@@ -99,7 +99,7 @@ def test_a_process_that_does_not_answer_is_waited_for_no_longer(monkeypatch, una
 
 @pytest.fixture
 def process(monkeypatch) -> Callable[..., list[str]]:
-    """Give a device's process some orders, and the end; what its stream does and it tells."""
+    """Give a device's process some orders, and the end; what its stream does and it reports."""
 
     def run(*orders: str) -> list[str]:
         done: list[str] = []
@@ -120,7 +120,7 @@ def process(monkeypatch) -> Callable[..., list[str]]:
         given.put(None)
         sounddevice = SimpleNamespace(PortAudioError=OSError)
         monkeypatch.setattr(stream, "load_portaudio", lambda _kind: sounddevice)
-        monkeypatch.setattr(stream, "_look", lambda *_: done.append("found") or object())
+        monkeypatch.setattr(stream, "_search", lambda *_: done.append("found") or object())
         monkeypatch.setattr(stream, "_watch", lambda *_: None)
         monkeypatch.setattr(stream, "Stream", Stream)
         stream._serve(parent, given)
@@ -131,7 +131,7 @@ def process(monkeypatch) -> Callable[..., list[str]]:
 
 def test_a_device_plays_only_once_the_clock_has_let_go(process):
     """They would both compute the same block: the order comes once the clock has stopped."""
-    assert process("look") == ["found"]
-    assert process("look", "open") == ["found", "opened", "ready"]
+    assert process("search") == ["found"]
+    assert process("search", "open") == ["found", "opened", "ready"]
     started = ["found", "opened", "ready", "plays", "started"]
-    assert process("look", "open", "start") == started
+    assert process("search", "open", "start") == started

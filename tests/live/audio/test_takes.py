@@ -18,17 +18,17 @@ from yehu_server.scores.capture import read_capture
 def test_no_client_ends_what_the_command_records(make_live, tmp_path):
     live = make_live(record=tmp_path / "all.wav")
     client = live.client()
-    client.tell("/record/stop")
+    client.send("/record/stop")
     address, reason = client.wait_for("/error")[:2]
     assert address == "/yehu/record/stop"
     assert "--record ends with the server" in reason
     assert live.server.status()["recording"] == "all.wav"
-    client.tell("/record/start", "some")  # both at once
+    client.send("/record/start", "some")  # both at once
     assert client.wait_for("/record/started") == ["some.wav"]
     assert live.server.status()["recording"] == "all.wav; some.wav"
-    client.tell("/note", 67, 90)
+    client.send("/note", 67, 90)
     live.wait_frames(9600)
-    client.tell("/record/stop")
+    client.send("/record/stop")
     assert client.wait_for("/record/stopped") == ["some.wav"]
     assert live.server.status()["recording"] == "all.wav"
     live.end()
@@ -74,10 +74,10 @@ def test_a_recording_that_filled_the_disk_is_not_answered_as_if_all_were_well(
     monkeypatch.setattr(recordings, "ROOM_S", 0.01)
     client = live.client()
     limited(20_000)
-    client.tell("/record/start", "take")
+    client.send("/record/start", "take")
     client.wait_for("/record/started")
     until(lambda: live.server.takes.names == "", "the disk to be full")
-    client.tell("/record/stop")
+    client.send("/record/stop")
     address, reason = client.wait_for("/error")[:2]
     assert address == "/yehu/record/stop"
     assert "take.wav: cannot write" in reason
@@ -94,10 +94,10 @@ def test_a_full_disk_keeps_take_and_capture_as_far_as_they_got(
     live = make_live(record=take, capture=capture)
     limited(100_000)
     client = live.client()
-    client.tell("/note", 67, 90)
+    client.send("/note", 67, 90)
     until(lambda: live.server.takes.names == "", "the disk to be full")
     limited(capture.stat().st_size + 10)
-    client.tell("/note", 69, 90)
+    client.send("/note", 69, 90)
     until(lambda: any("capture ended" in line for line in live.said), "no room for commands")
     limited(resource.RLIM_INFINITY)
     live.end()
@@ -151,10 +151,10 @@ def test_a_server_told_to_stop_again_leaves_what_it_has_kept(make_live, tmp_path
 def test_who_is_in_a_hurry_does_not_wait_for_what_fades(make_live, tmp_path):
     live = make_live(record=tmp_path / "take.wav")
     client = live.client()
-    client.tell("/playing/release", 1e9)  # the longest there is
+    client.send("/playing/release", 1e9)  # the longest there is
     client.sync()
     released_s = live.player.value("/playing/release") / 1e3
-    client.tell("/note", 67, 90)
+    client.send("/note", 67, 90)
     live.wait_frames(9600)
     live.server.skip_fade_out()
     before = live.instrument.frame
@@ -168,19 +168,19 @@ def test_who_is_in_a_hurry_does_not_wait_for_what_fades(make_live, tmp_path):
 
 def test_what_is_recorded_is_a_file_when_it_ends(live):
     client = live.client()
-    client.tell("/record/start", "take 1")
+    client.send("/record/start", "take 1")
     assert client.wait_for("/record/started") == ["take 1.wav"]
     assert live.server.status()["recording"] == "take 1.wav"
-    client.tell("/record/start", "take 2")
+    client.send("/record/start", "take 2")
     assert client.wait_for("/error")[0] == "/yehu/record/start"
     live.wait_frames(9600)
-    client.tell("/record/stop")
+    client.send("/record/stop")
     assert client.wait_for("/record/stopped") == ["take 1.wav"]
     folder = live.server.options.recordings
     assert (folder / "take 1.wav").stat().st_size > 8 * 9600
-    client.tell("/record/start", "take 1")  # nothing is overwritten
+    client.send("/record/start", "take 1")  # nothing is overwritten
     assert client.wait_for("/error")[0] == "/yehu/record/start"
-    client.tell("/record/stop")
+    client.send("/record/stop")
     assert client.wait_for("/error")[0] == "/yehu/record/stop"
     assert [path.name for path in folder.iterdir()] == ["take 1.wav"]
 
@@ -188,7 +188,7 @@ def test_what_is_recorded_is_a_file_when_it_ends(live):
 def test_a_name_that_is_more_than_a_name_records_nothing(shared_server):
     client = shared_server.client()
     for name in ("", "../evil", "/evil", "evil\n"):
-        client.tell("/record/start", name)
+        client.send("/record/start", name)
         assert client.wait_for("/error")[0] == "/yehu/record/start"
     assert shared_server.server.takes.names == ""
     assert list(shared_server.server.options.recordings.iterdir()) == []
@@ -204,7 +204,7 @@ def test_a_link_in_the_recordings_that_leads_out_is_not_written_through(make_liv
     for content in ("", "kept"):
         if content:
             secret.write_text(content)
-        client.tell("/record/start", "take")
+        client.send("/record/start", "take")
         address, reason = client.wait_for("/error")
         assert address == "/yehu/record/start"
         assert reason.startswith("take.wav is a link that leads out of")
@@ -216,5 +216,5 @@ def test_a_folder_that_cannot_be_reached_is_answered(make_live, tmp_path):
     live = make_live()
     live.server.takes._folder = tmp_path / ("x" * 300)  # stands in for a folder without access
     client = live.client()
-    client.tell("/record/start", "take")
+    client.send("/record/start", "take")
     assert client.next(0.5).address == "/yehu/error"

@@ -1,4 +1,4 @@
-"""The input of a voice: what it is told of the tuning, and an input that stalls."""
+"""The input of a voice: what it gets of the tuning, and an input that stalls."""
 
 from __future__ import annotations
 

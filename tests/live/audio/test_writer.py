@@ -68,7 +68,7 @@ def test_a_wav_file_cut_anywhere_keeps_its_channels_apart(tmp_path, subtype, cha
         read, _ = soundfile.read(cut)
         assert len(read) == 1000 - math.ceil(missing / each)
         np.testing.assert_allclose(read, samples[: len(read)], rtol=0, atol=STEP[subtype])
-    cut.write_bytes(older + data[header:-1])  # ended before the header told of the last samples
+    cut.write_bytes(older + data[header:-1])  # ended before the header had the last samples
     read, _ = soundfile.read(cut)
     np.testing.assert_allclose(read, samples[:500], rtol=0, atol=STEP[subtype])
 

@@ -30,7 +30,7 @@ class Controller:
 
     def __init__(self, monkeypatch) -> None:
         self.now_ns = 100_000 * MS
-        self.told: list[str] = []
+        self.posted: list[str] = []
         monkeypatch.setattr(input_process.time, "monotonic", lambda: 1e-9 * self.now_ns)
         monkeypatch.setattr(input_process.time, "monotonic_ns", lambda: self.now_ns)
         ring = SimpleNamespace(post=self.post)
@@ -44,11 +44,11 @@ class Controller:
     def post(self, time_ns: int, kind: int, index: int) -> bool:
         assert time_ns == self.now_ns
         assert index == 0
-        self.told.append(EVENTS[kind - MESSAGE])
+        self.posted.append(EVENTS[kind - MESSAGE])
         return True
 
     def send(self, event: str, **_details: object) -> None:
-        self.told.append(event)
+        self.posted.append(event)
 
     def sense_for(self, ms: int) -> None:
         for _ in range(round(ms / (1e3 * SENSE_EVERY_S))):
@@ -64,15 +64,15 @@ def controller(monkeypatch) -> Controller:
 
 
 @pytest.mark.parametrize("slept_s", [0.4, 2.5, 3600.0])
-def test_a_controller_that_falls_silent_is_told_of_once_but_not_because_we_slept(
+def test_a_controller_that_falls_silent_is_reported_once_but_not_because_we_slept(
     controller, slept_s
 ):
     controller.sense_for(200)
     controller.now_ns += round(1e9 * slept_s)
     controller.sense_for(300)
-    assert controller.told == []
+    assert controller.posted == []
     controller.port.receive(([ACTIVE_SENSING], 0.0))
     controller.sense_for(300)
-    assert controller.told == []
+    assert controller.posted == []
     controller.sense_for(1000)
-    assert controller.told == ["disconnect", "silent"]
+    assert controller.posted == ["disconnect", "silent"]

@@ -112,7 +112,7 @@ def opened(parts: int, *texts: str) -> tuple[list[Player], MidiPorts, list[str]]
     return players, ports, said
 
 
-def test_what_an_input_plays_is_told_as_it_comes():
+def test_what_an_input_plays_is_reported_as_it_comes():
     players, ports, said = opened(2)
     assert said == [
         "MIDI: first is connected to part 1",

@@ -16,7 +16,7 @@ from yehu_server.live.osc.work_queue import Shares
 @pytest.mark.parametrize("block", [128, 2048])
 def test_bundles_keep_their_distances_to_the_sample_and_their_time(make_still, wire, block):
     still = make_still(block)
-    still.tell("/note", 72.0, 90.0)
+    still.send("/note", 72.0, 90.0)
     still.pass_time(0.2)
     still.events.clear()
     first = still.clock.time() + 0.1
@@ -43,7 +43,7 @@ def test_notes_of_bundles_keep_their_distances_beside_notes_of_now(still, wire):
         packet = wire.message("/yehu/note", 66.0 + number % 20, 90.0)
         still.take(wire.bundle(first + 0.01 * number, packet))
     for number in range(60):
-        still.tell("/bend", 0.01 * (number % 7))
+        still.send("/bend", 0.01 * (number % 7))
         still.pass_time(0.01)
     frames = sorted(set(still.frames("/vibrato/onset")))  # begins anew with each note
     assert len(frames) == 40
@@ -57,8 +57,8 @@ def test_a_bundle_of_the_future_makes_no_other_message_wait(still, wire):
         packet = wire.message("/yehu/note", 67, 90)
         still.take(wire.bundle(still.clock.time() + 1.0 + 0.01 * number, packet))
     arrived = still.instrument.frame_at(still.clock.monotonic_ns())
-    still.tell("/bow/position", 0.3)
-    still.tell("/note", 72, 90)
+    still.send("/bow/position", 0.3)
+    still.send("/note", 72, 90)
     still.pass_time(0.05)
     assert still.player.pitch == 72.0
     for address in ("/bow/position", "/bow/side"):
@@ -82,7 +82,7 @@ def test_a_note_of_now_waits_for_no_note_that_a_bundle_has_sent_ahead(still, wir
     still.pass_time(0.05)
     tagged = ahead_of_its_time(still, wire, wire.message("/yehu/note", 74, 90))
     arrived = still.instrument.frame_at(still.clock.monotonic_ns())
-    still.tell("/note", 67, 90)
+    still.send("/note", 67, 90)
     assert tagged - arrived > still.player.delay + 48
     still.pass_time(0.05)
     first, second = sorted(set(still.frames("/vibrato/onset")))  # begins anew with each note
@@ -106,7 +106,7 @@ def test_of_values_of_now_and_of_a_bundle_the_one_of_the_later_frame_stays(
     still.pass_time(0.05)
     tagged = ahead_of_its_time(still, wire, wire.message("/yehu" + address, 0.25))
     arrived = still.instrument.frame_at(still.clock.monotonic_ns())
-    still.tell(address, 0.5)
+    still.send(address, 0.5)
     still.pass_time(0.05)
     first, second = still.frames(moved)
     assert 0 <= first - arrived <= still.player.delay + 1
@@ -135,7 +135,7 @@ def test_messages_of_a_bundle_are_heard_at_one_frame_and_in_order(still, wire):
     assert len(moves) == 20
 
 
-def test_when_too_much_waits_it_is_told_and_the_rest_plays(still, wire, monkeypatch):
+def test_when_too_much_waits_it_is_reported_and_the_rest_plays(still, wire, monkeypatch):
     shares = Shares(20 * (limits.OVERHEAD + 28))
     monkeypatch.setattr(still.handler._schedule, "_shares", shares)
     later = still.clock.time() + 0.1
@@ -164,7 +164,7 @@ def test_bundles_to_a_real_server_keep_their_distances(live, wire, until):
         for number in range(50):
             packet = wire.message("/yehu/bow/position", 0.1 + 0.001 * number)
             client.take(wire.bundle(first + 0.005 * number, packet))
-        client.tell("/bow/force", 1.0)
+        client.send("/bow/force", 1.0)
         assert client.wait_for("/bow/force") == [1.0]  # at once
         assert live.handler.waiting > 0
         until(lambda: not live.handler.waiting, "all to be due")

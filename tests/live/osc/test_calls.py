@@ -20,7 +20,7 @@ def test_every_call_is_heard(live):
         ([("/reset",)], False),
     ]:
         for call in calls:
-            client.tell(*call)
+            client.send(*call)
         client.sync()
         live.settle()
         if is_heard:
@@ -36,10 +36,10 @@ def test_every_call_is_heard(live):
 
 
 def test_a_note_sounds_until_it_is_ended(still):
-    still.tell("/note", 67.0, 90.0)
+    still.send("/note", 67.0, 90.0)
     assert rms(still.pass_time(0.5)[-9600:]) > 1e-3
     assert still.player.pitch == 67.0
-    still.tell("/note/off", 67.0)
+    still.send("/note/off", 67.0)
     still.pass_time(0.3)
     assert still.player.pitch is None
     assert [value for _, address, value in still.events if address == "/bow/side"][-1] == 0.0
@@ -48,10 +48,10 @@ def test_a_note_sounds_until_it_is_ended(still):
 
 def test_a_note_between_the_keys_is_ended_as_any(still):
     for off in (("/note", 72.5, 0.0), ("/note", 72.5, False), ("/note/off", 72.5)):
-        still.tell("/note", 72.5, 1)
+        still.send("/note", 72.5, 1)
         still.pass_time(HEARD_S)
         assert still.player.pitch == 72.5
-        still.tell(*off)
+        still.send(*off)
         still.pass_time(HEARD_S)
         assert still.player.pitch is None, off
 
@@ -60,17 +60,17 @@ def test_a_note_is_louder_the_harder_it_is_struck(make_still):
     pressures = []
     for velocity in (1, 64, 127):
         still = make_still()
-        still.tell("/note", 67, velocity)
+        still.send("/note", 67, velocity)
         pressures.append(still.value("/playing/pressure"))
     assert pressures == sorted(set(pressures))
 
 
 def test_pitch_slides_the_sounding_note_steplessly(still):
-    still.tell("/note", 67, 90)
+    still.send("/note", 67, 90)
     still.pass_time(0.1)
     still.events.clear()
     for pitch in np.linspace(67.1, 70.0, 30):
-        still.tell("/pitch", float(pitch))
+        still.send("/pitch", float(pitch))
         still.pass_time(HEARD_S)
         assert still.player.pitch == pytest.approx(pitch, abs=1e-5)
     assert {address for _, address, _ in still.events} == {
@@ -86,13 +86,13 @@ def test_pitch_slides_the_sounding_note_steplessly(still):
     places = [place for _, address, place in still.events if address == "/finger/1/position"]
     assert len(places) == 30
     assert all(np.diff(places) > 0.0)
-    still.tell("/note/off", 67)
+    still.send("/note/off", 67)
     still.pass_time(HEARD_S)
     assert still.player.pitch is None
 
 
 def test_pitch_and_bow_alone_make_a_theremin(still):
-    still.tell("/pitch", 69.0)
+    still.send("/pitch", 69.0)
     landing = rms(still.pass_time(0.1))
     heard = values(still.ask("/bow", 0.2, 0.6))
     assert heard == {"/yehu/bow/speed": f32(0.2), "/yehu/bow/force": f32(0.6)}
@@ -100,7 +100,7 @@ def test_pitch_and_bow_alone_make_a_theremin(still):
     assert still.player.pitch == 69.0
     heard = values(still.ask("/bow", -9, 99))
     assert heard == {"/yehu/bow/speed": -2.0, "/yehu/bow/force": 5.0}
-    still.tell("/bow", 0.0, 0.0)
+    still.send("/bow", 0.0, 0.0)
     still.pass_time(0.1)
     assert still.player.value("/bow/side") == 0.0
     assert still.player.pitch is None
@@ -110,9 +110,9 @@ def test_bend_and_press_are_parameters_within_bounds_and_move_the_sounding_note(
     for call, address, most in ("/bend", "/playing/bend", 48.0), ("/press", "/playing/press", 6.0):
         assert values(still.ask(call, 1000)) == {"/yehu" + address: most}
         assert values(still.ask(call, 1.5)) == {"/yehu" + address: 1.5}
-    still.tell("/note", 67, 90)
-    still.tell("/bend", 2.0)
-    still.tell("/press", 4.0)
+    still.send("/note", 67, 90)
+    still.send("/bend", 2.0)
+    still.send("/press", 4.0)
     still.pass_time(0.05)
     assert still.player.pitch == 69.0
     pressed = [value for _, address, value in still.events if address == "/finger/1/press"]
@@ -120,13 +120,13 @@ def test_bend_and_press_are_parameters_within_bounds_and_move_the_sounding_note(
 
 
 def test_a_note_takes_back_what_was_written_directly(still):
-    still.tell("/note", 74, 80)
-    still.tell("/bow/speed", 0.05)
-    still.tell("/playing/speed", 0.3)
+    still.send("/note", 74, 80)
+    still.send("/bow/speed", 0.05)
+    still.send("/playing/speed", 0.3)
     still.pass_time(HEARD_S)
     assert still.player.value("/bow/speed") == f32(0.05)
-    still.tell("/release")
-    still.tell("/playing/speed", 0.4)
+    still.send("/release")
+    still.send("/playing/speed", 0.4)
     still.pass_time(HEARD_S)
     assert abs(still.player.value("/bow/speed")) == pytest.approx(0.4, rel=1e-3)
 
@@ -154,17 +154,17 @@ MESS = [
 def test_after_panic_or_reset_nothing_is_left(still, wire, order, end):
     mess = MESS[order:] + MESS[:order]
     for address, *arguments in mess[: 5 + order]:
-        still.tell(address, *arguments)
+        still.send(address, *arguments)
         still.pass_time(0.02)
     still.take(wire.bundle(still.clock.time() + 0.3, wire.message("/yehu/note", 74, 90)))
-    still.tell(end)
+    still.send(end)
     assert still.handler.waiting == 0
     still.pass_time(0.05)
     assert still.player.pitch is None
     assert not still.pass_time(0.5).any()
-    still.tell("/note/off", 67)  # letting go later brings nothing back
+    still.send("/note/off", 67)  # letting go later brings nothing back
     assert not still.pass_time(0.1).any()
-    still.tell("/note", 69, 90)
+    still.send("/note", 69, 90)
     assert rms(still.pass_time(0.5)) > 1e-4
 
 
@@ -178,7 +178,7 @@ def test_panic_and_reset_also_end_what_a_bundle_is_about_to_do(still, wire, end)
     ]
     still.take(wire.bundle(still.clock.time() + 0.02, *packets))
     still.pass_time(0.012)
-    still.tell(end)
+    still.send(end)
     still.pass_time(0.2)
     last = {address: value for _, address, value in still.events}
     assert (last["/bow/speed"], last["/bow/side"], last["/finger/1/press"]) == (0.0, 0.0, 0.0)

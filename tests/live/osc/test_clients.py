@@ -1,4 +1,4 @@
-"""Who is told what: echoes, changes, errors, and how often."""
+"""Who is sent what: echoes, changes, errors, and how often."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def play(still_time, clients):
     return play
 
 
-def told(peer) -> list[tuple[str, list[float]]]:
+def sent_to(peer) -> list[tuple[str, list[float]]]:
     return [(message.address, message.arguments) for message in peer.received()]
 
 
@@ -53,35 +53,35 @@ def test_another_server_that_tells_us_its_values_is_not_answered_for_as_long(
         clients.echo(peer, ["/a"])
         clients.send_error(peer, "/x", "unknown")
         play(100)
-    assert told(peer) == []
+    assert sent_to(peer) == []
     clients.subscribe(peer, 10.0)  # it still gets what it asks for
     values.now["/a"] = 1.0
     play(20)
-    assert ("/yehu/a", [1.0]) in told(peer)
+    assert ("/yehu/a", [1.0]) in sent_to(peer)
     play(200)
     clients.echo(peer, ["/b"])
     play(20)
-    assert told(peer) == [("/yehu/b", [0.0])]
+    assert sent_to(peer) == [("/yehu/b", [0.0])]
 
 
 # ---------------------------------------------------------------- echoes
 
 
-def test_who_sets_something_is_told_its_value_once(clients, values, play, peer):
+def test_who_sets_something_is_sent_its_value_once(clients, values, play, peer):
     other = FakePeer(2)
     values.now["/a"] = 0.5
     assert clients.wait_s() is None
     clients.echo(peer, ["/a"])
     assert 0.0 <= clients.wait_s() <= 1.0 / 60.0
     play(100)
-    assert told(peer) == [("/yehu/a", [0.5])]
-    assert told(other) == []
+    assert sent_to(peer) == [("/yehu/a", [0.5])]
+    assert sent_to(other) == []
     play(100)
-    assert told(peer) == []
+    assert sent_to(peer) == []
     assert clients.wait_s() is None
 
 
-def test_many_who_set_something_at_once_are_all_told(clients, play):
+def test_many_who_set_something_at_once_are_all_answered(clients, play):
     peers = [FakePeer(port) for port in range(limits.PEERS + 100)]
     for peer in peers:
         clients.echo(peer, ["/a"])
@@ -112,7 +112,7 @@ def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(clients, val
     assert min(counts) > 0.8 * max(counts)
 
 
-def test_who_takes_no_more_is_told_the_last_value_later(clients, values, play, peer):
+def test_who_takes_no_more_is_sent_the_last_value_later(clients, values, play, peer):
     clients.subscribe(peer, 60.0)
     play(20)
     peer.received()
@@ -120,27 +120,27 @@ def test_who_takes_no_more_is_told_the_last_value_later(clients, values, play, p
     for number in range(250):
         values.now["/a"] = float(number)
         play(20)
-    assert told(peer) == []
+    assert sent_to(peer) == []
     peer.takes_more = True
     play(20)
-    assert told(peer) == [("/yehu/a", [249.0])]
+    assert sent_to(peer) == [("/yehu/a", [249.0])]
 
 
 # ---------------------------------------------------------------- changes
 
 
-def test_a_subscriber_is_told_all_and_then_what_changes(clients, values, play, peer):
+def test_a_subscriber_is_sent_all_and_then_what_changes(clients, values, play, peer):
     assert clients.subscribe(peer, 10.0)
     play(20)
-    assert told(peer) == [("/yehu/a", [0.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
+    assert sent_to(peer) == [("/yehu/a", [0.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
     play(100)
-    assert told(peer) == []
+    assert sent_to(peer) == []
     values.now["/b"] = 1.0
     play(100)
-    assert told(peer) == [("/yehu/b", [1.0])]
+    assert sent_to(peer) == [("/yehu/b", [1.0])]
 
 
-def test_a_subscriber_is_told_of_a_value_sixty_times_a_second_at_most(clients, values, play, peer):
+def test_a_subscriber_is_sent_a_value_sixty_times_a_second_at_most(clients, values, play, peer):
     def turn() -> None:
         values.now["/a"] += 1.0
         values.now["/b"] -= 1.0
@@ -151,7 +151,7 @@ def test_a_subscriber_is_told_of_a_value_sixty_times_a_second_at_most(clients, v
     peer.received()
     play(1000, turn)
     play(20)
-    heard = told(peer)
+    heard = sent_to(peer)
     counts = Counter(address for address, _ in heard)
     assert 50 <= min(counts.values()) <= max(counts.values()) <= 61
     assert heard[-2:] == [("/yehu/a", [1000.0]), ("/yehu/b", [-1000.0])]
@@ -165,24 +165,24 @@ def test_a_subscription_is_renewed_and_not_doubled_and_ends(clients, values, pla
     peer.received()
     values.now["/a"] = 1.0
     play(50)
-    assert told(peer) == [("/yehu/a", [1.0])]
+    assert sent_to(peer) == [("/yehu/a", [1.0])]
     play(100)
     assert clients.subscribers == 0
     values.now["/a"] = 2.0
     play(100)
-    assert told(peer) == []
+    assert sent_to(peer) == []
     assert clients.wait_s() is None
 
 
 @pytest.mark.parametrize("end", [Clients.unsubscribe, Clients.forget])
-def test_who_unsubscribes_or_is_gone_is_told_no_more(clients, values, play, peer, end):
+def test_who_unsubscribes_or_is_gone_is_sent_no_more(clients, values, play, peer, end):
     clients.subscribe(peer, 10.0)
     play(20)
     peer.received()
     end(clients, peer)
     values.now["/a"] = 1.0
     play(100)
-    assert told(peer) == []
+    assert sent_to(peer) == []
     assert clients.subscribers == 0
 
 
@@ -190,7 +190,7 @@ def test_subscribers_of_no_time_get_all_values_once(clients, values, play, peer)
     clients.subscribe(peer, 0.0)
     values.now["/a"] = 1.0
     play(100)
-    assert told(peer) == [("/yehu/a", [1.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
+    assert sent_to(peer) == [("/yehu/a", [1.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
 
 
 def test_there_is_room_for_so_many_subscribers_and_for_more_when_some_are_gone(clients, play):
@@ -222,11 +222,11 @@ def test_only_so_many_are_remembered_and_subscribers_not_forgotten_for_them(
         assert len(clients._clients) <= limits.PEERS
     values.now["/a"] = 1.0
     play(20)
-    assert told(peer) == [("/yehu/a", [1.0])]
+    assert sent_to(peer) == [("/yehu/a", [1.0])]
 
 
 @pytest.mark.parametrize("is_subscribed", [False, True])
-def test_a_peer_that_is_gone_when_it_is_told_leaves_the_others_in_peace(
+def test_a_peer_that_is_gone_when_it_is_sent_leaves_the_others_in_peace(
     clients, play, peer, is_subscribed
 ):
     class Gone(FakePeer):
@@ -238,7 +238,7 @@ def test_a_peer_that_is_gone_when_it_is_told_leaves_the_others_in_peace(
     clients.echo(Gone(3), ["/a"])
     clients.echo(peer, ["/a"])
     play(20)
-    assert ("/yehu/a", [0.0]) in told(peer)
+    assert ("/yehu/a", [0.0]) in sent_to(peer)
 
 
 # ---------------------------------------------------------------- errors
@@ -248,7 +248,7 @@ def test_errors_are_told_with_their_reason_and_rarely_to_who_makes_many(clients,
     patient = FakePeer(2)
     play(10_000, lambda: clients.send_error(peer, "/x", "no"))
     assert 100 <= len(peer.packets) <= 125
-    assert all(heard == ("/yehu/error", ["/x", "no"]) for heard in told(peer))
+    assert all(heard == ("/yehu/error", ["/x", "no"]) for heard in sent_to(peer))
     clients.send_error(patient, "/x", "no")
     assert len(patient.packets) == 1  # others need not wait
     play(5000)
@@ -271,7 +271,7 @@ class Slow(FakePeer):
         super().send(packet)
 
 
-def test_who_is_told_much_is_told_in_slices_between_which_others_are_served(
+def test_who_is_sent_much_is_sent_in_slices_between_which_others_are_served(
     clients, values, still_time
 ):
     slow = Slow(still_time)
@@ -284,12 +284,14 @@ def test_who_is_told_much_is_told_in_slices_between_which_others_are_served(
         clients.flush()
         flushes += 1
         assert len(slow.packets) - before <= 5
-    assert told(slow) == [(f"/yehu/{number}", [float(number)]) for number in range(100)]
+    assert sent_to(slow) == [(f"/yehu/{number}", [float(number)]) for number in range(100)]
     assert flushes >= 20
     assert clients.wait_s() > 0.0  # until the next round
 
 
-def test_what_is_set_while_others_are_told_is_told_as_it_then_is(clients, values, still_time, peer):
+def test_what_is_set_while_others_are_answered_is_sent_as_it_then_is(
+    clients, values, still_time, peer
+):
     values.now = {f"/{number}": 0.0 for number in range(100)}
     clients.subscribe(Slow(still_time), 60.0)
     clients.listen(peer, "/0")
@@ -300,11 +302,11 @@ def test_what_is_set_while_others_are_told_is_told_as_it_then_is(clients, values
     for _ in range(100):
         still_time.now += 0.001
         clients.flush()
-    assert told(peer) == [("/yehu/0", [0.0]), ("/yehu/99", [7.0])]
+    assert sent_to(peer) == [("/yehu/0", [0.0]), ("/yehu/99", [7.0])]
 
 
 @pytest.mark.parametrize("end", ["ignore", "forget"])
-def test_what_is_ended_between_slices_is_told_no_more(clients, values, still_time, end):
+def test_what_is_ended_between_slices_is_sent_no_more(clients, values, still_time, end):
     slow = Slow(still_time)
     values.now = {f"/{number}": 0.0 for number in range(100)}
     for address in values.now:
@@ -322,35 +324,35 @@ def test_what_is_ended_between_slices_is_told_no_more(clients, values, still_tim
     for _ in range(100):
         still_time.now += 0.001
         clients.flush()
-    assert told(slow) == [("/yehu/99", [0.0])]
+    assert sent_to(slow) == [("/yehu/99", [0.0])]
 
 
 # ---------------------------------------------------------------- listeners
 
 
-def test_a_listener_is_told_its_address_now_and_once_for_each_change(clients, values, play, peer):
+def test_a_listener_is_sent_its_address_now_and_once_for_each_change(clients, values, play, peer):
     clients.listen(peer, "/status/none")
     clients.ignore(peer, "/status/none")
     clients.listen(peer, "/b")
     play(20)
-    assert told(peer) == [("/yehu/b", [0.0])]
+    assert sent_to(peer) == [("/yehu/b", [0.0])]
     values.now |= {"/a": 1.0, "/b": 2.0}
     clients.echo(peer, ["/b"])
     play(50)
-    assert told(peer) == [("/yehu/b", [2.0])]
+    assert sent_to(peer) == [("/yehu/b", [2.0])]
     play(1000)
     values.now["/b"] = 3.0
     clients.ignore(peer, "/b")
     play(20)
-    assert told(peer) == []
+    assert sent_to(peer) == []
 
 
 def test_the_status_is_looked_at_only_for_listeners_and_seldom(still_time, values, peer):
-    looks = []
+    readings = []
 
     def status(_group: str) -> dict[str, float | str]:
-        looks.append(still_time.now)
-        return {"load": float(len(looks)), "device": "null"}
+        readings.append(still_time.now)
+        return {"load": float(len(readings)), "device": "null"}
 
     clients = Clients(lambda _group="": dict(values.now), "/yehu", status)
     clients.subscribe(peer, 60.0)
@@ -361,15 +363,18 @@ def test_the_status_is_looked_at_only_for_listeners_and_seldom(still_time, value
             clients.flush()
 
     play(1000)
-    assert looks == []
-    told(peer)
+    assert readings == []
+    sent_to(peer)
     clients.listen(peer, "/status/load")
     clients.listen(peer, "/status/device")
     play(20)
-    assert sorted(told(peer)) == [("/yehu/status/device", ["null"]), ("/yehu/status/load", [1.0])]
+    assert sorted(sent_to(peer)) == [
+        ("/yehu/status/device", ["null"]),
+        ("/yehu/status/load", [1.0]),
+    ]
     play(1000)
-    assert 3 <= len(looks) - 1 <= 5
-    assert {address for address, _ in told(peer)} == {"/yehu/status/load"}
+    assert 3 <= len(readings) - 1 <= 5
+    assert {address for address, _ in sent_to(peer)} == {"/yehu/status/load"}
 
 
 def test_who_has_nothing_to_hear_is_forgotten(clients, play, peer):

@@ -81,7 +81,7 @@ def test_what_cannot_be_done_is_answered_with_the_reason_and_changes_nothing(
     asked = [("/yehu" + call, words, why) for call, calls, why in REFUSED for words in calls]
     for address, words, why in [*asked, *((address, (0.123,), "") for address in UNKNOWN)]:
         with subtests.test(address=address[:80], words=words):
-            peer = FakePeer(count)  # one alone would be told only some
+            peer = FakePeer(count)  # one alone would be sent only some
             still.take(wire.message(address, *words), peer)
             (refused,) = peer.received()
             assert (refused.address, refused.arguments[0]) == ("/yehu/error", address)
@@ -125,12 +125,12 @@ def test_an_error_is_of_bounded_length_and_keeps_its_reason(still):
         assert reason in refused.arguments[1], call
 
 
-def test_near_names_are_looked_for_only_where_they_are_told(still, monkeypatch):
-    looked = []
+def test_near_names_are_searched_only_where_they_are_sent(still, monkeypatch):
+    searched = []
     monkeypatch.setattr(
-        difflib, "get_close_matches", lambda *words, **_: looked.append(words) or []
+        difflib, "get_close_matches", lambda *words, **_: searched.append(words) or []
     )
     for number in range(500):
-        still.tell(f"/bow/forc{number}", 1.0)
+        still.send(f"/bow/forc{number}", 1.0)
     assert len(errors(still.peer.received())) == limits.ERRORS_AT_ONCE
-    assert len(looked) <= 2 * limits.ERRORS_AT_ONCE
+    assert len(searched) <= 2 * limits.ERRORS_AT_ONCE

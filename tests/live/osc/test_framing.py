@@ -14,7 +14,7 @@ from pythonosc import slip
 from yehu_server.live.osc.answering import Framing, FramingError
 
 ESC, END = b"\xdb", b"\xc0"
-MOST_BYTES = 65_535  # of a packet: as long as UDP can tell
+MOST_BYTES = 65_535  # of a packet: as long as UDP allows
 
 
 def prefixed(packets: Iterable[bytes]) -> bytes:
@@ -37,7 +37,7 @@ def read(framing: Framing, *pieces: bytes) -> list[bytes]:
 
 FRAMINGS = [prefixed, slipped, slipped_bare]
 SOME = [b"/a\0\0", b"/" + END * 3 + ESC * 2, b"#bundle\0", b"/\xdb\xdc\xdb\xdd\0", b"/b" * 300]
-# The first byte tells the framing: SLIP without a leading END begins with that of a packet.
+# The first byte decides the framing: SLIP without a leading END begins with that of a packet.
 osc_like = st.builds(lambda start, rest: start + rest, st.sampled_from([b"/", b"#"]), st.binary())
 awkward = st.lists(st.sampled_from([END, ESC, b"\xdc", b"\xdd", b"\0", b"/"])).map(b"".join)
 packets = st.lists(osc_like | awkward.map(lambda rest: b"/" + rest), max_size=8)
@@ -148,7 +148,7 @@ def test_no_byte_of_a_slip_packet_that_comes_in_pieces_is_looked_at_again():
     assert read(framing, END) == [packet]
 
 
-def test_a_damaged_or_empty_packet_is_told_and_the_next_is_whole():
+def test_a_damaged_or_empty_packet_is_reported_and_the_next_is_whole():
     whole = [b"/a\0\0", b"", b"/b\0\0"]
     assert read(Framing(), prefixed(whole)) == whole
     for damaged in (b"/a" + ESC + b"b", b"/a" + ESC, b"#" + ESC + ESC, b"/" + ESC + b"\0\xdc"):

@@ -48,15 +48,15 @@ def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(live, until, ki
         if Path("/proc/self/statm").exists():
             sizes.append(resident_bytes())
     time.sleep(0.15)  # the last bundles' time comes
-    listener.tell("/panic")
+    listener.send("/panic")
     listener.sync()
     live.settle()
     assert live.is_at_rest()
     assert live.is_well()
     assert live.level() < 1e-6
     assert not sizes or sizes[-1] - sizes[0] < GROWTH_BYTES
-    listener.tell("/reset")  # whatever was set
-    listener.tell("/note", 67, 90)
+    listener.send("/reset")  # whatever was set
+    listener.send("/note", 67, 90)
     listener.sync()
     live.settle()
     assert live.player.pitch == pytest.approx(67.0, abs=0.5)

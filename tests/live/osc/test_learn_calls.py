@@ -27,15 +27,15 @@ def turn(still, control: int, *values: int, channel: int = 0) -> None:
         receive(still.player, message, frame=still.player.frame_of(), port=0)
 
 
-def told(heard, address: str) -> list[list]:
+def answers(heard, address: str) -> list[list]:
     return [message.arguments for message in heard if message.address == f"/yehu{address}"]
 
 
 @pytest.mark.parametrize("address", ["/playing/vibrato", "/yehu/playing/vibrato/unit"])
 def test_what_is_moved_next_moves_the_parameter_from_then_on(still, address):
-    assert told(still.ask("/learn", address), "/learning") == [["/yehu/playing/vibrato"]]
+    assert answers(still.ask("/learn", address), "/learning") == [["/yehu/playing/vibrato"]]
     turn(still, 20, 10, 20, 64)
-    (learned,) = told(still.peer.received(), "/learned")
+    (learned,) = answers(still.peer.received(), "/learned")
     assert learned[:2] == ["/yehu/playing/vibrato", "cc 20"]
     assert learned[2].endswith("keyboard.toml")
     assert still.services.changed == ["/"]
@@ -52,23 +52,23 @@ def test_the_file_is_written_aside_so_that_a_slow_disk_holds_up_nothing(still, m
     monkeypatch.setattr(still.handler.context, "run_in_background", waiting.append)
     still.ask("/learn", "/playing/vibrato")
     turn(still, 20, 10, 20, 64)
-    assert told(still.peer.received(), "/learned") == []
-    assert told(still.ask("/unlearn", "/playing/vibrato"), "/unlearned") == []
+    assert answers(still.peer.received(), "/learned") == []
+    assert answers(still.ask("/unlearn", "/playing/vibrato"), "/unlearned") == []
     for write in waiting:
         write()
     heard = still.peer.received()
-    assert told(heard, "/learned")[0][:2] == ["/yehu/playing/vibrato", "cc 20"]
-    assert told(heard, "/unlearned")[0][:2] == ["/yehu/playing/vibrato", 1]
+    assert answers(heard, "/learned")[0][:2] == ["/yehu/playing/vibrato", "cc 20"]
+    assert answers(heard, "/unlearned")[0][:2] == ["/yehu/playing/vibrato", 1]
 
 
 def test_files_are_written_so_many_at_once_and_one_more_each_second(still, monkeypatch):
     monkeypatch.setattr(context, "time", still.clock)
     for _ in range(round(limits.SAVES_AT_ONCE)):
-        assert told(still.ask("/unlearn", "/playing/vibrato"), "/unlearned")
-    assert told(still.ask("/unlearn", "/playing/vibrato"), "/error")
-    assert told(still.ask("/learn", "/playing/vibrato"), "/error")
+        assert answers(still.ask("/unlearn", "/playing/vibrato"), "/unlearned")
+    assert answers(still.ask("/unlearn", "/playing/vibrato"), "/error")
+    assert answers(still.ask("/learn", "/playing/vibrato"), "/error")
     still.clock.now += 1.0 / limits.SAVES_A_SECOND
-    assert told(still.ask("/learn", "/playing/vibrato"), "/learning")
+    assert answers(still.ask("/learn", "/playing/vibrato"), "/learning")
 
 
 def test_a_knob_of_another_box_or_on_the_drums_channel_moves_the_note_that_sounds(still):
@@ -78,7 +78,7 @@ def test_a_knob_of_another_box_or_on_the_drums_channel_moves_the_note_that_sound
         still.ask("/learn", "/playing/tremolo")  # who asks last is served
         still.ask("/learn", "/playing/vibrato")
         turn(still, control, 10, 20, 64, channel=channel)
-        (learned,) = told(still.peer.received(), "/learned")
+        (learned,) = answers(still.peer.received(), "/learned")
         assert learned[:2] == ["/yehu/playing/vibrato", f"cc {control}"]
         turn(still, control, 127, channel=channel)
         assert still.value("/playing/vibrato") == 100.0
@@ -88,7 +88,7 @@ def test_an_address_of_the_users_own_is_learned_as_a_knob_is(still, wire):
     still.ask("/learn", "/output/gain")
     for value in (0.0, 0.5):
         still.take(wire.message("/my/fader", value))
-    assert told(still.peer.received(), "/learned")[0][1] == "/my/fader"
+    assert answers(still.peer.received(), "/learned")[0][1] == "/my/fader"
     still.take(wire.message("/my/fader", 1.0))
     assert still.value("/output/gain") == 24.0
     assert still.player.mapping.addresses == ("/my/fader",)
@@ -100,7 +100,7 @@ def test_an_address_of_the_users_own_is_learned_as_a_knob_is(still, wire):
 
 def test_listening_can_be_ended_and_ends_after_a_minute(still):
     def end_by(*arguments: object) -> None:
-        assert told(still.ask("/learn", *arguments), "/learning") == [[""]]
+        assert answers(still.ask("/learn", *arguments), "/learning") == [[""]]
         assert not still.player.learning.waits
 
     for end in (
@@ -111,7 +111,7 @@ def test_listening_can_be_ended_and_ends_after_a_minute(still):
         still.ask("/learn", "/playing/vibrato")
         end()
         turn(still, 20, 0, 127)
-        assert told(still.peer.received(), "/learned") == []
+        assert answers(still.peer.received(), "/learned") == []
         assert not still.player.mapping.of("cc 20")
 
 
@@ -127,13 +127,13 @@ def test_a_soft_one_waits_for_its_place(still, soft):
     assert still.value("/playing/speed") < 0.1
 
 
-def test_what_cannot_be_kept_is_told_and_changes_nothing(still, config_home):
+def test_what_cannot_be_kept_is_reported_and_changes_nothing(still, config_home):
     before = still.player.mapping
     still.ask("/learn", "/playing/vibrato")
     config_home.mkdir()
     (config_home / "yehu-server").write_text("a file where a folder should be")
     turn(still, 20, 0, 127)
-    assert told(still.peer.received(), "/error")
+    assert answers(still.peer.received(), "/error")
     assert still.player.mapping is before
 
 
@@ -141,18 +141,18 @@ def test_what_was_learned_can_be_forgotten(still):
     still.ask("/learn", "/playing/speed")
     turn(still, 20, 0, 127)
     assert not still.player.mapping.of("cc 16")  # the knob alone moves it
-    answer = told(still.ask("/unlearn", "/playing/speed"), "/unlearned")
+    answer = answers(still.ask("/unlearn", "/playing/speed"), "/unlearned")
     assert answer == [["/yehu/playing/speed", 1, "cc 16", "/yehu/playing/speed"]]
     assert still.player.mapping.of("cc 16")
-    assert told(still.ask("/unlearn", "/playing/speed"), "/unlearned")[0][1] == 0
+    assert answers(still.ask("/unlearn", "/playing/speed"), "/unlearned")[0][1] == 0
 
 
-def test_every_binding_is_told_with_where_it_is(still):
+def test_every_binding_is_reported_with_where_it_is(still):
     turn(still, 16, 127, channel=3)
     still.pass_time(0.01)
     heard = still.ask("/bindings")
-    rows = {row[0]: row for row in told(heard, "/binding")}
-    assert told(heard, "/bindings") == [[len(still.player.mapping.binds)]]
+    rows = {row[0]: row for row in answers(heard, "/binding")}
+    assert answers(heard, "/bindings") == [[len(still.player.mapping.binds)]]
     assert set(rows) == {bind.source for bind in still.player.mapping.binds}
     approx = pytest.approx
     assert rows["cc 16"] == [

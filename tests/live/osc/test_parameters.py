@@ -23,9 +23,9 @@ def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(stil
             *((param.hi, param.hi), (param.lo, param.lo), (third, third)),
             *((1e30, param.hi), (-1e30, param.lo), (param.default, param.default)),
         ):
-            told = [("/yehu" + param.address, [f32(accepted)])]
-            assert still.ask(param.address, sent) == told
-            assert still.ask("/get", param.address) == told
+            sent_back = [("/yehu" + param.address, [f32(accepted)])]
+            assert still.ask(param.address, sent) == sent_back
+            assert still.ask("/get", param.address) == sent_back
         if param.place is Place.ENGINE:
             still.pass_time(0.02)
             assert still.target(param.address) == pytest.approx(param.default, rel=1e-6)
@@ -35,9 +35,9 @@ def test_every_parameter_also_answers_as_zero_to_one(still):
     for param in TABLE:
         at = param.address + "/unit"
         for sent, accepted in ((1.0, 1.0), (0.0, 0.0), (0.25, 0.25), (7.0, 1.0), (-7.0, 0.0)):
-            told = [("/yehu" + at, [pytest.approx(accepted, abs=1e-6)])]
-            assert still.ask(at, sent) == told
-            assert still.ask("/get", at) == told
+            sent_back = [("/yehu" + at, [pytest.approx(accepted, abs=1e-6)])]
+            assert still.ask(at, sent) == sent_back
+            assert still.ask("/get", at) == sent_back
             assert still.player.value(param.address) == param.from_unit(accepted)
 
 
@@ -49,11 +49,11 @@ def test_every_parameter_takes_any_number_and_refuses_what_is_none(still):
     others = [(), (0.5, 0.5), ("0.5",), (b"0.5",), (None,), (math.nan,), (math.inf,), (-math.inf,)]
     for param in TABLE:
         for value, tags in numbers:
-            still.tell(param.address, value, tags=tags)
+            still.send(param.address, value, tags=tags)
             sent = f32(value) if tags == "f" else float(value)
             assert still.player.value(param.address) == min(max(sent, param.lo), param.hi)
         before = still.player.values()
-        still.ask("/ping")  # all is told
+        still.ask("/ping")  # all is sent
         still.clock.now += clients.FORGIVEN_S
         for arguments, tags in [*((words, None) for words in others), ((0.5,), "[f]")]:
             (refused,) = still.ask(param.address, *arguments, tags=tags)
@@ -65,7 +65,7 @@ def test_every_parameter_takes_any_number_and_refuses_what_is_none(still):
 
 def test_reset_puts_every_parameter_back_and_tells(still):
     for param in TABLE:
-        still.tell(param.address, param.lo)
+        still.send(param.address, param.lo)
     heard = values(still.ask("/reset"))
     assert heard == {"/yehu" + param.address: f32(param.default) for param in ALL}
     still.pass_time(0.1)
@@ -78,7 +78,7 @@ def test_reset_puts_every_parameter_back_and_tells(still):
 
 def test_parameters_are_listed_with_all_that_a_client_needs(shared_server):
     client = shared_server.client()
-    client.tell("/params")
+    client.send("/params")
     heard = list(itertools.takewhile(lambda m: m.address == "/yehu/param", iter(client.next, 0)))
     assert [message.arguments for message in heard] == [
         [
@@ -101,12 +101,12 @@ def test_a_value_that_was_set_is_answered_before_and_after_the_audio_side_has_it
 ):
     # Half of them each, by default.
     for param in TABLE if everything else TABLE[played::2]:
-        still.tell("/reset")
+        still.send("/reset")
         if played:
-            still.tell("/note", 72.0, 90.0)
+            still.send("/note", 72.0, 90.0)
         still.pass_time(0.02)
         value = f32(param.lo + (param.hi - param.lo) / 3.0)
-        still.tell(param.address, value)
+        still.send(param.address, value)
         assert still.player.value(param.address) == value
         assert values(still.ask("/get", param.address)) == {"/yehu" + param.address: value}
         for _ in range(30):  # ms; the audio side takes it up meanwhile
@@ -124,19 +124,19 @@ def test_a_get_after_a_set_answers_the_value_set_while_python_is_busy(shared_ser
     with busy():
         for step in range(100):
             value = f32(0.3 + 0.001 * step)
-            client.tell(address, value)
-            client.tell("/get", address)
-            client.tell("/ping", step)
-            told = list(iter(client.next, ("/yehu/pong", [step])))
+            client.send(address, value)
+            client.send("/get", address)
+            client.send("/ping", step)
+            sent_back = list(iter(client.next, ("/yehu/pong", [step])))
             # The value set before may be echoed, first or, on a busy machine, last.
-            assert ("/yehu" + address, [value]) in told
+            assert ("/yehu" + address, [value]) in sent_back
     assert shared_server.is_well()
 
 
 def test_a_bow_drawn_by_hand_is_answered_at_once(still):
-    still.tell("/note", 72.0, 90.0)
+    still.send("/note", 72.0, 90.0)
     still.pass_time(0.1)
-    still.tell("/bow", 0.25, 0.75)
+    still.send("/bow", 0.25, 0.75)
     drawn = {"/bow/speed": 0.25, "/bow/force": 0.75, "/bow/assist": 0.0}  # newtons end it
     for _ in range(12):  # ms; the audio side takes it up meanwhile
         assert {address: still.player.value(address) for address in drawn} == drawn
@@ -145,9 +145,9 @@ def test_a_bow_drawn_by_hand_is_answered_at_once(still):
 
 
 def test_what_the_hands_do_with_a_parameter_that_was_set_is_answered_once_they_do_it(still):
-    still.tell("/bow/speed", 0.5)
+    still.send("/bow/speed", 0.5)
     still.pass_time(0.02)
-    still.tell("/note", 74.0, 80.0)
+    still.send("/note", 74.0, 80.0)
     assert still.player.value("/bow/speed") == 0.5
     still.pass_time(0.02)
     now = still.player.value("/bow/speed")
@@ -184,7 +184,7 @@ def test_a_pattern_reaches_the_prefix_too(still, wire):
     assert still.player.value("/bow/force") == 0.75
 
 
-def test_of_a_pattern_one_that_refuses_is_told_and_does_not_hinder_the_others(still):
+def test_of_a_pattern_one_that_refuses_is_reported_and_does_not_hinder_the_others(still):
     for pattern, value in ("/{note,bend}", 1.5), ("/[nb]*", 2.5), ("/b{end,ow}", 3.5):
         assert errors(still.ask(pattern, value))[0] == "/yehu" + pattern
         assert still.player.value("/playing/bend") == value

@@ -33,7 +33,7 @@ def by_address(heard) -> dict[str, list]:
     return {message.address.removeprefix("/yehu"): message.arguments for message in heard}
 
 
-def test_a_loaded_preset_is_told_value_by_value(still):
+def test_a_loaded_preset_is_sent_value_by_value(still):
     answer = by_address(still.ask("/preset/load", "flautando"))
     values = SHIPPED.load("flautando").values
     assert answer.pop("/preset/loaded") == ["flautando"]
@@ -42,7 +42,7 @@ def test_a_loaded_preset_is_told_value_by_value(still):
 
 
 def test_a_load_is_heard_at_the_frame_of_its_time_tag_and_at_no_other(still, wire):
-    still.tell("/note", 74.0, 90.0)
+    still.send("/note", 74.0, 90.0)
     still.pass_time(0.1)
     still.events.clear()
     at = still.clock.time() + 0.05
@@ -56,7 +56,7 @@ def test_a_load_is_heard_at_the_frame_of_its_time_tag_and_at_no_other(still, wir
     assert still.late() == 0
 
 
-def test_a_held_parameter_is_told_where_it_stays(still):
+def test_a_held_parameter_is_sent_where_it_stays(still):
     still.player.hold("/playing/speed", 0.5)
     answer = by_address(still.ask("/preset/load", "flautando"))
     assert answer["/playing/speed"] == [0.5]
@@ -68,19 +68,19 @@ def test_a_morph_lies_between(still):
     for amount, share in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (2, 1.0), (-1, 0.0)]:
         answer = by_address(still.ask("/preset/morph", "ordinary", "scratch", amount))
         assert set(answer) == set(one)
-        for address, [told] in answer.items():
+        for address, [answered] in answer.items():
             param = POSSIBLE[address]
             low, high = param.to_unit(one[address]), param.to_unit(other[address])
-            assert param.to_unit(told) == near(low + (high - low) * share)
+            assert param.to_unit(answered) == near(low + (high - low) * share)
 
 
 def test_a_fader_may_morph_sixty_times_a_second_without_reading_files(still, monkeypatch):
     end = SHIPPED.load("vibrato").values["/playing/vibrato"]
     still.ask("/preset/morph", "ordinary", "vibrato", 0.0)
     monkeypatch.setattr("yehu_server.playing.preset_folders.read_text", None)
-    still.tell("/note", 74.0, 90.0)
+    still.send("/note", 74.0, 90.0)
     for step in range(61):
-        still.tell("/preset/morph", "ordinary", "vibrato", step / 60)
+        still.send("/preset/morph", "ordinary", "vibrato", step / 60)
         still.pass_time(1 / 60)
     assert still.player.value("/playing/vibrato") == end
     assert still.handler.counts.errors == 0
@@ -90,20 +90,20 @@ def test_a_fader_may_morph_sixty_times_a_second_without_reading_files(still, mon
 
 
 def test_the_sound_is_saved_comes_back_and_is_deleted(still, own):
-    still.tell("/playing/vibrato", 33.0)
-    still.tell("/body/blend", 0.25)
-    still.tell("/playing/bend", 1.0)
+    still.send("/playing/vibrato", 33.0)
+    still.send("/body/blend", 0.25)
+    still.send("/playing/bend", 1.0)
     assert by_address(still.ask("/preset/save", "my sound"))["/preset/saved"] == ["my sound"]
     assert [file.name for file in own.iterdir()] == ["my sound.toml"]
-    still.tell("/reset")
-    still.tell("/playing/bend", 2.0)
+    still.send("/reset")
+    still.send("/playing/bend", 2.0)
     answer = by_address(still.ask("/preset/load", "my sound"))
     assert answer["/playing/vibrato"] == [33.0]
     assert answer["/body/blend"] == [0.25]
     assert still.player.value("/playing/vibrato") == 33.0
     assert still.player.value("/body/blend") == 0.25
     assert still.player.value("/playing/bend") == 2.0  # of the moment
-    still.tell("/playing/vibrato", 20.0)
+    still.send("/playing/vibrato", 20.0)
     still.ask("/preset/save", "my sound")  # once more
     file = own / "my sound.toml"
     assert SHIPPED.find(str(file)).values["/playing/vibrato"] == 20.0
@@ -114,7 +114,7 @@ def test_the_sound_is_saved_comes_back_and_is_deleted(still, own):
 def test_presets_are_saved_so_many_at_once_and_one_more_each_second(still, own, monkeypatch):
     monkeypatch.setattr(context, "time", still.clock)
     for number in range(20):
-        still.tell("/preset/save", f"mine {number}")
+        still.send("/preset/save", f"mine {number}")
     assert len(list(own.iterdir())) == limits.SAVES_AT_ONCE
     address, reason = still.ask("/preset/save", "another")[-1].arguments
     assert (address, reason) == (
@@ -123,30 +123,30 @@ def test_presets_are_saved_so_many_at_once_and_one_more_each_second(still, own, 
     )
     still.clock.now += 1.0 / limits.SAVES_A_SECOND
     for name in ("another", "and another"):
-        still.tell("/preset/save", name)
+        still.send("/preset/save", name)
     assert len(list(own.iterdir())) == limits.SAVES_AT_ONCE + 1
 
 
 def test_files_are_written_aside_and_read_in_order(still, own, monkeypatch):
     waiting = []
     monkeypatch.setattr(still.handler.context, "run_in_background", waiting.append)
-    still.tell("/playing/vibrato", 33.0)
+    still.send("/playing/vibrato", 33.0)
     assert "/preset/saved" not in by_address(still.ask("/preset/save", "mine"))
-    still.tell("/playing/vibrato", 5.0)
+    still.send("/playing/vibrato", 5.0)
     for call in ("/preset/load", "/preset/delete", "/preset/load"):
-        still.tell(call, "mine")
+        still.send(call, "mine")
     assert list(own.iterdir()) == []  # a slow disk holds up nothing
     while waiting:
         waiting.pop(0)()
     heard = [message.address for message in still.peer.received()]
-    told = [each for each in heard if each.startswith(("/yehu/preset", "/yehu/error"))]
-    assert told == [
+    answers = [each for each in heard if each.startswith(("/yehu/preset", "/yehu/error"))]
+    assert answers == [
         f"/yehu{each}" for each in ("/preset/saved", "/preset/loaded", "/preset/deleted", "/error")
     ]
     assert still.player.value("/playing/vibrato") == 33.0
 
 
-def test_presets_are_listed_and_a_broken_one_is_told(still, own):
+def test_presets_are_listed_and_a_broken_one_is_sent(still, own):
     (own / "mine.toml").write_text(HEAD + 'about = "wild"\n')
     (own / "bad.toml").write_text("version = 9\n")
     heard = still.ask("/preset/list")
@@ -182,5 +182,5 @@ def test_a_list_reads_no_files_while_the_server_plays(make_live, own, monkeypatc
     (own / "bad.toml").write_text("version = 9\n")
     client = make_live().client()
     monkeypatch.setattr("yehu_server.playing.preset_folders.read_text", None)
-    client.tell("/preset/list")
+    client.send("/preset/list")
     assert client.wait_for("/presets") == [len(SHIPPED.names()) + 1]

@@ -29,7 +29,7 @@ BURST = 20_000
 PACKET_BYTES = 768  # of a small packet, as Linux accounts for it in the buffer
 SETTLE_S = 0.05
 
-on_linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells")
+on_linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux counts them")
 
 
 class Collector:
@@ -489,7 +489,7 @@ def test_who_is_not_allowed_is_counted_and_never_answered(listen, client, keeper
 # ---------------------------------------------------------------- where to listen
 
 
-def test_an_address_that_is_not_ours_is_told(keeper):
+def test_an_address_that_is_not_ours_is_refused(keeper):
     for host in ("192.0.2.1", "nowhere.invalid"):
         with pytest.raises(DeviceError, match="cannot listen"):
             OscPorts(host, 0, Allowed(), keeper)

@@ -14,37 +14,37 @@ from yehu_server.params.table import TABLE, find
 
 
 def test_a_subscriber_may_be_told_of_zero_to_one(still):
-    told = values(still.ask("/subscribe/unit", 60.0))
+    sent = values(still.ask("/subscribe/unit", 60.0))
     speed = still.player.value("/playing/speed")
-    assert told["/yehu/playing/speed/unit"] == f32(find("/playing/speed").to_unit(speed))
-    assert {f"/yehu{param.address}/unit" for param in TABLE} <= set(told)
+    assert sent["/yehu/playing/speed/unit"] == f32(find("/playing/speed").to_unit(speed))
+    assert {f"/yehu{param.address}/unit" for param in TABLE} <= set(sent)
     still.player.set("/playing/speed", find("/playing/speed").from_unit(0.7), frame=0)
     still.pass_time(0.1)
     assert values(still.peer.received()) == {"/yehu/playing/speed/unit": pytest.approx(0.7)}
 
 
-def test_a_subscriber_is_told_all_and_what_others_change(live):
+def test_a_subscriber_is_sent_all_and_what_others_change(live):
     client, other = live.client(), live.client()
-    client.tell("/subscribe")
+    client.send("/subscribe")
     assert client.wait_for("/subscribed") == [60.0]
     assert set(values(client.all())) == {"/yehu" + param.address for param in TABLE}
-    other.tell("/note", 67.0, 90.0)
+    other.send("/note", 67.0, 90.0)
     changed = values(client.all())
     assert {"/yehu/bow/speed", "/yehu/bow/side", "/yehu/finger/1/press"} <= set(changed)
-    other.tell("/playing/volume", 0.25)
+    other.send("/playing/volume", 0.25)
     assert client.wait_for("/playing/volume") == [0.25]
     assert other.wait_for("/playing/volume") == [0.25]
-    client.tell("/unsubscribe")
+    client.send("/unsubscribe")
     client.wait_for("/unsubscribed")
-    other.tell("/playing/volume", 0.5)
+    other.send("/playing/volume", 0.5)
     other.wait_for("/playing/volume")
     assert client.all() == []
 
 
 def test_another_server_may_follow_and_neither_answers_the_other(live, make_live, until):
     follower, client = make_live(), live.client()
-    client.tell("/subscribe", 30, follower.ports.port)
-    client.tell("/playing/volume", 0.3)
+    client.send("/subscribe", 30, follower.ports.port)
+    client.send("/playing/volume", 0.3)
     client.wait_for("/playing/volume")
     until(lambda: follower.player.value("/playing/volume") == f32(0.3), "it to follow")
     time.sleep(0.2)
@@ -57,15 +57,15 @@ def test_another_server_may_follow_and_neither_answers_the_other(live, make_live
 
 def test_a_client_names_the_port_it_listens_on(live):
     speaks, listens, other = live.client(), live.client(), live.client()
-    speaks.tell("/subscribe", 30, listens.port)
+    speaks.send("/subscribe", 30, listens.port)
     assert listens.wait_for("/subscribed") == [30.0]
     listens.all()
-    other.tell("/playing/volume", 0.25)
+    other.send("/playing/volume", 0.25)
     assert listens.wait_for("/playing/volume") == [0.25]
     assert speaks.all() == []
-    speaks.tell("/unsubscribe", listens.port)
+    speaks.send("/unsubscribe", listens.port)
     listens.wait_for("/unsubscribed")
-    other.tell("/playing/volume", 0.5)
+    other.send("/playing/volume", 0.5)
     other.wait_for("/playing/volume")
     assert listens.all() == []
 
@@ -73,13 +73,13 @@ def test_a_client_names_the_port_it_listens_on(live):
 @pytest.mark.parametrize("slip", [False, True], ids=["prefixed", "slip"])
 def test_a_subscriber_may_be_at_the_end_of_a_stream(live, slip):
     stream, other = live.stream(slip=slip), live.client()
-    stream.tell("/subscribe", 30, 7400)  # over a stream answers go back by the stream alone
+    stream.send("/subscribe", 30, 7400)  # over a stream answers go back by the stream alone
     assert stream.wait_for("/subscribed") == [30.0]
     assert len(stream.all()) == len(TABLE)
-    other.tell("/playing/volume", 0.25)
+    other.send("/playing/volume", 0.25)
     assert stream.wait_for("/playing/volume") == [0.25]
     stream.close()
-    other.tell("/playing/volume", 0.5)
+    other.send("/playing/volume", 0.5)
     other.wait_for("/playing/volume")
     live.wait_frames(4800)
     assert live.handler.clients.subscribers == 0
@@ -89,7 +89,7 @@ def test_who_subscribes_and_hangs_up_at_once_is_no_subscriber(live, until, wire)
     stream = live.stream()
     packets = [wire.message("/yehu/note/off", 67)] * 3000
     stream.socket.sendall(b"".join(map(stream.wrap, packets)))
-    stream.tell("/subscribe", 3600)
+    stream.send("/subscribe", 3600)
     stream.close()
     until(lambda: live.handler.counts.messages == 3001, "all to be heard")
     until(lambda: live.ports.traffic.connections == 0, "the connection to be gone")
@@ -108,7 +108,7 @@ def test_a_server_never_talks_to_itself(make_live, kit, host):
         if host in ("0.0.0.0", "127.0.0.1"):  # noqa: S104
             pytest.skip("this machine has no other address")
     client = kit.Client(live.ports.port, host if host != "0.0.0.0" else "127.0.0.1")  # noqa: S104
-    client.tell("/subscribe", 0.1, live.ports.port)
+    client.send("/subscribe", 0.1, live.ports.port)
     time.sleep(0.4)
     counted = live.handler.counts.messages
     time.sleep(0.2)
@@ -126,17 +126,17 @@ def test_the_status_is_asked_for_like_any_value(still):
     assert set(heard) == {f"/yehu/status/{value.name}" for value in STATUS}
 
 
-def test_who_subscribes_to_the_status_is_told_it_at_once_and_then_each_change(still):
+def test_who_subscribes_to_the_status_is_sent_it_at_once_and_then_each_change(still):
     heard = values(still.ask("/subscribe/status", 2.0))
     assert heard.pop("/yehu/subscribed") == 2.0
     assert set(heard) == {f"/yehu/status/{value.name}" for value in STATUS}
     still.pass_time(0.5)
     assert still.peer.received() == []
     still.services.names.append("take")
-    still.tell("/playing/vibrato", 5.0)  # which it did not subscribe to
+    still.send("/playing/vibrato", 5.0)  # which it did not subscribe to
     still.pass_time(0.3)
     heard = values(still.peer.received())
-    assert heard.pop("/yehu/playing/vibrato") == 5.0  # but is told of what it sets
+    assert heard.pop("/yehu/playing/vibrato") == 5.0  # but is sent what it sets
     assert heard == {"/yehu/status/recording": "take"}
     assert still.handler.clients.subscribers == 1
     still.pass_time(2.0)
@@ -146,7 +146,7 @@ def test_who_subscribes_to_the_status_is_told_it_at_once_and_then_each_change(st
     assert still.handler.clients.subscribers == 0
 
 
-def test_who_subscribes_to_both_is_told_of_both_until_it_unsubscribes(still):
+def test_who_subscribes_to_both_is_sent_both_until_it_unsubscribes(still):
     still.ask("/subscribe", 60.0)
     still.ask("/subscribe/status", 60.0)
     still.player.set("/playing/attack", 50.0, frame=0)
@@ -161,9 +161,9 @@ def test_who_subscribes_to_both_is_told_of_both_until_it_unsubscribes(still):
     assert still.peer.received() == []
 
 
-def test_status_is_told_line_by_line(shared_server):
+def test_status_is_sent_line_by_line(shared_server):
     client = shared_server.client()
-    client.tell("/status")
+    client.send("/status")
     heard = values(client.all())
     status = shared_server.server.status()
     assert set(heard) == {f"/yehu/status/{name}" for name in status}

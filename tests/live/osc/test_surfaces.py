@@ -104,7 +104,7 @@ def test_a_slider_follows_the_server_says_nothing_back_and_shows_what_it_has_mov
     live, until, patch
 ):
     client = live.client()
-    client.tell("/playing/vibrato", 40.0)
+    client.send("/playing/vibrato", 40.0)
     until(lambda: "watched: set 40" in patch.printed, "the change")
     client.sync()
     count = live.handler.counts.messages
@@ -116,8 +116,8 @@ def test_a_slider_follows_the_server_says_nothing_back_and_shows_what_it_has_mov
     until(lambda: patch.printed.count("watched: set 25") >= 2, "echo, and the server")
     patch.move("/yehu/playing/speed", 0.3)
     until(lambda: live.player.value("/playing/speed") == pytest.approx(0.3), "the move")
-    client.tell("/playing/vibrato", 77.0)
-    until(lambda: "watched: set 77" in patch.printed, "the change, told when the slider rests")
+    client.send("/playing/vibrato", 77.0)
+    until(lambda: "watched: set 77" in patch.printed, "the change, sent when the slider rests")
 
 
 def test_a_key_begins_before_the_last_one_ends(live, until, patch, monkeypatch):
@@ -161,13 +161,13 @@ def along(axis: Axis, unit: float) -> float:
 
 def test_one_hand_on_the_string_and_one_on_the_bow_sound_until_the_bow_is_lifted(live, until):
     client = live.client()
-    client.tell("/bow", BOW_SPEED.start, BOW_FORCE.start)  # at rest
+    client.send("/bow", BOW_SPEED.start, BOW_FORCE.start)  # at rest
     live.settle()
     assert live.level() < 1e-6
-    client.tell("/pitch", along(STRING_PITCH, 0.15))
-    client.tell("/press", STRING_PRESS.start)
-    client.tell("/bow", along(BOW_SPEED, 0.7), along(BOW_FORCE, 0.25))
+    client.send("/pitch", along(STRING_PITCH, 0.15))
+    client.send("/press", STRING_PRESS.start)
+    client.send("/bow", along(BOW_SPEED, 0.7), along(BOW_FORCE, 0.25))
     until(lambda: live.level() > 0.01, "sound")
-    client.tell("/bow", along(BOW_SPEED, 0.5), along(BOW_FORCE, 0.0))
+    client.send("/bow", along(BOW_SPEED, 0.5), along(BOW_FORCE, 0.0))
     until(lambda: live.target("/bow/speed") == 0.0, "the bow lifted")
     until(lambda: live.level() < 1e-3, "silence")

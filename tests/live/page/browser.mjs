@@ -171,7 +171,7 @@ export function drawn(page) {
 }
 
 /**
- * The keys that are held, as far as the commands tell.
+ * The keys that are held, as far as the commands say.
  * @param {import("playwright-core").Page} page
  */
 export function held(page) {

@@ -125,7 +125,7 @@ class Driver:
     ) -> Any:
         """Play a scenario; do something at each step that it reaches; return what it found.
 
-        Whatever the browser's console told of as an error or a warning fails it.
+        Whatever the browser's console reported as an error or a warning fails it.
         """
         requests, answers = self._lines()
         limit = threading.Timer(LIMIT_S, self._stop)

@@ -22,7 +22,7 @@ const [, , shell, chromium] = process.argv;
 const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
 const say = (line) => console.log(JSON.stringify(line));
 
-/** Tell where the scenario is, and wait until that is answered. @param {string} step */
+/** Report where the scenario is, and wait until that is answered. @param {string} step */
 async function reach(step) {
   say({ step });
   await lines.next();

@@ -1,4 +1,4 @@
-/** Looks for what keeps people out, by axe-core, in each view; prints what it finds.
+/** Checks what keeps people out, by axe-core, in each view; prints what it finds.
  * With the word "all" on a phone and a desk both dark and light, otherwise on a light phone. */
 
 import { readFileSync } from "node:fs";

@@ -2,7 +2,7 @@
  * Puts the sounding page behind another tab, and brings it back.
  *
  * What is recorded goes to a folder, which is the word that is given. A Chromium without a window takes
- * the focus from a page behind, but does not hide it. So what hidden pages are told is told to this one,
+ * the focus from a page behind, but does not hide it. So what hidden pages receive is sent to this one,
  * and its tasks are stopped as a browser stops those of a page that it freezes, which is more than it
  * does to one that sounds.
  */
@@ -81,7 +81,7 @@ export default async function (browser, url, { words: [folder] }) {
   await page.bringToFront();
   const found = {};
 
-  // A key that is held as the focus goes ends, though nobody tells of its release.
+  // A key that is held as the focus goes ends, though no event reports its release.
   await page.click("#start");
   await page.keyboard.down(KEY);
   await until(page, true);

@@ -62,7 +62,7 @@ const pressed = (page) => page.locator('[id^="view-"][aria-pressed=true]').allTe
  * @param {import("playwright-core").Page} page
  */
 async function bowMoves(page) {
-  const look = () =>
+  const picture = () =>
     page.locator("#yehu").evaluate((canvas) => {
       const [x, width] = [0.68, 0.08].map((share) => Math.round(share * canvas.width));
       const part = document.createElement("canvas");
@@ -70,9 +70,9 @@ async function bowMoves(page) {
       part.getContext("2d").drawImage(canvas, -x, 0);
       return part.toDataURL();
     });
-  const first = await look();
+  const first = await picture();
   await page.waitForTimeout(SECOND);
-  return first !== (await look());
+  return first !== (await picture());
 }
 
 /**
@@ -80,7 +80,7 @@ async function bowMoves(page) {
  * @param {string} url
  * @param {"reduce" | "no-preference"} reducedMotion
  */
-async function look(browser, url, reducedMotion) {
+async function visit(browser, url, reducedMotion) {
   const { page, errors } = await open(browser, url);
   await page.emulateMedia({ reducedMotion });
   await page.reload();
@@ -152,8 +152,8 @@ export const isDrawnInFull = true;
 
 export default async function (browser, url) {
   await browser.addInitScript(countDrawings);
-  const calm = await look(browser, url, "reduce"); // first: nothing is remembered yet
-  const lively = await look(browser, url, "no-preference");
+  const calm = await visit(browser, url, "reduce"); // first: nothing is remembered yet
+  const lively = await visit(browser, url, "no-preference");
   const dragged = await drag(browser, url);
   const errors = [calm, lively, dragged].flatMap((each) => each.errors);
   return { calm, lively, drag: dragged, errors };

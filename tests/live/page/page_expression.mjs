@@ -97,14 +97,14 @@ export default async function (browser, url) {
     () =>
       new Promise((resolve) => {
         let began = NaN;
-        const look = () => {
+        const check = () => {
           const samples = new Float32Array(1024);
           globalThis.analysers.at(-1)?.getFloatTimeDomainData(samples);
           if (samples.some((sample) => Math.abs(sample) > 1e-3)) resolve(performance.now() - began);
-          else setTimeout(look, 2);
+          else setTimeout(check, 2);
         };
         addEventListener("pointerdown", (event) => (began = event.timeStamp), { capture: true });
-        look();
+        check();
       }),
   );
   found.loaded = [];

@@ -23,7 +23,7 @@ export default async function (browser, url) {
   await page.click("#tab-all");
   found.reset = await page.locator(".reset-all").isVisible();
   await page.click("#tab-connect");
-  found.told = await page.locator("#panel-connect").textContent();
+  found.status = await page.locator("#panel-connect").textContent();
   found.formIsShown = await page.locator("#panel-connect form").isVisible();
   found.errors = errors;
   return found;

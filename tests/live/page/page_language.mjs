@@ -27,7 +27,7 @@ export default async function (browser, url) {
   };
   const end = async () => {
     await page.keyboard.up("KeyC");
-    await page.click("#tab-connect"); // which tells the status only while it is shown
+    await page.click("#tab-connect"); // which shows the status only while it is shown
     await page.waitForTimeout(600);
     await page.click("#tab-see");
     await page.waitForTimeout(400);

@@ -71,14 +71,14 @@ export default async function (browser, url) {
   await page.click("#tab-all");
   await page.fill("#panel-all input[type=search]", "/body/blend");
   const beside = page.getByRole("button", { name: "Learn: Body to bridge" });
-  const told = page.locator("#panel-all .parameter:not([hidden]) .told");
+  const learned = page.locator("#panel-all .parameter:not([hidden]) .learned");
   await beside.press("Space");
   found.asked = {
-    told: await told.textContent(),
+    text: await learned.textContent(),
     pressed: await beside.getAttribute("aria-pressed"),
   };
   await sendMidi(page, TOUCH, 90);
-  found.told = await told.textContent();
+  found.text = await learned.textContent();
   found.knobs = await page.evaluate(() => {
     const rows = [...document.querySelectorAll("#panel-all .parameter")];
     const row = rows.find((one) => one.querySelector("code").textContent === "/bow/speed");

@@ -22,7 +22,7 @@ async function shown(page) {
 }
 
 /**
- * Touch the fingerboard while the test looks who plays.
+ * Touch the fingerboard while the test checks who plays.
  * @param {import("playwright-core").Page} page
  * @param {string} step
  * @param {(step: string) => Promise<void>} reach

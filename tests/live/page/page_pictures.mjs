@@ -29,7 +29,7 @@ function helmholtz(phase) {
 
 /**
  * Where the corners of the shapes are, as the stroboscope shows one period slowly.
- * @param {number} error of the period that it is told
+ * @param {number} error of the period that is reported
  */
 function corners(error) {
   const stroboscope = new Stroboscope();
@@ -67,9 +67,9 @@ function restError() {
   return error;
 }
 
-/** The limits at three places, told of a bow that has just moved from one place to another. */
+/** The limits at three places, reported of a bow that has just moved from one place to another. */
 function limits() {
-  const told = new Limits();
+  const moved = new Limits();
   const [least, most] = [0.0008, 0.2]; // N at beta 1
   for (const [beta, times] of [
     [0.1, 120],
@@ -77,9 +77,9 @@ function limits() {
   ]) {
     const bow = { string: 0, speed: 0.2, force: 0.5, beta, x: 0.3 };
     const schelleng = { min: least / beta ** 2, max: most / beta };
-    for (let n = 0; n < times; n++) told.follow({ bow, schelleng }, 1 / 60);
+    for (let n = 0; n < times; n++) moved.follow({ bow, schelleng }, 1 / 60);
   }
-  return [...[0.05, 0.1, 0.4].map((beta) => told.at(beta)), told.tip];
+  return [...[0.05, 0.1, 0.4].map((beta) => moved.at(beta)), moved.tip];
 }
 
 const state = {

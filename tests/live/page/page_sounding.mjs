@@ -90,6 +90,6 @@ export default async function (browser, url, { words: [folder, tune] }) {
   await untrusted.page.waitForTimeout(1000);
   const pressed = untrusted.page.locator("#panel-keep button[aria-pressed=true]");
   await save(untrusted.page, pressed.first(), `${folder}/script.wav`);
-  const told = untrusted.errors.filter((error) => !error.includes(DEPRECATED));
-  return { ...found, errors: [...errors, ...told] };
+  const others = untrusted.errors.filter((error) => !error.includes(DEPRECATED));
+  return { ...found, errors: [...errors, ...others] };
 }

@@ -1,4 +1,4 @@
-/** A newcomer comes to an easy tune, plays it with a mistake, and is told how it went; prints what was seen. */
+/** A newcomer comes to an easy tune, plays it with a mistake, and sees how it went; prints what was seen. */
 
 import { drawn, open, requested, commands } from "./browser.mjs";
 
@@ -33,7 +33,7 @@ function overlaps() {
 export default async function (browser, url) {
   const found = { overlaps: {}, boards: {} };
   const { page, errors } = await open(browser, url);
-  const look = async (/** @type {string} */ what) => {
+  const see = async (/** @type {string} */ what) => {
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });
       await drawn(page);
@@ -47,7 +47,7 @@ export default async function (browser, url) {
     actions += 1;
     await done;
   };
-  await look("guide");
+  await see("guide");
   await page.setViewportSize({ width: 390, height: 844 });
   await act(page.touchscreen.tap(200, 450)); // a string
   await act(page.click("#skip"));
@@ -56,7 +56,7 @@ export default async function (browser, url) {
   await page.waitForSelector("#lesson:not([hidden])");
   found.actions = actions;
   found.covered = await page.locator("#more").isVisible();
-  await look("lesson");
+  await see("lesson");
 
   const said = () => page.textContent("#said");
   const press = (/** @type {number} */ pitch) => page.keyboard.press(`Key${KEYS[pitch - FIRST]}`);
@@ -69,7 +69,7 @@ export default async function (browser, url) {
   found.answered = await said();
   for (const pitch of notes) await press(pitch);
   found.result = await said();
-  await look("result");
+  await see("result");
   await page.click("#again");
   found.again = await page.locator("#score").isVisible();
   await page.click("#stop");
@@ -84,7 +84,7 @@ export default async function (browser, url) {
   // The strip of notes is drawn, and goes on.
   const picture = () => page.locator("#score").evaluate((canvas) => canvas.toDataURL());
   const one = await picture();
-  for (let look = 0; look < 100 && !found.goesOn; look++) {
+  for (let tries = 0; tries < 100 && !found.goesOn; tries++) {
     await drawn(page);
     found.goesOn = one !== (await picture());
   }

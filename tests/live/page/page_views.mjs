@@ -1,4 +1,4 @@
-/** Looks at the page in every size, theme and language; prints what it finds. */
+/** Checks the page in every size, theme and language; prints what it finds. */
 
 import { READY, SIZES, drawn, held, open, pretendMidi, requested, commands } from "./browser.mjs";
 

@@ -25,7 +25,7 @@ const INDEX = Object.fromEntries(facts.parameters.map(({ address, index }) => [a
 const NAMES = Object.fromEntries(Object.entries(facts.kinds).map(([name, kind]) => [kind, name]));
 const RATE = 48000;
 const LOUDNESS = "/playing/dynamics";
-const PEOPLE = "/playing/section";
+const SECTION = "/playing/section";
 
 /** A player, and what is requested through it. */
 async function playing(members = {}) {
@@ -196,7 +196,7 @@ test("panic lets go of what hands hold", async () => {
   assert.equal(of(END).length, count);
 });
 
-test("a written parameter of the bow is told at once, later as it moves", async () => {
+test("a written parameter of the bow is reported at once, later as it moves", async () => {
   const { player, sink } = await playing({ target: () => 0.25 });
   assert.equal(player.value("/bow/speed"), 0.25);
   player.write("/bow/speed", 0.1);
@@ -213,7 +213,7 @@ test("a written force of the bow is heard without assist", async () => {
   assert.equal(player.value("/bow/assist"), 0);
 });
 
-test("with others the value they set counts, but one just written here is told at once", async () => {
+test("with others the value they set counts, but one just written here is reported at once", async () => {
   const set = { [LOUDNESS]: 0.8 };
   const { player, sink } = await playing({ reported: (address) => set[address] });
   assert.equal(player.value(LOUDNESS), 0.8);
@@ -236,18 +236,18 @@ test("a soft control waits for the value that others set", async () => {
 
 test("how many play a section is as the server can, and no more than one here", async () => {
   const here = await playing();
-  here.player.write(PEOPLE, 5);
-  assert.equal(here.player.value(PEOPLE), 1);
-  const there = await playing({ people: Infinity });
-  there.player.write(PEOPLE, 5.4);
-  assert.equal(there.player.value(PEOPLE), 5);
+  here.player.write(SECTION, 5);
+  assert.equal(here.player.value(SECTION), 1);
+  const there = await playing({ maxPlayers: Infinity });
+  there.player.write(SECTION, 5.4);
+  assert.equal(there.player.value(SECTION), 5);
   there.player.fingerOn("hand", 70, 0.5);
-  assert.deepEqual(there.values(WRITE, PEOPLE), [5]);
-  assert.deepEqual(there.values(EXPRESS, PEOPLE), []);
-  there.player.remap(merged(MAPPINGS.keyboard, [bindOf(PEOPLE, "cc 74", false)]));
+  assert.deepEqual(there.values(WRITE, SECTION), [5]);
+  assert.deepEqual(there.values(EXPRESS, SECTION), []);
+  there.player.remap(merged(MAPPINGS.keyboard, [bindOf(SECTION, "cc 74", false)]));
   there.player.midi([0xb0, 74, 127]);
-  assert.equal(there.values(WRITE, PEOPLE).at(-1), 16);
-  assert.equal(there.player.value(PEOPLE), 16);
+  assert.equal(there.values(WRITE, SECTION).at(-1), 16);
+  assert.equal(there.player.value(SECTION), 16);
 });
 
 test("a control with smoothing is not undone by the next note", async () => {

@@ -124,8 +124,8 @@ class Page:
         assert message.type is aiohttp.WSMsgType.CLOSE
         return message.data, message.extra
 
-    async def told(self, key: str) -> Any:
-        """What the next text that has it tells."""
+    async def value_of(self, key: str) -> Any:
+        """The value in the next text that has the key."""
         while True:
             message = await self.socket.receive()
             if message.type is aiohttp.WSMsgType.TEXT and key in (text := json.loads(message.data)):
@@ -317,13 +317,13 @@ def test_what_is_no_command_and_no_question_ends_the_connection(server, subtests
 
 def test_pages_that_sound_get_the_commands_of_others_and_hear_that_they_left(server) -> None:
     async def share(one: Page, other: Page) -> Any:
-        number = (await one.told("status"))["page"]
+        number = (await one.value_of("status"))["page"]
         await other.want(sounds=True)
         await asyncio.sleep(0.2)
         await one.command(command(BEGIN, 0, 69.0, 69.0))
         found = await other.numbers()
         await one.socket.close()
-        assert await other.told("left") == number
+        assert await other.value_of("left") == number
         return found.tolist(), number
 
     found, number = with_pages(server, share, 1, 1)
@@ -333,9 +333,9 @@ def test_pages_that_sound_get_the_commands_of_others_and_hear_that_they_left(ser
 # ---------------------------------------------------------------- parts
 
 
-def test_the_status_tells_which_part_it_is_and_one_that_is_not_there_ends_the_connection(server):
+def test_the_status_says_which_part_it_is_and_one_that_is_not_there_ends_the_connection(server):
     for part in (1, 2):
-        status = with_pages(server, lambda page: page.told("status"), part)
+        status = with_pages(server, lambda page: page.value_of("status"), part)
         assert (status["part"], status["parts"]) == (part, 2)
     for part in ("0", "3", "-1", "x", "", "1.0"):
         assert with_pages(server, Page.end, part) == (NO_PART, "there are 2 parts"), part
@@ -380,7 +380,7 @@ def test_a_snapshot_is_of_the_parts_own_instrument_and_the_level_that_of_the_mix
         with_pages(server, lambda page, value=value: snapshot(page, value), part)
 
 
-def test_the_room_is_one_for_all_and_a_section_tells_the_parts_place(server) -> None:
+def test_the_room_is_one_for_all_and_a_section_says_the_parts_place(server) -> None:
     first, second = server.players
 
     async def furnish(page: Page) -> None:

@@ -111,14 +111,14 @@ Command = tuple[int, int, float]
 def visit(
     role: str | None, *commands: Command, at_once: int = 9
 ) -> tuple[list[int], int | None, str]:
-    """Send commands as a page of a role: what was posted, the close code, and the role told.
+    """Send commands as a page of a role: what was posted, the close code, and the role sent.
 
     `at_once`: commands of one message.
     """
 
     async def meet() -> tuple[list[int], int | None, str]:
-        view, told = View(), ""
-        sockets = PageSockets(view, [0], dict)
+        view, own_role = View(), ""
+        sockets = PageSockets(view, [0], {})
         app = web.Application()
 
         async def page(request: web.Request) -> web.StreamResponse:
@@ -136,12 +136,12 @@ def visit(
             async with client.ws_connect("/socket") as socket:
                 message = await socket.receive()
                 if message.type is WSMsgType.TEXT:
-                    told = message.json()["status"]["role"]
+                    own_role = message.json()["status"]["role"]
                     rows = [[-1.0, *command, 0.0] for command in commands]
                     for some in (rows[at : at + at_once] for at in range(0, len(rows), at_once)):
                         await socket.send_bytes(np.array(some, "<f8").tobytes())
                     await asyncio.sleep(0.1)
-                return list(view.posted), socket.close_code, told
+                return list(view.posted), socket.close_code, own_role
 
     return asyncio.run(meet())
 

@@ -31,7 +31,7 @@ class View:
 
 def test_without_a_page_nothing_is_looked_at_and_nothing_wakes_the_process() -> None:
     view: Any = View()
-    sockets = PageSockets(view, [0], dict)
+    sockets = PageSockets(view, [0], {})
 
     async def serve() -> None:
         tasks = (sockets.send_snapshots, sockets.send_sound, sockets.send_status)

@@ -85,12 +85,12 @@ def test_the_page_learns_what_the_server_learns(run_node, page, settings):
     answers = run_node("learning.mjs", page, lines=streams).splitlines()
     kinds: set[str] = set()
     for given, line in zip(streams, answers, strict=True):
-        told = json.loads(line)
+        found = json.loads(line)
         sources, mapping, path = expected(given, settings)
-        assert told["sources"] == sources, given
-        assert [*map(placeless, told["binds"])] == rows_of(mapping), given
+        assert found["sources"] == sources, given
+        assert [*map(placeless, found["binds"])] == rows_of(mapping), given
         own = Path(given["name"])
-        contents = read_mapping_file(own, told["file"])
+        contents = read_mapping_file(own, found["file"])
         if path.exists():
             kept = read_mapping_file(path)
             assert contents == kept

@@ -46,7 +46,7 @@ def snapshots(run_node, seen, page) -> Any:
     return [*map(json.loads, run_node("looking.mjs", page, lines=lines).splitlines())]
 
 
-def test_strings_bow_and_fingers_are_where_they_are_and_what_is_heard_is_told(
+def test_strings_bow_and_fingers_are_where_they_are_and_what_is_heard_is_shown(
     snapshots, instrument, seen
 ):
     sounding = snapshots[0]

@@ -39,8 +39,8 @@ def test_the_ends_of_a_bind_are_written_by_keys(found) -> None:
 
 
 def test_a_button_beside_each_parameter_teaches_too_by_all_kinds_of_controls(found) -> None:
-    assert found["asked"] == {"told": "now move a control", "pressed": "true"}
-    assert found["told"] == "Aftertouch moves it"
+    assert found["asked"] == {"text": "now move a control", "pressed": "true"}
+    assert found["text"] == "Aftertouch moves it"
     assert found["knobs"] == 0  # what the player moves itself cannot be taught
     assert found["all"] == [
         "CC 74 Vibrato",

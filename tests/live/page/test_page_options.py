@@ -74,7 +74,7 @@ def test_guests_are_what_the_option_says_or_a_config_file(tmp_path, capsys) -> N
     assert err.count("\n") == 1
 
 
-def test_what_is_said_tells_who_may_play() -> None:
+def test_what_is_said_says_who_may_play() -> None:
     page = page_of("--lan")
     assert page_lines(*page.address, LAN, networks=page.networks) == [
         "the page at http://127.0.0.1:9002/",

@@ -16,7 +16,7 @@ def answers(run_node, page) -> Any:
 
 
 def test_the_slowed_corner_runs_around_once_at_one_speed(answers) -> None:
-    """Also where the period is told wrong by a third of a cent, of which 5 s make 0.4 periods."""
+    """Also where the reported period is wrong by a third of a cent: 0.4 periods in 5 s."""
     for period in ("exact", "drifting"):
         steps = [(after - before + 0.5) % 1.0 - 0.5 for before, after in pairwise(answers[period])]
         assert math.fsum(steps) == pytest.approx(63 / 64, abs=0.06)

@@ -132,7 +132,7 @@ def mappings(taught) -> dict[str, Mapping]:
 
 
 @pytest.fixture(scope="module")
-def page_told(run_node, playing, mappings, taught, everything):
+def page_results(run_node, playing, mappings, taught, everything):
     """Streams of calls, the tables that the page makes, and the commands that each comes to."""
     made = streams.Streams(2, list(mappings))
     played = [made.next() for _ in range(MANY_STREAMS if everything else STREAMS)]
@@ -147,14 +147,14 @@ def play(run_node, folder: Path, *lines: Any) -> list[Any]:
     return [*map(json.loads, run_node("playing.mjs", folder, lines=lines).splitlines())]
 
 
-def test_the_page_commands_what_the_server_commands(page_told, mappings, tmp_path):
+def test_the_page_commands_what_the_server_commands(page_results, mappings, tmp_path):
     presets, kinds = Presets(tmp_path), set()
     tunings = {
         name: EQUAL if name == "equal" else read_tuning(*map(Path, name.split(", ")))
         for name in streams.TUNINGS
     }
-    played, _, told = page_told
-    for number, (calls, page) in enumerate(zip(played, told, strict=True)):
+    played, _, commanded = page_results
+    for number, (calls, page) in enumerate(zip(played, commanded, strict=True)):
         server = Server(mappings, tunings, presets)
         for call in calls:
             server.call(*call)
@@ -166,9 +166,9 @@ def test_the_page_commands_what_the_server_commands(page_told, mappings, tmp_pat
     assert len(kinds) == len(facts.facts()["kinds"]) - 2  # the page posts no ramps, and holds none
 
 
-def test_the_page_writes_the_tables_that_the_server_writes(page_told, mappings):
+def test_the_page_writes_the_tables_that_the_server_writes(page_results, mappings):
     tuning = read_tuning(Path("chaozhou-seven-equal"))
-    _, tables, _ = page_told
+    _, tables, _ = page_results
     for name, mapping in mappings.items():
         policy = Player([Recorder()]).policy
         wanted = make_tables(mapping, Controls(), tuning=tuning, a4=STANDARD_A4, policy=policy)

@@ -49,7 +49,7 @@ def test_axe_finds_nothing_that_keeps_people_out(imitated, everything):
     assert drive("page_axe.mjs", imitated, "all" if everything else "some") == []
 
 
-def test_load_and_latency_are_told_where_they_are_high(found) -> None:
+def test_load_and_latency_are_shown_where_they_are_high(found) -> None:
     assert found["status"] == ["", "load 85 % · latency 12 ms"]
 
 

@@ -25,9 +25,9 @@ def hum() -> np.ndarray:
 
 def test_what_is_hummed_is_drawn_kept_in_tune_and_heard(sounding, tmp_path):
     soundfile.write(tmp_path / "voice.wav", hum(), RATE, subtype="PCM_16")
-    told = drive("page_voice.mjs", sounding, str(tmp_path / "voice.wav"), str(tmp_path))
-    assert told["still"] == 0  # after it was stopped
-    assert min(told["pixels"].values()) > 30, told["pixels"]
+    found = drive("page_voice.mjs", sounding, str(tmp_path / "voice.wav"), str(tmp_path))
+    assert found["still"] == 0  # after it was stopped
+    assert min(found["pixels"].values()) > 30, found["pixels"]
     commands = [json.loads(line) for line in (tmp_path / "hum.jsonl").read_text().splitlines()[1:]]
     begun = [command[5] for command in commands if "begin" in command]
     octaves = {round(pitch) - 12 * ((round(pitch) - 57) // 12) for pitch in begun}

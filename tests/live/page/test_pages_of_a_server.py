@@ -112,13 +112,13 @@ def test_the_page_of_a_guest_asks_once_for_the_pin_and_offers_what_a_guest_may_d
     assert not found["formIsShown"]
     assert not found["cards"]
     assert not found["reset"]
-    assert "guest who plays" in found["told"]
+    assert "guest who plays" in found["status"]
 
 
 @pytest.fixture(scope="module")
 def of_three() -> tuple[Any, dict[str, list[int]]]:
     """What pages of a server of three parts found, and the parts that played at each step."""
-    told: dict[str, list[int]] = {}
+    holding: dict[str, list[int]] = {}
     with serving(3 * ONE) as (server, url):
 
         def playing() -> list[int]:
@@ -127,14 +127,14 @@ def of_three() -> tuple[Any, dict[str, list[int]]]:
 
         def reach(step: str) -> None:
             if step.startswith("holds"):
-                told[step] = until(playing, step)
+                holding[step] = until(playing, step)
             elif step == "let go":
                 until(lambda: not playing(), step)
             elif step == "the room is larger":
                 until(lambda: server.players[0].value(ROOM_SIZE) == 40.0, step)
 
         found = drive("page_parts.mjs", url, reach=reach)
-    return found, told
+    return found, holding
 
 
 def test_a_page_shows_its_part_and_offers_the_others(of_three) -> None:
@@ -150,6 +150,6 @@ def test_a_page_shows_its_part_and_offers_the_others(of_three) -> None:
 
 
 def test_a_finger_plays_the_part_of_its_page_alone_and_the_room_is_one_for_all(of_three) -> None:
-    found, told = of_three
-    assert told == {f"holds in {part}": [part] for part in (2, 3, 1)}
+    found, holding = of_three
+    assert holding == {f"holds in {part}": [part] for part in (2, 3, 1)}
     assert "The room is one for all parts." in found["about"]

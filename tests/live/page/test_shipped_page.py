@@ -41,7 +41,7 @@ def shipped(tmp_path, monkeypatch) -> Path:
     return folder
 
 
-def told(monkeypatch) -> list[dict[str, Any]]:
+def reported(monkeypatch) -> list[dict[str, Any]]:
     """The events of the process that finds a module for a server."""
     events: list[dict[str, Any]] = []
     send = lambda event, **details: events.append({"event": event, **details})  # noqa: E731
@@ -52,7 +52,9 @@ def told(monkeypatch) -> list[dict[str, Any]]:
 
 
 @pytest.mark.usefixtures("shipped")
-def test_a_page_is_written_whole_as_it_was_shipped_and_its_version_told(tmp_path, caplog) -> None:
+def test_a_page_is_written_whole_as_it_was_shipped_and_its_version_reported(
+    tmp_path, caplog
+) -> None:
     written = write_page(tmp_path / "page")
     assert {str(file): (tmp_path / "page" / file).read_bytes() for file in written} == OLDER
     assert "the page is that of version 0.0.9: nothing is built" in caplog.text
@@ -69,7 +71,7 @@ def test_a_shipped_module_of_these_sources_goes_with_the_page_of_now(
     assert not caplog.records
 
 
-def test_without_any_page_the_error_tells_what_would_help(shipped, tmp_path) -> None:
+def test_without_any_page_the_error_says_what_would_help(shipped, tmp_path) -> None:
     (shipped / "yehu.wasm").unlink()
     with pytest.raises(YehuError, match="Debian's lld"):
         write_page(tmp_path / "page")
@@ -78,14 +80,14 @@ def test_without_any_page_the_error_tells_what_would_help(shipped, tmp_path) -> 
 
 @pytest.mark.usefixtures("shipped")
 def test_a_server_offers_no_module_of_other_sources(monkeypatch) -> None:
-    events = told(monkeypatch)
+    events = reported(monkeypatch)
     assert [event["event"] for event in events if event["event"] != "beginning"] == ["none"]
     assert "Debian's lld" in events[-1]["reason"]
 
 
 def test_a_server_offers_a_shipped_module_of_these_sources(shipped, monkeypatch) -> None:
     (shipped / "yehu.wasm").write_bytes(with_section(EMPTY, f"9.9 {build_hash()}"))
-    assert told(monkeypatch)[-1] == {"event": "module", "path": str(shipped / "yehu.wasm")}
+    assert reported(monkeypatch)[-1] == {"event": "module", "path": str(shipped / "yehu.wasm")}
 
 
 @pytest.mark.usefixtures("shipped")

@@ -1,4 +1,4 @@
-"""Whoever plays a tune along is followed, answered, and told what went well."""
+"""Whoever plays a tune along is followed, answered, and sees what went well."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def found(run_node, page) -> Any:
     return json.loads(run_node("tune.test.mjs", page))
 
 
-def test_it_waits_for_each_note_and_tells_what_went_well_and_what_was_hard(found) -> None:
+def test_it_waits_for_each_note_and_says_what_went_well_and_what_was_hard(found) -> None:
     assert found["waiting"]["way"] == [1, 1, 2, 2, 3, 4]
     assert found["waiting"]["wrong"] == [69]
     assert not found["waiting"]["isOn"]
@@ -27,7 +27,7 @@ def test_it_waits_for_each_note_and_tells_what_went_well_and_what_was_hard(found
     assert found["bowed"] == [1, 2]  # another stroke of the hand repeats a note
 
 
-def test_in_time_it_goes_on_and_tells_how_late(found) -> None:
+def test_in_time_it_goes_on_and_says_how_late(found) -> None:
     result = found["timed"]["result"]
     assert (result["right"], result["count"]) == (3, 4)
     assert result["late"] == pytest.approx((0.1 + 0.0 + 0.0) / 3, abs=0.01)
@@ -58,9 +58,9 @@ def test_tunes_are_written_in_their_own_key_and_slurs_are_seen(found) -> None:
 
 
 def test_the_challenge_counts_tone_from_the_first_stroke_and_after_a_scratch(found) -> None:
-    told = found["challenge"]
-    assert told["isOver"]
-    assert told["gone"] == pytest.approx(20.0)
-    assert told["tone"] == pytest.approx(3.0 + 4.0 + 8.5)
-    assert told["longest"] == pytest.approx(8.5)
-    assert told["found"] == pytest.approx(1.0)  # of a bow that was too light
+    state = found["challenge"]
+    assert state["isOver"]
+    assert state["gone"] == pytest.approx(20.0)
+    assert state["tone"] == pytest.approx(3.0 + 4.0 + 8.5)
+    assert state["longest"] == pytest.approx(8.5)
+    assert state["found"] == pytest.approx(1.0)  # of a bow that was too light

@@ -257,7 +257,7 @@ class Osc:
         self._socket.connect(("127.0.0.1", port))
 
     def send(self, address: str, *arguments: float | str) -> None:
-        with contextlib.suppress(ConnectionRefusedError):  # told of an earlier packet
+        with contextlib.suppress(ConnectionRefusedError):  # of an earlier packet
             self._socket.send(pack(f"/yehu{address}", *arguments))
 
     def ask(self, address: str, *arguments: float | str, last: str = "") -> dict[str, Any]:
@@ -282,8 +282,8 @@ class Osc:
 
         def ask() -> dict[str, Any]:
             heard = self.ask("/status", last=f"/status/{names[-1]}")
-            told = {name: heard[at][0] for name in names if (at := f"/status/{name}") in heard}
-            return told if len(told) == len(names) else {}
+            status = {name: heard[at][0] for name in names if (at := f"/status/{name}") in heard}
+            return status if len(status) == len(names) else {}
 
         return until(ask, "the whole status", 20.0)
 
@@ -296,7 +296,7 @@ class Serve:
 
     def __init__(self, environment: dict[str, str], *words: object) -> None:
         self.lines: list[str] = []
-        self._told = threading.Condition()
+        self._changed = threading.Condition()
         self._clients: list[Osc] = []
         self._family: set[int] = set()
         self.process = forks.start(
@@ -307,9 +307,9 @@ class Serve:
 
     def _listen(self) -> None:
         for line in self.process.stderr:
-            with self._told:
+            with self._changed:
                 self.lines.append(line.rstrip())
-                self._told.notify_all()
+                self._changed.notify_all()
 
     def said(self, pattern: str, within_s: float = 10.0, after: int = 0) -> re.Match[str]:
         """Wait for a line that matches; the first one after `after` lines."""
@@ -318,8 +318,8 @@ class Serve:
             fitting = (re.search(pattern, line) for line in self.lines[after:])
             return next((match for match in fitting if match), None)
 
-        with self._told:
-            self._told.wait_for(found, within_s)
+        with self._changed:
+            self._changed.wait_for(found, within_s)
             match = found()
         assert match, f"{pattern!r} not within {within_s} s among {self.lines}"
         return match

@@ -57,11 +57,11 @@ def test_ctrl_c_again_and_again_keeps_the_take(silent, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_full_disk_is_told_by_the_exit_code(silent, tmp_path):
+def test_a_full_disk_is_reported_by_the_exit_code(silent, tmp_path):
     take = tmp_path / "take.wav"
     server = silent("--record", take)
     server.osc()
     resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (250_000, 250_000))
-    told = server.said(r"recording ended: .*take\.wav: cannot write: .*; (\d+\.\d) s are kept")
+    ended = server.said(r"recording ended: .*take\.wav: cannot write: .*; (\d+\.\d) s are kept")
     assert server.end() == 2
-    assert len(sound_of(take)) / 48_000 == pytest.approx(float(told[1]), abs=0.05)
+    assert len(sound_of(take)) / 48_000 == pytest.approx(float(ended[1]), abs=0.05)

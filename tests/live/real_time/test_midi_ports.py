@@ -30,7 +30,7 @@ from yehu_server.playing.options import PlayingOptions
 
 RATE, PERIOD = 48000, 1024
 LISTENS_AFTER_S = 0.2  # see test_a_port_is_listened_to_before_it_is_open
-SOON_S = 60.0  # a port is looked for every half a second
+SOON_S = 60.0  # ports are polled every half a second
 
 # Orders on stdin: "open CLIENT PORT", "close CLIENT", "send CLIENT HEX ...".
 SENDER = """
@@ -90,7 +90,7 @@ class Program:
             env=environment,
         )
 
-    def tell(self, order: str) -> None:
+    def send(self, order: str) -> None:
         self._process.stdin.write(order + "\n")
         self._process.stdin.flush()
         assert self._process.stdout.readline() == "done\n"
@@ -151,7 +151,7 @@ class Witness:
         """Send until it plays: on a busy machine JACK loses messages."""
 
         def played() -> bool:
-            program.tell(order)
+            program.send(order)
             time.sleep(0.1)
             return self.player.pitch == pitch
 
@@ -203,7 +203,7 @@ def listening(shared_witness, until) -> Witness:
 @pytest.fixture
 def keys(listening, sender) -> Iterator[tuple[Witness, Program]]:
     """A server that hears a keyboard."""
-    sender.tell("open keyboard out")
+    sender.send("open keyboard out")
     listening.hears("MIDI: keyboard:out is connected")
     yield listening, sender
     listening.forget()
@@ -224,7 +224,7 @@ def test_the_default_mapping_reaches_the_instrument(keys, until):
         applied.clear()
 
         def moved() -> bool:
-            keyboard.tell(f"send keyboard {data}")
+            keyboard.send(f"send keyboard {data}")
             time.sleep(0.1)
             applied.update(heard.applied())
             return address in applied
@@ -271,7 +271,7 @@ def test_a_port_that_vanishes_takes_its_notes_with_it(keys):
     heard, keyboard = keys
     heard.plays(69.0, keyboard, "send keyboard 90 45 60")
     heard.forget()
-    keyboard.tell("close keyboard")
+    keyboard.send("close keyboard")
     heard.hears("MIDI: keyboard:out is gone; its notes are ended")
     heard.comes_to(None)
     _, target, ramp = heard.applied()["/bow/speed"]
@@ -280,7 +280,7 @@ def test_a_port_that_vanishes_takes_its_notes_with_it(keys):
     assert heard.server.midi.connected == []
 
     heard.forget()
-    keyboard.tell("open keyboard out")
+    keyboard.send("open keyboard out")
     heard.hears("MIDI: keyboard:out is connected")
     heard.plays(67.0, keyboard, "send keyboard 90 43 60")
     heard.plays(None, keyboard, "send keyboard 80 43 60")
@@ -290,7 +290,7 @@ def test_a_program_that_dies_takes_its_notes_with_it_and_no_other_ones(keys, jac
     heard, keyboard = keys
     other = Program(SENDER, jackd.environment)
     try:
-        other.tell("open pads out")
+        other.send("open pads out")
         heard.hears("MIDI: pads:out is connected")
         heard.plays(69.0, keyboard, "send keyboard 90 45 60")
         heard.plays(72.0, other, "send pads 90 48 60")
@@ -305,13 +305,13 @@ def test_only_the_ports_asked_for_are_opened_and_one_of_our_own_is_there(
     witness, sender, jackd, until
 ):
     heard = witness(patterns=["piano"], virtual="yehu in")
-    sender.tell("open drums out")
-    sender.tell("open piano out")
+    sender.send("open drums out")
+    sender.send("open piano out")
     heard.hears("MIDI: piano:out is connected")
     time.sleep(0.6)
     assert sorted(heard.server.midi.connected) == ["piano:out", "yehu in"]
     until(lambda: any("yehu in" in port for port in jackd.ports()), "our own port", 2.0)
-    sender.tell("send drums 90 45 60")
+    sender.send("send drums 90 45 60")
     heard.plays(67.0, sender, "send piano 90 43 60")
 
 
@@ -323,7 +323,7 @@ def test_of_two_ports_with_one_name_the_one_that_stays_is_heard(listening, jackd
         heard.hears("MIDI: twins:midi #2 is connected")
         heard.plays(69.0, twins, "send 90 45 60")  # the second
         heard.forget()
-        twins.tell("close")
+        twins.send("close")
         heard.hears("is gone")
         time.sleep(1.2)
         heard.plays(67.0, twins, "send 90 43 60")
@@ -375,7 +375,7 @@ def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listenin
         hear_noise(heard, until, lambda: [0xD0, 0x4A, 0x11])
         return bool(heard.server.status()["midi_malformed_last"].startswith("d0 4a 11"))
 
-    until(is_last, "the last one to be told", SOON_S)
+    until(is_last, "the last one to be reported", SOON_S)
     heard.comes_to(None)
     assert heard.malformed() >= before + 5000
 
@@ -424,7 +424,7 @@ def feed() -> MidiFeed:
 
 
 class Studio:
-    """A MIDI system with a keyboard and a synthesizer, and a port of it; what is done and told."""
+    """A MIDI system with a keyboard and a synthesizer, and a port of it; all done and reported."""
 
     def __init__(self) -> None:
         self.ports = ["keys", "synth"]
@@ -436,10 +436,10 @@ class Studio:
         inputs._finder, inputs._client = self, lambda: self
         return inputs
 
-    def told(self) -> list[tuple[object, ...]]:
-        """What was told since the last call."""
-        told, self.done = [each for each in self.done if len(each) > 1], []
-        return told
+    def reported(self) -> list[tuple[object, ...]]:
+        """What was reported since the last call."""
+        reported, self.done = [each for each in self.done if len(each) > 1], []
+        return reported
 
     def get_ports(self) -> list[str]:
         return self.ports
@@ -468,37 +468,37 @@ def test_a_port_is_listened_to_before_it_is_open_and_tried_again_where_it_cannot
     monkeypatch,
 ):
     studio = Studio()
-    studio.inputs("key").look()
+    studio.inputs("key").poll()
     assert [step for step, *_ in studio.done] == ["listens", "opens", "appeared"]
     studio.done, studio.is_owned = [], True
     inputs = studio.inputs("key")
     for _ in range(5):
-        inputs.look()
+        inputs.poll()
     assert [step for step, *_ in studio.done] == ["listens", "refused"]  # once, for some seconds
     monkeypatch.setattr(input_process, "AGAIN_S", 0.0)
-    inputs.look()
-    assert [step for step, *_ in studio.done] == ["listens", "refused", "listens"]  # untold
+    inputs.poll()
+    assert [step for step, *_ in studio.done] == ["listens", "refused", "listens"]  # unreported
     studio.is_owned = False
-    inputs.look()
+    inputs.poll()
     assert [step for step, *_ in studio.done[3:]] == ["listens", "opens", "appeared"]
     studio.done, studio.is_owned = [], True
-    inputs.look()
+    inputs.poll()
     assert studio.done == []
 
 
-def test_a_name_that_no_port_has_is_told_once_and_heard_when_it_comes():
+def test_a_name_that_no_port_has_is_reported_once_and_heard_when_it_comes():
     studio = Studio()
     inputs = studio.inputs("KEY", "breath")
     for _ in range(3):
-        inputs.look()
+        inputs.poll()
     missing = {"pattern": "breath", "present": ["keys", "synth"]}
-    assert studio.told() == [("appeared", {"port": "keys", "number": 0}), ("missing", missing)]
+    assert studio.reported() == [("appeared", {"port": "keys", "number": 0}), ("missing", missing)]
     studio.ports = ["keys", "breath"]
-    inputs.look()
-    assert studio.told() == [("appeared", {"port": "breath", "number": 1})]
+    inputs.poll()
+    assert studio.reported() == [("appeared", {"port": "breath", "number": 1})]
     studio.ports = ["keys"]
-    inputs.look()
-    assert studio.told() == [("vanished", {"port": "breath"})]
+    inputs.poll()
+    assert studio.reported() == [("vanished", {"port": "breath"})]
     said = []
     player = SimpleNamespace(learning=SimpleNamespace())
     ports = MidiPorts([player], MidiOptions(), 0, [0], said.append)
@@ -512,7 +512,7 @@ def test_a_name_that_no_port_has_is_told_once_and_heard_when_it_comes():
 
 def plays_on(osc, program: Program) -> bool:
     """Send a note; return whether it plays."""
-    program.tell("send keyboard 90 45 60")
+    program.send("send keyboard 90 45 60")
     time.sleep(0.1)
     return osc.status()["note"] > 68.0
 
@@ -529,7 +529,7 @@ def test_without_a_midi_system_it_is_useful_and_one_that_comes_is_found(
     osc.send("/note", 67, 90)
     until(lambda: osc.status()["note"] > 66.0, "OSC to play", 2.0)
     jackd.restart()
-    sender.tell("open keyboard out")
+    sender.send("open keyboard out")
     server.said("MIDI: keyboard:out is connected", 10.0)
     time.sleep(LISTENS_AFTER_S)
     until(lambda: plays_on(osc, sender), "MIDI to play", 5.0)
@@ -544,7 +544,7 @@ def test_when_the_midi_system_dies_osc_plays_on_and_midi_comes_back(jackd, serve
     osc = server.osc()
     server.said("playing on system")
     try:
-        first.tell("open keyboard out")
+        first.send("open keyboard out")
         server.said("MIDI: keyboard:out is connected", SOON_S)
         time.sleep(LISTENS_AFTER_S)
         until(lambda: plays_on(osc, first), "MIDI to play", 5.0)
@@ -560,7 +560,7 @@ def test_when_the_midi_system_dies_osc_plays_on_and_midi_comes_back(jackd, serve
     jackd.restart()
     second = Program(SENDER, jackd.environment)
     try:
-        second.tell("open keyboard out")
+        second.send("open keyboard out")
         server.said("MIDI: keyboard:out is connected", 10.0, said)
         time.sleep(LISTENS_AFTER_S)
         until(lambda: plays_on(osc, second), "MIDI to play again", 5.0)

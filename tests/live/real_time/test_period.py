@@ -1,4 +1,4 @@
-"""A sound server's period may differ from the block size: rhythm is kept, status tells both."""
+"""A sound server's period may differ from the block size: rhythm is kept, status has both."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ def test_what_is_sung_is_played_and_ends_with_the_input(jackd, serve, tmp_path):
     assert sum("end" in command for command in commands if isinstance(command, list)) >= len(NOTES)
 
 
-def test_an_input_that_is_not_there_is_told_and_the_rest_plays(jackd, serve):
+def test_an_input_that_is_not_there_is_reported_and_the_rest_plays(jackd, serve):
     jackd.start(128)
     server = serve("--follow", "no such microphone", "--midi-api", "none")
     server.said("no voice to follow: no audio input matches 'no such microphone'")
@@ -64,7 +64,7 @@ def test_an_input_that_is_not_there_is_told_and_the_rest_plays(jackd, serve):
 def test_an_input_that_stalls_or_goes_holds_no_note_and_is_followed_again(
     number, jackd, serve, tmp_path, until
 ):
-    """A sound server that is stopped says nothing; the input's silence tells."""
+    """A sound server that is stopped says nothing; the input's silence shows it."""
     jackd.start(128)
     take = tmp_path / "take.jsonl"
 

@@ -60,14 +60,14 @@ def test_a_loop_that_is_short_of_files_says_so_once_in_a_line(until, caplog):
 
 def test_oscquery_answers_again_after_its_server_failed(make_live, until, monkeypatch):
     fails = [TOO_MANY, None]
-    bound = Connections.bound
+    limit = Connections.limit
 
     def failing(connections: Connections, of: object) -> None:
         if fails and (error := fails.pop(0)) is not None:
             raise error
-        bound(connections, of)
+        limit(connections, of)
 
-    monkeypatch.setattr(Connections, "bound", failing)
+    monkeypatch.setattr(Connections, "limit", failing)
     live = make_live(http=WebOptions(("127.0.0.1", 0)))
     until(lambda: not fails, "a failure, and another try")
     with urllib.request.urlopen(f"http://127.0.0.1:{live.server.web.port}/?HOST_INFO") as answer:

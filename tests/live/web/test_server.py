@@ -51,14 +51,14 @@ def test_the_whole_tree_is_there_and_each_node_by_itself(port, nodes):
 
 def test_a_value_set_over_osc_is_read(shared_web, port):
     client = shared_web.client()
-    client.tell("/bow/force", 1.875)
+    client.send("/bow/force", 1.875)
     assert client.wait_for("/bow/force") == [1.875]
     assert ask(port, "/yehu/bow/force?VALUE").json == {"VALUE": [1.875]}
-    client.tell("/bow/force/unit", 0.625)
+    client.send("/bow/force/unit", 0.625)
     client.wait_for("/bow/force/unit")
     assert ask(port, "/yehu/bow/force/unit?VALUE").json == {"VALUE": [0.625]}
     assert ask(port, "/yehu/bow/force?VALUE").json == {"VALUE": [3.125]}
-    client.tell("/bow/force", 0.5)
+    client.send("/bow/force", 0.5)
     client.sync()
 
 
@@ -95,7 +95,7 @@ def test_the_proposals_status_codes(port):
         ("/yehu/status/load?CONTENTS", 204),
         ("/yehu/bow/force?COLOUR", 400),
         ("/yehu/bow/force?value", 400),
-        ("/yehu/bow/force?TAGS", 400),  # of the proposal, but not told of in EXTENSIONS
+        ("/yehu/bow/force?TAGS", 400),  # of the proposal, but not in EXTENSIONS
         ("/yehu/nothing", 404),
         ("/yehu/nothing?VALUE", 404),
         ("/bow/force", 404),
@@ -120,7 +120,7 @@ def test_what_the_host_is(shared_web, port):
     assert info["EXTENSIONS"] == dict.fromkeys(known.split(), True)
 
 
-def test_the_host_is_told_as_it_was_reached(make_live):
+def test_the_host_is_reported_as_it_was_reached(make_live):
     live = make_live(osc=("0.0.0.0", 0), http=WebOptions(("0.0.0.0", 0)), announce=False)  # noqa: S104
     info = ask(live.server.web.port, "/?HOST_INFO").json
     assert (info["OSC_IP"], info["WS_IP"]) == (HOST, HOST)

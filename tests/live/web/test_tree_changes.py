@@ -29,17 +29,17 @@ def changed(web: WebSocket) -> str:
     raise AssertionError("no PATH_CHANGED came")
 
 
-def test_a_learned_address_is_in_the_tree_and_the_change_is_told(live, web):
+def test_a_learned_address_is_in_the_tree_and_the_change_is_sent(live, web):
     port = live.server.web.port
     assert ask(port, "/my/fader").status == 404
-    web.tell("/yehu/learn", "/playing/vibrato")
+    web.message("/yehu/learn", "/playing/vibrato")
     for place in (0.0, 0.5):
-        web.tell("/my/fader", place)
+        web.message("/my/fader", place)
     assert changed(web) == "/"
     node = ask(port, "/my/fader").json
     assert (node["ACCESS"], node["TYPE"]) == (2, "f")
     assert node["RANGE"] == [{"MIN": 0.0, "MAX": 1.0}]
-    web.tell("/yehu/unlearn", "/playing/vibrato")
+    web.message("/yehu/unlearn", "/playing/vibrato")
     assert changed(web) == "/"
     assert ask(port, "/my/fader").status == 404
 
@@ -51,9 +51,9 @@ def test_a_preset_that_is_kept_or_removed_changes_the_choice(live, web):
         return ask(port, "/yehu/preset/load?RANGE").json["RANGE"][0]["VALS"]
 
     before = choice()
-    web.tell("/yehu/preset/save", "mine")
+    web.message("/yehu/preset/save", "mine")
     assert changed(web) == "/yehu/preset"
     assert set(choice()) == {*before, "mine"}
-    web.tell("/yehu/preset/delete", "mine")
+    web.message("/yehu/preset/delete", "mine")
     assert changed(web) == "/yehu/preset"
     assert choice() == before

@@ -61,11 +61,11 @@ def _as_it_was(shared_web, until):
 # ---------------------------------------------------------------- OSC
 
 
-def test_a_binary_frame_is_osc_and_who_sets_something_is_told(web, port):
-    web.tell(FORCE, 1.25)
+def test_a_binary_frame_is_osc_and_who_sets_something_is_answered(web, port):
+    web.message(FORCE, 1.25)
     assert web.next() == Message(FORCE, [1.25])
     assert ask(port, FORCE + "?VALUE").json == {"VALUE": [1.25]}
-    web.tell("/yehu/unsubscribe", None)  # the nil of a call's type, where it has no arguments
+    web.message("/yehu/unsubscribe", None)  # the nil of a call's type, where it has no arguments
     assert web.next() == Message("/yehu/unsubscribed", [])
     web.send(BINARY, b"no OSC")
     assert web.next().address == "/yehu/error"
@@ -74,12 +74,12 @@ def test_a_binary_frame_is_osc_and_who_sets_something_is_told(web, port):
 # ---------------------------------------------------------------- LISTEN and IGNORE
 
 
-def test_a_listener_is_told_the_value_at_once_and_then_each_change(web, shared_web):
+def test_a_listener_is_sent_the_value_at_once_and_then_each_change(web, shared_web):
     web.listen(FORCE)
     assert web.next() == Message(FORCE, [0.5])
     client = shared_web.client()
     for value in (1.0, 1.5, 99.0):
-        client.tell("/bow/force", value)
+        client.send("/bow/force", value)
         assert web.next() == Message(FORCE, [min(value, 5.0)])
     assert web.next(QUIET_S) is None
     for path, kind in (FORCE + "/unit", float), (DEVICE, str), (DEVICE + "_losses", int):
@@ -88,15 +88,15 @@ def test_a_listener_is_told_the_value_at_once_and_then_each_change(web, shared_w
         assert type(value) is kind
 
 
-def test_who_ignores_is_told_no_more(web, shared_web):
+def test_who_ignores_is_sent_no_more(web, shared_web):
     place = "/yehu/bow/position"
     for path in (FORCE, place):
         web.listen(path)
         assert web.next().address == path
     web.ignore(FORCE)
     web.sync()
-    shared_web.client().tell("/bow/force", 2.0)
-    shared_web.client().tell("/bow/position", 0.2)
+    shared_web.client().send("/bow/force", 2.0)
+    shared_web.client().send("/bow/position", 0.2)
     assert web.next() == Message(place, [pytest.approx(0.2)])
     assert web.next(QUIET_S) is None
 
@@ -216,11 +216,11 @@ def test_one_who_reads_nothing_holds_up_nobody(connect, shared_web, until):
     deaf, well = connect(), connect()
     unsent = shared_web.server.status()["http_unsent"]
     for _ in range(400):
-        deaf.tell("/yehu/ping", "x" * 30_000)
+        deaf.message("/yehu/ping", "x" * 30_000)
     until(lambda: shared_web.server.status()["http_unsent"] > unsent, "some is dropped")
     well.listen(FORCE)
     well.next()
-    shared_web.client().tell("/bow/force", 3.0)
+    shared_web.client().send("/bow/force", 3.0)
     assert well.next() == Message(FORCE, [3.0])  # though the deaf one still reads nothing
 
 
@@ -244,7 +244,7 @@ def test_what_a_peer_does_not_take_is_dropped_and_counted():
 def test_one_who_vanishes_is_forgotten_with_all_it_asked_for(shared_web, port, until):
     web = WebSocket(port)
     web.listen(FORCE)
-    web.tell("/yehu/subscribe", 3600.0)
+    web.message("/yehu/subscribe", 3600.0)
     web.sync()
     assert shared_web.server.status()["osc_subscribers"] == 1
     web.vanish()
@@ -256,8 +256,8 @@ def test_what_one_said_last_is_done_before_it_is_forgotten(shared_web, connect, 
     web = connect()
     web.sync()
     shared_web.ports.call_soon(lambda: time.sleep(0.3))  # all of it comes at once
-    web.tell("/yehu/subscribe", 3600.0)
-    web.tell(FORCE, 4.0)
+    web.message("/yehu/subscribe", 3600.0)
+    web.message(FORCE, 4.0)
     web.send(CLOSE, b"\x03\xe8")
     until(lambda: shared_web.player.value("/bow/force") == 4.0, "it is done")
     until(lambda: not clients._clients, "nobody is left")
@@ -277,8 +277,8 @@ def test_twenty_who_come_and_go_at_random_leave_nothing_behind(shared_web, port,
             for param in chance.sample(TABLE, 5):
                 web.listen("/yehu" + param.address)
             if chance.random() < 0.5:
-                web.tell("/yehu/subscribe", 3600.0)
-            web.tell(FORCE, chance.uniform(0.0, 5.0))
+                web.message("/yehu/subscribe", 3600.0)
+            web.message(FORCE, chance.uniform(0.0, 5.0))
             web.next(0.05)
             web.close() if chance.random() < 0.5 else web.vanish()
 
@@ -302,7 +302,7 @@ def test_twenty_who_come_and_go_at_random_leave_nothing_behind(shared_web, port,
 # ---------------------------------------------------------------- the end
 
 
-def test_the_end_of_the_server_is_told_and_soon(make_live):
+def test_the_end_of_the_server_is_reported_and_soon(make_live):
     live = make_live(http=WebOptions((HOST, 0)))
     webs = [WebSocket(live.server.web.port) for _ in range(5)]
     webs[0].sync()

@@ -1,8 +1,8 @@
 """Play live: by an audio device, or by a silent clock while there is none.
 
 Exactly one of them computes samples at any time. When the device is lost, the clock continues at
-the same frame within some hundredths of a second, and a new process looks for the device until it
-is back.
+the same frame within some hundredths of a second, and a new process searches for the device
+until it is back.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ log = logging.getLogger(__name__)
 
 NULL = "null"
 NULL_RATE = 48000.0
-FIRST_LOOK_S, COMPILING_S = 10.0, 300.0
+ANSWER_WITHIN_S, COMPILING_S = 10.0, 300.0
 HUNG_AFTER_S = 2.0
 LISTEN_S = 0.2  # to wait at a time for events of the device's process; within LONGEST_GAP_S
 AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 1.0, 30.0
-HOPELESS_S = 0.5  # a delay that the silent clock does not make up for
+LONGEST_LAG_S = 0.5  # beyond it, the silent clock does not catch up
 
 
 class SharedMemory:
@@ -90,7 +90,7 @@ class SilentClock:
             early = due - time.monotonic()
             if early > 0.0:
                 time.sleep(early)
-            elif early < -HOPELESS_S:
+            elif early < -LONGEST_LAG_S:
                 due = time.monotonic()
 
 
@@ -117,7 +117,7 @@ class OutputState:
 
 
 class Output:
-    """Plays an ensemble on a device, which it looks for from its construction on.
+    """Plays an ensemble on a device, which it searches for from its construction on.
 
     Call `find`, make the ensemble with that rate in ``memory``, then call `begin`, and at last
     `end`.
@@ -137,15 +137,15 @@ class Output:
         self._clock: SilentClock | None = None
         self._ensemble: Ensemble | None = None
         self._ending = threading.Event()
-        turns = (self._follow, self._ending, 0.0, "audio", changed)
+        turns = (self._turn, self._ending, 0.0, "audio", changed)
         self._thread = threading.Thread(target=run_forever, args=turns, name="audio", daemon=True)
         self._awake = AwakeTime()
-        self._heart = (0, 0.0)  # number of callbacks, and the awake time of the last one
-        self._refused = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)  # the device refuses
-        self._short = Backoff()  # files or memory for a process are short
-        self._look_at = 0.0  # monotonic s
+        self._last_callback = (0, 0.0)  # its number, and its awake time
+        self._refusals = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)  # the device refuses
+        self._shortages = Backoff()  # files or memory for a process are short
+        self._search_at = 0.0  # monotonic s
         if options.device != NULL:
-            self._look()
+            self._search()
 
     def find(self) -> float:
         """Wait for the device; return the rate (Hz). Raises DeviceError: a named one is missing."""
@@ -169,20 +169,19 @@ class Output:
         self._ensemble = ensemble
         self._start_clock()
         if self._found is not None:
-            self._open(self._found)
-            reason = self._take_up()
+            reason = self._hand_over(self._found)
             if reason and self._options.device is not None:
                 self.end()
                 raise DeviceError(reason)
             if reason:
-                self._give_up(reason, self._refused)
+                self._give_up(reason, self._refusals)
         if self._options.device != NULL:
             self._thread.start()
 
     def end(self) -> None:
         """Stop playing."""
         self._ending.set()
-        self._events.put({"event": ""})  # it waits for one
+        self._events.put({"event": ""})  # to wake the thread
         if self._thread.is_alive():
             self._thread.join()
         self._drop_child(gently=True)
@@ -191,22 +190,23 @@ class Output:
 
     # -- the device's process ----------------------------------------------------------------
 
-    def _look(self) -> None:
-        """Start a new process that looks for the device."""
+    def _search(self) -> None:
+        """Start a new process that searches for the device."""
         self._events = queue.Queue()
         try:
             self._child = Child(
                 "yehu_server.live.audio.stream", self._events.put, share=[self.memory.descriptor]
             )
         except SHORTAGES as error:
-            self._give_up(f"the audio process cannot be started: {why(error)}", self._short)
+            self._give_up(f"the audio process cannot be started: {why(error)}", self._shortages)
             return
-        self._child.send("look", kind=OUTPUT, device=self._options.device)
+        self._child.send("search", kind=OUTPUT, device=self._options.device)
 
-    def _open(self, found: Message) -> None:
+    def _hand_over(self, found: Message) -> str:
+        """Hand the ensemble over from the clock to a device; return why that failed."""
         ensemble = self._ensemble
         if self._child is None or ensemble is None:
-            return
+            return self._reason({})
         channels = min(self._options.channels, found["channels"])
         self._child.send(
             "open",
@@ -218,17 +218,11 @@ class Output:
             latency=self._options.latency,
             channels=channels,
         )
-        self._wanted = found
-        self._channels = channels
-
-    def _take_up(self) -> str:
-        """Hand the ensemble over from the clock to the device; return why that failed."""
-        ensemble = self._ensemble
         ready = self._await({"ready", "failed", "gone"}, "the audio device")
-        if ready["event"] != "ready" or self._child is None or ensemble is None:
+        if ready["event"] != "ready":
             return self._reason(ready)
         self._stop_clock()
-        ensemble.channels = self._channels
+        ensemble.channels = channels
         self._child.send("start")
         started = self._await({"started", "failed", "gone"}, "the audio device")
         if started["event"] != "started":
@@ -236,12 +230,11 @@ class Output:
             ensemble.recover()
             self._start_clock()
             return self._reason(started)
-        self._refused.worked()
-        self._short.worked()
-        self._heart = (-1, 0.0)
-        name = self._wanted["name"]
-        self.state = OutputState(name, ready["latency_ms"], self.state.losses)
-        self._changed(f"playing on {name} at {ensemble.rate:g} Hz")
+        self._refusals.worked()
+        self._shortages.worked()
+        self._last_callback = (-1, 0.0)
+        self.state = OutputState(found["name"], ready["latency_ms"], self.state.losses)
+        self._changed(f"playing on {found['name']} at {ensemble.rate:g} Hz")
         return ""
 
     @staticmethod
@@ -249,16 +242,16 @@ class Output:
         return str(event.get("reason", "the audio process ended"))
 
     def _give_up(self, reason: str, backoff: Backoff) -> None:
-        """Stop looking for the device for a while, longer each time."""
+        """Stop searching for the device for a while, longer each time."""
         self._drop_child()
-        self._look_at = time.monotonic() + backoff.failed()
+        self._search_at = time.monotonic() + backoff.failed()
         if reason != self.state.problem:
             self.state.problem = reason
             self._changed(f"no sound: {reason}")
 
     def _await(self, kinds: set[str], what: str) -> Message:
         """The next event of some kinds; without one in time, as if the process had ended."""
-        deadline = self._awake() + FIRST_LOOK_S
+        deadline = self._awake() + ANSWER_WITHIN_S
         while not self._ending.is_set():
             try:
                 event = self._events.get(timeout=LISTEN_S)
@@ -279,44 +272,43 @@ class Output:
         if child is not None:
             child.stop() if gently else child.kill()
 
-    def _follow(self) -> None:
+    def _turn(self) -> None:
         """Handle an event of the device's process, or its silence."""
         if self.state.device is None and self._clock is None:  # the last call has failed
-            self._rest_on_clock()
+            self._return_to_clock()
         try:
             event = self._events.get(timeout=LISTEN_S)
         except queue.Empty:
             event = {"event": ""}
         if event["event"] == "found":
-            self._open(event)
-            reason = self._take_up()
+            reason = self._hand_over(event)
             if reason:
-                self._give_up(reason, self._refused)
+                self._give_up(reason, self._refusals)
         elif event["event"] in ("lost", "gone", "failed") or self._has_stopped():
-            self._lose(self._reason(event))
-        is_time = self._child is None and time.monotonic() >= self._look_at
+            self._handle_loss(self._reason(event))
+        is_time = self._child is None and time.monotonic() >= self._search_at
         if is_time and not self._ending.is_set():
-            self._look()
+            self._search()
 
     def _has_stopped(self) -> bool:
         """Whether the callbacks have stopped, in time in which this process was awake."""
-        beats, now = int(self._meters()["callbacks"]), self._awake()
-        if beats != self._heart[0] or self.state.device is None:
-            self._heart = beats, now
-        return now - self._heart[1] > HUNG_AFTER_S
+        count, now = int(self._meters()["callbacks"]), self._awake()
+        if count != self._last_callback[0] or self.state.device is None:
+            self._last_callback = count, now
+        return now - self._last_callback[1] > HUNG_AFTER_S
 
-    def _lose(self, reason: str) -> None:
+    def _handle_loss(self, reason: str) -> None:
         """Continue on the silent clock, once the device's process is gone."""
         device = self.state.device
         if device is None:
-            self._give_up(reason, self._refused)
+            self._give_up(reason, self._refusals)
             return
         problem = f"{device} is gone"
         self.state = OutputState(losses=self.state.losses + 1, problem=problem)
-        self._rest_on_clock()
+        self._return_to_clock()
         self._changed(f"{problem}; on the silent clock until it is back")
 
-    def _rest_on_clock(self) -> None:
+    def _return_to_clock(self) -> None:
         self._drop_child()
         if self._ensemble is not None:
             self._ensemble.recover()

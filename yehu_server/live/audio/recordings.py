@@ -209,7 +209,7 @@ class Recordings:
         recorder.stop()
         if recorder.failure:
             raise OutputError(f"the recording has ended: {recorder.failure}")
-        self._tell_of(recorder)
+        self._report(recorder)
         return recorder.target.name
 
     def close(self) -> None:
@@ -217,7 +217,7 @@ class Recordings:
         for recorder in (self._everything, self._requested):
             if recorder is not None:
                 recorder.stop()
-                self._tell_of(recorder)
+                self._report(recorder)
 
     @property
     def is_whole(self) -> bool:
@@ -231,6 +231,6 @@ class Recordings:
         running = [each for each in recorders if each is not None and each.is_running]
         return "; ".join(each.target.name for each in running)
 
-    def _tell_of(self, recorder: Recorder) -> None:
+    def _report(self, recorder: Recorder) -> None:
         if not recorder.failure and recorder.seconds:  # or that was reported
             self._on_message(f"{recorder.target}: {recorder.seconds:.1f} s")

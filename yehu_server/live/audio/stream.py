@@ -1,6 +1,6 @@
 """The process that holds an audio stream: ``python -m yehu_server.live.audio.stream``.
 
-It looks for the device until it is found, opens a stream with a compiled callback, and reports
+It searches for the device until it is found, opens a stream with a compiled callback, and reports
 when the device is lost. The instruments lie in memory shared with the parent, so that another such
 process, or the silent clock, continues where this one stopped. An output computes their sound; an
 input follows a voice, and posts events to them.
@@ -20,8 +20,8 @@ from yehu_server.errors import DeviceError
 from yehu_server.live.audio.devices import OUTPUT, AudioDevice, choose, devices, load_portaudio
 from yehu_server.util.processes import Message, Parent
 
-LOOK_EVERY_S, LATER_EVERY_S = 0.5, 2.0
-LATER = 60  # looks
+SEARCH_EVERY_S, LATER_EVERY_S = 0.5, 2.0
+LATER = 60  # searches
 WATCH_EVERY_S = 0.1
 STALLED = 10  # of these, with nothing new from an input: it is lost, though it does not say so
 CLOSE_WITHIN_S = 0.5
@@ -60,7 +60,7 @@ class Stream:
 
     @property
     def heard(self) -> int | None:
-        """How much an input has heard; None of an output."""
+        """Number of frames that an input has received; None of an output."""
         return None if self._own is None else int(self._own["hearing"]["heard"][0])
 
     @property
@@ -127,7 +127,7 @@ def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None
     if order is None:
         return None
     sounddevice = load_portaudio(order["kind"])
-    device = _look(parent, orders, sounddevice, order)
+    device = _search(parent, orders, sounddevice, order)
     if device is None:
         return None
     order = orders.get()
@@ -152,12 +152,12 @@ def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None
     return stream
 
 
-def _look(
+def _search(
     parent: Parent, orders: queue.Queue[Message | None], sounddevice: Any, order: Message
 ) -> AudioDevice | None:
     """Wait for the device. PortAudio lists new devices only after it is started again."""
     missing = ""
-    for look in itertools.count():
+    for search in itertools.count():
         try:
             there = devices(sounddevice, order["kind"])
             device = choose(there, order["device"], order["kind"])
@@ -174,11 +174,11 @@ def _look(
             )
             return device
         try:
-            if orders.get(timeout=LOOK_EVERY_S if look < LATER else LATER_EVERY_S) is None:
+            if orders.get(timeout=SEARCH_EVERY_S if search < LATER else LATER_EVERY_S) is None:
                 return None
         except queue.Empty:
             pass
-        sounddevice._terminate()  # noqa: SLF001 - there is no other way to look again
+        sounddevice._terminate()  # noqa: SLF001 - there is no other way to search again
         sounddevice._initialize()  # noqa: SLF001
     return None
 

@@ -73,7 +73,7 @@ class VoiceInput(Supervisor):
     def attend(self, child: Child, gone: threading.Event) -> None:
         """See `Supervisor`."""
         self._child = child
-        child.send("look", kind=INPUT, device=self._options.device)
+        child.send("search", kind=INPUT, device=self._options.device)
         gone.wait()
 
     def on_event(self, event: Message) -> None:

@@ -57,7 +57,7 @@ class SharedRing:
 class MidiFeed:
     """Finds the parts that each input plays, and posts its messages to their rings.
 
-    An input that comes back gets the number that it had: MIDI's channels are told apart by it.
+    An input that comes back gets the number that it had: it distinguishes MIDI's channels.
     Its methods may be called from any thread.
 
     `rings`: of each part.

@@ -21,8 +21,8 @@ from yehu_server.live.midi.jack_watch import JackWatch
 from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted, stable_names
 from yehu_server.util.processes import Message, Parent
 
-LOOK_EVERY_S = 0.5
-SYSTEM_EVERY_S = 2.0  # between looks for a MIDI system, where there is none
+POLL_EVERY_S = 0.5
+SYSTEM_EVERY_S = 2.0  # between searches for a MIDI system, where there is none
 AGAIN_S = 5.0  # until a port is tried again that could not be opened: another program may have it
 SENSE_EVERY_S = 0.05
 SENSE_WITHIN_S = 0.33  # active sensing promises a message every 300 ms
@@ -36,7 +36,7 @@ APIS = {"alsa": "LINUX_ALSA", "jack": "UNIX_JACK", "core": "MACOSX_CORE", "windo
 class Input:
     """An open MIDI input.
 
-    `is_forwarded`: whether the parent is told of each message, too.
+    `is_forwarded`: whether each message is sent to the parent, too.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class Input:
             self._feed.end_port_notes(self.name, time.monotonic_ns(), is_gone=False)
             self._parent.send("silent", port=self.name)
 
-    def wait_anew(self) -> None:
+    def restart_sensing(self) -> None:
         """Begin the time for active sensing again."""
         self._last = time.monotonic()
 
@@ -87,7 +87,7 @@ class Inputs:
     def __init__(self, parent: Parent, feed: MidiFeed, order: Message) -> None:
         self._parent = parent
         self._feed = feed
-        self._is_heard = False
+        self._forwards = False
         self._patterns: Sequence[str] = order["patterns"]
         # Whether all others but through ports are opened, too.
         self._others = bool(order.get("others", not self._patterns))
@@ -107,7 +107,7 @@ class Inputs:
         """Whether there is a MIDI system."""
         return self._finder is not None
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Open ports that appeared, close those that disappeared."""
         if self._finder is None and not self._start():
             return
@@ -127,14 +127,14 @@ class Inputs:
             is_due = self._refused.get(name, early) <= early
             if name not in self._open and is_due and self._wants(name):
                 self._add(name, full_name)
-        self._seek(stable)
+        self._report_missing(stable)
 
     def _wants(self, name: str) -> bool:
         named = bool(self._patterns) and is_wanted(name, self._patterns)
         return named or (self._others and is_wanted(name, ()))
 
-    def _seek(self, names: Iterable[str]) -> None:
-        """Report patterns that no port matches, at the first look."""
+    def _report_missing(self, names: Iterable[str]) -> None:
+        """Report patterns that no port matches, at the first poll."""
         present = list(names)
         for pattern in self._sought:
             if not any(is_wanted(name, [pattern]) for name in present):
@@ -142,19 +142,19 @@ class Inputs:
         self._sought.clear()
 
     def sense(self) -> None:
-        """See `Input.sense`. What came while we were stopped is still to be heard."""
+        """See `Input.sense`. After a stop of this process, waiting begins anew."""
         before, self._sensed = self._sensed, time.monotonic()
         for port in list(self._open.values()):
             if self._sensed - before > SLEPT_S:
-                port.wait_anew()
+                port.restart_sensing()
             else:
                 port.sense()
 
-    def hear(self, is_forwarded: bool) -> None:
-        """Tell the parent of each message from now on, or no more; any thread may call."""
-        self._is_heard = is_forwarded
+    def forward(self, on: bool) -> None:
+        """Send the parent each message from now on, or none; any thread may call."""
+        self._forwards = on
         for port in list(self._open.values()):
-            port.is_forwarded = is_forwarded
+            port.is_forwarded = on
 
     def _start(self) -> bool:
         finder, problem = open_client(self._api)
@@ -192,11 +192,11 @@ class Inputs:
             return
         self._refused.pop(name, None)
         self._open[name] = port
-        port.is_forwarded = self._is_heard
+        port.is_forwarded = self._forwards
         self._parent.send("appeared", port=name, number=number)
 
     def _refuse(self, name: str, reason: str) -> None:
-        """Leave a port for now; the parent is told the first time."""
+        """Leave a port for now; it is reported the first time."""
         if name not in self._refused:
             self._parent.send("refused", port=name, reason=reason)
         self._refused[name] = time.monotonic()
@@ -271,21 +271,21 @@ def main() -> None:
     orders = parent.orders()
     order = next(orders)
     inputs = Inputs(parent, _feed(order), order)
-    hung_up = threading.Event()
+    ended = threading.Event()
 
     def listen() -> None:
         for later in orders:
-            inputs.hear(later["hear"])
-        hung_up.set()
+            inputs.forward(later["on"])
+        ended.set()
 
     threading.Thread(target=listen, daemon=True).start()
-    looked = -SYSTEM_EVERY_S
-    while not hung_up.wait(SENSE_EVERY_S):
+    polled = -SYSTEM_EVERY_S
+    while not ended.wait(SENSE_EVERY_S):
         inputs.sense()
-        pause = LOOK_EVERY_S if inputs.has_system else SYSTEM_EVERY_S
-        if time.monotonic() - looked > pause:
-            inputs.look()
-            looked = time.monotonic()
+        pause = POLL_EVERY_S if inputs.has_system else SYSTEM_EVERY_S
+        if time.monotonic() - polled > pause:
+            inputs.poll()
+            polled = time.monotonic()
     os._exit(0)
 
 

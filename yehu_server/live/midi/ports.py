@@ -1,4 +1,4 @@
-"""Play from MIDI inputs as they are connected; tell of those that come and go."""
+"""Play from MIDI inputs as they are connected; report those that come and go."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class MidiOptions:
 class MidiPorts(Supervisor):
     """Keeps the process that holds the MIDI inputs, and plays all parts from them.
 
-    Its messages reach the audio callback by shared memory; the server hears of them only where
+    Its messages reach the audio callback by shared memory; the server receives them only where
     something is to be learned.
 
     `memory`: file descriptor of the memory that has the instruments.
@@ -95,9 +95,10 @@ class MidiPorts(Supervisor):
         gone.wait()
 
     def _send_forwarding(self) -> None:
-        """Have the process tell of messages while something is to be learned, and only then."""
+        """Let the process forward messages only while something is to be learned."""
         if self._child is not None:
-            self._child.send("hear", hear=any(player.learning.waits for player in self._players))
+            waits = any(player.learning.waits for player in self._players)
+            self._child.send("forward", on=waits)
 
     def on_exit(self, *, by_itself: bool) -> None:
         """End the notes of all ports, whose process is gone."""
@@ -118,25 +119,25 @@ class MidiPorts(Supervisor):
         elif kind == "appeared":
             self._connected[event["port"]] = None
             self._number(event["port"], event["number"])
-            self._on_message(f"MIDI: {event['port']} is connected{self._whose(event['port'])}")
+            self._on_message(f"MIDI: {event['port']} is connected{self._plays_text(event['port'])}")
         elif kind == "vanished":
             self._connected.pop(event["port"], None)
             self._on_message(f"MIDI: {event['port']} is gone; its notes are ended")
         elif kind == "silent":
             log.info("MIDI: %s fell silent (active sensing)", event["port"])
         elif kind == "missing":
-            self._tell_missing(event["pattern"], event["present"])
+            self._report_missing(event["pattern"], event["present"])
         elif kind == "refused":
             self._on_message(f"MIDI: {event['port']} cannot be opened: {event['reason']}")
         elif kind == "none":
             self.problem = event["reason"]
-            self._on_message(f"MIDI: none ({event['reason']}); looking again now and then")
+            self._on_message(f"MIDI: none ({event['reason']}); searching again now and then")
         elif kind == "system":
             self.problem = ""
             log.info("MIDI: through %s", event["api"])
 
-    def _whose(self, port: str) -> str:
-        """What a port plays, where there are several parts."""
+    def _plays_text(self, port: str) -> str:
+        """The parts that a port plays, as text, where there are several."""
         if len(self._players) == 1:
             return ""
         parts = [str(part + 1) for part in self._router.parts_of(port)]
@@ -144,7 +145,7 @@ class MidiPorts(Supervisor):
             return ", and plays no part"
         return f" to part {parts[0]}" if len(parts) == 1 else f" to parts {', '.join(parts)}"
 
-    def _tell_missing(self, pattern: str, present: Sequence[str]) -> None:
+    def _report_missing(self, pattern: str, present: Sequence[str]) -> None:
         if pattern not in self._missing:  # once, however often the process starts
             self._missing.add(pattern)
             there = ", ".join(present) or "none"
@@ -156,7 +157,7 @@ class MidiPorts(Supervisor):
         self._numbers[port] = number
 
     def _learn_from(self, port: str, data: Sequence[int]) -> None:
-        """Hear a message that is played already, for what is to be learned."""
+        """Learn from a message, which is played already."""
         with contextlib.suppress(ValueError, IndexError):  # damaged
             message = mido.Message.from_bytes(data)
             for part in self._router.parts_of(port, getattr(message, "channel", None)):

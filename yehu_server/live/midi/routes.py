@@ -81,7 +81,7 @@ class Route:
 
     @property
     def text(self) -> str:
-        """It as the command line has it, without the part."""
+        """Its text on the command line, without the part."""
         return self.words if self.channel is None else f"{self.words}:{self.channel + 1}"
 
     @property

@@ -1,4 +1,4 @@
-"""The table of OSC calls beside the parameters: what is acted on, and what clients are told.
+"""The table of OSC calls beside the parameters: what each does, and how clients are shown it.
 
 ``part_calls``, ``preset_calls``, ``learn_calls`` and ``server_calls`` have the rows, each beside
 the method that carries it out; docs/osc.md describes them.
@@ -16,7 +16,7 @@ from yehu_server.live.osc.learn_calls import LearnCalls
 from yehu_server.live.osc.part_calls import PartCalls
 from yehu_server.live.osc.preset_calls import PRESETS, PresetCalls
 from yehu_server.live.osc.server_calls import ServerCalls
-from yehu_server.live.part_addresses import FIRST, group
+from yehu_server.live.part_addresses import FIRST, group_of
 from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.player import Player
@@ -27,21 +27,23 @@ _ROWS = [(kind, row) for kind in _KINDS for row in vars(kind).values() if isinst
 CALLS: tuple[Call, ...] = tuple(row for _, row in _ROWS)
 
 
-def acts(addressed: str, context: CallContext) -> dict[str, Act]:
+def acts(group: str, context: CallContext) -> dict[str, Act]:
     """What carries out each call of a group, and sets each of its parameters, by address."""
-    carriers = {kind: kind(addressed, context) for kind in _KINDS}
-    part = PartCalls(addressed, context)
+    carriers = {kind: kind(group, context) for kind in _KINDS}
+    part = PartCalls(group, context)
     found: dict[str, Act] = {}
     for param in part.params:
         found[param.address] = partial(part.set, address=param.address)
         found[param.address + UNIT] = partial(part.set_unit, param=param)
     for kind, row in _ROWS:
-        if not (addressed and row.is_for_all):
-            found[row.address] = partial(row.act, carriers[kind])
-    return {addressed + address: act for address, act in found.items()}
+        if not (group and row.is_for_all):
+            act = partial(row.act, carriers[kind])
+            waiting = partial(carriers[kind].after_writes, row.address, act)
+            found[row.address] = waiting if row.reads_files else act
+    return {group + address: act for address, act in found.items()}
 
 
-def preset_calls(names: tuple[str, ...], addressed: str = FIRST) -> list[Call]:
+def preset_calls(names: tuple[str, ...], group: str = FIRST) -> list[Call]:
     """The calls of a group that take a preset, with the names there are.
 
     Addresses include the prefix.
@@ -53,7 +55,7 @@ def preset_calls(names: tuple[str, ...], addressed: str = FIRST) -> list[Call]:
     return [
         replace(
             call,
-            address=PREFIX + addressed + call.address,
+            address=PREFIX + group + call.address,
             arguments=tuple(map(with_names, call.arguments)),
         )
         for call in CALLS
@@ -61,7 +63,7 @@ def preset_calls(names: tuple[str, ...], addressed: str = FIRST) -> list[Call]:
     ]
 
 
-def own_calls(mapping: Mapping, addressed: str = FIRST, below: str = "") -> list[Call]:
+def own_calls(mapping: Mapping, group: str = FIRST, below: str = "") -> list[Call]:
     """The OSC addresses of the user's own that a mapping of a group binds, as calls.
 
     `below` is put before the addresses.
@@ -69,7 +71,7 @@ def own_calls(mapping: Mapping, addressed: str = FIRST, below: str = "") -> list
     return [
         Call(
             below + bind.source,
-            f"Moves {PREFIX}{addressed}{bind.target}, by the mapping {mapping.name}.",
+            f"Moves {PREFIX}{group}{bind.target}, by the mapping {mapping.name}.",
             (Argument("place", lo=min(bind.input_range), hi=max(bind.input_range)),),
             partial(PartCalls.move, address=bind.source),
         )
@@ -85,9 +87,9 @@ def more_calls(players: Sequence[Player]) -> list[Call]:
     plain: dict[str, Call] = {}  # of the first part that binds each
     for part, player in enumerate(players):
         mapping = player.mapping
-        own = own_calls(mapping, group(part) if part else FIRST)
+        own = own_calls(mapping, group_of(part) if part else FIRST)
         plain = {call.address: call for call in own} | plain
         if len(players) > 1:
-            calls += preset_calls(names, group(part))
-            calls += own_calls(mapping, group(part), PREFIX + group(part))
+            calls += preset_calls(names, group_of(part))
+            calls += own_calls(mapping, group_of(part), PREFIX + group_of(part))
     return [*calls, *plain.values()]

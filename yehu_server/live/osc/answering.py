@@ -177,7 +177,7 @@ class UdpPeer:
         return hash(self.address)
 
     def __hash__(self) -> int:
-        """Its address's, computed once: each message looks its peer up a dozen times."""
+        """Its address's, computed once: each message needs it a dozen times."""
         return self._hash
 
     @cached_property
@@ -232,15 +232,10 @@ class TcpPeer:
         self.last_packet_s = time.monotonic()  # time of its last packet, or of its connecting
         self.reads = True  # until its end of the connection is closed
         self._unsent = bytearray()
-        self._finished = False
+        self.is_finished = False  # whether nothing more will be sent
         self._traffic = traffic
         self._watch = watch
         self._drain_and_close = drain_and_close
-
-    @property
-    def is_finished(self) -> bool:
-        """Whether nothing more will be sent."""
-        return self._finished
 
     @property
     def takes_more(self) -> bool:
@@ -257,7 +252,7 @@ class TcpPeer:
         """See `Peer`; packets are dropped while the peer does not read."""
         if len(self._unsent) > limits.UNSENT:
             self._traffic.unsent += 1
-        elif not self._finished:
+        elif not self.is_finished:
             self._unsent += self.framing.wrap(packet)
             self.flush()
 
@@ -275,13 +270,13 @@ class TcpPeer:
     def cut_off(self) -> None:
         """End the connection at once."""
         self._unsent.clear()
-        self._finished = True
+        self.is_finished = True
         if self.reads:
             self._drain_and_close(self)
 
     def finish(self) -> None:
         """End the connection once all waiting bytes are sent."""
-        self._finished = True
+        self.is_finished = True
         self._watch(self)
 
     def at(self, port: int) -> TcpPeer:

@@ -14,7 +14,7 @@ from yehu_server.params.table import find
 
 @dataclass(frozen=True)
 class Request:
-    """A message to carry out: its arguments, its sender, and the frame at which it is heard."""
+    """A message to carry out: its arguments, its sender, and the frame at which it takes effect."""
 
     arguments: Sequence[Any]
     payload: bytes
@@ -100,13 +100,14 @@ class Call:
     # Carries it out for a group of addresses; raises YehuError where it refuses.
     act: Callable[[Any, Request], None]
     is_for_all: bool = False  # whether no part has one of its own
+    reads_files: bool = False  # whether it waits for files that are being written
 
 
 def osc_call(
-    address: str, doc: str, *arguments: Argument, is_for_all: bool = False
+    address: str, doc: str, *arguments: Argument, **settings: bool
 ) -> Callable[[Callable[[Any, Request], None]], Call]:
-    """Make a call of the method that carries it out; see `Call`."""
-    return lambda act: Call(address, doc, arguments, act, is_for_all)
+    """Make a call of the method that carries it out; see `Call`, also for `settings`."""
+    return lambda act: Call(address, doc, arguments, act, **settings)
 
 
 def like(address: str, name: str) -> Argument:

@@ -1,7 +1,7 @@
 """Publish changes of values: who is sent which, in small steps between other messages.
 
-Values are looked at once a round, topic by topic, and then sent. What a
-subscriber asks for during a round waits for the next one, so that it is sent what then holds.
+Values are read once a round, topic by topic, and then sent. What a subscriber asks for during a
+round waits for the next one, so that it is sent the values of then.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from yehu_server.util.token_bucket import TokenBucket
 
 def topic_of(address: str) -> str:
     """The topic of an address (without the prefix): its group, or the status of its group."""
-    addressed, own = split_group(address)
-    return addressed + STATUS_PREFIX if own.startswith(STATUS_PREFIX) else addressed
+    group, own = split_group(address)
+    return group + STATUS_PREFIX if own.startswith(STATUS_PREFIX) else group
 
 
 @dataclass
@@ -64,7 +64,7 @@ class Subscriber:
         return not (self.to_send or self.sending or self.listens)
 
     def ignore(self, address: str) -> None:
-        """Tell it no more of an address that it listens to."""
+        """Send it no more changes of an address that it listens to."""
         topic = topic_of(address)
         addresses = self.listens.get(topic, set())
         addresses.discard(address)
@@ -79,7 +79,7 @@ class Subscriber:
         yield from (*self.listens, *self.sending.values())
 
     def mark(self, topic: str, changed: Sequence[str], found: set[str], now: float) -> None:
-        """Have sent what it wants of the addresses that changed (`found` has all forms of them)."""
+        """Mark what it wants of changed addresses to be sent (`found` has all their forms)."""
         end, form = self.subscribed.get(topic, (0.0, ""))
         if end > now:
             self.sending.update((address + form, topic) for address in changed)
@@ -104,7 +104,7 @@ class ChangePublisher:
         self._status = status
         self._prefix = prefix
         self._last: dict[str, Mapping[str, Any]] = {}  # by topic: what was found last
-        self._looked = 0.0  # when the status was last read
+        self._status_read = 0.0  # monotonic s
 
     def read(self, topic: str) -> Mapping[str, Any]:
         """The values of a topic, by address after the group."""
@@ -123,21 +123,21 @@ class ChangePublisher:
         for subscriber in present:
             subscriber.sending |= subscriber.to_send
             subscriber.to_send.clear()
-        yield from self._look(present, now)
+        yield from self._find(present, now)
         yield from self._send(subscribers)
 
-    def _look(self, subscribers: Sequence[Subscriber], now: float) -> Iterator[None]:
+    def _find(self, subscribers: Sequence[Subscriber], now: float) -> Iterator[None]:
         """Find what has changed; of the status where it is time, or some was never read."""
         wanted = dict.fromkeys(topic for one in subscribers for topic in one.topics(now))
         status = {topic for topic in wanted if topic.endswith(STATUS_PREFIX)}
-        is_due = now - self._looked >= STATUS_S or any(
+        is_due = now - self._status_read >= STATUS_S or any(
             own_address(address, topic) not in self._last.get(topic, ())
             for one in subscribers
             for address, topic in one.sending.items()
             if topic in status
         )
         if status and is_due:
-            self._looked = now
+            self._status_read = now
         # What was read of the status is kept, so that who comes and goes has it read no sooner.
         self._last = {
             topic: last

@@ -91,11 +91,11 @@ class Clients:
         """
         self._client(peer).muted_until = time.monotonic() + seconds
 
-    def subscribe(self, peer: Peer, seconds: float, form: str = "", addressed: str = FIRST) -> bool:
+    def subscribe(self, peer: Peer, seconds: float, form: str = "", group: str = FIRST) -> bool:
         """Send a peer every change for some time; return whether there was room for one more.
 
         `form` is empty for plain values, UNIT for values as 0 to 1, STATUS_PREFIX for the status;
-        `addressed` is the group of addresses.
+        `group` is the group of addresses.
         """
         client, now = self._client(peer), time.monotonic()
         if not client.subscribes(now):
@@ -106,11 +106,11 @@ class Clients:
             ):
                 return False
         self._is_waiting = True
-        topic = addressed
+        topic = group
         if form == STATUS_PREFIX:
-            topic, form = addressed + STATUS_PREFIX, ""
+            topic, form = group + STATUS_PREFIX, ""
         client.subscribed[topic] = now + seconds, form
-        sent = (addressed + address + form for address in self.read(topic))
+        sent = (group + address + form for address in self.read(topic))
         client.to_send.update(dict.fromkeys(sent, topic))
         return True
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -15,7 +15,7 @@ from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.schedule import Schedule
 from yehu_server.live.osc.status import Counts
-from yehu_server.live.part_addresses import FIRST, PART_PARAMS, group, part_of
+from yehu_server.live.part_addresses import FIRST, OF_PARTS, PART_PARAMS, PLAIN, group_of, part_of
 from yehu_server.params.table import PREFIX
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.player import Player
@@ -34,7 +34,7 @@ class CallContext:
 
     players: Sequence[Player]  # those of all parts
     # Returns the status values of a group, by name; any thread may call.
-    states: Callable[[str], Mapping[str, float | str]]
+    status: Callable[[str], Mapping[str, float | str]]
     # Record to a file of a plain name, or end that; return the file's name. Raise YehuError.
     start_recording: Callable[[str], str]
     stop_recording: Callable[[], str]
@@ -55,17 +55,17 @@ class CallContext:
 
     def __post_init__(self) -> None:
         """Make what is sent to clients."""
-        self.groups = (FIRST, *map(group, range(len(self.players))))
-        self.clients = Clients(self.values, PREFIX, self.states)
+        self.groups = (FIRST, *map(group_of, range(len(self.players))))
+        self.clients = Clients(self.values, PREFIX, self.status)
 
-    def values(self, addressed: str) -> dict[str, float]:
+    def values(self, group: str) -> dict[str, float]:
         """The values of the parameters of a group, by address; any thread may call."""
-        values = self.players[part_of(addressed)].values()
-        own = [param.address for param in PART_PARAMS] if addressed else values
+        values = self.players[part_of(group)].values()
+        own = [param.address for param in PART_PARAMS] if group else values
         return {address: values[address] for address in own}
 
     def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
-        """Tell a peer why what it sent to an address was refused."""
+        """Send a peer the reason why its message to an address was refused."""
         self.counts.errors += 1
         self.clients.send_error(peer, address, reason)
 
@@ -76,8 +76,8 @@ class CallContext:
 
     def announce(self, path: str) -> None:
         """Announce that the tree has changed at a path below each group that it has."""
-        for addressed in self.groups if len(self.players) > 1 else (FIRST,):
-            self.tree_changed(PREFIX + addressed + path)
+        for group in self.groups if len(self.players) > 1 else (FIRST,):
+            self.tree_changed(PREFIX + group + path)
 
     def remap(self, player: Player, mapping: ControllerMapping) -> None:
         """Give a mapping to a player, and to all others that had the same."""
@@ -90,12 +90,17 @@ class CallContext:
 class GroupCalls:
     """Calls at a group of addresses; each takes a `Request`, and raises YehuError to refuse it."""
 
-    def __init__(self, addressed: str, context: CallContext) -> None:
-        self._player = context.players[part_of(addressed)]
-        self._addressed = addressed
-        self._prefix = PREFIX + addressed
+    def __init__(self, group: str, context: CallContext) -> None:
+        self._player = context.players[part_of(group)]
+        self._group = group
+        self._prefix = PREFIX + group
         self._context = context
         self._clients = context.clients
+
+    def _echo(self, peer: Peer, addresses: Iterable[str]) -> None:
+        """Send a peer the values that it has set, of those that the group has."""
+        known = OF_PARTS if self._group else PLAIN
+        self._clients.echo(peer, [self._group + one for one in addresses if one in known])
 
     def _check_rate(self) -> None:
         """Refuse what writes a file where that is done too often."""
@@ -123,8 +128,8 @@ class GroupCalls:
         self._context.writes.add(mark)
         self._context.run_in_background(aside)
 
-    def _after_writes(self, call: Request, address: str, act: Act) -> None:
-        """Do what reads files: after those that are being written, where there are any."""
+    def after_writes(self, address: str, act: Act, call: Request) -> None:
+        """Carry out what reads files: after those that are being written, where there are any."""
         if self._context.writes:
             self._write(call.peer, address, lambda: partial(act, call))
         else:
@@ -135,5 +140,5 @@ class GroupCalls:
         peer.send(pack(self._prefix + address, *arguments))
 
     def _send_error(self, peer: Peer, address: str, reason: str) -> None:
-        """Tell a peer why a call of the group was refused."""
+        """Send a peer the reason why a call of the group was refused."""
         self._context.send_error(peer, self._prefix + address, reason)

@@ -45,13 +45,13 @@ class OscHandler:
         self._tags = TagClock(self._players[0])
         self._arrivals = Arrivals(self._players[0].frame_of, self._players[0].instrument.rate)
         self._acts: dict[str, Act] = {}
-        for addressed in self._groups:
-            self._acts |= acts(addressed, context)
+        for group in self._groups:
+            self._acts |= acts(group, context)
         self.addresses = tuple(PREFIX + address for address in self._acts)
         # Messages of another server that was made to send us its values.
         self._answers: dict[str, Act] = {f"{PREFIX}/error": lambda _call: None}
-        for addressed in self._groups:
-            self._answers[f"{PREFIX}{addressed}/subscribed"] = lambda call: self.clients.mute(
+        for group in self._groups:
+            self._answers[f"{PREFIX}{group}/subscribed"] = lambda call: self.clients.mute(
                 call.peer, within_an_hour(call.numbers(1)[0])
             )
         self._mappings: list[Mapping] = []
@@ -69,8 +69,8 @@ class OscHandler:
     ) -> Iterator[None]:
         """Handle a packet in steps, between which others may be handled: a message is a step.
 
-        `frame`: of one message that waited for its time; without it, the packet is heard as it
-        arrived, and its bundles at their times.
+        `frame`: of one message that waited for its time; without it, the packet takes effect as
+        it arrived, and its bundles at their times.
         """
         now, is_late, is_due = time.time(), False, frame is not None
         frame = self._arrivals.frame_of(arrived_ns) if frame is None else frame
@@ -100,9 +100,7 @@ class OscHandler:
     def _keep(self, message: Message, peer: Peer) -> None:
         """Keep a message until its time."""
         packet = answer(message.address, message.payload)  # smaller than the message unpacked
-        if self._schedule.add(message.due_s or 0.0, packet, peer):
-            self.counts.scheduled += 1
-        else:
+        if not self._schedule.add(message.due_s or 0.0, packet, peer):
             self.context.send_error(peer, message.address, "too many messages wait for their time")
 
     def tick(self) -> None:
@@ -119,23 +117,21 @@ class OscHandler:
         self.clients.flush()
 
     def wait_s(self) -> float:
-        """Seconds until `tick` has something to do, or to look for it again."""
+        """Seconds until `tick` has something to do, or has to check again."""
         waits = self._schedule.wait_s(), self.clients.wait_s(), LONGEST_WAIT_S
         return min(wait for wait in waits if wait is not None)
 
     def _actions(self, address: str, peer: Peer) -> list[Act]:
-        """What carries out the calls at an address; tells the peer where there is none."""
+        """What carries out the calls at an address; sends the peer an error where there is none."""
         try:
             actions = self._found(address)
         except YehuError as error:
             self.context.send_error(peer, address, str(error))
             return []
-        if not actions:  # a near address is looked for only where the error is sent
-            self.context.send_error(peer, address, partial(self._unknown, address))
+        if not actions:  # a near address is searched for only where the error is sent
+            reason = partial(near, address, len(self._players), self._acts)
+            self.context.send_error(peer, address, reason)
         return actions
-
-    def _unknown(self, address: str) -> str:
-        return near(address, len(self._players), self._acts)
 
     def _found(self, address: str) -> list[Act]:
         """What carries out the calls at an address; none where it is unknown."""
@@ -159,20 +155,20 @@ class OscHandler:
         mappings = [player.mapping for player in self._players]
         if list(map(id, mappings)) != list(map(id, self._mappings)):
             self._mappings, self._own = mappings, {}
-            for addressed, mapping in zip(self._groups[1:], mappings, strict=True):
-                part = PartCalls(addressed, self.context)
-                for call in own_calls(mapping, addressed):
+            for group, mapping in zip(self._groups[1:], mappings, strict=True):
+                part = PartCalls(group, self.context)
+                for call in own_calls(mapping, group):
                     act = partial(call.act, part)
                     self._own.setdefault(call.address, act)
-                    self._own[PREFIX + addressed + call.address] = act
+                    self._own[PREFIX + group + call.address] = act
         return self._own
 
     def _learn_acts(self, address: str, own: dict[str, Act]) -> dict[str, Act]:
         """The same, where MIDI learn of a part waits for an address to hear."""
-        addressed, plain = split_group(address.removeprefix(PREFIX))
+        group, plain = split_group(address.removeprefix(PREFIX))
         players = self._players
-        if addressed:
-            players = players[part_of(addressed) :][:1] if addressed in self._groups else ()
+        if group:
+            players = players[part_of(group) :][:1] if group in self._groups else ()
         hearing = [player for player in players if player.learning.waits and is_own(plain)]
         move = own.get(address)
 

@@ -109,9 +109,9 @@ class LearnCalls(GroupCalls):
     def _target(self, address: str, what: str) -> str:
         """An address of the part as the parameter table has it; raises where it is no free one."""
         plain = address.removeprefix(PREFIX)
-        addressed, own = split_group(plain)
-        if addressed not in ("", self._addressed):
-            raise ParameterError(f"{address}: is of another part; see {PREFIX}{addressed}/learn")
+        group, own = split_group(plain)
+        if group not in ("", self._group):
+            raise ParameterError(f"{address}: is of another part; see {PREFIX}{group}/learn")
         own = own.removesuffix(UNIT)
-        check_own(self._addressed, own)
+        check_own(self._group, own)
         return settable_param(own, what).address

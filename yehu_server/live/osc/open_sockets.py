@@ -74,7 +74,7 @@ def prepare(udp: socket.socket) -> int:
 
 
 def stamp_and_drops(controls: Sequence[tuple[int, int, bytes]]) -> tuple[int, int]:
-    """What the kernel tells with a datagram (`prepare`), each 0 where it does not.
+    """What the kernel adds to a datagram (`prepare`), each 0 where it does not.
 
     That is the time of arrival (ns since 1970), and how many it has dropped since the start.
     """
@@ -114,6 +114,6 @@ def serves_at(host: str, port: int) -> bool:
     with contextlib.suppress(OSError, http.client.HTTPException, ValueError):
         with contextlib.closing(connection):
             connection.request("GET", "/?HOST_INFO")
-            told = json.loads(connection.getresponse().read(ANSWER_BYTES))
-        return isinstance(told, dict) and str(told.get("NAME", "")).startswith(NAME)
+            answer = json.loads(connection.getresponse().read(ANSWER_BYTES))
+        return isinstance(answer, dict) and str(answer.get("NAME", "")).startswith(NAME)
     return False

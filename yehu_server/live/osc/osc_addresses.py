@@ -89,13 +89,13 @@ PART_NAMES = [row.name for row in PART_STATUS]
 
 def readable(groups: Iterable[str]) -> Iterator[str]:
     """The addresses of all values, of parameters and then of the status, of some groups."""
-    for addressed in groups:
+    for group in groups:
         for form in ("", UNIT):
-            params = PART_PARAMS if addressed else TABLE
-            yield from (addressed + param.address + form for param in params)
-    for addressed in groups:
-        names = PART_NAMES if addressed else NAMES
-        yield from (addressed + STATUS_PREFIX + name for name in names)
+            params = PART_PARAMS if group else TABLE
+            yield from (group + param.address + form for param in params)
+    for group in groups:
+        names = PART_NAMES if group else NAMES
+        yield from (group + STATUS_PREFIX + name for name in names)
 
 
 def parameter_of(address: str) -> str:
@@ -117,15 +117,15 @@ def near(address: str, parts: int, known: Iterable[str]) -> str:
     """
     if not address.startswith(PREFIX + "/"):
         return f"unknown address (all begin with {PREFIX}/)"
-    addressed, own = split_group(address.removeprefix(PREFIX)[: limits.PATTERN])
+    group, own = split_group(address.removeprefix(PREFIX)[: limits.PATTERN])
     try:
-        check_part(addressed, parts)
-        check_own(addressed, own)
+        check_part(group, parts)
+        check_own(group, own)
         if own.startswith(STATUS_PREFIX):
             parameter_of(own)
     except YehuError as error:
         return str(error)
-    of_group = [PREFIX + one for one in known if split_group(one)[0] == addressed]
+    of_group = [PREFIX + one for one in known if split_group(one)[0] == group]
     # One that ends in this name comes before one that is merely similar.
     ending = [one for one in of_group if one.endswith(f"/{own.lstrip('/')}")]
     return f"unknown address{did_you_mean(ending[0] if ending else address, of_group, 0.75)}"
@@ -135,7 +135,7 @@ def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[st
     """The addresses that a pattern matches; raises RefusedError if it is wrong or matches none."""
     if len(pattern) > limits.PATTERN:
         raise RefusedError("the pattern is too long")
-    literal = re.split(r"[*?\[{]", pattern, maxsplit=1)[0]  # by which most are told apart
+    literal = re.split(r"[*?\[{]", pattern, maxsplit=1)[0]  # which most lack
     matches(pattern, "")  # raises where it is wrong, whatever there is
     found = [
         address

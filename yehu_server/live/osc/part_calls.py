@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from yehu_server.errors import RefusedError
-from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.call import Argument, Request, like, osc_call
 from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
@@ -30,18 +29,12 @@ class PartCalls(GroupCalls):
     @property
     def params(self) -> Sequence[Param]:
         """The parameters that the group has."""
-        return PART_PARAMS if self._addressed else TABLE
+        return PART_PARAMS if self._group else TABLE
 
     @property
     def _players(self) -> Sequence[Player]:
         """Those that a call for all of the group is for."""
-        return [self._player] if self._addressed else self._context.players
-
-    def _echo(self, peer: Peer, addresses: Iterable[str]) -> None:
-        """Send a peer the values that it has set, of those that the group has."""
-        own = {param.address for param in self.params}
-        told = [self._addressed + one for one in addresses if one.removesuffix(UNIT) in own]
-        self._clients.echo(peer, told)
+        return [self._player] if self._group else self._context.players
 
     # -- parameters --------------------------------------------------------------------------
 
@@ -49,13 +42,13 @@ class PartCalls(GroupCalls):
         """Set a parameter."""
         (value,) = call.numbers(1)
         self._player.set(address, value, frame=call.frame)
-        self._clients.echo(call.peer, [self._addressed + address])
+        self._echo(call.peer, [address])
 
     def set_unit(self, call: Request, param: Param) -> None:
         """Set a parameter by 0 to 1 of its range."""
         (unit,) = call.numbers(1)
         self._player.set(param.address, param.from_unit(unit), frame=call.frame)
-        self._clients.echo(call.peer, [self._addressed + param.address + UNIT])
+        self._echo(call.peer, [param.address + UNIT])
 
     def move(self, call: Request, address: str) -> None:
         """Move what the mapping binds to an address of the user's own."""
@@ -115,7 +108,7 @@ class PartCalls(GroupCalls):
     def _articulation(self, call: Request) -> None:
         number = number_of(call.word())
         self._player.set(CHOSEN, number, frame=call.frame)
-        self._clients.echo(call.peer, [self._addressed + CHOSEN])
+        self._echo(call.peer, [CHOSEN])
 
     @osc_call(
         "/release",
@@ -128,13 +121,13 @@ class PartCalls(GroupCalls):
         "/panic", "Ends all notes and all sound, and drops messages that wait for their time."
     )
     def _panic(self, call: Request) -> None:
-        self._context.schedule.drop_part(self._addressed)
+        self._context.schedule.drop_part(self._group)
         for player in self._players:
             player.panic(frame=call.frame)
 
     @osc_call("/reset", "The same, and sets every parameter to its default.")
     def _reset(self, call: Request) -> None:
-        self._context.schedule.drop_part(self._addressed)
+        self._context.schedule.drop_part(self._group)
         for player in self._players:
             player.reset(frame=call.frame)
         self._echo(call.peer, [param.address for param in self.params])
@@ -144,7 +137,7 @@ class PartCalls(GroupCalls):
     @osc_call("/status", "Sends all status values.")
     def _send_status(self, call: Request) -> None:
         call.check_peer()
-        for name, value in self._context.states(self._addressed).items():
+        for name, value in self._context.status(self._group).items():
             self._send(call.peer, STATUS_PREFIX + name, as_argument(value))
 
     @osc_call("/subscribe", "Sends all parameters, and for some time every change.", SECONDS)
@@ -165,7 +158,7 @@ class PartCalls(GroupCalls):
         numbers = call.numbers(0, 2)
         seconds = within_an_hour(numbers[0] if numbers else SUBSCRIBED_S)
         peer = call.peer.at(port_of(numbers[1])) if len(numbers) == 2 else call.peer
-        if not self._clients.subscribe(peer, seconds, form, self._addressed):
+        if not self._clients.subscribe(peer, seconds, form, self._group):
             raise RefusedError("there are too many subscribers")
         self._send(peer, "/subscribed", seconds)
 

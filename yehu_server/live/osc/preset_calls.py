@@ -9,7 +9,7 @@ from functools import partial
 from yehu_server.errors import PresetError, shortened
 from yehu_server.live.osc.call import NAME, Argument, Request, osc_call
 from yehu_server.live.osc.context import GroupCalls
-from yehu_server.live.part_addresses import OF_PARTS, PLAIN
+from yehu_server.live.part_addresses import OF_PARTS
 from yehu_server.params.preset_file import Preset, morph
 from yehu_server.params.table import PREFIX
 from yehu_server.playing.preset_folders import Presets
@@ -26,11 +26,8 @@ class PresetCalls(GroupCalls):
     def _presets(self) -> Presets:
         return self._player.presets
 
-    @osc_call("/preset/load", "Sets the parameters of a preset.", PRESET)
+    @osc_call("/preset/load", "Sets the parameters of a preset.", PRESET, reads_files=True)
     def _load(self, call: Request) -> None:
-        self._after_writes(call, "/preset/load", self._load_now)
-
-    def _load_now(self, call: Request) -> None:
         preset = self._presets.load(call.word())
         self._set(call, "/preset/load", preset.values)
         self._send(call.peer, "/preset/loaded", preset.name)
@@ -42,17 +39,20 @@ class PresetCalls(GroupCalls):
         shared = [one for one in values if self._player.part > 0 and one not in OF_PARTS]
         own = {one: value for one, value in values.items() if one not in shared}
         self._player.load(own, frame=call.frame)
-        known = OF_PARTS if self._addressed else PLAIN
-        self._clients.echo(call.peer, [self._addressed + one for one in own if one in known])
+        self._echo(call.peer, own)
         if shared:
             which = f"{', '.join(shared)}: one for all parts, left out; "
             self._send_error(call.peer, address, f"{which}{PREFIX}{address} sets what all share")
 
-    @osc_call("/preset/morph", "Sets values between those of two presets.", FROM, TO, AMOUNT)
+    @osc_call(
+        "/preset/morph",
+        "Sets values between those of two presets.",
+        FROM,
+        TO,
+        AMOUNT,
+        reads_files=True,
+    )
     def _morph(self, call: Request) -> None:
-        self._after_writes(call, "/preset/morph", self._morph_now)
-
-    def _morph_now(self, call: Request) -> None:
         if len(call.arguments) != 3:
             raise PresetError("expected two names and a number from 0 to 1")
         one, other = self._named(call, 0), self._named(call, 1)
@@ -91,12 +91,12 @@ class PresetCalls(GroupCalls):
         self._write(call.peer, "/preset/delete", delete)
 
     @osc_call(
-        "/preset/list", "Sends all presets: name, MIDI program, description.", is_for_all=True
+        "/preset/list",
+        "Sends all presets: name, MIDI program, description.",
+        is_for_all=True,
+        reads_files=True,
     )
     def _list(self, call: Request) -> None:
-        self._after_writes(call, "/preset/list", self._list_now)
-
-    def _list_now(self, call: Request) -> None:
         presets, errors = self._presets.all()
         for preset in presets:
             row = (preset.name, preset.program or 0, shortened(preset.about))

@@ -20,8 +20,8 @@ from yehu_server.params.table import PREFIX
 from yehu_server.playing.player import Player
 
 AHEAD_S = 0.01  # scheduled messages are posted so long before they are due
-TOGETHER_NS, TRIES = 100_000, 10
-STRAY_S = 0.001
+SAME_MOMENT_NS, TRIES = 100_000, 10
+LARGEST_DRIFT_S = 0.001
 
 
 def both_clocks() -> tuple[float, int]:
@@ -29,7 +29,7 @@ def both_clocks() -> tuple[float, int]:
     for _ in range(TRIES):
         before = time.monotonic_ns()
         now_s = time.time()
-        if time.monotonic_ns() - before < TOGETHER_NS:  # the thread was not held up in between
+        if time.monotonic_ns() - before < SAME_MOMENT_NS:  # the thread was not held up in between
             break
     return now_s, before
 
@@ -49,7 +49,7 @@ class TagClock:
         if self._anchor is not None:
             moment, frame = self._anchor
             counted = frame + round((due_s - moment) * rate)
-            if abs(counted - true) < STRAY_S * rate:
+            if abs(counted - true) < LARGEST_DRIFT_S * rate:
                 return counted
         self._anchor = (due_s, round(true))
         return self._anchor[1]
@@ -93,14 +93,14 @@ class Schedule:
             return None
         return max(0.0, self._waiting[0][0] - self.ahead_s - time.time())
 
-    def drop_part(self, addressed: str) -> None:
+    def drop_part(self, group: str) -> None:
         """Drop the messages of a group of addresses; of `FIRST`, all."""
-        own, parts = f"{PREFIX}{addressed}/".encode(), f"{PREFIX}{PART}".encode()
+        own, parts = f"{PREFIX}{group}/".encode(), f"{PREFIX}{PART}".encode()
         remaining = []
         for entry in self._waiting:
             _, _, packet, peer, size = entry
-            is_of_first = part_of(addressed) == 0 and not packet.startswith(parts)
-            if not addressed or packet.startswith(own) or is_of_first:
+            is_of_first = part_of(group) == 0 and not packet.startswith(parts)
+            if not group or packet.startswith(own) or is_of_first:
                 self._shares.give_back(peer, size)
             else:
                 remaining.append(entry)

@@ -10,7 +10,7 @@ from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.osc_addresses import fitting, is_pattern, parameter_of, readable
 from yehu_server.live.osc.packets import answer
 from yehu_server.live.osc.part_calls import port_of
-from yehu_server.live.part_addresses import FIRST, check_own, check_part, group, split_group
+from yehu_server.live.part_addresses import FIRST, check_own, check_part, group_of, split_group
 from yehu_server.params.table import PREFIX, UNIT, read
 
 
@@ -39,15 +39,15 @@ class ServerCalls(GroupCalls):
     @cache
     def _readable(parts: int) -> dict[str, None]:
         """The addresses of all values, in order."""
-        return dict.fromkeys(readable([FIRST, *map(group, range(parts))]))
+        return dict.fromkeys(readable([FIRST, *map(group_of, range(parts))]))
 
     def _found(self, address: str) -> str:
         """The address of a parameter; raises ParameterError, with a similar one if there is one."""
-        addressed, own = split_group(address)
-        check_part(addressed, len(self._context.players))
-        check_own(addressed, own)
+        group, own = split_group(address)
+        check_part(group, len(self._context.players))
+        check_own(group, own)
         form = UNIT if own.endswith(UNIT) else ""
-        return addressed + parameter_of(own.removesuffix(UNIT)) + form
+        return group + parameter_of(own.removesuffix(UNIT)) + form
 
     @osc_call("/unsubscribe", "Ends all subscriptions.", is_for_all=True)
     def _unsubscribe(self, call: Request) -> None:

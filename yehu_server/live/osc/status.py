@@ -43,7 +43,6 @@ class Counts:
     malformed: int = 0
     errors: int = 0  # wrong types, unknown addresses, refused calls
     late_bundles: int = 0
-    scheduled: int = 0
 
 
 @dataclass(frozen=True)
@@ -172,13 +171,13 @@ def _count_of_midi(name: str) -> Callable[[StatusSources], int]:
 
 def _last_malformed(s: StatusSources) -> str:
     """The last damaged message of each part that has received one."""
-    told: dict[str, None] = {}
+    texts: dict[str, None] = {}
     for part in s.parts:
         midi = part.player.instrument.midi
         if midi["malformed"]:
             data, port = unpacked(int(midi["malformed_last"]))
-            told[f"{data.hex(' ')} {s.midi.name_of(port) if s.midi else ''}".strip()] = None
-    return "; ".join(told)
+            texts[f"{data.hex(' ')} {s.midi.name_of(port) if s.midi else ''}".strip()] = None
+    return "; ".join(texts)
 
 
 STATUS: tuple[AnyValue, ...] = (

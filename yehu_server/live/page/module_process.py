@@ -1,6 +1,6 @@
-"""Makes what pages need to sound themselves: it may take a minute.
+"""Makes what pages need to compute the sound themselves, which may take a minute.
 
-The process of its own has the lowest priority: whoever plays meanwhile must not hear of it.
+The process of its own has the lowest priority: it must not disturb whoever plays meanwhile.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ LOWEST = 19
 
 
 def main() -> None:
-    """Tell the parent process the module's file, or why there is none; before, small files."""
+    """Send the parent process small files, and then the module's path or why there is none."""
     parent = Parent()
     os.nice(LOWEST)
     try:

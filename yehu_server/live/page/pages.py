@@ -93,12 +93,12 @@ class Pages(Supervisor):
         )
         sent: Any = None
         while not gone.wait(STATUS_S):
-            if (news := (self._status(), self._own())) != sent:
-                child.send("tell", status=news[0], own=news[1])
-                sent = news
+            if (state := (self._status(), self._own())) != sent:
+                child.send("state", status=state[0], own=state[1])
+                sent = state
 
     def _own(self) -> list[list[tuple[int, float]]]:
-        """Of each part that is a section, what each of its players has a value of its own of."""
+        """Of each part that is a section, the values that each of its players has of its own."""
         return [
             [(INDEX[address], player.value(address)) for address in OWN]
             if player.value(SECTION) > 1

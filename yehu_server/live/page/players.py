@@ -24,7 +24,7 @@ LOWEST = -(CHANNELS // 2)  # of them, as a page numbers its own
 AHEAD_S = 3.0  # by which a command may lie ahead
 FIRST_PART = 0
 # What is the instrument's, the room's or the output's, and no player's.
-OWNED = sorted(
+OWNER_ONLY = sorted(
     INDEX[param.address]
     for param in TABLE
     if param.is_shared or param.address.startswith(("/body/", "/string/", "/engine/", "/output/"))
@@ -70,7 +70,7 @@ class PagePlayers:
         self, page: int, part: int, frame: int, kind: int, index: int, value: float, other: float
     ) -> None:
         rig = self._rigs[part]
-        if kind == STOP and value != 0.0:  # a panic: whatever anybody holds ends
+        if kind == STOP and value != 0.0:  # a panic: all notes of the part end
             self._view.post(rig, frame, RELEASE_ALL, value=1.0)
             self._view.post(rig, frame, LIFT)
         elif kind == WRITE:
@@ -101,5 +101,5 @@ def permitted(role: str, commands: Any) -> tuple[Any, bool]:
         return commands[:0], False
     kinds, indices = commands[:, 1], commands[:, 2]
     is_stop = kinds == STOP
-    is_owned = np.isin(kinds, (WRITE, EXPRESS)) & np.isin(indices, OWNED)
-    return commands[~(is_stop | is_owned | (kinds == HOLD))], bool(is_stop.any())
+    is_owner_only = np.isin(kinds, (WRITE, EXPRESS)) & np.isin(indices, OWNER_ONLY)
+    return commands[~(is_stop | is_owner_only | (kinds == HOLD))], bool(is_stop.any())

@@ -32,7 +32,7 @@ PREPARING, READY, NONE = "preparing", "ready", "none"
 
 
 class Pages:
-    """The site, the WebSockets, and what the control process tells them."""
+    """The site, the WebSockets, and what the control process sends them."""
 
     def __init__(self, order: Message) -> None:
         self._listening = socket.socket(fileno=order["socket"])
@@ -42,17 +42,14 @@ class Pages:
         self._names = own_names()
         self._connections = Connections()
         self._site = Site(NoteRange(tuple(order["open_notes"]), tuple(order["reaches"])))
-        self._sounds = PREPARING  # whether pages can sound themselves
-        self._status: dict[str, Any] = {}
-        view = SharedView(order["memory"])
-        self._sockets = PageSockets(
-            view, order["rigs"], lambda: self._status | {"sounds": self._sounds}
-        )
+        # What pages are sent of the server, and whether they can compute the sound themselves.
+        self._status: dict[str, Any] = {"sounds": PREPARING}
+        self._sockets = PageSockets(SharedView(order["memory"]), order["rigs"], self._status)
         self._loop = asyncio.new_event_loop()
         self._finder: Child | None = None
 
     def _prepare(self) -> None:
-        """Have the module for pages found, or compiled, once a page is opened."""
+        """Find or compile the module for pages, once a page is opened."""
 
         def found(event: Message) -> None:
             self._loop.call_soon_threadsafe(self._found, event)
@@ -61,18 +58,18 @@ class Pages:
             self._finder = Child("yehu_server.live.page.module_process", found)
 
     def _found(self, event: Message) -> None:
-        """Hear of the module for pages."""
+        """Handle an event of the process that finds the module for pages."""
         if event["event"] == "module":
             self._site.add_module(Path(event["path"]).read_bytes())
-            self._sounds = READY
+            self._status["sounds"] = READY
         elif event["event"] == "beginning":
             self._site.add_capture_header(event["name"], event["text"])
-        elif self._sounds == PREPARING:
+        elif self._status["sounds"] == PREPARING:
             self._site.set_no_module(event.get("reason", "what prepares it has ended"))
-            self._sounds = NONE
+            self._status["sounds"] = NONE
 
-    def hear(self, orders: Iterator[Message]) -> None:
-        """Hear of the state of the server, until the control process hangs up."""
+    def take_orders(self, orders: Iterator[Message]) -> None:
+        """Take the state of the server as it is sent, until the control process ends."""
         for order in orders:
             self._loop.call_soon_threadsafe(self._status.update, order["status"])
             self._loop.call_soon_threadsafe(self._sockets.set_own_values, order["own"])
@@ -104,7 +101,7 @@ class Pages:
             return self._site.answer(request)
         if request.headers.get("Upgrade", "").lower() != "websocket":
             raise web.HTTPUpgradeRequired(text="for WebSockets\n")
-        with self._connections.talking(request):
+        with self._connections.web_socket(request):
             role = self._admission.role_of(request.remote or "", request.query.get("pin", ""))
             return await serve[request.path](request, role)
 
@@ -115,7 +112,7 @@ def main() -> None:
     os.nice(NICE)
     orders = parent.orders()
     pages = Pages(next(orders))
-    threading.Thread(target=partial(pages.hear, orders), daemon=True).start()
+    threading.Thread(target=partial(pages.take_orders, orders), daemon=True).start()
     parent.send("serving")
     pages.run()
 

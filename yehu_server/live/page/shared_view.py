@@ -94,7 +94,7 @@ class SharedView:
         return float(meters["load"]), int(meters["underruns"] + meters["missed"])
 
     def taped(self) -> int:
-        """Number of frames that were taped; the next frame to be heard."""
+        """Number of frames that were taped: the next frame to be played."""
         return int(native.taped.call(self._address))
 
     def sound(self, begin: int, end: int) -> tuple[int, bytes]:

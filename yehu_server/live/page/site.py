@@ -23,10 +23,10 @@ from yehu_server.live.page.facts import facts, module, write
 from yehu_server.util.files import shipped_folder, why, write_bytes
 
 INDEX = "index.html"
-# This meta element tells the page that a yehu server serves it; the static page does not have it.
+# This meta element says that a yehu server serves the page; the static page does not have it.
 HEAD = '<meta charset="utf-8">'
 MARK = (HEAD, f'{HEAD}\n<meta name="yehu-server" content="1">')
-# And this one, that the page may be kept by its service worker, which knows all of its files.
+# And this one, that its service worker, which knows all of its files, may keep the page.
 WORKER = "sw.js"
 KEPT = (HEAD, f'{HEAD}\n<meta name="yehu-worker" content="{WORKER}">')
 TYPES = {
@@ -55,7 +55,7 @@ HEADERS = {
 
 @dataclass(frozen=True)
 class CachedFile:
-    """A file: its bytes, as they are and compressed, and what tells whether it has changed."""
+    """A file: its bytes, as they are and compressed, and a tag that changes with them."""
 
     content_type: str
     plain: bytes
@@ -68,7 +68,7 @@ class Site:
 
     def __init__(self, notes: NoteRange = YEHU) -> None:
         self._files: dict[str, CachedFile] = {}
-        self._lacks: str | None = None
+        self._no_module_reason: str | None = None
         folder = page_folder()
         for name in map(Path.as_posix, page_files()):
             self._store(name, (folder / name).read_bytes())
@@ -83,7 +83,7 @@ class Site:
 
     def set_no_module(self, reason: str) -> None:
         """Answer with a reason that there is none, and that there won't be one."""
-        self._lacks = reason
+        self._no_module_reason = reason
 
     def add_capture_header(self, name: str, text: str) -> None:
         """Add a file that captures of pages begin with."""
@@ -93,8 +93,8 @@ class Site:
         """Answer with the file of a request's path."""
         cached = self._files.get(request.path.removeprefix("/") or INDEX)
         if cached is None and request.path == f"/{MODULE}":
-            if self._lacks is not None:
-                raise web.HTTPNotFound(text=f"{self._lacks}\n")
+            if self._no_module_reason is not None:
+                raise web.HTTPNotFound(text=f"{self._no_module_reason}\n")
             raise web.HTTPServiceUnavailable(headers={"Retry-After": "1"}, text="not built yet\n")
         if cached is None:
             raise web.HTTPNotFound(text="nothing here\n")
@@ -169,7 +169,7 @@ def write_page(folder: Path) -> list[Path]:
 
 
 def _write_worker(folder: Path, files: list[Path]) -> None:
-    """Tell the service worker which files it keeps, and what tells this version from others."""
+    """Write into the service worker which files it keeps, and a version that changes with them."""
     version = hashlib.sha256(b"".join((folder / file).read_bytes() for file in files))
     names = json.dumps(["./", *(file.as_posix() for file in files)])
     text = (folder / WORKER).read_text("utf-8")
@@ -215,7 +215,7 @@ class _Handler(SimpleHTTPRequestHandler):
         super().end_headers()
 
     def log_message(self, *_: Any) -> None:
-        """Say nothing: who serves the page to himself knows."""
+        """Log nothing: whoever serves the page to himself sees it."""
 
 
 def server_of(folder: Path, port: int) -> ThreadingHTTPServer:

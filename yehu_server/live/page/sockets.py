@@ -14,7 +14,7 @@ import asyncio
 import json
 import struct
 import time
-from collections.abc import AsyncIterator, Callable, Mapping, Sequence
+from collections.abc import AsyncIterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -63,7 +63,7 @@ MESSAGE_BYTES = 8 * COMMAND * limits.PAGE_EVENTS
 HEARTBEAT_S, CLOSING_S = 10.0, 0.3
 # Close codes: against the rules; the PIN is missing or wrong; there is no such part.
 WRONG, NO_PIN, NO_PART = 1008, 4401, 4404
-# A page that is heard for the first time hears this much of what was just played.
+# What the first listener is sent of the sound that was just played.
 FIRST_FRAMES = 512
 
 
@@ -83,14 +83,15 @@ class PageSockets:
     """All WebSockets of pages.
 
     `rigs`: the instrument that shows each part.
-    `status`: the state of the server, beside what is in the record, of JSON's types.
+    `status`: the state of the server, beside what is in the record, of JSON's types; read anew
+    each time that it is sent.
     """
 
     def __init__(
         self,
         view: SharedView,
         rigs: Sequence[int],
-        status: Callable[[], Mapping[str, Any]],
+        status: Mapping[str, Any],
     ) -> None:
         self._view = view
         self._rigs = rigs
@@ -125,7 +126,7 @@ class PageSockets:
             async for message in socket:
                 if message.type is WSMsgType.BINARY:
                     commands = read_commands(message.data)
-                elif message.type is WSMsgType.TEXT and self._obey(page, message.data):
+                elif message.type is WSMsgType.TEXT and self._set_wanted(page, message.data):
                     continue
                 else:
                     commands = None
@@ -166,8 +167,8 @@ class PageSockets:
         word = request.query.get("part", "1")
         return words.index(word) if word in words else None
 
-    def _obey(self, page: Page, text: str) -> bool:
-        """Do what a page asks for; return whether that can be asked."""
+    def _set_wanted(self, page: Page, text: str) -> bool:
+        """Note what a page wants to be sent; return whether the text is right."""
         try:
             asked = json.loads(text)
             page.snapshots, page.sounds = asked["snapshots"] is True, asked["sounds"] is True
@@ -176,7 +177,7 @@ class PageSockets:
         return True
 
     async def _pass_on(self, page: Page, commands: Any) -> None:
-        """Post commands, and tell other pages that sound as this part; a hasty page waits."""
+        """Post commands, and send them to other pages of this part that sound; a fast one waits."""
         count = len(commands)
         commands, ends = permitted(page.role, commands)
         self._players.post(page.number, page.part, commands, time.monotonic_ns())
@@ -185,7 +186,7 @@ class PageSockets:
         own = self._own.get(page.part, {})
         for _, kind, index, value, _ in commands:
             if kind in (WRITE, HOLD) and index in own:
-                own[int(index)] = value  # at once: the control process tells it later
+                own[int(index)] = value  # at once: the control process sends it later
         frame = frame_of(struct.pack("<2d", COMMANDS, page.number) + commands.tobytes())
         for other in self._pages.values():
             if len(commands) and other is not page and other.sounds and other.part == page.part:
@@ -194,7 +195,7 @@ class PageSockets:
         if (left := page.bucket.left(time.monotonic())) < 0.0:
             await asyncio.sleep(-left / limits.PAGE_EVENTS_A_SECOND)
 
-    # -- telling all -------------------------------------------------------------------------
+    # -- sending to all ----------------------------------------------------------------------
 
     def set_own_values(self, own: Sequence[Sequence[Sequence[float]]]) -> None:
         """Take the values that parts have where their instruments have others.
@@ -250,7 +251,7 @@ class PageSockets:
             "frame": self._view.taped(),
             "load": load,
             "dropouts": dropouts,
-            **self._status(),
+            **self._status,
         }
         text = json.dumps({"status": status}, allow_nan=False)
         write(page.transport, frame_of(text.encode(), TEXT), limits.PAGE_UNSENT)

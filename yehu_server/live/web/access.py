@@ -1,4 +1,4 @@
-"""Which requests and connections are served: bounds on their number, and no foreign web pages.
+"""Which requests and connections are served: limits on their number, and no foreign web pages.
 
 A page from any site can, in a player's browser, open a WebSocket to this machine, and read from it
 too where the site's name is made to mean this machine (DNS rebinding). So the headers Host and
@@ -48,7 +48,7 @@ async def serve_http(
     )
     await runner.setup()
     assert runner.server is not None  # noqa: S101 - setup makes it
-    connections.bound(runner.server)
+    connections.limit(runner.server)
     try:
         await web.SockSite(runner, listening).start()
     except BaseException:
@@ -124,10 +124,10 @@ class Connections:
 
     def __init__(self) -> None:
         self._hosts: dict[web.RequestHandler, str] = {}  # in the order in which they came
-        self._talking: dict[web.RequestHandler, str] = {}  # those that are WebSockets
+        self._web_sockets: dict[web.RequestHandler, str] = {}  # those that are WebSockets
 
-    def bound(self, server: web.Server) -> None:
-        """Bound the connections of a server from now on."""
+    def limit(self, server: web.Server) -> None:
+        """Limit the connections of a server from now on."""
         made, lost = server.connection_made, server.connection_lost
 
         def begin(handler: web.RequestHandler, transport: asyncio.Transport) -> None:
@@ -145,22 +145,22 @@ class Connections:
         [(host, count)] = Counter(self._hosts.values()).most_common(1)
         if count > limits.WEB_CONNECTIONS_A_HOST or len(self._hosts) > limits.WEB_CONNECTIONS:
             of_host = [one for one, its in self._hosts.items() if its == host]
-            oldest = next(one for one in of_host if one not in self._talking)  # or the new one
+            oldest = next(one for one in of_host if one not in self._web_sockets)  # or the new one
             del self._hosts[oldest]
             oldest.force_close()
 
     @contextlib.contextmanager
-    def talking(self, request: web.Request) -> Iterator[None]:
+    def web_socket(self, request: web.Request) -> Iterator[None]:
         """Count a connection as a WebSocket for the time of a block.
 
         Raises HTTPServiceUnavailable where there are too many, in all or of its host.
         """
         host = plain(request.remote or "::")
-        others = list(self._talking.values())
+        others = list(self._web_sockets.values())
         if len(others) >= limits.WEB_SOCKETS or others.count(host) >= limits.WEB_SOCKETS_A_HOST:
             raise web.HTTPServiceUnavailable(text="there are too many WebSockets\n")
-        self._talking[request.protocol] = host
+        self._web_sockets[request.protocol] = host
         try:
             yield
         finally:
-            del self._talking[request.protocol]
+            del self._web_sockets[request.protocol]

@@ -17,7 +17,7 @@ from yehu_server.util.retry import Backoff
 log = logging.getLogger(__name__)
 
 SHORT = {errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM}
-SAID_FOR_S = 60.0
+REPORT_EVERY_S = 60.0
 
 
 class LoopThread:
@@ -37,7 +37,7 @@ class LoopThread:
         self._name = name
         self._failed = failed
         self._backoff = backoff or Backoff()
-        self._said_at = -SAID_FOR_S
+        self._reported_at = -REPORT_EVERY_S
         self._runner = asyncio.Runner(loop_factory=asyncio.new_event_loop)
         self.loop = self._runner.get_loop()
         self._ended = asyncio.Event()
@@ -60,7 +60,7 @@ class LoopThread:
         self._runner.close()
 
     def _run(self) -> None:
-        self.loop.set_exception_handler(self._complain)
+        self.loop.set_exception_handler(self._handle_exception)
         with self._runner:
             self._runner.run(self._until_ended())
 
@@ -80,11 +80,11 @@ class LoopThread:
                 await asyncio.wait((ended,), timeout=self._backoff.failed())
         ended.cancel()
 
-    def _complain(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    def _handle_exception(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
         """Log that files or memory are short, once a minute; asyncio itself tries again."""
         error = context.get("exception")
         if not (isinstance(error, OSError) and error.errno in SHORT):
             loop.default_exception_handler(context)
-        elif time.monotonic() - self._said_at >= SAID_FOR_S:
-            self._said_at = time.monotonic()
+        elif time.monotonic() - self._reported_at >= REPORT_EVERY_S:
+            self._reported_at = time.monotonic()
             log.warning("%s: %s; trying again", self._name, why(error))

@@ -10,7 +10,7 @@ from prometheus_client.exposition import choose_encoder
 from prometheus_client.registry import Collector
 
 from yehu_server.live.osc.status import PART_STATUS, STATUS, Kind
-from yehu_server.live.part_addresses import FIRST, group
+from yehu_server.live.part_addresses import FIRST, group_of
 from yehu_server.live.web.query import Snapshot
 
 NAMESPACE = "yehu"
@@ -42,7 +42,7 @@ class Metrics(Collector):
             if family is not None:
                 yield family(f"{NAMESPACE}_{row.name}", row.doc, value=float(status[row.name]))
         several = range(self._parts) if self._parts > 1 else ()
-        parts = [self._snapshot(group(part)).status for part in several]
+        parts = [self._snapshot(group_of(part)).status for part in several]
         for own in PART_STATUS if parts else ():
             metric = FAMILIES[own.kind](f"{NAMESPACE}_part_{own.name}", own.doc, labels=["part"])
             for number, part in enumerate(parts, start=1):

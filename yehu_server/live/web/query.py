@@ -29,7 +29,7 @@ from yehu_server.live.part_addresses import (
     PART_PARAMS,
     PLAIN,
     check_part,
-    group,
+    group_of,
     split_group,
 )
 from yehu_server.params.spec import Param
@@ -72,12 +72,12 @@ class Snapshot:
 
 def is_listenable(address: str, parts: int) -> bool:
     """Whether clients may listen to an address, without the prefix."""
-    addressed, own = split_group(address)
+    group, own = split_group(address)
     try:
-        check_part(addressed, parts)
+        check_part(group, parts)
     except ParameterError:
         return False
-    return own in (LISTENABLE_OF_PARTS if addressed else LISTENABLE)
+    return own in (LISTENABLE_OF_PARTS if group else LISTENABLE)
 
 
 def node_at(
@@ -100,8 +100,8 @@ def node_at(
     nodes: list[Iterable[tuple[str, Callable[[], Node]]]] = [_nodes(FIRST, snapshot)]
     for number in range(parts) if parts > 1 else ():
         described: Node = {"DESCRIPTION": PART_DOC.format(number + 1)}
-        nodes.append([(PREFIX + group(number), partial(dict, described))])
-        nodes.append(_nodes(group(number), snapshot))
+        nodes.append([(PREFIX + group_of(number), partial(dict, described))])
+        nodes.append(_nodes(group_of(number), snapshot))
     nodes.append((call.address, partial(_of_call, call)) for call in more_calls)
     for address, describe in chain.from_iterable(nodes):
         if not below or f"{address}/".startswith(f"/{below}/"):
@@ -110,17 +110,17 @@ def node_at(
 
 
 def _nodes(
-    addressed: str, snapshot: Callable[[str], Snapshot]
+    group: str, snapshot: Callable[[str], Snapshot]
 ) -> Iterable[tuple[str, Callable[[], Node]]]:
     """The addresses of a group, and what describes each."""
-    prefix = PREFIX + addressed
-    for param in PART_PARAMS if addressed else TABLE:
-        yield prefix + param.address, partial(_of_param, param, addressed, snapshot)
-        yield prefix + param.address + AS_UNIT, partial(_of_unit, param, addressed, snapshot)
-    for row in PART_STATUS if addressed else STATUS:
-        yield prefix + STATUS_PREFIX + row.name, partial(_of_status, row, addressed, snapshot)
+    prefix = PREFIX + group
+    for param in PART_PARAMS if group else TABLE:
+        yield prefix + param.address, partial(_of_param, param, group, snapshot)
+        yield prefix + param.address + AS_UNIT, partial(_of_unit, param, group, snapshot)
+    for row in PART_STATUS if group else STATUS:
+        yield prefix + STATUS_PREFIX + row.name, partial(_of_status, row, group, snapshot)
     for call in CALLS:
-        if not (addressed and call.is_for_all):
+        if not (group and call.is_for_all):
             yield prefix + call.address, partial(_of_call, call)
 
 
@@ -142,14 +142,14 @@ def _put(root: Node, address: str, described: Node) -> None:
     node.update(described)
 
 
-def _of_param(param: Param, addressed: str, snapshot: Callable[[str], Snapshot]) -> Node:
-    value = snapshot(addressed).values[param.address]
+def _of_param(param: Param, group: str, snapshot: Callable[[str], Snapshot]) -> Node:
+    value = snapshot(group).values[param.address]
     doc = f"{param.doc} At {AS_UNIT[1:]} below, the same as 0 to 1."
     return _of_number(value, param.lo, param.hi, doc) | _units([param.unit])
 
 
-def _of_unit(param: Param, addressed: str, snapshot: Callable[[str], Snapshot]) -> Node:
-    value = param.to_unit(snapshot(addressed).values[param.address])
+def _of_unit(param: Param, group: str, snapshot: Callable[[str], Snapshot]) -> Node:
+    value = param.to_unit(snapshot(group).values[param.address])
     return _of_number(value, 0.0, 1.0, f"{param.doc} As 0 to 1.")
 
 
@@ -164,10 +164,8 @@ def _of_number(value: float, lo: float, hi: float, doc: str) -> Node:
     }
 
 
-def _of_status(
-    row: AnyValue | PartValue, addressed: str, snapshot: Callable[[str], Snapshot]
-) -> Node:
-    value = as_argument(snapshot(addressed).status[row.name])
+def _of_status(row: AnyValue | PartValue, group: str, snapshot: Callable[[str], Snapshot]) -> Node:
+    value = as_argument(snapshot(group).status[row.name])
     described = {"ACCESS": READ, "TYPE": _type(value), "VALUE": [_json(value)]}
     return described | {"DESCRIPTION": row.doc} | _units([row.unit])
 

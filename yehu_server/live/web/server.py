@@ -99,8 +99,8 @@ class WebServer:
         self._listening.close()
 
     def tree_changed(self, path: str) -> None:
-        """Tell all WebSockets that the tree has changed at a path or below; any thread may call."""
-        self._thread.call(self._sockets.tell, "PATH_CHANGED", path)
+        """Report to all WebSockets that the tree has changed at a path; any thread may call."""
+        self._thread.call(self._sockets.broadcast, "PATH_CHANGED", path)
 
     async def _serve(self) -> None:
         # A copy, since it is closed at the end, and serving may have to start again.
@@ -134,7 +134,7 @@ class WebServer:
         if (request.content_length or 0) > limits.WEB_BODY:
             raise web.HTTPRequestEntityTooLarge(limits.WEB_BODY, request.content_length or 0)
         if request.headers.get("Upgrade", "").lower() == "websocket":
-            with self._connections.talking(request):
+            with self._connections.web_socket(request):
                 return await self._sockets.serve(request)
         if request.path == "/metrics":
             body, content_type = self._metrics.text(request.headers.get("Accept", ""))

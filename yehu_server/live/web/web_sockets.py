@@ -115,7 +115,7 @@ class WebSockets:
                 if frame.type is WSMsgType.BINARY:
                     self._osc.receive(frame.data, peer)
                 elif frame.type is WSMsgType.TEXT:
-                    self._obey(frame.data, peer)
+                    self._carry_out(frame.data, peer)
         finally:
             del self._open[socket]
             self._traffic.web_sockets -= 1
@@ -125,7 +125,7 @@ class WebSockets:
                 await writing
         return socket
 
-    def tell(self, command: str, data: Any) -> None:
+    def broadcast(self, command: str, data: Any) -> None:
         """Send a command to all clients."""
         for peer in self._open.values():
             peer.send(_command(command, data))
@@ -135,7 +135,7 @@ class WebSockets:
         closing = [socket.close(code=1001) for socket in list(self._open)]
         await asyncio.gather(*closing, return_exceptions=True)
 
-    def _obey(self, text: str, peer: WebPeer) -> None:
+    def _carry_out(self, text: str, peer: WebPeer) -> None:
         try:
             command, address = _read(text, self._parts)
         except RefusedError as error:

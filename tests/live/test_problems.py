@@ -1,4 +1,4 @@
-"""Beside playing the delay is kept, and what goes wrong is told in few lines."""
+"""Beside playing the delay is kept, and what goes wrong is reported in few lines."""
 
 from __future__ import annotations
 
@@ -39,24 +39,24 @@ def test_a_flood_of_one_trouble_is_a_line_at_once_and_one_every_ten_seconds(cloc
     said = []
     seen = CounterReport(said.append)
     for count in range(1, 501):  # 25 seconds
-        seen.look({DROPS: count, LOSSES: count // 10 if count < 15 else 1})
+        seen.report({DROPS: count, LOSSES: count // 10 if count < 15 else 1})
         clock.now += 0.05
     assert said[:2] == [f"{DROPS} (1 so far)", f"{LOSSES} (1 so far)"]  # the flood hides no other
     assert len(said) == 4
 
 
-def test_what_came_in_between_is_told_when_the_flood_is_over(clock):
+def test_what_came_in_between_is_reported_when_the_flood_is_over(clock):
     said = []
     seen = CounterReport(said.append)
     for count in (1, 7, 7):
-        seen.look({DROPS: count})
+        seen.report({DROPS: count})
         clock.now += 6.0
     assert said == [f"{DROPS} (1 so far)", f"{DROPS} (7 so far)"]
 
 
 def test_the_players_delay_follows_the_devices_period(until):
     instrument = Instrument(InstrumentSpec(48000))
-    told = instrument._rig["published"]
+    published = instrument._rig["published"]
     player = SimpleNamespace(
         instrument=instrument, know_programs=lambda: None, finish_remap=lambda: None
     )
@@ -64,8 +64,8 @@ def test_the_players_delay_follows_the_devices_period(until):
     keeper = Housekeeper(ensemble, [player], Delay(instrument, 128), [], print, lambda: 0, print)
 
     def is_followed() -> bool:
-        told["ahead_window"] += 1
-        told["ahead"] = told["longest"] = 1024
+        published["ahead_window"] += 1
+        published["ahead"] = published["longest"] = 1024
         return instrument.delay > 1024
 
     keeper.start()
@@ -83,7 +83,7 @@ def test_there_is_a_line_at_once_and_then_one_a_minute(clock) -> None:
     report = UnderRunReport(said.append)
     for second in range(150):
         clock.now = 1000.0 + second
-        report.look(2 * second)
+        report.report(2 * second)
     assert [line.partition(":")[0] for line in said] == [
         "2 under-runs", f"120 under-runs in the last {UNDER_RUNS_EVERY_S:.0f} s",
         "120 under-runs in the last 60 s"
@@ -95,12 +95,12 @@ def test_there_is_a_line_at_once_and_then_one_a_minute(clock) -> None:
 def test_the_end_has_the_sum_if_there_were_any(clock) -> None:
     said: list[str] = []
     report = UnderRunReport(said.append)
-    report.look(0)
+    report.report(0)
     report.sum_up(0, 0)
     assert said == []
-    report.look(1)
+    report.report(1)
     clock.now += 30.0
-    report.look(5)
+    report.report(5)
     report.sum_up(5, 1)
     assert said[1:] == ["5 under-runs and 1 missed deadline in 30 s"]
 

@@ -39,7 +39,7 @@ class Setup:
     `seed`: of all that is left to chance.
     `way`: the only way of bowing that is measured (`shuffled`).
     `own`: the instrument before it is tuned.
-    `bowing`: A practice; by default that which comes with the program.
+    `bowing`: A bowing table; by default that which comes with the program.
     `phrasing`: `/playing/phrasing`.
     """
 

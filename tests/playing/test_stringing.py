@@ -19,10 +19,10 @@ from yehu_server.core.player.calibration import PITCHES, Calibration
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.live.page.facts import facts
+from yehu_server.playing.bowing_tables import bowing_table_beside, read_bowing_table
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
 from yehu_server.playing.part_state import Key
 from yehu_server.playing.player import Player
-from yehu_server.playing.practice_files import practice_beside, read_practice
 from yehu_server.playing.stringing import notes_of, range_text
 from yehu_server.scores.capture_header import SessionStart, header_of, read_header
 from yehu_server.scores.octaves import NoteSpan, octaves_of
@@ -125,7 +125,7 @@ def test_what_an_erhu_does_not_have_is_told_by_its_own_range(erhu):
 
 
 def test_its_calibration_is_kept_and_read_again():
-    quantities, bowing = read_quantities(ERHU), read_practice(practice_beside(ERHU))
+    quantities, bowing = read_quantities(ERHU), read_bowing_table(bowing_table_beside(ERHU))
     found = calibration_for(float(RATE), quantities, bowing=bowing)
     assert (found.a4, found.open_notes) == (440.0, (D4, A4))
     assert found.tensions == pytest.approx([string.T for string in quantities.strings], rel=0.03)

@@ -32,7 +32,7 @@ class Passage:
 
 @dataclass(frozen=True)
 class Search:
-    """A note on a string, at one of PLACES, and the recipes that a search starts from.
+    """A note on a string, at one of PLACES, and the bowings that a search starts from.
 
     `note` is its name on a yehu, `notes` are those of the instrument; `moved` is that of the
     default place, with the bow moved to here.

@@ -49,13 +49,13 @@ from yehu_server.core.player.calibration import (
     ideal_position,
 )
 from yehu_server.params.table import find
+from yehu_server.playing.bowing_tables import shipped_bowing_table
 from yehu_server.playing.pitch_and_level import (
     SILENCE_DB,
     a_weighted_db,
     cents,
     pitch_hz,
 )
-from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.playing.stringing import notes_of
 from yehu_server.util import PACKAGE
 from yehu_server.util.loudness import a_weighting
@@ -104,7 +104,7 @@ def calibration_key(
     sources += [core / "player" / f"{name}.py" for name in ("bowing", "calibration")]
     sources += [core / "engine" / f"{name}.py" for name in ("sounding", "output")]
     sources += [Path(__file__)]
-    bowing = shipped_practice(rate) if bowing is None else bowing
+    bowing = shipped_bowing_table(rate) if bowing is None else bowing
     bowed = bowing[:, PLACES.index(DEFAULT_PLACE)].tolist()
     return key_of(sources, repr((rate, a4, quantities, bowed)))
 
@@ -127,7 +127,7 @@ def calibrate(
 
     Raises ParameterError where the strings are no two that a fiddle has.
     """
-    bowing = shipped_practice(rate) if bowing is None else bowing
+    bowing = shipped_bowing_table(rate) if bowing is None else bowing
     open_notes = notes_of(quantities).open_notes
     usual = bowing[:, PLACES.index(DEFAULT_PLACE)]
     untuned = _Setup(rate, quantities, a4, usual, open_notes)

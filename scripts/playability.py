@@ -3,7 +3,7 @@
     .venv/bin/python scripts/playability.py [MEASURE] [--rate HZ] [--variation VALUE]
         [--phrasing VALUE] [--seed N] [--way NAME] [--json FILE]
 
-docs/intonation.md tells what each measure plays and counts; `grid` is the default.
+docs/intonation.md says what each measure plays and counts; `grid` is the default.
 
 The last line is the share of all cases that are right. Under variation the mean pitch from 0.4 s on
 counts in grid, steady, quarters, strings and presets.

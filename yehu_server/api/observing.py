@@ -129,8 +129,8 @@ class Run:
                 arrays[f"string_{i + 1}"] = np.array(kept[i])
                 arrays[f"x_{i + 1}"] = np.linspace(0.0, string.L, int(model["N"][i]) + 1)
         instrument = self._instrument
-        told = about(model, state, frames, instrument.spec.quantities, self._rig["refined"])
-        return Simulation(arrays, {"seed": instrument.seed} | told)
+        metadata = about(model, state, frames, instrument.spec.quantities, self._rig["refined"])
+        return Simulation(arrays, {"seed": instrument.seed} | metadata)
 
     def _take_over(self) -> None:
         """Take the parameters of the curves from the player, and put them to their first values."""

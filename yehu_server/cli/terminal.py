@@ -44,7 +44,7 @@ def warn(text: str) -> None:
 
 
 def check_files(files: Iterable[Path], read: Callable[[Path], tuple[str, Iterable[str]]]) -> int:
-    """Tell of each file what is in it, and remarks, or all that is wrong; return the exit code."""
+    """Print what is in each file, and remarks, or all that is wrong; return the exit code."""
     code = 0
     for file in files:
         try:
@@ -69,7 +69,7 @@ def warn_of_lost(output: Path, lost: Mapping[str, int]) -> None:
 
 def interrupt(*_: object) -> NoReturn:
     """Handle a signal that ends a command: by KeyboardInterrupt."""
-    # A compiler that is interrupted leaves objects half made, which Python would tell of.
+    # A compiler that is interrupted leaves objects half made, which Python would report.
     sys.unraisablehook = lambda _unraisable: None
     raise KeyboardInterrupt
 
@@ -194,17 +194,17 @@ class _FewOfACause:
     """
 
     def __init__(self) -> None:
-        self._told: dict[tuple[str, int], tuple[float, int]] = {}  # since when, how many
+        self._logged: dict[tuple[str, int], tuple[float, int]] = {}  # since when, how many
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Return whether a line is to be logged."""
         if record.levelno < logging.INFO:
             return True
         cause = record.pathname, record.lineno
-        since, count = self._told.get(cause, (record.created, 0))
+        since, count = self._logged.get(cause, (record.created, 0))
         if record.created - since >= CAUSE_S:
             since, count = record.created, 0
-        self._told[cause] = since, count + 1
+        self._logged[cause] = since, count + 1
         if count + 1 == MOST_OF_A_CAUSE:
             record.msg = f"{record.getMessage()} (more of this kind are left out for a minute)"
             record.args = None

@@ -89,7 +89,7 @@ class PlayingOptions:
         return replace(self, preset=self.presets.find_file(name), start=tuple(values.items()))
 
     def shaping(self, usual: float) -> PlayingOptions:
-        """The same options with `phrasing` and `rubato` told: as asked for, or as usual."""
+        """The same options with `phrasing` and `rubato` set: as asked for, or as usual."""
         phrasing = self.phrasing
         if phrasing is None:
             phrasing = dict(self.settings).get("/playing/phrasing", usual)

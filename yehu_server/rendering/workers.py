@@ -27,7 +27,7 @@ ProgressCallback = Callable[[float, float], None]  # what is done, and of what
 Perform = Callable[[Any, ProgressCallback], Any]
 MOST_TRIES = 2  # of a job whose process dies
 GOODBYE_S = 10.0
-TOLD_EVERY_S = 0.2
+REPORT_EVERY_S = 0.2
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
     """Do all tasks; yield what becomes of them, as it does.
 
     `perform` is a function of a module, called in another process with a task and a function to
-    tell the progress: what is done, of what. Its result, and tasks, have to be picklable; it must
+    report the progress: what is done, of what. Its result, and tasks, have to be picklable; it must
     not raise. At most `workers` processes run. Raises YehuError where no process can be started.
     """
     context = multiprocessing.get_context("spawn")
@@ -127,17 +127,17 @@ def _serve(connection: Connection, perform: Perform) -> None:
     on_termination(_interrupt)
     tasks: queue.SimpleQueue[Any] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(connection, tasks), daemon=True).start()
-    told = [time.monotonic()]
+    reported = [time.monotonic()]
 
-    def tell(done: float, total: float) -> None:
+    def report(done: float, total: float) -> None:
         now = time.monotonic()
-        if now - told[0] >= TOLD_EVERY_S and total > 0.0:
-            told[0] = now
+        if now - reported[0] >= REPORT_EVERY_S and total > 0.0:
+            reported[0] = now
             connection.send((min(done / total, 0.99), None))
 
     try:
         while (task := tasks.get()) is not None:
-            connection.send((1.0, perform(task[0], tell)))
+            connection.send((1.0, perform(task[0], report)))
     except (KeyboardInterrupt, OSError):  # what was being made has been put away
         os._exit(0)
 

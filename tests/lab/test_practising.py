@@ -20,7 +20,7 @@ from yehu_lab.practising.bowing_search import (
     has_pitch,
 )
 from yehu_lab.practising.candidates import slower
-from yehu_lab.practising.passages import Passage, Search
+from yehu_lab.practising.passages import Passage, SearchedNote
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import (
     AT_FIRM,
@@ -59,7 +59,7 @@ def test_a_manner_that_speaks_is_distinguished_from_one_that_cannot(table_search
     good = shipped_bowing_table(RATE)[string, DEFAULT, note - FIRST]
     bad = good.copy()  # too light, or too heavy
     bad[AT_FLAUTANDO : AT_FIRM + 1] *= factor
-    search = Search(string, note, DEFAULT, good)
+    search = SearchedNote(string, note, DEFAULT, good)
     assert 0.7 < table_search.score(search, good, PASSAGES) <= 1.0
     assert table_search.score(search, bad, PASSAGES) < 0.6
 
@@ -74,7 +74,7 @@ def test_a_mode_that_drowns_a_note_is_not_taken_for_it():
 
 def test_the_score_of_a_manner_is_always_the_same(table_search):
     bowing = default_bowing_table()[0, PLACE, 70 - FIRST]
-    search = Search(0, 70, PLACE, bowing)
+    search = SearchedNote(0, 70, PLACE, bowing)
     scores = {table_search.score(search, bowing, PASSAGES) for _ in range(3)}
     assert len(scores) == 1
 
@@ -99,7 +99,7 @@ def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late
         RATE, Quantities(), calibration_for(RATE), tuning=lambda key: key + 0.35
     )
     bowing = default_bowing_table()[0, PLACE, 70 - FIRST]
-    assert table_search.score(Search(0, 70, PLACE, bowing), bowing, PASSAGES) == 1.0
+    assert table_search.score(SearchedNote(0, 70, PLACE, bowing), bowing, PASSAGES) == 1.0
     assert set(played) == {70.35}
     each_s = BEFORE_S + EACH_S
     told = [BEFORE_S + at for at in (EARLY_S, LATE_S)]

@@ -10,7 +10,7 @@ from hands import ideal
 from pitch import cents, hertz, pitch_of
 
 import yehu_server as yehu
-from yehu_lab.practising.passages import Search, pitches_near_notes, stops_of
+from yehu_lab.practising.passages import SearchedNote, pitches_near_notes, stops_of
 from yehu_server import YehuError
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
@@ -163,16 +163,16 @@ def test_captures_keep_what_a_fiddle_is_tuned_to():
 
 
 def test_what_is_practised_are_notes_that_the_fiddle_has():
-    search = Search(0, 70, 0, np.zeros(6), notes=NoteRange((67, 72)))
+    search = SearchedNote(0, 70, 0, np.zeros(6), notes=NoteRange((67, 72)))
     assert (search.sounds, search.is_high_on_inner) == (72, True)
-    assert not Search(0, 70, 0, np.zeros(6)).is_high_on_inner
+    assert not SearchedNote(0, 70, 0, np.zeros(6)).is_high_on_inner
     assert PITCHES[0][0] == 66.0  # the tables are of a yehu's names
     for reaches in ((11.5, 24.0), (8.5, 20.5), (9.0, 7.0), (12.0, 24.9)):
         for open_notes in ((65, 72), (62, 69), (67, 72)):
             notes = NoteRange(open_notes, reaches)
             known = pitches_near_notes(float, notes)
             sounding = {
-                Search(string, note, 0, np.zeros(6), notes=notes).sounds
+                SearchedNote(string, note, 0, np.zeros(6), notes=notes).sounds
                 for string, note in stops_of(notes)
             }
             assert {notes.lowest, notes.highest} <= sounding <= known.keys(), (open_notes, reaches)

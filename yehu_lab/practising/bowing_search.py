@@ -22,7 +22,7 @@ import numpy as np
 from yehu_lab.practising.candidates import DEFAULT, ROUNDS, lighter, lost, moved
 from yehu_lab.practising.passages import (
     Passage,
-    Search,
+    SearchedNote,
     passages_of,
     pitches_near_notes,
     stops_of,
@@ -121,7 +121,7 @@ class BowingSearch:
                     start = table[string, place, note - FIRST].copy()
                     there = None if place == DEFAULT else moved(table, string, note, place)
                     found = self._best(
-                        Search(string, note, place, start, there, self._notes), workers
+                        SearchedNote(string, note, place, start, there, self._notes), workers
                     )
                     self.notes_changed += int(np.any(found != start))
                     table[string, place, note - FIRST] = found
@@ -130,7 +130,7 @@ class BowingSearch:
         table[0, :, : LOWEST_NOTE - FIRST] = table[0, :, LOWEST_NOTE - FIRST, None]
         return table
 
-    def _best(self, search: Search, workers: ThreadPoolExecutor) -> Array:
+    def _best(self, search: SearchedNote, workers: ThreadPoolExecutor) -> Array:
         """The best bowing of a note at a place; that which it starts from where that is good."""
         string, place, start = search.string, search.place, search.start
         seed = 1000 * search.note + 100 * string + place
@@ -172,7 +172,7 @@ class BowingSearch:
             best = best if after > before + BETTER else start
         return self._lightly(search, best) if FLAUTANDO in pressures else best
 
-    def _lightly(self, search: Search, usual: Array) -> Array:
+    def _lightly(self, search: SearchedNote, usual: Array) -> Array:
         """A bowing with a share for flautando at which a quick bow speaks."""
         passages = passages_of(search, search.note, QUICK_TRIES, QUICK, (FLAUTANDO,))
         best, most = usual, -math.inf
@@ -184,7 +184,7 @@ class BowingSearch:
                 break
         return best
 
-    def score(self, search: Search, bowing: Array, passages: Iterable[Passage]) -> float:
+    def score(self, search: SearchedNote, bowing: Array, passages: Iterable[Passage]) -> float:
         """How well a note speaks in some passages: at best 1."""
         table = default_bowing_table()
         stopped = self._pitches[search.sounds] - search.above
@@ -209,7 +209,7 @@ class BowingSearch:
         return (speaks - off / OFF_WEIGHT) / count
 
     def _play(
-        self, instrument: Instrument, commands: Player, search: Search, passage: Passage
+        self, instrument: Instrument, commands: Player, search: SearchedNote, passage: Passage
     ) -> tuple[bool, bool, float]:
         """Whether a note speaks early and late in a passage, and its error (cents) early."""
         start = instrument.frame

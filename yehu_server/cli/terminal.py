@@ -168,7 +168,7 @@ LEVELS = ("debug", "info", "warning", "error")
 def set_up_log(arguments: argparse.Namespace) -> None:
     """Set up logging by --log-level and --json-log, and set `quiet` for warnings only or JSON."""
     handler = _Handler()
-    handler.addFilter(_FewOfACause().filter)
+    handler.addFilter(_RepeatFilter().filter)
     handler.setFormatter(_JsonFormatter() if arguments.json_log else _PlainFormatter())
     logging.basicConfig(handlers=[handler], level=logging.WARNING, force=True)
     logging.getLogger("yehu_server").setLevel(arguments.log_level.upper())
@@ -184,10 +184,10 @@ class _Handler(logging.Handler):
             sys.stderr.flush()
 
 
-MOST_OF_A_CAUSE, CAUSE_S = 30, 60.0
+MOST_REPEATS, REPEATS_WITHIN_S = 30, 60.0
 
 
-class _FewOfACause:
+class _RepeatFilter:
     """Lets so many lines a minute through of each place in the code, but for debugging all.
 
     What clients ask for is logged too, and none of them may fill the log.
@@ -202,13 +202,13 @@ class _FewOfACause:
             return True
         cause = record.pathname, record.lineno
         since, count = self._logged.get(cause, (record.created, 0))
-        if record.created - since >= CAUSE_S:
+        if record.created - since >= REPEATS_WITHIN_S:
             since, count = record.created, 0
         self._logged[cause] = since, count + 1
-        if count + 1 == MOST_OF_A_CAUSE:
+        if count + 1 == MOST_REPEATS:
             record.msg = f"{record.getMessage()} (more of this kind are left out for a minute)"
             record.args = None
-        return count < MOST_OF_A_CAUSE
+        return count < MOST_REPEATS
 
 
 class _PlainFormatter(logging.Formatter):

@@ -154,7 +154,7 @@ def calibrate(
         open_levels = [_bow(tuned, string, note, speed, None)[1] for speed in SPEEDS]
         sharpening.append(_completed(own[:, :, 0], USUAL_CENTS[string]))
         levels.append(_completed(np.vstack([open_levels, own[:, :, 1]]), SILENCE_DB))
-    centroids, louder = _all_colours(tuned, sharpening)
+    centroids, louder = _all_centroids(tuned, sharpening)
     tensions = (first, second)
     return Calibration(
         a4, tensions, tuple(sharpening), tuple(levels), open_notes, centroids, louder
@@ -198,7 +198,7 @@ def _steady(setup: _Setup, string: int, pitch: float, speed: float, x_f: float |
     return out[round(settle_s * rate) :]
 
 
-def _all_colours(setup: _Setup, sharpening: Sequence[Any]) -> tuple[Tables, Tables]:
+def _all_centroids(setup: _Setup, sharpening: Sequence[Any]) -> tuple[Tables, Tables]:
     """Two tables of all notes: `Calibration.centroids` and `louder`."""
     usual = SPEEDS.index(USUAL_SPEED)
     centroids, louder = [], []
@@ -209,13 +209,13 @@ def _all_colours(setup: _Setup, sharpening: Sequence[Any]) -> tuple[Tables, Tabl
                 (setup, string, pitch + setup.above(string), row[usual])
                 for pitch, row in zip(pitches, sharpening[string], strict=True)
             ]
-            found = list(workers.map(lambda job: _colours(*job), jobs))
+            found = list(workers.map(lambda job: _centroids(*job), jobs))
             centroids.append(tuple(row[0] for row in found))
             louder.append(tuple(row[1] for row in found))
     return tuple(centroids), tuple(louder)
 
 
-def _colours(setup: _Setup, string: int, pitch: float, sharp: float | None) -> tuple[Any, Any]:
+def _centroids(setup: _Setup, string: int, pitch: float, sharp: float | None) -> tuple[Any, Any]:
     """Centroid (Hz) of a note with each of GAINS, and how much louder (dB) it is; 0 in silence.
 
     `sharp`: its sharpening (cents); None for an open string.

@@ -207,7 +207,7 @@ def simulate(
             arrays[f"x_{i + 1}"] = np.linspace(0.0, length, int(m["N"][i]) + 1)
     asked = {"gesture": dict(gesture.source), "seed": int(gesture.quantities.bow.hair)}
     own = None if more is None else more[0]
-    return Simulation(arrays, asked | about(m, state[0], frames, gesture.quantities, own))
+    return Simulation(arrays, asked | metadata_of(m, state[0], frames, gesture.quantities, own))
 
 
 def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, Floats]:
@@ -242,10 +242,10 @@ def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, F
     return arrays
 
 
-def about(
+def metadata_of(
     m: Any, state: Any, frames: int, quantities: Quantities, more: Any = None
 ) -> dict[str, Any]:
-    """What a run's metadata say of the model (MODEL, REFINED) and its state (STATE) at the end."""
+    """The metadata of a run, of its model (MODEL, REFINED) and its state (STATE) at the end."""
     return {
         "version": __version__,
         "instrument": as_data(quantities),

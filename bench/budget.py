@@ -4,7 +4,7 @@
 
 Nanoseconds of processor time a frame. Each row of the tune has all that the rows above it have, and
 one thing more. The rows are measured in turn, round after round, so that a slow minute of the
-machine meets all of them; what a row adds is the median of its differences within a round, told
+machine meets all of them; what a row adds is the median of its differences within a round, given
 with the quartiles. `scripts/generate` puts the saved budget into docs/performance.md. With
 `--beside` the same is measured of another checkout (one of before), in a process of its own, a row
 of each in turn. Where memory and stack of a process lie makes it up to 5 % faster or slower, so

@@ -11,7 +11,7 @@ and compared with the recording, sample by sample. Without --audio-device the be
 JACK server with the dummy driver, which has no real-time rights.
 
 With --parts several players are on the stage, each with an input of its own and some of the OSC.
-With --page it plays in turns, each time anew: without a page, and with one that looks, plays and
+With --page it plays in turns, each time anew: without a page, and with one that watches, plays and
 listens.
 """
 
@@ -56,7 +56,7 @@ COUNTERS = (
     *("osc_messages", "osc_dropped", "osc_failures", "midi_messages", "midi_malformed"),
     *("http_failures", "http_unsent"),
 )
-TOLD = ("missed_deadlines", "late_callbacks", "underruns", "late_events", "applied_events")
+SHOWN = ("missed_deadlines", "late_callbacks", "underruns", "late_events", "applied_events")
 COMPARED_FRAMES = 1 << 20
 
 
@@ -114,7 +114,7 @@ async def _page(session: Any, port: int, paths: list[str], counts: list[int], i:
 
 @contextlib.contextmanager
 def visited(url: str | None) -> Iterator[None]:
-    """Where there is a page, have it look, play and listen."""
+    """Where there is a page, have it watch, play and listen."""
     if url is None:
         yield
         return
@@ -249,7 +249,7 @@ def play(
             idle.send(True)
             idle_after, after = idle.recv(), playing.status()
             pages.send(None)
-            told, malformed = pages.recv(), playing.malformed()
+            sent, malformed = pages.recv(), playing.malformed()
         code = playing.end()
         idle.send(False)
     frames, differing = replayed_equal(folder)
@@ -261,7 +261,7 @@ def play(
         "load": after["load"],
         "worst_load": after["worst_load"],
         "idle_stream": {what: idle_after[what] - idle_before[what] for what in CALLBACKS},
-        "told_to_pages": told,
+        "sent_to_pages": sent,
         "memory_mb": [[round(at_s), mb] for at_s, mb in samples],
         "recorded_frames": frames,
         "replay_differs_in": differing,
@@ -277,11 +277,11 @@ def quarters(memory: list[list[float]]) -> list[float]:
 def counts(figures: dict[str, Any]) -> dict[str, Any]:
     """A row of the table: what the instrument missed, and beside it an idle stream."""
     idle, own = figures["idle_stream"], figures["instrument"]
-    row = {what.replace("_", " "): own[what] for what in TOLD}
+    row = {what.replace("_", " "): own[what] for what in SHOWN}
     return row | {f"idle: {what}".replace("_", " "): idle[what] for what in CALLBACKS[1:]}
 
 
-def tell(figures: dict[str, Any]) -> None:
+def print_figures(figures: dict[str, Any]) -> None:
     """Print what is beside the table."""
     print(", ".join(f"{what} {count}" for what, count in figures["instrument"].items()))
     print(f"last malformed MIDI: {figures['midi_malformed_last'] or 'none'}")
@@ -289,7 +289,7 @@ def tell(figures: dict[str, Any]) -> None:
     if None not in [mb for _, mb in figures["memory_mb"]]:
         shown = ", ".join(f"{mb:.0f}" for mb in quarters(figures["memory_mb"]))
         print(f"memory, median of each quarter: {shown} MB")
-    print(f"told to {PAGES} pages: {sum(figures['told_to_pages'])} messages")
+    print(f"sent to {PAGES} pages: {sum(figures['sent_to_pages'])} messages")
     print(
         f"replay differs in {figures['replay_differs_in']} of {figures['recorded_frames']} frames"
     )
@@ -322,7 +322,7 @@ def main() -> None:
                     parts=arguments.parts,
                 )
             rows.append({"page": page, **figures})
-            tell(figures)
+            print_figures(figures)
     name = {False: "without a page", True: "with a page"}
     report.show({f"{n}, {name[row['page']]}": counts(row) for n, row in enumerate(rows, 1)})
     report.save(

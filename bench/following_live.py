@@ -11,7 +11,7 @@ records what is played, both by the frames of its own callback. Chromium has the
 microphone, and the page's AudioContext is recorded: what comes in, and what goes out. Of each note,
 the times from its first sample to when the follower begins to bow (the same song followed in this
 process); to the first sample that is heard, 20 dB over the rest before; and to the first at half of
-the note's peak. Devices add what their buffers hold, and so do browsers, as they tell themselves.
+the note's peak. Devices add what their buffers hold, and so do browsers, by their own report.
 """
 
 from __future__ import annotations
@@ -186,7 +186,7 @@ def latencies(after: Array, before: Array, rate: float) -> tuple[float, float]:
 
 
 def sing_to_page(voice: Array) -> tuple[dict[str, Any], Array, Array]:
-    """Sing to the page; what its browser tells, and what it was given and played."""
+    """Sing to the page; what its browser reports, and what it was given and played."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_page(folder / "site")
@@ -195,14 +195,14 @@ def sing_to_page(voice: Array) -> tuple[dict[str, Any], Array, Array]:
         soundfile.write(folder / "song.wav", voice, JACK_RATE, subtype="PCM_16")
         words = [url_of(server), str(shutil.which("chromium")), str(folder / "song.wav")]
         words += [str(len(voice) / JACK_RATE), str(folder / "recorded")]
-        told = subprocess.run(  # noqa: S603 - our own command
+        done = subprocess.run(  # noqa: S603 - our own command
             [str(shutil.which("node")), HERE / "following_page.mjs", *words],
             check=True,
             capture_output=True,
         )
         server.shutdown()
         given, played = np.fromfile(folder / "recorded", np.float32).reshape(-1, 2).T
-    return json.loads(told.stdout), given, played
+    return json.loads(done.stdout), given, played
 
 
 def row_of(voice: Array, starts: Array, played: Array, rate: float, period: int) -> dict[str, Any]:
@@ -220,11 +220,11 @@ def row_of(voice: Array, starts: Array, played: Array, rate: float, period: int)
 def soon(notes: int) -> dict[str, dict[str, Any]]:
     rows = {}
     voice, starts = song(notes)
-    told, given, played = sing_to_page(voice)
+    reported, given, played = sing_to_page(voice)
     loud = np.flatnonzero(np.abs(given) > BEGUN * np.abs(given).max())
-    begun = loud[np.diff(loud, prepend=-RATE) > 0.5 * REST_S * told["rate"]]
-    rows["page"] = row_of(given, begun, played, told["rate"], WORKLET)
-    rows["page"] |= {f"browser's {name}": 1e3 * told[name] for name in ("input", "output")}
+    begun = loud[np.diff(loud, prepend=-RATE) > 0.5 * REST_S * reported["rate"]]
+    rows["page"] = row_of(given, begun, played, reported["rate"], WORKLET)
+    rows["page"] |= {f"browser's {name}": 1e3 * reported[name] for name in ("input", "output")}
     for period in PERIODS:
         with dummy_jack(period, JACK_RATE, "--sync"):  # late programs are waited for
             playing = Playing(CARD, period, "--follow", "--midi-api", "none", "--no-panel")

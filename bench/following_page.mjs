@@ -1,6 +1,6 @@
 /**
  * Sings into the page's microphone by a file, and writes what its AudioContext was given and played:
- * float samples, the microphone's and the page's in turn. Prints what the browser tells of itself.
+ * float samples, the microphone's and the page's in turn. Prints what the browser reports of itself.
  *
  *   node following_page.mjs URL CHROMIUM SONG.wav SECONDS RECORDED
  */

@@ -44,7 +44,7 @@ LOWEST = 62  # the player's notes; hostile ones are lower
 
 
 def serve(pipe: Any, has_midi: bool) -> None:
-    """Serve until told to stop; answer each request with the notes received and the status."""
+    """Serve until asked to stop; answer each request with the notes received and the status."""
     from yehu_server.live.audio.output import NULL, OutputOptions
     from yehu_server.live.midi.ports import MidiOptions
     from yehu_server.live.options import ServeOptions
@@ -87,14 +87,14 @@ class Served:
         there.close()
         self.port = int(self._pipe.recv())
 
-    def told(self) -> tuple[list[tuple[float, float]], dict[str, Any], dict[str, int]]:
+    def counts(self) -> tuple[list[tuple[float, float]], dict[str, Any], dict[str, int]]:
         """The notes received so far by OSC, in order; the status; and what is counted of MIDI."""
         self._pipe.send(True)
         notes, status, midi = self._pipe.recv()
         return notes, status, midi
 
     def bytes(self) -> int:
-        """The process's private memory; 0 where the system does not tell."""
+        """The process's private memory; 0 where the system does not report it."""
         with contextlib.suppress(OSError):
             for line in Path(f"/proc/{self.process.pid}/status").read_text().splitlines():
                 if line.startswith("RssAnon"):
@@ -214,7 +214,7 @@ class Figures:
 
 def measured(name: str, seconds: float, served: Served, output: Any = None) -> Figures:
     """Play beside one kind of sender, by MIDI to an output, too; measure its effect."""
-    before, status, midi = served.told()
+    before, status, midi = served.counts()
     playing = Playing(served.port, output)
     attacker = SPAWN.Process(target=KINDS[name], args=(served.port, seconds))
     try:
@@ -228,7 +228,7 @@ def measured(name: str, seconds: float, served: Served, output: Any = None) -> F
             time.sleep(0.005)
         playing.finish()
         most_bytes = max(most_bytes, served.bytes())
-        notes, after, played = served.told()
+        notes, after, played = served.counts()
     finally:
         attacker.kill()
         attacker.join()

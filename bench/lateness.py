@@ -12,7 +12,7 @@ the machine keeps time: an event that was there in time is late, too, where the 
 out of turn. Without --audio-device a JACK server with the dummy driver is started, which has no
 real-time rights; so the delay grows by itself. With --steady it stays at what it is by default on a
 device that keeps time: a block and the handling part. With --parts several players share the load,
-and with --listeners eight OSCQuery clients are told of every change of any value.
+and with --listeners eight OSCQuery clients are sent every change of any value.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def counts(server: Server, *, anew: bool) -> dict[str, int]:
 
 
 def serve(setting: Setting, pipe: Any) -> None:
-    """Serve until told to stop; answer each request with the counters."""
+    """Serve until asked to stop; answer each request with the counters."""
     delays.HANDLING_MS = setting.handling_ms
     options = ServeOptions(
         output=OutputOptions(device=setting.device, blocksize=setting.block, rate=RATE),
@@ -109,7 +109,7 @@ def serve(setting: Setting, pipe: Any) -> None:
 
 def run(setting: Setting, seconds: float) -> dict[str, Any]:
     """Play under load for some seconds; return the figures of a row."""
-    told = [0]
+    sent = [0]
     with helper(serve, setting) as pipe:
         port, http = pipe.recv()
         listeners = contextlib.nullcontext() if http is None else helper(listen, http)
@@ -122,7 +122,7 @@ def run(setting: Setting, seconds: float) -> dict[str, Any]:
             after, lasted = pipe.recv(), time.monotonic() - started
             if pages is not None:
                 pages.send(None)
-                told = pages.recv()
+                sent = pages.recv()
         pipe.send(None)
     passed = {what: after[what] - before[what] for what in after}
     callbacks = max(1, passed["callbacks"])
@@ -136,7 +136,7 @@ def run(setting: Setting, seconds: float) -> dict[str, Any]:
         "dropped": passed["dropped"],
         "% late callbacks": 100.0 * passed["late_callbacks"] / callbacks,
         "% under-runs": 100.0 * passed["underruns"] / callbacks,
-        "told to listeners": sum(told),
+        "sent to listeners": sum(sent),
     }
 
 

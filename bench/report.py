@@ -53,8 +53,8 @@ def run(
     """
     parser = options(doc or "")
     for name, (default, about) in more.items():
-        told = f"{about} (default: {default})"
-        parser.add_argument(f"--{name}", type=type(default), default=default, help=told)
+        text = f"{about} (default: {default})"
+        parser.add_argument(f"--{name}", type=type(default), default=default, help=text)
     arguments = parser.parse_args()
     figures = measure(arguments)
     show(figures)
@@ -110,7 +110,7 @@ def quantiles(values: Sequence[float]) -> dict[str, float]:
 
 
 def processor() -> str:
-    """The processor's name, as far as the system tells."""
+    """The processor's name, as far as the system reports it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

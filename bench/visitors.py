@@ -1,4 +1,4 @@
-"""A browser's part of a page without a browser: it looks and plays, and others listen."""
+"""A browser's part of a page without a browser: it watches and plays, and others listen."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from yehu_server.core.player.commands import WRITE
 from yehu_server.core.player.parameter_indices import INDEX
 
 COMMAND_S = 0.05
-PARAMETER, STEPS = "/playing/variation", 10_000  # whose values tell commands apart
+PARAMETER, STEPS = "/playing/variation", 10_000  # whose values distinguish commands
 
 
 def visit(url: str, listeners: int, seconds: float | None, results: Any) -> None:
-    """Look, play and listen.
+    """Watch, play and listen.
 
     `seconds` (float or None): for so long; None is until it is killed.
     `results`: gets the values requested and the times, and of one listener the frames heard and the

@@ -1,4 +1,4 @@
-"""A plain C++ loop of the bare physics, compiled on the spot: what speeds are told as ratios to.
+"""A plain C++ loop of the bare physics, compiled on the spot: what speeds are given as ratios to.
 
 ``yardstick.cpp`` has both strings, one of them bowed, a finger, bridge and radiation in double
 precision, by the equations of [Yehu] as corrected in docs/physics.md, without tension modulation.

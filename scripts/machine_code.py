@@ -40,7 +40,7 @@ def write(level: str, folder: Path, cache: Path) -> list[Path]:
         levels.VARIABLE: level,
         "NUMBA_CACHE_DIR": str(cache),
     }
-    told = subprocess.run(  # noqa: S603 - our own
+    printed = subprocess.run(  # noqa: S603 - our own
         [sys.executable, "-c", COMPILE],
         env={**os.environ, **settings},
         cwd=Path(__file__).parent,
@@ -50,7 +50,7 @@ def write(level: str, folder: Path, cache: Path) -> list[Path]:
     ).stdout
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
-    for made in map(Path, told.splitlines()):
+    for made in map(Path, printed.splitlines()):
         payload = read_checksummed(made)
         if payload is None:
             raise SystemExit(f"{level}: nothing was compiled")

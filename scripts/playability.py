@@ -3,7 +3,7 @@
     .venv/bin/python scripts/playability.py [MEASURE] [--rate HZ] [--variation VALUE]
         [--phrasing VALUE] [--seed N] [--way NAME] [--json FILE]
 
-docs/intonation.md tells what each measure plays and counts; `grid` is the default.
+docs/intonation.md says what each measure plays and counts; `grid` is the default.
 
 The last line is the share of all cases that are right. Under variation the mean pitch from 0.4 s on
 counts in grid, steady, quarters, strings and presets.
@@ -33,7 +33,7 @@ from measures.vibrato import vibrato
 from yehu_server.core.physics.quantities import Quantities, read_quantities
 from yehu_server.errors import YehuError
 from yehu_server.params.table import find
-from yehu_server.playing.practice_files import practice_beside, read_practice
+from yehu_server.playing.bowing_tables import bowing_table_beside, read_bowing_table
 
 MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
     each.__name__: each
@@ -92,8 +92,8 @@ def main() -> None:
     instrument, practice = arguments.instrument, arguments.practice
     try:
         own = read_quantities(instrument) if instrument else Quantities()
-        practice = practice or practice_beside(instrument)
-        bowing = read_practice(practice) if practice else None
+        practice = practice or bowing_table_beside(instrument)
+        bowing = read_bowing_table(practice) if practice else None
     except YehuError as error:
         parser.error(str(error))
     asked = arguments.rate, arguments.variation, arguments.seed, arguments.way

@@ -17,7 +17,7 @@ from yehu_server.plugin.build import build
 from yehu_server.plugin.targets import ALL, NAMES
 from yehu_server.util import __version__
 
-EARLIEST = (1980, 1, 1, 0, 0, 0)  # that an archive can tell
+EARLIEST = (1980, 1, 1, 0, 0, 0)  # that an archive can state
 EXECUTABLE = 0o755 << 16
 
 

@@ -1,4 +1,4 @@
-"""Write yehu_server/playing/practices.json, the practice for usual sample rates.
+"""Write yehu_server/playing/practices.json, the bowing tables for usual sample rates.
 
     .venv/bin/python scripts/practise.py [--anew] [RATE...]
 
@@ -14,13 +14,13 @@ import argparse
 import json
 import time
 
-from yehu_lab.practising.practice import Practice
-from yehu_lab.practising.recipes import DEFAULT
+from yehu_lab.practising.bowing_search import BowingSearch
+from yehu_lab.practising.candidates import DEFAULT
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import PLACES, default_bowing_table
+from yehu_server.playing.bowing_tables import SHIPPED, as_data, as_text, shipped_bowing_table
 from yehu_server.playing.calibration import calibrate
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.practice_files import SHIPPED, as_data, as_text, shipped_practice
 
 RATES = (44100.0, 48000.0, 96000.0)
 
@@ -35,14 +35,14 @@ def main() -> None:
     for rate in arguments.rates:
         start = time.perf_counter()
         quantities = Quantities()
-        known = default_bowing_table() if arguments.anew else shipped_practice(rate)
-        table = Practice(rate, quantities, calibration_for(rate)).learn(
+        known = default_bowing_table() if arguments.anew else shipped_bowing_table(rate)
+        table = BowingSearch(rate, quantities, calibration_for(rate)).learn(
             table=known, places=(DEFAULT,)
         )
         print(f"{rate:g} Hz: {time.perf_counter() - start:.0f} s, usual place", flush=True)
         calibration = calibrate(rate, quantities, bowing=table)
         others = set(range(len(PLACES))) - {DEFAULT}
-        table = Practice(rate, quantities, calibration).learn(table=table, places=others)
+        table = BowingSearch(rate, quantities, calibration).learn(table=table, places=others)
         found[rate] = as_data(table, rate)
         SHIPPED.write_text(as_text([found[known] for known in sorted(found)]), encoding="utf-8")
         print(f"{rate:g} Hz: {time.perf_counter() - start:.0f} s", flush=True)

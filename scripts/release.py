@@ -94,12 +94,12 @@ def read_citation(root: Path) -> dict[str, Any]:
 def check_archives(source: Path, wheel: Path, version: str) -> None:
     """Check what both archives say and hold; raises NotReadyError."""
     with tarfile.open(source) as archive:
-        told = archive.extractfile(f"{source.name.removesuffix('.tar.gz')}/PKG-INFO")
-        texts = {source.name: told.read() if told else b""}
+        metadata = archive.extractfile(f"{source.name.removesuffix('.tar.gz')}/PKG-INFO")
+        texts = {source.name: metadata.read() if metadata else b""}
     with zipfile.ZipFile(wheel) as archive_of_wheel:
         names = archive_of_wheel.namelist()
-        told_at = next(name for name in names if name.endswith(".dist-info/METADATA"))
-        texts[wheel.name] = archive_of_wheel.read(told_at)
+        metadata_at = next(name for name in names if name.endswith(".dist-info/METADATA"))
+        texts[wheel.name] = archive_of_wheel.read(metadata_at)
     for name, text in texts.items():
         fields = email.message_from_bytes(text)
         if (fields["Name"], fields["Version"]) != ("yehu-server", version):
@@ -159,7 +159,7 @@ git tag -a v{check_versions(ROOT)} && git push --tags
 twine upload {source} {wheel}
 
 A record with a DOI: make a deposit with zenodo.json, at Zenodo's address and with your token, put
-both archives into the bucket that it answers with, look at it on the site, and publish it there:
+both archives into the bucket that it answers with, check it on the site, and publish it there:
 
 AUTH="Authorization: Bearer $TOKEN"
 curl -H "$AUTH" --json @{folder / "zenodo.json"} $ZENODO/api/deposit/depositions

@@ -1,4 +1,4 @@
-"""Let sections play and measure whether they are people: together, in tune, and not copies.
+"""Let sections play and measure whether they sound as several players do.
 
     .venv/bin/python scripts/section.py [MEASURE] [--rate HZ] [--seed N] [--json FILE]
 

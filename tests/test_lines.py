@@ -121,7 +121,7 @@ def test_log_lines_are_bounded_and_steer_nothing(monkeypatch, is_json):
 
 
 def test_lines_of_one_cause_are_bounded_a_minute():
-    few = terminal._FewOfACause()
+    few = terminal._RepeatFilter()
     times = [second / 10 for second in range(1000)]
 
     def logged(line: int, level: int = logging.INFO) -> list[str]:
@@ -131,8 +131,8 @@ def test_lines_of_one_cause_are_bounded_a_minute():
         return [record.getMessage() for record in made if few.filter(record)]
 
     told = logged(1)
-    assert len(told) == 2 * terminal.MOST_OF_A_CAUSE
-    assert told[terminal.MOST_OF_A_CAUSE - 1].endswith("left out for a minute)")
+    assert len(told) == 2 * terminal.MOST_REPEATS
+    assert told[terminal.MOST_REPEATS - 1].endswith("left out for a minute)")
     assert len(logged(2)) == len(told)  # each cause by itself
     assert len(logged(3, logging.DEBUG)) == 1000
 

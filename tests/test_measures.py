@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from yehu_server.core.physics.quantities import read_quantities
-from yehu_server.playing.practice_files import practice_beside, read_practice
+from yehu_server.playing.bowing_tables import bowing_table_beside, read_bowing_table
 
 SCRIPTS = Path(__file__).parents[1] / "scripts"
 RATES = (44100.0, 48000.0, 96000.0)
@@ -165,7 +165,7 @@ def test_an_erhu_plays_its_two_and_a_half_octaves_in_tune():
     from measures.take import Setup
 
     file = SCRIPTS.parent / "examples" / "erhu.toml"
-    bowing = read_practice(practice_beside(file))
+    bowing = read_bowing_table(bowing_table_beside(file))
     (found,) = grid(Setup(44100.0, own=read_quantities(file), bowing=bowing))
     assert found.of == 32 * 20
     assert found.right >= 0.96 * found.of

@@ -23,7 +23,7 @@ from waiting import LONG_S, until
 
 from yehu_server.cli import _parser, main, render_folder
 from yehu_server.core.player.bowing import default_bowing_table
-from yehu_server.playing.practice_files import write_practice
+from yehu_server.playing.bowing_tables import write_bowing_table
 from yehu_server.util.sound_file import is_rendered
 
 # Where a whole command starts them, its workers are new Pythons.
@@ -176,7 +176,7 @@ def test_a_changed_mapping_or_a_practice_beside_the_instrument_renders_again(tmp
     assert "0 rendered, 1 up" in command(*words)[1]
     mapping.write_text('base = "keyboard"\n[start]\n"/playing/pressure" = 0.9\n')
     assert "1 rendered, 0 up" in command(*words)[1]
-    write_practice(tmp_path / "mine.practice.json", default_bowing_table(), 44100.0)
+    write_bowing_table(tmp_path / "mine.practice.json", default_bowing_table(), 44100.0)
     assert "1 rendered, 0 up" in command(*words)[1]
     assert "0 rendered, 1 up" in command(*words)[1]
 

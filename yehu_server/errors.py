@@ -58,7 +58,7 @@ class MeasurementError(YehuError):
     """A measurement of a body that cannot be read, or cannot be what it is said to be."""
 
 
-LONGEST_WORD = 100  # characters looked at for a similar one, which takes time by their square
+LONGEST_WORD = 100  # characters compared to find a similar one, which takes time by their square
 
 
 def did_you_mean(word: object, known: Collection[str], least: float = 0.6) -> str:

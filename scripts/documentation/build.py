@@ -93,8 +93,10 @@ def run_mkdocs(site: Path, settings: Path, notebooks: Path | None) -> None:
         check=False,
     )
     if done.returncode:
-        told = [line for line in done.stderr.splitlines() if not line.startswith(("INFO", "DEBUG"))]
-        print(*told, sep="\n", file=sys.stderr)
+        shown = [
+            line for line in done.stderr.splitlines() if not line.startswith(("INFO", "DEBUG"))
+        ]
+        print(*shown, sep="\n", file=sys.stderr)
         raise YehuError("MkDocs did not build the site: it says above why")
 
 

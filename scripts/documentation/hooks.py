@@ -40,7 +40,7 @@ ELSEWHERE = {
     "presets/README.md": "presets.md",
     "tunings/README.md": "tunings.md",
 }
-PARTS = "docs/site/"  # what only the site has: its home, the pages of the API, looks
+PARTS = "docs/site/"  # what only the site has: its home, the pages of the API, its style
 # The folder of the site that has the page of the instrument; links to its source lead there.
 PLAY, INSTRUMENT = "play", "web/index.html"
 REFERENCES = "docs/references.md"

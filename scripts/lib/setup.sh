@@ -189,7 +189,7 @@ install_packages() {
     if command -v uv >/dev/null; then
         (
             eval "$settings"
-            # Hashes tell which file is right, whichever index has it.
+            # Hashes show which file is right, whichever index has it.
             UV_INDEX_STRATEGY=unsafe-best-match uv pip install --python "$venv/bin/python" "$@"
         ) >"$log" 2>&1 </dev/null && return
     fi
@@ -207,7 +207,7 @@ venv_pip() {
     "$venv/bin/python" -I -m pip "$@"
 }
 
-# Prints what pip is told of indexes, as exports for uv. The Python that .venv was made with may have
+# Prints pip's settings of indexes, as exports for uv. The Python that .venv was made with may have
 # a pip to ask.
 settings_of_pip() {
     { "$1" -I -m pip config list 2>/dev/null || venv_pip config list 2>/dev/null; } |
@@ -244,7 +244,7 @@ logged() {
 
 # --- the system's packages ---------------------------------------------------------------
 
-# Installs what is missing (as root on Debian) or tells how to; without it, all but live sound
+# Installs what is missing (as root on Debian) or says how to; without it, all but live sound
 # works. Only Linux needs this: elsewhere, sounddevice brings PortAudio along.
 system_packages() {
     [ "$(uname -s)" = Linux ] || return 0

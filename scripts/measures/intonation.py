@@ -2,8 +2,8 @@
 
 Strings and body ring on when a note changes. Open C5, or the other string under the same finger,
 lies a fifth above a note on the F string: both together repeat after two periods of the note, so
-autocorrelation tells an octave too low. `overtones_off_by` finds the pitch of a short note among
-what still rings of those before, by its harmonics: they lie apart, and are told apart by frequency.
+autocorrelation is an octave too low. `overtones_off_by` finds the pitch of a short note among
+what still rings of those before, by its harmonics, which differ in frequency.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def errors_of(
 ) -> list[float]:
     """Return the errors (cents) of a note at those of MOMENTS_S that it is long enough for.
 
-    `error` tells one, with the arguments of `off_by`.
+    `error` gives one, with the arguments of `off_by`.
     """
     moments = [moment for moment in MOMENTS_S if moment + LISTEN_S <= seconds + 1e-9]
     return [error(sound, rate, start_s + moment, LISTEN_S, note) for moment in moments]

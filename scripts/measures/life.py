@@ -27,7 +27,7 @@ def pitch_track(sound: Array, rate: float, frequency: float) -> Array:
     """Return how far (cents) the pitch is from a frequency (Hz), every HOP_S.
 
     Each harmonic is brought down to 0 Hz and averaged in a window of WINDOW_S; the turning of its
-    phase tells its frequency. Strong and high harmonics count most.
+    phase gives its frequency. Strong and high harmonics count most.
     """
     size = round(2 * WINDOW_S * rate)  # a Hann window's effective width is half its length
     window = np.hanning(size)

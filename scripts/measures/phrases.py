@@ -1,8 +1,8 @@
 """`phrases`: how bare tunes are shaped: dynamics over a tune and inside notes, attacks, vibrato.
 
-Ten tunes of examples/tunes are played without a room at phrasing 0 and 0.5. What people do stands
-beside it: recordings of an erhu, a solo violin and a cello. A measure without right and wrong, but
-for the dynamics over a tune.
+Ten tunes of examples/tunes are played without a room at phrasing 0 and 0.5. What musicians do
+stands beside it: recordings of an erhu, a solo violin and a cello. A measure without right and
+wrong, but for the dynamics over a tune.
 """
 
 from __future__ import annotations

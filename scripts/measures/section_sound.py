@@ -17,20 +17,20 @@ from yehu_server.playing.part_state import Key
 from yehu_server.playing.pitch_and_level import a_weighted_db, cents, pitch_hz
 from yehu_server.playing.section_instruments import section_specs
 
-PEOPLE = 8
+PLAYERS = 8
 NOTES = range(65, 90)  # F4 to F6
 NOTE_S, BEAT_S, STEADY_S = 1.0, 1.2, 0.4
 WINDOW_S = 0.1
 TAKES = 3
-ROCKED, ROCKED_CENTS, LONG_S = 16, 30.0, 3.0  # people with a vibrato, its depth, their notes
+ROCKED, ROCKED_CENTS, LONG_S = 16, 30.0, 3.0  # players with a vibrato, its depth, their notes
 ROCKED_NOTES = (67, 71, 74, 79)
 LATE_S = 0.025  # the last of the late copies
 CENTRES_HZ = 1000.0 * 2.0 ** (np.arange(-4, 11) / 3.0)
 
 
-def scale(rate: float, seed: int, people: int) -> Any:
+def scale(rate: float, seed: int, players: int) -> Any:
     """Return the sound of each player, on a chromatic scale."""
-    take = SectionTake(rate, seed, people)
+    take = SectionTake(rate, seed, players)
     for number, note in enumerate(NOTES):
         take.note(note, number * BEAT_S, number * BEAT_S + NOTE_S)
     return take.play(len(NOTES) * BEAT_S)
@@ -44,7 +44,7 @@ def steady_parts(sound: Any, rate: float) -> list[Any]:
 
 def tuning(rate: float, seed: int) -> dict[str, Any]:
     """See scripts/section.py."""
-    sounds = scale(rate, seed, PEOPLE)
+    sounds = scale(rate, seed, PLAYERS)
     errors = np.array(
         [
             [
@@ -89,11 +89,11 @@ def over_powers(sounds: Any, rate: float) -> Any:
 
 def chorus(rate: float, seed: int) -> dict[str, Any]:
     """See scripts/section.py."""
-    takes = [scale(rate, seed + number, PEOPLE) for number in range(TAKES)]
-    late = np.round(np.linspace(0.0, LATE_S, PEOPLE) * rate).astype(int)
+    takes = [scale(rate, seed + number, PLAYERS) for number in range(TAKES)]
+    late = np.round(np.linspace(0.0, LATE_S, PLAYERS) * rate).astype(int)
     ways: dict[str, Callable[[Any], Any]] = {
         "section": lambda sounds: sounds,
-        "copies": lambda sounds: np.repeat(sounds[:1], PEOPLE, axis=0),
+        "copies": lambda sounds: np.repeat(sounds[:1], PLAYERS, axis=0),
         "late copies": lambda sounds: np.array([np.roll(sounds[0], by) for by in late]),
     }
     figures = {}
@@ -113,10 +113,10 @@ def chorus(rate: float, seed: int) -> dict[str, Any]:
 def loudness(rate: float, seed: int) -> dict[str, Any]:
     """See scripts/section.py."""
     levels: dict[int, tuple[float, float]] = {}
-    for people in (1, 2, 4, 8):
-        alone = scale(rate, seed, people).sum(axis=0)
+    for players in (1, 2, 4, 8):
+        alone = scale(rate, seed, players).sum(axis=0)
         playing = PlayingOptions(seed=seed)
-        specs = section_specs(playing, rate, calibration_for(rate), people=people)
+        specs = section_specs(playing, rate, calibration_for(rate), players=players)
         ensemble = Ensemble(specs)
         player = playing.mapped(playing.player(ensemble.instruments))
         for number, note in enumerate(NOTES):
@@ -125,13 +125,13 @@ def loudness(rate: float, seed: int) -> dict[str, Any]:
         out = np.zeros((len(alone), 2), np.float32)
         ensemble.process(out)
         power = [10.0 ** (0.1 * a_weighted_db(ear.astype(float), rate)) for ear in out.T]
-        levels[people] = a_weighted_db(alone.astype(float), rate), 10 * np.log10(np.mean(power))
+        levels[players] = a_weighted_db(alone.astype(float), rate), 10 * np.log10(np.mean(power))
     return {
-        f"{people} players": {
-            "alone dB": round(levels[people][0] - levels[1][0], 2),
-            "in the room dB": round(float(levels[people][1] - levels[1][1]), 2),
+        f"{players} players": {
+            "alone dB": round(levels[players][0] - levels[1][0], 2),
+            "in the room dB": round(float(levels[players][1] - levels[1][1]), 2),
         }
-        for people in levels
+        for players in levels
     }
 
 

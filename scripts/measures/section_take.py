@@ -20,11 +20,11 @@ BLOCK_S = 1.0
 
 
 class SectionTake:
-    """A section of a number of people, without a room."""
+    """A section of a number of players, without a room."""
 
-    def __init__(self, rate: float, seed: int, people: int) -> None:
-        playing = replace(PlayingOptions(seed=seed), start=((SECTION, float(people)),))
-        specs = section_specs(playing, rate, calibration_for(rate), people=people)
+    def __init__(self, rate: float, seed: int, players: int) -> None:
+        playing = replace(PlayingOptions(seed=seed), start=((SECTION, float(players)),))
+        specs = section_specs(playing, rate, calibration_for(rate), players=players)
         self.rate = rate
         self._ensemble = Ensemble(specs, has_room=False)
         self.instruments = self._ensemble.instruments

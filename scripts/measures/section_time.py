@@ -33,25 +33,25 @@ def fit(onsets: Any) -> tuple[Any, float]:
     """
     apart = onsets - onsets.mean(axis=1, keepdims=True)
     now, change = apart[:-1], np.diff(apart, axis=0)
-    notes, people = now.shape
-    corrected = -people * now[:, :, np.newaxis] * np.eye(people)  # [note, player, gain]
+    notes, players = now.shape
+    corrected = -players * now[:, :, np.newaxis] * np.eye(players)  # [note, player, gain]
     corrected -= corrected.mean(axis=1, keepdims=True)
-    terms = corrected.reshape(-1, people)
+    terms = corrected.reshape(-1, players)
     gains, *_ = np.linalg.lstsq(terms, change.ravel(), rcond=None)
     left = change.ravel() - terms @ gains
-    return gains, float(np.sqrt(np.sum(left**2) / (notes * (people - 1))))
+    return gains, float(np.sqrt(np.sum(left**2) / (notes * (players - 1))))
 
 
 def spread(onsets: Any) -> float:
     """Return the standard deviation of the asynchronies of all pairs of players."""
     apart = onsets - onsets.mean(axis=1, keepdims=True)
-    people = onsets.shape[1]
-    return float(np.sqrt(2.0 * np.mean(apart**2) * people / (people - 1)))
+    players = onsets.shape[1]
+    return float(np.sqrt(2.0 * np.mean(apart**2) * players / (players - 1)))
 
 
-def pulse(rate: float, seed: int, people: int, seconds: float) -> tuple[Any, Any]:
+def pulse(rate: float, seed: int, players: int, seconds: float) -> tuple[Any, Any]:
     """Play a pulse; return the onsets (ms after the planned ones) and the sound of each."""
-    take = SectionTake(rate, seed, people)
+    take = SectionTake(rate, seed, players)
     count = int(seconds / PULSE_S)
     for beat in range(count):
         take.note(NOTES[beat % len(NOTES)], beat * PULSE_S, beat * PULSE_S + NOTE_S)
@@ -77,13 +77,13 @@ def heard(sounds: Any, rate: float) -> Any:
 def law(rate: float, seed: int) -> dict[str, Any]:
     """See scripts/section.py."""
     figures = {}
-    for people in (2, 4, 8, 16):
-        timing = Together(people, rate, seed)
+    for players in (2, 4, 8, 16):
+        timing = Together(players, rate, seed)
         step = round(rate)
         late = [timing.onset(step * note) for note in range(DRAWN)]
         onsets = 1e3 * np.array(late) / rate
         gains, error = fit(onsets)
-        figures[f"{people} players, planned"] = {
+        figures[f"{players} players, planned"] = {
             "gain": round(float(gains.mean()), 3),
             "farthest gain from its own": round(float(abs(gains - timing.gains).max()), 3),
             "error ms": round(error, 2),

@@ -39,7 +39,7 @@ class Setup:
     `seed`: of all that is left to chance.
     `way`: the only way of bowing that is measured (`shuffled`).
     `own`: the instrument before it is tuned.
-    `bowing`: A practice; by default that which comes with the program.
+    `bowing`: A bowing table; by default that which comes with the program.
     `phrasing`: `/playing/phrasing`.
     """
 
@@ -131,7 +131,7 @@ class Take:
         self.player.key_off(Key(self._channel, note), frame=self._frame(seconds))
 
     def long(self, seconds: float, length_s: float) -> None:
-        """Tell how long the note will be that begins at a time, as files do."""
+        """Set how long the note will be that begins at a time, as files do."""
         address = "/playing/note_length"
         self.player.write(address, length_s, frame=self._frame(seconds))
 

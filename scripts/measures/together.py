@@ -11,12 +11,12 @@ from yehu_server.params.table import TABLE
 
 
 class Together:
-    """The onsets of a section of some people, at a rate (Hz), with a seed."""
+    """The onsets of a section of some players, at a rate (Hz), with a seed."""
 
-    def __init__(self, people: int, rate: float, seed: int) -> None:
+    def __init__(self, players: int, rate: float, seed: int) -> None:
         self._midi = np.zeros(1, MIDI)
         values = {param.address: param.default for param in TABLE}
-        prepare_midi(self._midi, rate, values, players=people)
+        prepare_midi(self._midi, rate, values, players=players)
         self._record = self._midi[0]
         self.begin(seed)
 

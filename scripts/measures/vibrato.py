@@ -33,7 +33,7 @@ def swings(setup: Setup, note: int, settings: dict[str, float]) -> tuple[float, 
     cents, level_db = [], []
     for at in range(0, len(track.pitch) - turn, turn):
         pitch = track.pitch[at : at + turn] - note
-        pitch = (pitch + 6.0) % 12.0 - 6.0  # a fundamental may be too weak to tell the octave
+        pitch = (pitch + 6.0) % 12.0 - 6.0  # a fundamental may be too weak to show the octave
         cents.append(100.0 * np.ptp(pitch[np.isfinite(pitch)]))
         level_db.append(np.ptp(level[at : at + turn]))
     return float(np.median(cents)), float(np.median(level_db))

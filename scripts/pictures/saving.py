@@ -1,4 +1,4 @@
-"""Writes pictures and sounds of the documentation, and tells their size."""
+"""Writes pictures and sounds of the documentation, and prints their size."""
 
 from __future__ import annotations
 

@@ -36,9 +36,9 @@ from yehu_server.core.player.bowing import (
     share,
 )
 from yehu_server.params.table import find
+from yehu_server.playing.bowing_tables import shipped_bowing_table
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.playing.practice_files import shipped_practice
 
 Array = Any
 
@@ -61,18 +61,18 @@ class Player:
         tuned = calibration_for(RATE).tuned(Quantities())
         silk, bow = tuned.strings[string], tuned.bow
         self.string, self.note = string, note
-        self.bowing = shipped_practice(RATE)
+        self.bowing = shipped_bowing_table(RATE)
         self.impedance = float(np.sqrt(silk.T * silk.rho_A))
         self.grip = bow.mu_S - bow.mu_C
 
-    def recipe(self, column: int) -> float:
-        """A column of the practice; see player.bowing."""
+    def bowing_value(self, column: int) -> float:
+        """A column of the bowing table; see player.bowing."""
         return bowing_value(self.bowing, self.string, USUAL_BETA, float(self.note), column)
 
     def force(self, speed: Array, beta: float, command: float) -> Array:
         """The force (N) that the player's assist sets for a value of ``/playing/pressure``."""
         fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
-        flautando, light, firm = map(self.recipe, (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
+        flautando, light, firm = map(self.bowing_value, (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
         usual = share(flautando, light, firm, command, self.string)
         highest = speed * upper_limit(self.impedance, self.grip, 1.0, beta)  # it goes as the speed
         return (usual + fast) * highest
@@ -80,7 +80,7 @@ class Player:
 
 def bowed(player: Player, vary: dict[str, Any]) -> Result:
     """Bow the note in all combinations."""
-    press = max(find("/playing/press").default, player.recipe(LEAST_PRESS))
+    press = max(find("/playing/press").default, player.bowing_value(LEAST_PRESS))
     stroke = {"string": player.string + 1, "note": player.note, "press": press}
     along = next(name for name in ("position", "speed") if isinstance(vary.get(name), dict))
     return sweep(
@@ -118,16 +118,16 @@ def draw_note(panels: Any, player: Player) -> list[Result]:
     for i, speed in enumerate(THREE):
         panels[i].set_title(f"{title}, {speed:g} m/s")
         draw(panels[i], places, "position", {"speed": i})
-        if speed <= player.recipe(TOP_SPEED):
-            beta = USUAL_BETA * player.recipe(DISTANCE_FACTOR)
+        if speed <= player.bowing_value(TOP_SPEED):
+            beta = USUAL_BETA * player.bowing_value(DISTANCE_FACTOR)
             ends = [float(player.force(speed, beta, command)) for command in (LIGHT, FIRM)]
             panels[i].plot([beta, beta], ends, color="k", lw=2.5, marker="_", ms=9, mew=2.5)
     speeds = bowed(player, {"position": [USUAL_BETA], "speed": SPEEDS})
     panels[-1].set_title(f"{title}, β = {USUAL_BETA:g}")
     draw(panels[-1], speeds, "speed", {"position": 0})
-    if player.recipe(DISTANCE_FACTOR) == 1.0:
+    if player.bowing_value(DISTANCE_FACTOR) == 1.0:
         borne = speeds.axes["speed"]
-        borne = borne[borne <= player.recipe(TOP_SPEED)]
+        borne = borne[borne <= player.bowing_value(TOP_SPEED)]
         for command in (LIGHT, FIRM):
             panels[-1].plot(borne, player.force(borne, USUAL_BETA, command), "k:", lw=2.0)
     panels[0].set_ylabel(LABELS["force"])

@@ -182,7 +182,7 @@ def energy(found: Sequence[Mapping[str, Any]]) -> list[str]:
 def laws(found: Sequence[Mapping[str, Any]]) -> list[str]:
     """What maps are like with each law of friction."""
 
-    def told(text: str) -> str:
+    def known(text: str) -> str:
         return "" if "nan" in text else text
 
     rows = [
@@ -192,11 +192,11 @@ def laws(found: Sequence[Mapping[str, Any]]) -> list[str]:
             f"{row['helmholtz']:.1%}",
             f"{row['aperiodic']:.1%}",
             f"{row['same']:.0%}",
-            told(f"{row['least']:.2f} to {row['greatest']:.2g}"),
-            told(f"{row['flatter']:.0f}"),
-            told(f"{row['cents']:+.1f}"),
-            told(f"{row['brighter'] - 1.0:+.0%}"),
-            told(f"{row['onset_ms']:.0f}"),
+            known(f"{row['least']:.2f} to {row['greatest']:.2g}"),
+            known(f"{row['flatter']:.0f}"),
+            known(f"{row['cents']:+.1f}"),
+            known(f"{row['brighter'] - 1.0:+.0%}"),
+            known(f"{row['onset_ms']:.0f}"),
         ]
         for row in found
     ]

@@ -9,7 +9,7 @@ import soundfile
 from lab.body import bodies
 
 import yehu_server as yehu
-from yehu_lab.body import apart, fit
+from yehu_lab.body import fit, fitting_process
 from yehu_server.playing import calibration_store
 
 
@@ -58,10 +58,10 @@ def test_a_fit_is_made_in_a_process_with_one_thread_and_what_it_finds_is_the_sam
     given, run = [], subprocess.run
 
     def heard(*words, env, **more):
-        given.append(env[apart.THREADS])
+        given.append(env[fitting_process.THREADS])
         return run(*words, env=env, **more)
 
-    monkeypatch.delenv(apart.THREADS)
+    monkeypatch.delenv(fitting_process.THREADS)
     monkeypatch.setattr(subprocess, "run", heard)
     hz = yehu.body.fit(measured, **how).modes.frequency_hz
     np.testing.assert_allclose(hz, here.modes.frequency_hz, rtol=1e-9)

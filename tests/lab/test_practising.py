@@ -1,4 +1,4 @@
-"""Practising tells a good manner from a bad one, and goes on from what was practised before."""
+"""Practising tells a good bowing from a bad one, and goes on from what was practised before."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ import pytest
 from fiddles import SLACK_TOML
 from midi_files import midi_file, notes
 
-from yehu_lab.practising import practice as practising
-from yehu_lab.practising.passages import Passage, Search
-from yehu_lab.practising.practice import (
+from yehu_lab.practising import bowing_search as practising
+from yehu_lab.practising.bowing_search import (
     BEFORE_S,
     EACH_S,
     EARLY_S,
     LATE_S,
     LISTEN_S,
-    Practice,
+    BowingSearch,
     has_pitch,
 )
-from yehu_lab.practising.recipes import slower
+from yehu_lab.practising.candidates import slower
+from yehu_lab.practising.passages import Passage, SearchedNote
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import (
     AT_FIRM,
@@ -31,12 +31,12 @@ from yehu_server.core.player.bowing import (
 )
 from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.params.table import find
-from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.playing.practice_files import (
-    read_practice,
-    shipped_practice,
-    write_practice,
+from yehu_server.playing.bowing_tables import (
+    read_bowing_table,
+    shipped_bowing_table,
+    write_bowing_table,
 )
+from yehu_server.playing.calibration_store import calibration_for
 
 RATE = 44100.0
 PLACE = PLACES.index(0.1)
@@ -49,19 +49,19 @@ PASSAGES = [
 
 
 @pytest.fixture(scope="module")
-def practice() -> Practice:
-    return Practice(RATE, Quantities(), calibration_for(RATE))
+def table_search() -> BowingSearch:
+    return BowingSearch(RATE, Quantities(), calibration_for(RATE))
 
 
 @pytest.mark.parametrize(("note", "factor"), [(70, 0.02), (70, 30.0), (74, 0.02), (80, 30.0)])
-def test_a_manner_that_speaks_is_told_from_one_that_cannot(practice, note, factor):
+def test_a_manner_that_speaks_is_distinguished_from_one_that_cannot(table_search, note, factor):
     string = int(note > 71)
-    good = shipped_practice(RATE)[string, DEFAULT, note - FIRST]
+    good = shipped_bowing_table(RATE)[string, DEFAULT, note - FIRST]
     bad = good.copy()  # too light, or too heavy
     bad[AT_FLAUTANDO : AT_FIRM + 1] *= factor
-    search = Search(string, note, DEFAULT, good)
-    assert 0.7 < practice.score(search, good, PASSAGES) <= 1.0
-    assert practice.score(search, bad, PASSAGES) < 0.6
+    search = SearchedNote(string, note, DEFAULT, good)
+    assert 0.7 < table_search.score(search, good, PASSAGES) <= 1.0
+    assert table_search.score(search, bad, PASSAGES) < 0.6
 
 
 def test_a_mode_that_drowns_a_note_is_not_taken_for_it():
@@ -72,10 +72,10 @@ def test_a_mode_that_drowns_a_note_is_not_taken_for_it():
     assert not has_pitch(0.0 * note, RATE, 88.0)
 
 
-def test_the_score_of_a_manner_is_always_the_same(practice):
-    manner = default_bowing_table()[0, PLACE, 70 - FIRST]
-    search = Search(0, 70, PLACE, manner)
-    scores = {practice.score(search, manner, PASSAGES) for _ in range(3)}
+def test_the_score_of_a_manner_is_always_the_same(table_search):
+    bowing = default_bowing_table()[0, PLACE, 70 - FIRST]
+    search = SearchedNote(0, 70, PLACE, bowing)
+    scores = {table_search.score(search, bowing, PASSAGES) for _ in range(3)}
     assert len(scores) == 1
 
 
@@ -95,9 +95,11 @@ def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late
 
     monkeypatch.setattr(practising, "_speaks", speaks)
     monkeypatch.setattr(practising, "has_pitch", lambda *_: True)
-    practice = Practice(RATE, Quantities(), calibration_for(RATE), tuning=lambda key: key + 0.35)
-    manner = default_bowing_table()[0, PLACE, 70 - FIRST]
-    assert practice.score(Search(0, 70, PLACE, manner), manner, PASSAGES) == 1.0
+    table_search = BowingSearch(
+        RATE, Quantities(), calibration_for(RATE), tuning=lambda key: key + 0.35
+    )
+    bowing = default_bowing_table()[0, PLACE, 70 - FIRST]
+    assert table_search.score(SearchedNote(0, 70, PLACE, bowing), bowing, PASSAGES) == 1.0
     assert set(played) == {70.35}
     each_s = BEFORE_S + EACH_S
     told = [BEFORE_S + at for at in (EARLY_S, LATE_S)]
@@ -109,18 +111,18 @@ def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late
 def one_note(monkeypatch) -> None:
     """Practise a single note, with a single passage at each trial, and one short round of them.
 
-    It speaks in any manner but that which ships: whether a note does hangs on a chaotic run.
+    It speaks in any bowing but that which ships: whether a note does hangs on a chaotic run.
     """
-    shipped = shipped_practice(RATE)
+    shipped = shipped_bowing_table(RATE)
 
-    def score(_practice, search, manner, _passages):
+    def score(_self, search, bowing, _passages):
         return float(
-            not np.isclose(manner, shipped[search.string, :, search.note - FIRST])
+            not np.isclose(bowing, shipped[search.string, :, search.note - FIRST])
             .all(axis=-1)
             .any()
         )
 
-    monkeypatch.setattr(Practice, "score", score)
+    monkeypatch.setattr(BowingSearch, "score", score)
     monkeypatch.setattr(practising, "ROUNDS", [slower])
     monkeypatch.setattr(practising, "stops_of", lambda _notes: [(0, 70)])
     monkeypatch.setattr(practising, "TRIES", 1)
@@ -140,7 +142,9 @@ def test_what_practise_writes_render_takes(command, tmp_path):
         assert code == 0, error
         summary = json.loads(out)
         assert summary["rate"] == RATE
-        changed = ~np.isclose(read_practice(path), shipped_practice(RATE), atol=1e-4).all(axis=-1)
+        changed = ~np.isclose(read_bowing_table(path), shipped_bowing_table(RATE), atol=1e-4).all(
+            axis=-1
+        )
         assert changed.sum() == summary["improved"] > 0 or words
         assert set(zip(*np.nonzero(changed.any(axis=1)), strict=True)) <= {(0, 70 - FIRST)}
         assert not (words and changed[:, np.array(PLACES) > 0.1].any())
@@ -154,10 +158,10 @@ def test_practising_goes_on_from_what_lies_beside_the_instrument(command, tmp_pa
     instrument, beside = tmp_path / "mine.toml", tmp_path / "mine.practice.json"
     instrument.write_text("[string_1]\nreach = 6.0\n[string_2]\nreach = 3.0\n")  # tuned sooner
     table = default_bowing_table()
-    write_practice(beside, table, RATE)
+    write_bowing_table(beside, table, RATE)
     code, _, error = command("practise", "--instrument", instrument, "-o", beside, "--quiet")
     assert code == 0, error
-    same = np.isclose(read_practice(beside), table, atol=1e-4).all(axis=-1)
+    same = np.isclose(read_bowing_table(beside), table, atol=1e-4).all(axis=-1)
     same[0, :, 70 - FIRST] = True
     same[0, :, : LOWEST_NOTE - FIRST] = True  # as the open string
     assert same.all()

@@ -27,10 +27,10 @@ from yehu_server.core.player.bowing import (
     default_bowing_table,
     share,
 )
+from yehu_server.playing.bowing_tables import shipped_bowing_table
 from yehu_server.playing.part_state import Key
-from yehu_server.playing.practice_files import shipped_practice
 
-SHIPPED = shipped_practice(44100.0)
+SHIPPED = shipped_bowing_table(44100.0)
 STOPS = [*((0, note) for note in range(65, 78)), *((1, note) for note in range(72, 90))]
 PLACE = 0.13
 

@@ -14,9 +14,9 @@ from yehu_server.core.player.calibration import GAINS
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
 from yehu_server.playing import calibration_store
+from yehu_server.playing.bowing_tables import shipped_bowing_table
 from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
-from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.util import checksummed
 from yehu_server.util.checksummed import write_checksummed
 
@@ -139,7 +139,7 @@ def test_what_no_measuring_could_have_found_is_no_calibration(subtests):
 
 
 def test_a_calibration_is_of_how_notes_are_bowed_at_the_usual_place(kept):
-    bowing = shipped_practice(50000.0)
+    bowing = shipped_bowing_table(50000.0)
     usual = PLACES.index(find("/playing/bow_position").default)
     bowing[:, usual - 1] *= 1.1
     calibrations = [calibration_for(50000.0, a4=441.0, bowing=each) for each in (None, bowing)]

@@ -25,7 +25,7 @@ class Device:
         told["ahead_window"] += 1
         told["ahead"], told["longest"] = ahead, round(ahead) if longest is None else longest
         for _ in range(2):
-            self.delay.look()
+            self.delay.update()
         return self.delay.frames
 
 

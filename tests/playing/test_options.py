@@ -4,8 +4,8 @@ import pytest
 from fiddles import SLACK_TOML
 
 from yehu_server.core.player.bowing import default_bowing_table
+from yehu_server.playing.bowing_tables import write_bowing_table
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.practice_files import write_practice
 
 
 @pytest.mark.parametrize(
@@ -30,7 +30,7 @@ def test_an_instrument_comes_with_its_own_practice_and_not_with_anothers(tmp_pat
     for file in (mine, other):
         file.write_text(SLACK_TOML)
     practice = tmp_path / "mine.practice.json"
-    write_practice(practice, default_bowing_table(), 44100.0)
+    write_bowing_table(practice, default_bowing_table(), 44100.0)
     usual = PlayingOptions()
     on_mine = usual.on_instrument(mine)
     assert (on_mine.instrument, on_mine.practice) == (mine, practice)

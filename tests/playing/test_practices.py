@@ -24,16 +24,16 @@ from yehu_server.core.player.bowing import (
     default_bowing_table,
 )
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.playing.practice_files import (
+from yehu_server.playing.bowing_tables import (
     FORMAT,
     HIGHEST,
     LOWEST,
     VERSION,
     as_data,
-    practice_beside,
-    read_practice,
-    shipped_practice,
-    write_practice,
+    bowing_table_beside,
+    read_bowing_table,
+    shipped_bowing_table,
+    write_bowing_table,
 )
 
 RATE = 44100.0
@@ -91,12 +91,12 @@ def render(command, tmp_path, tune):
 
 def test_a_table_that_was_written_is_read_back(tmp_path):
     path = tmp_path / "mine.json"
-    for table in (practised(), default_bowing_table(), shipped_practice(RATE)):
-        write_practice(path, table, RATE)
-        np.testing.assert_allclose(read_practice(path), table, atol=1.1e-4)
-    again = read_practice(path)
-    write_practice(path, again, RATE)
-    assert np.array_equal(read_practice(path), again)
+    for table in (practised(), default_bowing_table(), shipped_bowing_table(RATE)):
+        write_bowing_table(path, table, RATE)
+        np.testing.assert_allclose(read_bowing_table(path), table, atol=1.1e-4)
+    again = read_bowing_table(path)
+    write_bowing_table(path, again, RATE)
+    assert np.array_equal(read_bowing_table(path), again)
 
 
 def test_only_notes_that_are_bowed_otherwise_are_written():
@@ -137,7 +137,7 @@ def test_a_bad_practice_is_refused_in_one_line(file, refused, tune, tmp_path):
     for content in BAD:
         path = file(content)
         with pytest.raises(ParameterError) as error:
-            read_practice(path)
+            read_bowing_table(path)
         assert is_one_line(f"{error.value}\n"), content
         assert str(error.value).startswith(f"{path}: "), content
     line = refused("render", tune, "-o", tmp_path / "out.wav", "--practice", path)
@@ -150,24 +150,24 @@ def test_a_practice_that_is_missing_or_a_folder_or_the_target_is_refused_in_one_
 ):
     for path in (tmp_path / "none.json", tmp_path):
         with pytest.raises(ScoreError):
-            read_practice(path)
+            read_bowing_table(path)
         line = refused("render", tune, "-o", tmp_path / "out.wav", "--practice", path)
         assert str(path) in line
     path = file(with_row(GOOD))
     assert "practice" in refused("render", tune, "-o", path, "--format", "wav", "--practice", path)
-    assert list(read_practice(path)[0, PLACE, 70 - FIRST]) == GOOD
+    assert list(read_bowing_table(path)[0, PLACE, 70 - FIRST]) == GOOD
 
 
 def test_what_was_practised_is_heard_and_named(render, tmp_path):
     usual, summary = render()
     assert summary["practice"] == "shipped"
     path = tmp_path / "mine.json"
-    table = shipped_practice(RATE)
-    write_practice(path, table, RATE)
+    table = shipped_bowing_table(RATE)
+    write_bowing_table(path, table, RATE)
     same, _ = render("--practice", path)
     np.testing.assert_allclose(same, usual, atol=0.05)
     table[..., AT_FLAUTANDO : AT_FIRM + 1] *= 1.3
-    write_practice(path, table, RATE)
+    write_bowing_table(path, table, RATE)
     other, summary = render("--practice", path)
     assert summary["practice"] == str(path)
     assert not np.array_equal(other, same)
@@ -177,9 +177,9 @@ def test_the_practice_beside_an_instrument_is_found_where_it_is_a_file(tmp_path)
     instrument, beside = tmp_path / "mine.toml", tmp_path / "mine.practice.json"
     (tmp_path / "folder.practice.json").mkdir()
     named = (None, Path(), Path("/"), instrument, tmp_path / "folder.toml")
-    assert [practice_beside(path) for path in named] == [None] * len(named)
+    assert [bowing_table_beside(path) for path in named] == [None] * len(named)
     beside.touch()
-    assert practice_beside(instrument) == beside
+    assert bowing_table_beside(instrument) == beside
 
 
 # ---------------------------------------------------------------- what is shipped
@@ -187,7 +187,7 @@ def test_the_practice_beside_an_instrument_is_found_where_it_is_a_file(tmp_path)
 
 def test_what_is_shipped_is_within_bounds():
     for rate in (44100.0, 48000.0, 96000.0):
-        table = shipped_practice(rate)
+        table = shipped_bowing_table(rate)
         assert table.shape == default_bowing_table().shape
         assert np.all((table >= LOWEST) & (table <= HIGHEST))
         positions = table[..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
@@ -195,7 +195,7 @@ def test_what_is_shipped_is_within_bounds():
 
 
 def test_what_is_shipped_belongs_to_the_nearest_rate_and_cannot_be_spoiled():
-    table = shipped_practice(44100.0)
-    assert np.array_equal(shipped_practice(43000.0), table)
+    table = shipped_bowing_table(44100.0)
+    assert np.array_equal(shipped_bowing_table(43000.0), table)
     table[:] = 0.0
-    assert shipped_practice(44100.0).any()
+    assert shipped_bowing_table(44100.0).any()

@@ -382,7 +382,7 @@ def test_a_panic_comes_after_the_notes_that_were_requested_before_it(four):
 
 def played(playing: PlayingOptions, people: int, block: int, seconds: float = 1.5) -> np.ndarray:
     """The sound of each player of a chord and a line."""
-    stage = Ensemble(section_specs(playing, RATE, ideal(), people=people), has_room=False)
+    stage = Ensemble(section_specs(playing, RATE, ideal(), players=people), has_room=False)
     cores = Cores(stage, map, has_stems=True)
     midi = playing.mapped(playing.player(stage.instruments))
     events = [(0.1, "note_on", 67), (0.1, "note_on", 74), (0.6, "note_off", 67)]

@@ -95,7 +95,7 @@ def test_strings_hair_and_rosin_differ_within_the_tolerances_of_one_maker():
 
 def test_each_player_of_a_section_has_an_instrument_and_sides_of_their_own():
     playing = PlayingOptions(seed=3)
-    specs = section_specs(playing, 44100.0, ideal(), people=4)
+    specs = section_specs(playing, 44100.0, ideal(), players=4)
     alone = playing.spec(44100.0, ideal())
     assert specs[0].quantities == alone.quantities  # the first has the measured one
     bodies = [spec.quantities.body for spec in specs]
@@ -139,7 +139,7 @@ def test_a_part_of_one_player_is_the_instrument_of_its_style():
     playing = PlayingOptions(seed=3)
     out = []
     for spec in (
-        *section_specs(playing, 44100.0, ideal(), people=1),
+        *section_specs(playing, 44100.0, ideal(), players=1),
         playing.spec(44100.0, ideal()),
     ):
         instrument = Instrument(spec)
@@ -153,7 +153,7 @@ def test_a_part_of_one_player_is_the_instrument_of_its_style():
 
 def vibratos(variation):
     """Rate and depth of the vibrato of each of six, and its phase as their note begins."""
-    specs = section_specs(PlayingOptions(), 44100.0, ideal(), people=6)
+    specs = section_specs(PlayingOptions(), 44100.0, ideal(), players=6)
     ensemble = Ensemble(specs, has_room=False)
     commands = PlayingOptions().player(ensemble.instruments)
     commands.write("/playing/variation", variation)

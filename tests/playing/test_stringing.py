@@ -10,7 +10,7 @@ from hands import ideal
 from pitch import cents, hertz, pitch_of
 
 import yehu_server as yehu
-from yehu_lab.practising.passages import Search, pitches_near_notes, stops_of
+from yehu_lab.practising.passages import SearchedNote, pitches_near_notes, stops_of
 from yehu_server import YehuError
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
@@ -19,10 +19,10 @@ from yehu_server.core.player.calibration import PITCHES, Calibration
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
 from yehu_server.live.page.facts import facts
+from yehu_server.playing.bowing_tables import bowing_table_beside, read_bowing_table
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
 from yehu_server.playing.part_state import Key
 from yehu_server.playing.player import Player
-from yehu_server.playing.practice_files import practice_beside, read_practice
 from yehu_server.playing.stringing import notes_of, range_text
 from yehu_server.scores.capture_header import SessionStart, header_of, read_header
 from yehu_server.scores.octaves import NoteSpan, octaves_of
@@ -125,7 +125,7 @@ def test_what_an_erhu_does_not_have_is_told_by_its_own_range(erhu):
 
 
 def test_its_calibration_is_kept_and_read_again():
-    quantities, bowing = read_quantities(ERHU), read_practice(practice_beside(ERHU))
+    quantities, bowing = read_quantities(ERHU), read_bowing_table(bowing_table_beside(ERHU))
     found = calibration_for(float(RATE), quantities, bowing=bowing)
     assert (found.a4, found.open_notes) == (440.0, (D4, A4))
     assert found.tensions == pytest.approx([string.T for string in quantities.strings], rel=0.03)
@@ -163,16 +163,16 @@ def test_captures_keep_what_a_fiddle_is_tuned_to():
 
 
 def test_what_is_practised_are_notes_that_the_fiddle_has():
-    search = Search(0, 70, 0, np.zeros(6), notes=NoteRange((67, 72)))
+    search = SearchedNote(0, 70, 0, np.zeros(6), notes=NoteRange((67, 72)))
     assert (search.sounds, search.is_high_on_inner) == (72, True)
-    assert not Search(0, 70, 0, np.zeros(6)).is_high_on_inner
+    assert not SearchedNote(0, 70, 0, np.zeros(6)).is_high_on_inner
     assert PITCHES[0][0] == 66.0  # the tables are of a yehu's names
     for reaches in ((11.5, 24.0), (8.5, 20.5), (9.0, 7.0), (12.0, 24.9)):
         for open_notes in ((65, 72), (62, 69), (67, 72)):
             notes = NoteRange(open_notes, reaches)
             known = pitches_near_notes(float, notes)
             sounding = {
-                Search(string, note, 0, np.zeros(6), notes=notes).sounds
+                SearchedNote(string, note, 0, np.zeros(6), notes=notes).sounds
                 for string, note in stops_of(notes)
             }
             assert {notes.lowest, notes.highest} <= sounding <= known.keys(), (open_notes, reaches)

@@ -10,8 +10,8 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 from yehu_lab.body import Curve, Modes, Tap, made_taps
-from yehu_lab.body.apart import fit_apart
 from yehu_lab.body.body_file import Fit, bare_fit, read_fit
+from yehu_lab.body.fitting_process import fit_in_process
 from yehu_lab.body.measurement import Measurement, average, read
 from yehu_server.api.checks import PathLike, number, path_of, whole
 from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS, USUAL_SECTIONS
@@ -160,7 +160,7 @@ def fit(
         band_hz = lo, hi
     count = None if modes is None else whole(modes, "modes", 1, MAX_MODES)
     most = whole(sections, "sections", 1, MAX_SECTIONS)
-    return _with_methods(fit_apart(measurement, band_hz=band_hz, modes=count, sections=most))
+    return _with_methods(fit_in_process(measurement, band_hz=band_hz, modes=count, sections=most))
 
 
 def _with_methods(found: Fit) -> Body:

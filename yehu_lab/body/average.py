@@ -23,7 +23,7 @@ KIND = {"velocity": "mobility", "displacement": "receptance", "acceleration": "a
 
 @dataclass(frozen=True)
 class Averaged:
-    """What taps tell together."""
+    """What taps show together."""
 
     admittance: Curve | None  # s/kg
     radiation: Curve | None  # Pa/N
@@ -131,17 +131,17 @@ def _doubts(taps: Sequence[Tap]) -> list[str]:
                 )
                 noise = float(np.std(quiet))
                 if as_db(noise / then) > LOUD_BEFORE_DB:
-                    told = "it swings before the hit, too"
-                    swings = f"{tap.name}: {told}: noise, or hum of the mains"
+                    fault = "it swings before the hit, too"
+                    swings = f"{tap.name}: {fault}: noise, or hum of the mains"
                 elif now > 3.0 * noise and as_db(now / then) > RINGS_DB:
-                    told = f"rings on {RINGS_FROM_S:g} s after the hit, as strings do"
-                    swings = f"{tap.name}: {told}: damp them with a strip of felt"
+                    fault = f"rings on {RINGS_FROM_S:g} s after the hit, as strings do"
+                    swings = f"{tap.name}: {fault}: damp them with a strip of felt"
             if not drifts and len(values) >= first + 3 * part:
                 rest = values - quiet.mean()
                 off = abs(rest[-part:].mean()) / np.abs(rest).max()
                 if off > DRIFTED:
-                    told = f"its {what} is {off:.0%} of its peak off at the end"
-                    drifts = f"{tap.name}: {told}: the sensor drifts; a high-pass filter mends it"
+                    fault = f"its {what} is {off:.0%} of its peak off at the end"
+                    drifts = f"{tap.name}: {fault}: the sensor drifts; a high-pass filter mends it"
     return [line for line in (swings, drifts) if line]
 
 

@@ -205,10 +205,10 @@ def read_fit(path: Path) -> Fit:
     if "measured" not in data or "fit" not in data:
         return fitted
     try:
-        told, measured = data["fit"], data["measured"]
-        warnings = tuple(str(line) for line in told["warnings"])
-        sources = tuple(str(name) for name in told["sources"])
-        lo, hi = (float(hz) for hz in told["band_hz"])
+        fit, measured = data["fit"], data["measured"]
+        warnings = tuple(str(line) for line in fit["warnings"])
+        sources = tuple(str(name) for name in fit["sources"])
+        lo, hi = (float(hz) for hz in fit["band_hz"])
         measurement = Measurement(
             _curve(measured["admittance"]), _curve(measured["radiation"]), hi, (), sources
         )
@@ -216,8 +216,8 @@ def read_fit(path: Path) -> Fit:
             fitted,
             measurement=measurement,
             band_hz=(lo, hi),
-            admittance_db=_differences(told["admittance_db"]),
-            radiation_db=_differences(told["radiation_db"]),
+            admittance_db=_differences(fit["admittance_db"]),
+            radiation_db=_differences(fit["radiation_db"]),
             warnings=warnings,
         )
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:

@@ -77,7 +77,7 @@ def running_median(values: Floats, around: int = AROUND) -> Floats:
 
 
 def interpolated(at_hz: Floats, frequency_hz: Floats, values: Complexes, **ends: float) -> Any:
-    """Values between frequencies; beyond them the outermost, or as `numpy.interp` is told."""
+    """Values between frequencies; beyond them the outermost, or as `ends` say (`numpy.interp`)."""
     real, imag = (
         np.interp(at_hz, frequency_hz, part, **ends) for part in (values.real, values.imag)
     )

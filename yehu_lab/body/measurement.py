@@ -17,7 +17,7 @@ from yehu_lab.body.tables import Response, read_table
 from yehu_lab.body.tap import SOUND_ENDINGS, Tap, parse_channels, read_recording
 from yehu_server.errors import MeasurementError
 
-LOWEST_HZ, HIGHEST_HZ = 100.0, 8000.0  # of the band that is used, where nothing else is told
+LOWEST_HZ, HIGHEST_HZ = 100.0, 8000.0  # of the band that is used, where no other is given
 LEAST_COHERENCE, LEAST_SHARE = 0.8, 0.9
 MOST_SENSOR_KG = 0.05
 REACH_HZ = 4000.0  # a hammer that does not excite up to here misses modes that are heard
@@ -69,7 +69,7 @@ def read(
         What the channels of sound files are, and their SI units at full scale, such as
         ``force=100,acceleration=500``. Those of radiation are by default the same.
     kind : str, optional
-        What responses are that do not tell: mobility, receptance, accelerance or radiation.
+        What responses are whose files do not say: mobility, receptance, accelerance or radiation.
     sensor_mass : float, optional
         Of an accelerometer on the bridge (kg): its effect is taken off.
 
@@ -101,7 +101,7 @@ def read(
 def _read_all(
     paths: Iterable[Path], channels: str | None, kind: str | None
 ) -> tuple[list[Tap], list[Response]]:
-    told = None if channels is None else parse_channels(channels)
+    scales = None if channels is None else parse_channels(channels)
     taps: list[Tap] = []
     responses: list[Response] = []
     for path in paths:
@@ -109,9 +109,9 @@ def _read_all(
         if ending in universal.ENDINGS:
             found = universal.read_universal(path, kind)
         elif ending in SOUND_ENDINGS:
-            found = read_recording(path, told)
+            found = read_recording(path, scales)
         elif ending in (".csv", ".txt", ".tsv"):
-            found = read_table(path, told, kind)
+            found = read_table(path, scales, kind)
         else:
             raise MeasurementError(f"{path}: not a sound file, .csv or .uff")
         taps += [entry for entry in found if isinstance(entry, Tap)]
@@ -155,7 +155,7 @@ def average(
         admittance, radiation = _unloaded(sensor_mass, admittance, radiation)
     elif "accelerance" in kinds and sensor_mass is None:
         warnings.append(
-            "an accelerometer's mass lowers the modes: tell it, and its effect is taken off"
+            "an accelerometer's mass lowers the modes: give it, and its effect is taken off"
         )
     if taps and highest < REACH_HZ:
         warnings.append(

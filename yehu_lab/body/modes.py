@@ -109,7 +109,9 @@ class Step:
     curvature: Floats  # Gauss-Newton's, of the same
 
 
-def look(problem: Problem, points: Floats, wanted: Floats, moving: Numbers | None = None) -> Step:
+def step_at(
+    problem: Problem, points: Floats, wanted: Floats, moving: Numbers | None = None
+) -> Step:
     """Solve for the amounts at `points`, and find how the error changes with them.
 
     `moving` has the numbers of the modes that may move; by default all. The curvature is Kaufman's

@@ -18,12 +18,12 @@ from yehu_server.errors import MeasurementError
 from yehu_server.util.extras import need
 
 DOUBTFUL = 0.97  # share of the real part that is above zero
-LINES = 300  # of the measurement, that are looked at
+LINES = 300  # of the measurement, that are checked
 LATTICE = (0.004, 0.02, 0.08, 0.3)  # damping ratios of the masses on springs
 STEP, BEYOND = 3.0, 3.0  # half-widths between two of them; how far beyond the band they reach
 MATTERS = 0.05  # relative error
 PLAIN, SURE, TOO_FAR = 1.2, 2.0, 5.0  # errors: of the right kind; of another; of none at all
-SMALLER = 0.8  # another kind's error against the told one's
+SMALLER = 0.8  # another kind's error against the stated one's
 SMALLEST, LARGEST = 1e-50, 1e50  # in any units
 FAINTEST = 1e-9  # of the largest: below, nothing was measured
 USUAL, POSSIBLE = (2e-3, 20.0), (1e-4, 100.0)  # s/kg, at the highest peak of a small body
@@ -95,9 +95,9 @@ def _check_size(peak: float, bounds: tuple[float, float], what: str, unit: str, 
 
 
 def _likeliest(curve: Curve, kind: str) -> tuple[float, str, float]:
-    """The error of the told kind, and the likeliest kind and sign.
+    """The error of the stated kind, and the likeliest kind and sign.
 
-    Another than the told one only where its error is much smaller.
+    Another than the stated one only where its error is much smaller.
     """
     chosen = np.geomspace(curve.frequency_hz[0], curve.frequency_hz[-1], LINES)
     at = np.unique(np.searchsorted(curve.frequency_hz, chosen).clip(None, len(curve.values) - 1))
@@ -143,11 +143,11 @@ def _misfit(columns: Any, mobility: Any, relative: Floats) -> float:
 
 
 def _explained(kind: str, other: str, sign: float) -> str:
-    """What a measurement is that was told to be of a kind."""
+    """What a measurement is that was given as of a kind."""
     if other == kind:
         return "hammer or sensor is the wrong way round: masses and springs would be below zero"
     turned = "" if sign > 0.0 else ", the wrong way round"
-    return f"this is {_article(other)}{turned}, and not {_article(kind)}: its phase tells"
+    return f"this is {_article(other)}{turned}, and not {_article(kind)}: by its phase"
 
 
 def _article(kind: str) -> str:

@@ -1,7 +1,7 @@
 """Search the modes of a measured admittance: how many, their frequencies, dampings and masses.
 
 One mode after another is added where it helps most, from the starting poles and a lattice of
-frequencies and dampings; all are refined each time. A criterion of information tells when a
+frequencies and dampings; all are refined each time. A criterion of information shows when a
 further mode fits nothing but noise.
 """
 
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_lab.body.curve import Complexes, Floats, interpolated
-from yehu_lab.body.modes import Modes, Numbers, Problem, Step, look
+from yehu_lab.body.modes import Modes, Numbers, Problem, Step, step_at
 from yehu_server.util.extras import need
 
 HIGHEST_ORDER = 40  # of the polynomials; each order gives candidates
@@ -88,10 +88,10 @@ class Search:
         """Find the modes.
 
         That is `most` at most that pay, or `exactly` so many, whether they pay or not. What pays is
-        told by the Bayesian information criterion: three numbers a mode against the logarithm of
+        decided by the Bayesian information criterion: three numbers a mode against the logarithm of
         the error, over as many values as were measured.
         """
-        best = step = look(self.problem, np.empty((0, 2)), self.wanted)
+        best = step = step_at(self.problem, np.empty((0, 2)), self.wanted)
         for count in range(1, (exactly or most) + 1):
             another = self._with_another(step)
             if another is None:
@@ -155,7 +155,7 @@ class Search:
         `moving` has the numbers of the modes that move; by default all.
         """
         moving = np.arange(len(points)) if moving is None else moving
-        now = look(self.problem, points, self.wanted, moving)
+        now = step_at(self.problem, points, self.wanted, moving)
         if not len(points):
             return now
         firmness = 1e-3
@@ -166,7 +166,7 @@ class Search:
             moved = now.points.copy()
             moved[moving] += move.reshape(2, -1).T.clip(-0.5, 0.5)
             bounded = moved.clip(self.lowest, self.highest)
-            then = look(self.problem, bounded, self.wanted, moving)
+            then = step_at(self.problem, bounded, self.wanted, moving)
             if then.error >= now.error:
                 firmness *= 10.0
                 if firmness > 1e8:

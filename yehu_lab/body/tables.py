@@ -46,7 +46,7 @@ def read_table(
     """Read a table: the taps in it, or a response over frequency.
 
     What the columns after the time are, `channels`, and what a response is, `kind`, the headings
-    say by default. Raises MeasurementError where it cannot be read, or what it holds is not told.
+    say by default. Raises MeasurementError where it cannot be read, or what it holds is not given.
     """
     try:
         headings, numbers = _numbers(path, _lines(path))
@@ -121,7 +121,7 @@ def _taps(
         check_channels(list(channels), str(path))
     if len(channels) != len(headings) - 1:
         raise MeasurementError(
-            f"{path}: has {len(headings) - 1} columns beside the time, not {len(channels)} as told"
+            f"{path}: has {len(headings) - 1} columns beside the time, not {len(channels)} as given"
         )
     rate = (len(numbers) - 1) / float(numbers[-1, 0] - numbers[0, 0])
     return cut(rate, by_quantity(channels, numbers[:, 1:]), path.name)

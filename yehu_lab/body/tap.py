@@ -34,7 +34,7 @@ OVER = 0.05  # of the peak: the hammer has left
 BOUNCE = 0.1  # of the peak: a force after it has left is another hit,
 OVER_NOISE = 8.0  # where it stands out of the noise by so many deviations
 FLAT, EQUAL = 3, 1e-5  # samples of equal height that a clipped peak has, and how equal
-SHORTEST_S = 0.05  # after the hit: less tells nothing of a body
+SHORTEST_S = 0.05  # after the hit: less shows nothing of a body
 LONGEST_FILE_S = 600.0
 MOST_SAMPLES = 2**24  # of all channels, in a file: three minutes of two channels at 48 kHz
 LOWEST_RATE, HIGHEST_RATE = 8000, 400_000
@@ -158,7 +158,7 @@ def cut(rate: float, channels: Mapping[str, Floats], name: str) -> list[Tap]:
             continue
         own = {what: values[start:stop] for what, values in responses.items()}
         label = name if len(hits) == 1 else f"{name}, tap {i + 1}"
-        taps.append(_looked_at(Tap(rate, force[start:stop], own, label)))
+        taps.append(_checked(Tap(rate, force[start:stop], own, label)))
     if not taps:
         raise MeasurementError(f"{name}: ends within {SHORTEST_S * 1e3:g} ms of the hit")
     return taps
@@ -175,7 +175,7 @@ def _hits(force: Floats, rate: float) -> list[int]:
     return [int(start) for start in starts]
 
 
-def _looked_at(tap: Tap) -> Tap:
+def _checked(tap: Tap) -> Tap:
     """The tap with what is wrong with it."""
     signals = {"force": tap.force, **tap.responses}
     faults = [f"its {what} is clipped" for what in signals if is_clipped(signals[what])]
@@ -215,7 +215,7 @@ def _bounced(force: Floats) -> bool:
 def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
     """Read the taps of a sound file.
 
-    `channels` tells what each is, and how many SI units full scale is. Raises MeasurementError
+    `channels` says what each is, and how many SI units full scale is. Raises MeasurementError
     where it cannot be read, holds other channels, or no tap.
     """
     import soundfile
@@ -232,7 +232,9 @@ def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
                     "--channels force=100,velocity=0.5: their SI units at full scale"
                 )
             if len(channels) != count:
-                raise MeasurementError(f"{path}: has {count} channels, not {len(channels)} as told")
+                raise MeasurementError(
+                    f"{path}: has {count} channels, not {len(channels)} as given"
+                )
             if file.frames * count > MOST_SAMPLES:
                 raise MeasurementError(
                     f"{path}: has {file.frames * count} samples, more than {MOST_SAMPLES}"
@@ -269,5 +271,5 @@ def write_taps(
         may_replace = anything if overwrite else nothing
         with replacing(file, may_replace) as partial, partial.open("wb") as stream:
             soundfile.write(stream, samples, round(tap.rate), SUBTYPE, format="WAV")
-    told = ",".join(f"{name}={scale:g}" for name, scale in zip(names, scales, strict=True))
-    return files, told
+    channels = ",".join(f"{name}={scale:g}" for name, scale in zip(names, scales, strict=True))
+    return files, channels

@@ -76,9 +76,9 @@ def _check(entry: dict[str, Any], path: Path) -> None:
             if not SMALLEST < float(entry.get(name, 0.0)) < LARGEST:
                 raise MeasurementError(f"{path}: its unit of {name} is none")
         return
-    told, found = int(entry.get("num_pts", 0)), len(entry.get("data", ()))
-    if found == 0 or not found == told == len(entry.get("x", ())):
-        raise MeasurementError(f"{path}: a data set in it has {found} values, and says {told}")
+    stated, found = int(entry.get("num_pts", 0)), len(entry.get("data", ()))
+    if found == 0 or not found == stated == len(entry.get("x", ())):
+        raise MeasurementError(f"{path}: a data set in it has {found} values, and says {stated}")
 
 
 def _units(sets: list[dict[str, Any]]) -> tuple[float, float]:
@@ -104,7 +104,7 @@ def _responses(
         its_kind = KIND.get(int(entry.get("ordinate_spec_data_type", 0)), kind)
         if its_kind is None:
             raise MeasurementError(
-                f"{path}: does not tell what its responses are; name it by --kind"
+                f"{path}: does not say what its responses are; name it by --kind"
             )
         # Units of response over force; those of pressure are force over length squared.
         scale = length ** (-2.0)
@@ -149,7 +149,7 @@ def _taps(path: Path, signals: list[dict[str, Any]], length: float, force: float
         if entry is not None:
             quantity = QUANTITY.get(int(entry.get("ordinate_spec_data_type", 0)))
             if quantity is None:
-                raise MeasurementError(f"{path}: does not tell what a signal in it is")
+                raise MeasurementError(f"{path}: does not say what a signal in it is")
         if group and (quantity == "force" or entry is None):
             shortest = min(len(values) for values in group.values())
             named = {what: values[:shortest] for what, values in group.items()}

@@ -1,4 +1,4 @@
-"""Fit a body to measurements of a fiddle, and look at it.
+"""Fit a body to measurements of a fiddle, and see the result.
 
   yehu-server body taps -o taps
   yehu-server body fit taps/*.wav --channels force=32,velocity=0.5,pressure=4 -o mine.toml
@@ -6,7 +6,7 @@
   yehu-server body show mine.toml -o mine.png
   yehu-server render tune.mid -o tune.wav --instrument mine.toml
 
-docs/body.md tells how to measure, and what the files hold.
+docs/body.md describes how to measure, and what the files hold.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def _add_fit(actions: Any) -> None:
             scale: force, velocity, acceleration, displacement, pressure or none
         --radiation-channels NAME=UNITS,...: what the channels of --radiation are, and their SI
             units at full scale: force, velocity, acceleration, displacement, pressure or none
-        --kind: what the responses of a .csv or .uff are that does not tell
+        --kind: what the responses of a .csv or .uff are that does not say
         --sensor-mass GRAMS: of an accelerometer on the bridge, whose effect is taken off
         --band LO:HI: frequencies to fit, Hz (default: from 100 to where the hammer excites)
         --modes N: number of bridge modes (default: as many as show)
@@ -125,7 +125,7 @@ def _fit(arguments: argparse.Namespace) -> int:
     written = found.save(arguments.output, overwrite=arguments.overwrite)
     if arguments.plot is not None:
         write_picture(found, arguments.plot, overwrite=arguments.overwrite)
-    _tell(found, as_json=arguments.json)
+    _report(found, as_json=arguments.json)
     if not arguments.json:
         print_result(f"written: {', '.join(map(str, written))}")
     return 0
@@ -144,11 +144,11 @@ def _show(arguments: argparse.Namespace) -> int:
     found = read_fit(path)
     if arguments.output is not None:
         write_picture(found, arguments.output, overwrite=arguments.overwrite)
-    _tell(found, as_json=arguments.json)
+    _report(found, as_json=arguments.json)
     return 0
 
 
-def _tell(found: Fit, *, as_json: bool) -> None:
+def _report(found: Fit, *, as_json: bool) -> None:
     from yehu_lab.body.report import fields_of, lines_of
 
     if as_json:

@@ -1,4 +1,4 @@
-"""Make labelled sounds for learners, drawn by chance as a description tells.
+"""Make labelled sounds for learners, drawn at random as a description says.
 
 They come with the forces, positions and velocities behind them, and the regime of the string.
 

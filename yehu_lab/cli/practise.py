@@ -53,17 +53,17 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_lab.practising.practice import Practice
-    from yehu_lab.practising.recipes import DEFAULT
+    from yehu_lab.practising.bowing_search import BowingSearch
+    from yehu_lab.practising.candidates import DEFAULT
     from yehu_server.core.physics.grid import check_rate
     from yehu_server.core.player.bowing import PLACES
-    from yehu_server.playing.calibration_store import calibration_for
-    from yehu_server.playing.practice_files import (
-        practice_beside,
-        read_practice,
-        shipped_practice,
-        write_practice,
+    from yehu_server.playing.bowing_tables import (
+        bowing_table_beside,
+        read_bowing_table,
+        shipped_bowing_table,
+        write_bowing_table,
     )
+    from yehu_server.playing.calibration_store import calibration_for
     from yehu_server.playing.preset_folders import Presets
     from yehu_server.playing.tuning import STANDARD_A4
 
@@ -74,8 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
     check_distinct({"-o": arguments.output}, own)
     values = {} if arguments.preset is None else Presets().load(arguments.preset).values
     quantities = instrument_of(arguments)
-    beside = practice_beside(arguments.instrument)
-    known = shipped_practice(arguments.rate) if beside is None else read_practice(beside)
+    beside = bowing_table_beside(arguments.instrument)
+    known = shipped_bowing_table(arguments.rate) if beside is None else read_bowing_table(beside)
     compile_all(arguments)
     table, improved = known, 0
     others = set(range(len(PLACES))) - {DEFAULT}
@@ -84,14 +84,14 @@ def run(arguments: argparse.Namespace) -> int:
             calibration = calibration_for(
                 arguments.rate, quantities, bowing=table, progress=progress
             )
-        practice = Practice(
+        search = BowingSearch(
             *(arguments.rate, quantities, calibration, values),
             lambda key: tuning.pitch(key, STANDARD_A4),
         )
         with progress_bar(arguments, "practising", "notes") as progress:
-            table = practice.learn(progress, table=table, places=places)
-        improved += practice.notes_changed
-    write_practice(arguments.output, table, arguments.rate)
+            table = search.learn(progress, table=table, places=places)
+        improved += search.notes_changed
+    write_bowing_table(arguments.output, table, arguments.rate)
     fields = {"rate": arguments.rate, "improved": improved}
     text = f"{arguments.output}: {improved} notes at places of the bow are bowed otherwise now"
     print_report(arguments, fields, text)

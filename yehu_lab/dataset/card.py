@@ -1,4 +1,4 @@
-"""What a data set says of itself: a card for people (README.md), and its facts (dataset.json)."""
+"""What a data set says of itself: a card for readers (README.md), and its facts (dataset.json)."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def facts_of(description: Description, lines: Sequence[Line]) -> dict[str, Any]:
 
 
 def card_of(facts: dict[str, Any]) -> str:
-    """The facts for people, in Markdown, with the licence in front for machines."""
+    """The facts for readers, in Markdown, with the licence in front for machines."""
     rows = [
         f"| `{name}` | {each['unit']} | {each['what']} |" for name, each in facts["arrays"].items()
     ]

@@ -28,7 +28,7 @@ from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import PLAIN_NAME
 from yehu_server.util.values import choice, choices, line, number, whole
 
-LICENCE = "MIT"  # where none is told: that of this program, and of the body it was measured with
+LICENCE = "MIT"  # where none is given: that of this program, and of the body it was measured with
 KINDS = ("strokes", "notes")
 MOST_SOUNDS = 10_000_000
 LONGEST_S = 60.0  # of one sound
@@ -82,7 +82,7 @@ class Description:
     quantities: Quantities  # the instrument before it is tuned
     # Hash of all that a sound depends on beside the code; how many there are is no part of it.
     key: str
-    # A sentence for people, and the licence of the sounds (its SPDX name).
+    # A sentence for readers, and the licence of the sounds (its SPDX name).
     about: str = ""
     license: str = LICENCE
     data: Mapping[str, Any] = field(default_factory=dict)  # the entries of its file
@@ -116,9 +116,9 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
     keep = table.table("keep")
     quantities = override(Quantities(), table.table("instrument"), folder)
     body = calibration_key(rate, quantities, STANDARD_A4)  # files that are named may change
-    told = {"count": 0, "about": ""}  # of no matter to a sound
+    neutral = {"count": 0, "about": ""}  # of no matter to a sound
     kept = {name: entry for name, entry in table.data.items() if name != "license"}
-    text = json.dumps(kept | told, sort_keys=True, default=str)
+    text = json.dumps(kept | neutral, sort_keys=True, default=str)
     description = Description(
         kind=kind,
         count=table.read("count", whole, 100, 1, MOST_SOUNDS),

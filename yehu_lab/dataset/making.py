@@ -180,13 +180,13 @@ def make_all(
         yield sum(shares), lines
 
 
-def received(part: Part, told: Any) -> Sequence[Line]:
+def received(part: Part, returned: Any) -> Sequence[Line]:
     """Put files that have travelled in their places, and keep a record where all is well.
 
-    `told` is what `perform` returned; anybody who reaches a cluster may have made it. Raises
+    `returned` is what `perform` returned; anybody who reaches a cluster may have made it. Raises
     OutputError where it is something else, or cannot be written.
     """
-    lines, files = _checked(part, told)
+    lines, files = _checked(part, returned)
     for name, data in files.items():
         make_folder((part.folder / name).parent)
         with replacing(part.folder / name) as partial:
@@ -198,15 +198,15 @@ def received(part: Part, told: Any) -> Sequence[Line]:
     return lines
 
 
-def _checked(part: Part, told: Any) -> tuple[list[Line], dict[str, bytes]]:
+def _checked(part: Part, returned: Any) -> tuple[list[Line], dict[str, bytes]]:
     try:
         lines = []
-        for number, line in zip(part.numbers, told["lines"], strict=True):
+        for number, line in zip(part.numbers, returned["lines"], strict=True):
             name = names_of(part.description, number)[0]
             lines.append(build_records.checked_line(line, file=name, number=number))
             if "error" not in line and not isinstance(line["labels"]["regime"], str):
                 raise TypeError  # noqa: TRY301 - as where entries are missing
-        files = dict(told["files"])
+        files = dict(returned["files"])
         if not files.keys() <= set(part.names) or any(type(x) is not bytes for x in files.values()):
             raise ValueError  # noqa: TRY301
     except (KeyError, TypeError, ValueError, RecursionError) as error:

@@ -122,15 +122,18 @@ def _write_table(axes: Any, fit: Fit) -> None:
     modes = lines_of(fit)[: 1 + min(len(fit.body.mass), MOST_MODES)]
     if len(fit.body.mass) > MOST_MODES:
         modes.append(f"and {len(fit.body.mass) - MOST_MODES} more")
-    told = [f"{len(fit.body.mass)} bridge modes", f"{len(fit.body.sections)} sections of radiation"]
+    lines = [
+        f"{len(fit.body.mass)} bridge modes",
+        f"{len(fit.body.sections)} sections of radiation",
+    ]
     for what, off in (("admittance", fit.admittance_db), ("radiation", fit.radiation_db)):
         if off is not None:
-            told += [
+            lines += [
                 f"\n{what}, fitted less measured:",
                 f"  {off.rms:.2f} dB rms, {off.most:.1f} dB at most",
                 f"  the measurement scatters by {off.scatter:.2f} dB",
             ]
-    text = "\n".join([*modes, "", *told])
+    text = "\n".join([*modes, "", *lines])
     table = axes.text(0.0, 1.0, text, family="monospace", fontsize=9.0, va="top")
     table.set(transform=axes.transAxes, in_layout=False)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-# Told apart by eyes that confuse red and green, too.
+# Distinct also to eyes that confuse red and green.
 COLOURS = {
     "unbowed": "#ffffff",
     "silent": "#e6e6e6",
@@ -47,7 +47,7 @@ LIMITS = {"upper": ("k-", "Schelleng's upper limit"), "lower": ("k--", "Schellen
 
 
 def is_log(values: Array, spread: str = "") -> bool:
-    """Whether values are drawn by logarithms; `spread`, where that is known, tells how they lie."""
+    """Whether values are drawn by logarithms; `spread`, where that is known, is how they lie."""
     if spread or values.dtype.kind == "U":
         return spread == "log"
     values = np.sort(values)
@@ -82,7 +82,7 @@ def draw_cells(
     """Draw values as cells around the places where they are; return the image.
 
     They are [shape=(len(y), len(x))], the places in any order, and those that are NaN have no
-    colour. `log` tells which of both are drawn by logarithms; options are those of ``pcolormesh``.
+    colour. `log` says which of both are drawn by logarithms; options are those of ``pcolormesh``.
     """
     across, up = (_order(values) for values in (x, y))
     x, y = x[across], y[up]

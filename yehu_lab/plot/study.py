@@ -50,7 +50,7 @@ MOST_PANELS = 30
 LEAST_WIDTH = 8.0  # inches, for the legend
 TEMPLATE = Path(__file__).with_name("study_page.html")
 MOST_CELLS = 20_000_000
-LEVELS = 254  # that a byte tells apart; 255 is none
+LEVELS = 254  # that a byte distinguishes; 255 is none
 NONE = 255
 # Cents off the median: on the scale of all pitches, which has octaves, flattening is not seen.
 FLATTENING = (-60.0, 30.0)
@@ -91,10 +91,10 @@ def write_picture(
             else:
                 image = draw_map(axes, result, x, y, map_of(result, grid, x, y, at), what)
                 draw_limits_over(axes, result, study, x, y, at)
-            told = [title_of(result, at)]
+            title = [title_of(result, at)]
             if what == "regime" and y is not None:
-                told.append(share_of(result.regimes, map_of(result, grid, x, y, at)))
-            axes.set_title("\n".join(filter(None, told)), fontsize="small")
+                title.append(share_of(result.regimes, map_of(result, grid, x, y, at)))
+            axes.set_title("\n".join(filter(None, title)), fontsize="small")
             axes.set(xlabel="", ylabel="")
         for axes in panels.flat[max(0, len(maps) - across) : len(maps)]:
             axes.set_xlabel(LABELS.get(x, x))

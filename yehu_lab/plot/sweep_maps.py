@@ -33,7 +33,7 @@ FORCE = ("bow_force", "force")
 PLACE = ("bow_position", "position")
 ACCELERATION = ("bow_acceleration", "acceleration")
 ALONG = 24  # places at which limits are worked out
-MOST_PERIODS = 60.0  # that the colours of a time tell apart
+MOST_PERIODS = 60.0  # that the colours of a time distinguish
 PERIODS = "periods from the first slip to Helmholtz motion"
 PERIOD_COLOURS: Any = {"cmap": "viridis_r", "vmin": 0.0, "vmax": MOST_PERIODS}
 # What is drawn along y, where a result has it: forces first.
@@ -55,7 +55,7 @@ def regimes(sweep: Result, x: str, y: str, *, at: At | None = None, ax: Axes | N
     x, y : str
         Names of two of its axes.
     at : mapping, optional
-        Of its other axes, the values at which to look; the nearest there is is drawn.
+        Of its other axes, the values of which to draw; the nearest there is is drawn.
     ax : Axes, optional
 
     Returns
@@ -188,7 +188,7 @@ def sweep(sweep: Result, *, at: At | None = None, ax: Axes | None = None) -> Axe
     Raises
     ------
     ParameterError
-        Where it has one axis only, another is varied and not told, or matplotlib is missing.
+        Where it has one axis only, another is varied and not in `at`, or matplotlib is missing.
 
     Examples
     --------
@@ -244,7 +244,7 @@ def place_of(sweep: Result, x: str, y: str, at: At | None = None) -> dict[str, i
     Raises
     ------
     ParameterError
-        Where there is no such axis, or another is varied and not told.
+        Where there is no such axis, or another is varied and not in `at`.
     """
     names, asked = list(sweep.axes), dict(at or {})
     for name in (x, y, *asked):

@@ -31,8 +31,8 @@ class Passage:
 
 
 @dataclass(frozen=True)
-class Search:
-    """A note on a string, at one of PLACES, and the recipes that a search starts from.
+class SearchedNote:
+    """A note on a string, at one of PLACES, and the bowings that a search starts from.
 
     `note` is its name on a yehu, `notes` are those of the instrument; `moved` is that of the
     default place, with the bow moved to here.
@@ -93,7 +93,7 @@ def pitches_near_notes(
 
 
 def passages_of(
-    search: Search,
+    search: SearchedNote,
     seed: int,
     count: int,
     speeds: tuple[float, ...],

@@ -2,7 +2,7 @@
 
 It is the rule of the player's ear (`player.ear`), extended: what counts is when the hair sticks and
 slips, and after what time that repeats. A pitch detector alone errs by octaves just where regimes
-meet. docs/sweep.md defines the regimes, and tells how the rule was checked.
+meet. docs/sweep.md defines the regimes, and how the rule was checked.
 """
 
 from __future__ import annotations

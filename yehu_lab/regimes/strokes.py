@@ -105,7 +105,7 @@ def prepared(
 ) -> Instruments:
     """Prepare instruments for `find`.
 
-    `plucks` tells from where the string of each is let go (`gesture.Pluck`), or None.
+    `plucks`: from where the string of each is let go (`gesture.Pluck`), or None.
     """
     count = len(quantities)
     models, rests = np.zeros(count, MODEL), np.zeros(count, STATE)

@@ -135,7 +135,7 @@ class Result:
     def to_xarray(self) -> xarray.Dataset:
         """Everything as a data set on the finest grid, by the names of the axes.
 
-        ``computed`` tells which points were; see `grid` for the others. Its attributes are text and
+        ``computed`` says which points were; see `grid` for the others. Its attributes are text and
         numbers, so that any format holds them: the version, the study as JSON, the rate, and the
         hash of the values.
 
@@ -162,7 +162,7 @@ class Result:
         meanings = " ".join(name.replace(" ", "_") for name in self.regimes)
         found["regime"][2]["flag_meanings"] = meanings
         study = self.meta["study"]
-        told = {
+        attributes = {
             "title": str(study.get("about", "")),
             "source": str(self.meta["made_by"]),
             "sample_rate": float(self.meta.get("sample_rate", math.nan)),  # none in older files
@@ -170,7 +170,7 @@ class Result:
             "study": as_json(study),
             "sha256": hash_of({**self.axes, "numbers": self.numbers, **self.columns}),
         }
-        return xarray.Dataset(found, coords=axes, attrs=told)
+        return xarray.Dataset(found, coords=axes, attrs=attributes)
 
     def save(self, target: str | os.PathLike[str]) -> None:
         """Write one compressed ``.npz`` file; the same result makes the same bytes.

@@ -178,7 +178,7 @@ def _received(found: Any, count: int) -> Array:
     raise YehuError("a worker answered with what are no findings")
 
 
-def perform(task: tuple[str, bytes], _tell: Any = None) -> bytes | str:
+def perform(task: tuple[str, bytes], _progress: Any = None) -> bytes | str:
     """Bow the strokes of a task of a cluster: their findings as bytes, or what is wrong as text."""
     text, numbers = task
     try:

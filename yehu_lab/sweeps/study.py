@@ -107,7 +107,7 @@ def study_of(data: Any, folder: Path = Path()) -> Study:
     """Build a study from the data of its file.
 
     It has the contents of a gesture file, where it has a gesture; files that it names, such as a
-    body, are looked for in a folder. Raises ParameterError where an entry is wrong.
+    body, are searched in a folder. Raises ParameterError where an entry is wrong.
     """
     table = Fields.of(data)
     table.refuse_others(*KNOWN)

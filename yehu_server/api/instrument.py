@@ -427,7 +427,7 @@ class Instrument:
         return round(number(seconds, "seconds", 0.0, LONGEST_S) * self._rate)
 
     def _check(self) -> None:
-        """Tell of commands that were lost."""
+        """Raise YehuError where commands were lost."""
         dropped = self._engine.dropped_events
         if dropped > self._dropped:
             self._dropped = dropped

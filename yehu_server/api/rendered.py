@@ -263,7 +263,7 @@ def _played(
 
 
 def _remarks(summary: Summary) -> list[str]:
-    """Tell what was not played as it is written."""
+    """List what was not played as it is written."""
     lines = []
     if summary.percussion_notes:
         lines.append(

@@ -104,18 +104,18 @@ def plain_gesture(gesture: Mapping[str, Any]) -> dict[str, Any]:
     return data
 
 
-def _duration(sampled: Mapping[str, NDArray[Any]], told: Any, rate: Any) -> float:
+def _duration(sampled: Mapping[str, NDArray[Any]], stated: Any, rate: Any) -> float:
     """How long a gesture lasts (s) whose controls have a value for each sample."""
     rate = sample_rate(rate)
     first, expected = next(iter(sampled)), len(next(iter(sampled.values())))
     which = f"{first} has {expected}"
-    if told is not None:
-        expected = round(number(told, "duration") * rate)
-        which = f"{told:g} s at {rate:g} Hz are {expected}"
+    if stated is not None:
+        expected = round(number(stated, "duration") * rate)
+        which = f"{stated:g} s at {rate:g} Hz are {expected}"
     for name, values in sampled.items():
         if len(values) != expected:
             raise ParameterError(f"{name}: {len(values)} samples, but {which}")
-    return float(told) if told is not None else expected / rate
+    return float(stated) if stated is not None else expected / rate
 
 
 def _curve(values: Any, rate: float) -> list[list[float]]:

@@ -50,7 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             code: int = arguments.run(arguments)
         finally:
             with contextlib.suppress(BrokenPipeError):
-                sys.stdout.flush()  # here, where we can tell that it is full
+                sys.stdout.flush()  # here, where we notice that it is full
     except BrokenPipeError:  # such as `| head`, which has read enough
         with Path(os.devnull).open("w") as nothing:
             os.dup2(nothing.fileno(), sys.stdout.fileno())
@@ -59,17 +59,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         warn(str(error))
         return 2
     except OSError as error:
-        if error.errno != errno.ENOSPC:  # of standard output: files are told by their names
+        if error.errno != errno.ENOSPC:  # of standard output: errors of files name them
             raise
-        with Path(os.devnull).open("w") as nothing:  # Python would try again, and tell it again
+        with Path(os.devnull).open("w") as nothing:  # Python would try again, and report it again
             os.dup2(nothing.fileno(), sys.stdout.fileno())
         warn(f"standard output: {why(error)}")
         return 2
     except MemoryError:
         warn("not enough memory")
         return 2
-    except KeyboardInterrupt as told:
-        warn(f"interrupted, {str(told) or 'nothing written'}")
+    except KeyboardInterrupt as interruption:
+        warn(f"interrupted, {str(interruption) or 'nothing written'}")
         return INTERRUPTED
     return code
 

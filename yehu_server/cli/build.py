@@ -8,7 +8,7 @@ It takes a minute. For a page it needs LLVM's wasm-ld, for a library a C compile
   yehu-server build tables --mapping wind --tuning chaozhou-seven-equal -o wind.tables
 
 build plugin makes a plug-in for music programs (docs/plugin.md). build tables writes a mapping, a
-tuning and presets for pages and C programs, as numbers; docs/ahead.md tells how they use them.
+tuning and presets for pages and C programs, as numbers; docs/ahead.md describes how they use them.
 """
 
 from __future__ import annotations

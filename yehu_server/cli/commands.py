@@ -46,7 +46,7 @@ def all_commands() -> dict[str, tuple[str, str]]:
 
 
 def module_of(name: str) -> str | None:
-    """The module of a command, or None where there is none; others are not looked for first."""
+    """The module of a command, or None where there is none; others are not searched first."""
     if name in COMMANDS:
         return f"{__package__}.{name}"
     return all_commands().get(name, (None,))[0]

@@ -26,7 +26,7 @@ def whole(text: str) -> int:
 
 
 def whole_within(lo: int, hi: float, wrong: str) -> Callable[[str], int]:
-    """Make a converter of a whole number within bounds; `wrong` is told of others."""
+    """Make a converter of a whole number within bounds; `wrong` is the error of others."""
 
     def convert(text: str) -> int:
         value = whole(text)

@@ -130,7 +130,7 @@ def _check_played(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
 
 
 def _warn_of_unplayed(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
-    """Tell which channels no part plays, where all parts are channels."""
+    """Warn of channels that no part plays, where all parts are channels."""
     from yehu_server.core.midi.channels import PERCUSSION
     from yehu_server.scores.reading import channels_with_notes
 

@@ -45,7 +45,7 @@ def perform(task: Task, report_progress: ProgressCallback) -> Line:
         return _made(task, work, report_progress)
     except YehuError as error:
         reason = str(error)
-        for path in map(str, (entry.source, entry.target, work)):  # they are told beside it
+        for path in map(str, (entry.source, entry.target, work)):  # they are named beside it
             for shown in (path, ascii(path)):
                 reason = reason.removeprefix(f"{shown}: ")
     except OSError as error:
@@ -78,8 +78,8 @@ def _made(task: Task, work: Path, report_progress: ProgressCallback) -> Line:
     own.midi, own.output = [entry.source], work
     own.overwrite, own.quiet, own.json, own.jobs = True, True, False, 1
     own.format = options.format or "wav"
-    told = io.StringIO()
-    with contextlib.redirect_stderr(told):
+    printed = io.StringIO()
+    with contextlib.redirect_stderr(printed):
         done = rendered(own, report_progress)
     summary = done.summary
     line = {
@@ -90,7 +90,9 @@ def _made(task: Task, work: Path, report_progress: ProgressCallback) -> Line:
         "notes": summary.notes_played,
         "out_of_range": summary.notes_out_of_range,
         "peak": summary.peak,
-        "warnings": [each.removeprefix("yehu-server: ") for each in told.getvalue().splitlines()],
+        "warnings": [
+            each.removeprefix("yehu-server: ") for each in printed.getvalue().splitlines()
+        ],
     }
     check_free(entry.target, may_replace)
     work.replace(entry.target)

@@ -6,7 +6,7 @@
   yehu-server follow hum.wav -o hum.jsonl
   yehu-server follow hum.wav -o played.flac --plot played.png
 
-It needs yehu-server[follow]. What it hears, and how well, is told in docs/follow.md.
+It needs yehu-server[follow]. docs/follow.md describes what it hears, and how well.
 """
 
 from __future__ import annotations

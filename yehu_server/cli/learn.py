@@ -65,7 +65,7 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
         client.send(f"{own}/unlearn", address)
         _, count, *returned = client.answer(f"{own}/unlearned").arguments
         print_result(f"{address}: {count} forgotten")
-        _tell(returned, "again")
+        _print_binds(returned, "again")
         return
     client.send(f"{own}/learn", address, int(arguments.soft))
     (target,) = client.answer(f"{own}/learning").arguments
@@ -75,7 +75,7 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
             if message.address == f"{own}/learned":
                 _, source, file, *lost = message.arguments
                 print_result(f"{source} moves {target}, kept in {file}")
-                _tell(lost, "no longer, until --forget")
+                _print_binds(lost, "no longer, until --forget")
                 return
     except KeyboardInterrupt:
         client.send(f"{own}/learn")
@@ -84,7 +84,7 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
     raise ParameterError(f"nothing was moved for {LONGEST_S:g} s")
 
 
-def _tell(words: list[str], what: str) -> None:
+def _print_binds(words: list[str], what: str) -> None:
     """Print binds that are gone or back: their sources and targets, one after another."""
     for source, target in zip(words[::2], words[1::2], strict=True):
         print_result(f"  {source} moves {target} {what}")

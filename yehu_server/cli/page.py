@@ -5,7 +5,7 @@ What is written are static files, which may be put on any web server.
   yehu-server page --open
   yehu-server page -o public/yehu
 
-docs/page.md tells what the page does.
+docs/page.md describes what the page does.
 """
 
 from __future__ import annotations

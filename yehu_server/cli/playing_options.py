@@ -73,7 +73,7 @@ def add_tables(group: Any) -> None:
 
 
 def add_tuning(group: Any) -> None:
-    """Add the options that tell which pitch each key has, to a parser or a group of its options."""
+    """Add the options that set which pitch each key has, to a parser or a group of its options."""
     add_options(
         group,
         """

@@ -4,7 +4,7 @@
   yehu-server presets show flautando
   yehu-server presets check my-sound.toml
 
-What the values mean is told in docs/parameters.md.
+docs/parameters.md describes the values.
 """
 
 from __future__ import annotations

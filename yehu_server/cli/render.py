@@ -9,7 +9,7 @@
   yehu-server render songs -o sounds --dask tcp://10.0.0.1:8786
   yehu-server render - -o - --format raw < tune.mid > tune.f32
 
-A folder is rendered on all cores, and only what is not up to date: docs/folders.md tells more, and
+A folder is rendered on all cores, and only what is not up to date: docs/folders.md says more, and
 docs/cluster.md of clusters.
 Ensemble files are described in docs/ensemble.md.
 What becomes of damaged MIDI files is described in docs/midi_files.md.
@@ -113,7 +113,7 @@ def run(arguments: argparse.Namespace) -> int:
     elif not arguments.quiet:
         from yehu_server.cli.report import render_report
 
-        told = Path("standard output") if is_piped else arguments.output
-        for line in render_report(told, done.summary).split("\n"):
+        where = Path("standard output") if is_piped else arguments.output
+        for line in render_report(where, done.summary).split("\n"):
             (warn if is_piped else print_result)(line)
     return 0

@@ -116,7 +116,7 @@ def _render_all(
             if event.is_end:
                 lines.append(_line_of(tasks[event.job], event))
                 number += 1
-                _tell_one(arguments, lines[-1], number, total)
+                _report(arguments, lines[-1], number, total)
 
 
 def _on_cluster(
@@ -147,8 +147,8 @@ def _line_of(task: Task, event: Event) -> Line:
     return line
 
 
-def _tell_one(arguments: argparse.Namespace, line: Line, number: int, total: int) -> None:
-    """Tell of a file: as JSON, or as a line where there is no progress bar."""
+def _report(arguments: argparse.Namespace, line: Line, number: int, total: int) -> None:
+    """Report a file: as JSON, or as a line where there is no progress bar."""
     if arguments.json:
         print(json.dumps(line), flush=True)
     elif not arguments.quiet and not sys.stderr.isatty():
@@ -157,7 +157,7 @@ def _tell_one(arguments: argparse.Namespace, line: Line, number: int, total: int
 
 
 def _check(arguments: argparse.Namespace) -> str:
-    """Check the options before any file is looked at; return the format to write."""
+    """Check the options before any file is read; return the format to write."""
     from yehu_server.cli.sound_options import check_stage, sound_options_of
 
     form = arguments.format or "wav"

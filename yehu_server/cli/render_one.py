@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Rendered:
-    """A rendering: what it was, what --json tells of it, and all files that it was made from."""
+    """A rendering: what it was, what --json says of it, and all files that it was made from."""
 
     summary: Summary
     fields: dict[str, Any]
@@ -134,7 +134,7 @@ def _stems(arguments: argparse.Namespace, options: Options, players: Players) ->
 
 
 def _fields(summary: Summary, playing: PlayingOptions, stems: Sequence[Path]) -> dict[str, Any]:
-    """What --json tells of a rendering."""
+    """What --json says of a rendering."""
     fields = _counts(summary)
     fields["parts"] = [*map(_counts, summary.parts)]
     fields["stems"] = [*map(str, stems)]

@@ -15,7 +15,7 @@ from yehu_server.rendering import PIPE
 from yehu_server.util.files import why
 
 STDIN = "standard input"  # also the name of its file
-BROKEN_PIPE = 141  # as the shell tells of a program that the signal for it has ended
+BROKEN_PIPE = 141  # as the shell reports a program that the signal for it has ended
 CHUNK = 1 << 20
 
 

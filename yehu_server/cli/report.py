@@ -191,7 +191,7 @@ def status_line(status: Mapping[str, float | str]) -> str:
 def connect_lines(
     host: str, port: int, lan: ipaddress.IPv4Interface, *, is_open: bool
 ) -> list[str]:
-    """Lines that tell how to reach the server; `is_open` where it accepts any sender."""
+    """Lines that say how to reach the server; `is_open` where it accepts any sender."""
     lines = [f"OSC at {format_address(host, port)} (UDP and TCP), such as {PREFIX}/note 67 90"]
     address = ipaddress.ip_address(host)
     if address.is_loopback:
@@ -211,7 +211,7 @@ GUESTS = {LISTEN: "listen", PLAY: "play and listen", OWN: "play, listen and chan
 def page_lines(
     host: str, port: int, lan: str, *, networks: Sequence[str], guests: Guests | None = None
 ) -> list[str]:
-    """Lines that tell where the page is, and who may play with it."""
+    """Lines that say where the page is, and who may play with it."""
     is_anywhere = ipaddress.ip_address(host).is_unspecified
     lines = [f"the page at http://{format_address('127.0.0.1' if is_anywhere else host, port)}/"]
     phones = page_for_phones(host, port, lan, guests)

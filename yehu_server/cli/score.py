@@ -146,8 +146,8 @@ def _write(arguments: argparse.Namespace) -> int:
     for warning in (*written.warnings, *written.not_understood):
         warn(f"{arguments.score}: {warning}")
     if lost := {**left, **lost}:
-        told = ", ".join(times(name, count) for name, count in sorted(lost.items()))
-        warn(f"{output}: is without {told}")
+        what = ", ".join(times(name, count) for name, count in sorted(lost.items()))
+        warn(f"{output}: is without {what}")
     return 0
 
 

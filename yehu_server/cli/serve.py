@@ -141,7 +141,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         if server.web is not None:
             report(query_line(server.web.host, server.web.port, str(lan.ip)))
         if server.pages is not None and options.page is not None:
-            _tell_of_page(server.pages, options.page, report, arguments)
+            _report_page(server.pages, options.page, report, arguments)
         buffer_kb = server.osc.traffic.buffer_bytes // 1000
         log.debug("the receive buffer for OSC has %d kB", buffer_kb)
         log.info("Ctrl-C ends")
@@ -152,7 +152,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     return 0 if server.is_whole else 2
 
 
-def _tell_of_page(
+def _report_page(
     pages: Any,
     options: PageOptions,
     report: Callable[[str], None],

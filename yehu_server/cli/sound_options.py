@@ -60,7 +60,7 @@ def add_stage(parser: Any) -> None:
     add_options(
         group,
         """
-        --ensemble FILE.toml: each MIDI channel but 10 a yehu of its own, up to 16; a file tells who
+        --ensemble FILE.toml: each MIDI channel but 10 a yehu of its own, up to 16; a file says who
             plays what and sits where
         --by: with --ensemble: whether each channel or each track is a part (default: channel)
         --stems FOLDER: also write what each part, and the room, gives to the mix: 01-NAME.wav ...

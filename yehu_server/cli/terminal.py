@@ -44,7 +44,7 @@ def warn(text: str) -> None:
 
 
 def check_files(files: Iterable[Path], read: Callable[[Path], tuple[str, Iterable[str]]]) -> int:
-    """Tell of each file what is in it, and remarks, or all that is wrong; return the exit code."""
+    """Print what is in each file, and remarks, or all that is wrong; return the exit code."""
     code = 0
     for file in files:
         try:
@@ -69,7 +69,7 @@ def warn_of_lost(output: Path, lost: Mapping[str, int]) -> None:
 
 def interrupt(*_: object) -> NoReturn:
     """Handle a signal that ends a command: by KeyboardInterrupt."""
-    # A compiler that is interrupted leaves objects half made, which Python would tell of.
+    # A compiler that is interrupted leaves objects half made, which Python would report.
     sys.unraisablehook = lambda _unraisable: None
     raise KeyboardInterrupt
 
@@ -168,7 +168,7 @@ LEVELS = ("debug", "info", "warning", "error")
 def set_up_log(arguments: argparse.Namespace) -> None:
     """Set up logging by --log-level and --json-log, and set `quiet` for warnings only or JSON."""
     handler = _Handler()
-    handler.addFilter(_FewOfACause().filter)
+    handler.addFilter(_RepeatFilter().filter)
     handler.setFormatter(_JsonFormatter() if arguments.json_log else _PlainFormatter())
     logging.basicConfig(handlers=[handler], level=logging.WARNING, force=True)
     logging.getLogger("yehu_server").setLevel(arguments.log_level.upper())
@@ -184,31 +184,31 @@ class _Handler(logging.Handler):
             sys.stderr.flush()
 
 
-MOST_OF_A_CAUSE, CAUSE_S = 30, 60.0
+MOST_REPEATS, REPEATS_WITHIN_S = 30, 60.0
 
 
-class _FewOfACause:
+class _RepeatFilter:
     """Lets so many lines a minute through of each place in the code, but for debugging all.
 
     What clients ask for is logged too, and none of them may fill the log.
     """
 
     def __init__(self) -> None:
-        self._told: dict[tuple[str, int], tuple[float, int]] = {}  # since when, how many
+        self._logged: dict[tuple[str, int], tuple[float, int]] = {}  # since when, how many
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Return whether a line is to be logged."""
         if record.levelno < logging.INFO:
             return True
         cause = record.pathname, record.lineno
-        since, count = self._told.get(cause, (record.created, 0))
-        if record.created - since >= CAUSE_S:
+        since, count = self._logged.get(cause, (record.created, 0))
+        if record.created - since >= REPEATS_WITHIN_S:
             since, count = record.created, 0
-        self._told[cause] = since, count + 1
-        if count + 1 == MOST_OF_A_CAUSE:
+        self._logged[cause] = since, count + 1
+        if count + 1 == MOST_REPEATS:
             record.msg = f"{record.getMessage()} (more of this kind are left out for a minute)"
             record.args = None
-        return count < MOST_OF_A_CAUSE
+        return count < MOST_REPEATS
 
 
 class _PlainFormatter(logging.Formatter):

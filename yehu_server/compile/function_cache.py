@@ -35,19 +35,19 @@ SOURCE_SUFFIX = ".ir"  # of a file for all levels
 DAMAGED, FULL = "is damaged", "cannot be kept"
 # Called with the qualified name of each function that is compiled or read.
 on_ready: list[Callable[[str], None]] = []
-_reported: set[str] = set()  # of this process: each is told once
+_reported: set[str] = set()  # of this process: each is logged once
 _parts: dict[Path, PartLibrary] = {}  # of this process, by the files of what they were made of
 
 
-def _tell(trouble: str, line: str) -> None:
-    if trouble not in _reported:
-        _reported.add(trouble)
+def _warn_once(problem: str, line: str) -> None:
+    if problem not in _reported:
+        _reported.add(problem)
         log.warning("%s", line)
 
 
 @cache
 def _prepare(target_context: Any) -> None:
-    """Let it know its own functions; it looks for those that come later by itself."""
+    """Let it know its own functions; it finds those that come later by itself."""
     target_context.refresh()
 
 
@@ -131,7 +131,7 @@ def _unpickled(parts: io.BytesIO) -> Any:
 
 
 def code_of(function: Any) -> tuple[Any, ...]:
-    """What tells functions of one name apart: the code, and what it closes over.
+    """What distinguishes functions of one name: the code, and what it closes over.
 
     Not its docstring, nor its line: a comment above would move it.
     """
@@ -159,7 +159,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
 
     @property
     def cache_path(self) -> str:
-        """The folder, which numba tells of."""
+        """The folder, which numba reports."""
         return str(self._folder)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
@@ -175,16 +175,16 @@ class CodeCache(NullCache):  # type: ignore[misc]
                     )
                     if path == source and not isinstance(made.library, PartLibrary):
                         self.save_overload(sig, made)
-                    self._tell_ready()
+                    self._report_ready()
                     return made
             except Exception as error:  # noqa: BLE001 - nothing in a cache is worth not playing
                 reason = error if isinstance(error, ChecksumError) else repr(error)
-                _tell(DAMAGED, f"{path}: {reason}; compiling anew")
+                _warn_once(DAMAGED, f"{path}: {reason}; compiling anew")
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled for a signature, where there is room for it."""
-        self._tell_ready()
+        self._report_ready()
         library = data.library
         if FULL in _reported or library.has_dynamic_globals or data.lifted:
             return
@@ -197,11 +197,13 @@ class CodeCache(NullCache):  # type: ignore[misc]
                 write_checksummed(self.path(sig), payload_of(code, rest))
         except Exception as error:  # noqa: BLE001 - neither a full disk nor a numba unlike ours
             reason = getattr(error, "strerror", None) or repr(error)
-            _tell(FULL, f"{self._folder}: {reason}; compiled code is not kept for the next start")
+            _warn_once(
+                FULL, f"{self._folder}: {reason}; compiled code is not kept for the next start"
+            )
 
-    def _tell_ready(self) -> None:
-        for tell in on_ready:
-            tell(self._name)
+    def _report_ready(self) -> None:
+        for report in on_ready:
+            report(self._name)
 
     def holds(self, sig: Any) -> bool:
         """Whether the code for a signature is there and sound."""

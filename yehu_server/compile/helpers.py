@@ -1,4 +1,4 @@
-"""Compile functions in processes of their own, which tell how far they are.
+"""Compile functions in processes of their own, which report their progress.
 
 Functions call each other by name, so they can be compiled at a time. A process that plays does not
 even import numba then: it loads what these leave in the cache.
@@ -25,7 +25,7 @@ Progress = Callable[[float, float], None]
 DONE, KEEP = "done", "keep"
 LLVM_FASTER = 3.0  # with a function than numba with all its parts, by the bytes of their bytecode
 DEARER_TWICE = 2.0  # what both processes make, than that one of them has less to do for a while
-# The compiler leaves little garbage, of which a third of its time went into looking for more.
+# The compiler leaves little garbage, of which a third of its time went into searching for more.
 COLLECT_AFTER = 50_000, 20, 100
 
 
@@ -73,7 +73,7 @@ def _name(function: Native) -> str:
 
 
 def _ask(helper: subprocess.Popen[str], order: str) -> Iterator[str]:
-    """Have a helper do something; yield what it tells of meanwhile. OSError: it has ended."""
+    """Have a helper do something; yield what it reports meanwhile. OSError: it has ended."""
     if helper.stdin is None or helper.stdout is None:
         raise BrokenPipeError
     print(order, file=helper.stdin, flush=True)
@@ -108,8 +108,8 @@ class _Work:
         with contextlib.suppress(OSError):
             while (function := self._next(own)) is not None:
                 for name in _ask(helper, _name(function)):
-                    self._tell(name)
-                self._tell(function.name)
+                    self._report(name)
+                self._report(function.name)
 
     def _next(self, own: set[Callable[..., Any]]) -> Native | None:
         """Take the heaviest function of the queue whose parts no other helper has begun.
@@ -132,14 +132,14 @@ class _Work:
             self._begun.update(begun)
             return function
 
-    def _tell(self, name: str) -> None:
+    def _report(self, name: str) -> None:
         with self._turn:
             if self._left.pop(name, 0.0) and self._progress is not None:
                 self._progress(self._total - sum(self._left.values()), self._total)
 
 
 def main() -> None:
-    """Compile the functions that the input names, one a line; tell of each that is ready."""
+    """Compile the functions that the input names, one a line; report each that is ready."""
     from yehu_server.compile import function_cache
 
     output = sys.stdout

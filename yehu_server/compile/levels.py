@@ -27,7 +27,7 @@ LEVELS: Mapping[str, Mapping[str, frozenset[str]]] = {
 
 @cache
 def triple() -> str:
-    """Tell this system, by LLVM's name, such as ``x86_64-unknown-linux-gnu``."""
+    """Return the name of this system, by LLVM's name, such as ``x86_64-unknown-linux-gnu``."""
     from llvmlite import binding
 
     return str(binding.get_process_triple())

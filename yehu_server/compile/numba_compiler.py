@@ -28,7 +28,7 @@ if numba.__version__.startswith("0.68."):
 else:
     from numba.core.compiler import Compiler as LeanCompiler  # type: ignore[no-redef]
 
-# Before numba makes its code generator, and whatever the environment tells numba of processors.
+# Before numba makes its code generator, and whatever the environment says to numba of processors.
 numba.config.CPU_NAME, numba.config.CPU_FEATURES = levels.cpu(levels.level()), ""
 cpu_target.target_context.codegen()
 
@@ -36,7 +36,7 @@ OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 
 class NoAliasCompiler(LeanCompiler):
-    """numba's compiler, told that no two arguments of a function overlap, as C's `restrict` does.
+    """numba's compiler for functions whose arguments do not overlap, as with C's `restrict`.
 
     Else each loop over several rows of one record first compares their addresses, a tenth of the
     kernel's time.

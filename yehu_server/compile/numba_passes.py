@@ -55,7 +55,7 @@ class LeanCompiler(compiler.CompilerBase):  # type: ignore[misc]
     """numba's compiler with these passes only."""
 
     def __init__(self, typing: Any, target: Any, *others: Any) -> None:
-        # What looks a definition up in vain looks for new ones then.
+        # A search for a definition that fails searches for new ones then.
         typing.refresh = target.refresh = lambda: None
         super().__init__(typing, target, *others)
         for context in (typing, target, self.state.targetctx):

@@ -77,8 +77,8 @@ def _size_once(context: Any, kind: Any) -> int:
     return _sizes[name]
 
 
-def _say_nothing(*_arguments: Any, **_named: Any) -> None:
-    """Stand for events, some for each call of LLVM, and for a log, to which nobody listens."""
+def _ignore_event(*_arguments: Any, **_named: Any) -> None:
+    """Replace events, some for each call of LLVM, and a log, which nothing reads."""
 
 
 def _no_event(*_arguments: Any, **_named: Any) -> Any:
@@ -91,9 +91,9 @@ for _owner, _name, _instead in (
     (base.BaseContext, "get_abi_sizeof", _size_once),
     # The name of a record has thousands of letters, put together again each time.
     (types.Record, "__repr__", lambda record: record.name),
-    (event, "start_event", _say_nothing),
-    (event, "end_event", _say_nothing),
+    (event, "start_event", _ignore_event),
+    (event, "end_event", _ignore_event),
     (event, "trigger_event", _no_event),
-    (byteflow._logger, "debug", _say_nothing),  # noqa: SLF001
+    (byteflow._logger, "debug", _ignore_event),  # noqa: SLF001
 ):
     setattr(_owner, _name, _instead)

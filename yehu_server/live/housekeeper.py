@@ -215,7 +215,7 @@ class Housekeeper:
         return int(meters["underruns"]), int(meters["missed"])
 
     def _turn(self) -> None:
-        self._delay.look()
+        self._delay.update()
         for player in self._players:
             player.instrument.delay = self._delay.frames  # as the device's period requires
             player.finish_remap()

@@ -1,1 +1,1 @@
-"""Mappings, tunings, presets, sections, the calibration and the practice, from files to tables."""
+"""Mappings, tunings, presets, sections, calibration and bowing tables, from files to tables."""

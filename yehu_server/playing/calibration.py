@@ -49,13 +49,13 @@ from yehu_server.core.player.calibration import (
     ideal_position,
 )
 from yehu_server.params.table import find
+from yehu_server.playing.bowing_tables import shipped_bowing_table
 from yehu_server.playing.pitch_and_level import (
     SILENCE_DB,
     a_weighted_db,
     cents,
     pitch_hz,
 )
-from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.playing.stringing import notes_of
 from yehu_server.util import PACKAGE
 from yehu_server.util.loudness import a_weighting
@@ -104,7 +104,7 @@ def calibration_key(
     sources += [core / "player" / f"{name}.py" for name in ("bowing", "calibration")]
     sources += [core / "engine" / f"{name}.py" for name in ("sounding", "output")]
     sources += [Path(__file__)]
-    bowing = shipped_practice(rate) if bowing is None else bowing
+    bowing = shipped_bowing_table(rate) if bowing is None else bowing
     bowed = bowing[:, PLACES.index(DEFAULT_PLACE)].tolist()
     return key_of(sources, repr((rate, a4, quantities, bowed)))
 
@@ -127,7 +127,7 @@ def calibrate(
 
     Raises ParameterError where the strings are no two that a fiddle has.
     """
-    bowing = shipped_practice(rate) if bowing is None else bowing
+    bowing = shipped_bowing_table(rate) if bowing is None else bowing
     open_notes = notes_of(quantities).open_notes
     usual = bowing[:, PLACES.index(DEFAULT_PLACE)]
     untuned = _Setup(rate, quantities, a4, usual, open_notes)
@@ -154,7 +154,7 @@ def calibrate(
         open_levels = [_bow(tuned, string, note, speed, None)[1] for speed in SPEEDS]
         sharpening.append(_completed(own[:, :, 0], USUAL_CENTS[string]))
         levels.append(_completed(np.vstack([open_levels, own[:, :, 1]]), SILENCE_DB))
-    centroids, louder = _all_colours(tuned, sharpening)
+    centroids, louder = _all_centroids(tuned, sharpening)
     tensions = (first, second)
     return Calibration(
         a4, tensions, tuple(sharpening), tuple(levels), open_notes, centroids, louder
@@ -198,7 +198,7 @@ def _steady(setup: _Setup, string: int, pitch: float, speed: float, x_f: float |
     return out[round(settle_s * rate) :]
 
 
-def _all_colours(setup: _Setup, sharpening: Sequence[Any]) -> tuple[Tables, Tables]:
+def _all_centroids(setup: _Setup, sharpening: Sequence[Any]) -> tuple[Tables, Tables]:
     """Two tables of all notes: `Calibration.centroids` and `louder`."""
     usual = SPEEDS.index(USUAL_SPEED)
     centroids, louder = [], []
@@ -209,13 +209,13 @@ def _all_colours(setup: _Setup, sharpening: Sequence[Any]) -> tuple[Tables, Tabl
                 (setup, string, pitch + setup.above(string), row[usual])
                 for pitch, row in zip(pitches, sharpening[string], strict=True)
             ]
-            found = list(workers.map(lambda job: _colours(*job), jobs))
+            found = list(workers.map(lambda job: _centroids(*job), jobs))
             centroids.append(tuple(row[0] for row in found))
             louder.append(tuple(row[1] for row in found))
     return tuple(centroids), tuple(louder)
 
 
-def _colours(setup: _Setup, string: int, pitch: float, sharp: float | None) -> tuple[Any, Any]:
+def _centroids(setup: _Setup, string: int, pitch: float, sharp: float | None) -> tuple[Any, Any]:
     """Centroid (Hz) of a note with each of GAINS, and how much louder (dB) it is; 0 in silence.
 
     `sharp`: its sharpening (cents); None for an open string.

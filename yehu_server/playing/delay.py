@@ -49,7 +49,7 @@ class Delay:
             return self._instrument.frames(self._fixed_ms)
         return max(self._blocks) * self._block + self._instrument.frames(HANDLING_MS)
 
-    def look(self) -> None:
+    def update(self) -> None:
         """Read the meters of the audio side; to be called twice in an ``AHEAD_WINDOW_S``.
 
         The lesser of two windows in a row counts: a single one may show a delay of the system.

@@ -1,7 +1,7 @@
 """Mappings: which controllers move which parameters; found by name and merged with their bases.
 
 A plain name means a shipped mapping first, so that it means the same to every user;
-``mine/NAME`` is the user's own. Live playing alone looks at the user's own mappings first, as
+``mine/NAME`` is the user's own. Live playing alone searches the user's own mappings first, as
 MIDI learn keeps its binds there.
 
 The format of the files is described in mappings/README.md.

@@ -14,16 +14,16 @@ from yehu_server.core.physics.quantities import Quantities, read_quantities
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.velocity import NEUTRAL
+from yehu_server.playing.bowing_tables import (
+    bowing_table_beside,
+    bowing_tables_beside,
+    read_bowing_table,
+    shipped_bowing_table,
+)
 from yehu_server.playing.calibration import Progress
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.player import Player
-from yehu_server.playing.practice_files import (
-    practice_beside,
-    practices_beside,
-    read_practice,
-    shipped_practice,
-)
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning
@@ -78,10 +78,10 @@ class PlayingOptions:
         if file is not None:
             found = read_quantities(file)
             playing = replace(self, quantities=found, instrument=file, bowing=None, practice=None)
-        practice = practice or practice_beside(file)
+        practice = practice or bowing_table_beside(file)
         if practice is None:
             return playing
-        return replace(playing, bowing=read_practice(practice), practice=practice)
+        return replace(playing, bowing=read_bowing_table(practice), practice=practice)
 
     def with_preset(self, name: str) -> PlayingOptions:
         """The same options with the sound of a preset; raises YehuError where it is none."""
@@ -89,7 +89,7 @@ class PlayingOptions:
         return replace(self, preset=self.presets.find_file(name), start=tuple(values.items()))
 
     def shaping(self, usual: float) -> PlayingOptions:
-        """The same options with `phrasing` and `rubato` told: as asked for, or as usual."""
+        """The same options with `phrasing` and `rubato` set: as asked for, or as usual."""
         phrasing = self.phrasing
         if phrasing is None:
             phrasing = dict(self.settings).get("/playing/phrasing", usual)
@@ -104,9 +104,9 @@ class PlayingOptions:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """All files that it was read from, and where a practice was looked for."""
+        """All files that it was read from, and where a bowing table was searched for."""
         named = [path for path in (self.preset, self.practice, self.instrument) if path is not None]
-        beside = practices_beside(self.instrument)
+        beside = bowing_tables_beside(self.instrument)
         return (*self.mapping.files, *named, *beside, *self.tuning.files)
 
     def spec(
@@ -127,7 +127,7 @@ class PlayingOptions:
             calibration.tuned(self.quantities),
             calibration=calibration,
             open_strings=self.open_strings,
-            bowing=shipped_practice(rate) if self.bowing is None else self.bowing,
+            bowing=shipped_bowing_table(rate) if self.bowing is None else self.bowing,
             seed=self.seed,
             start_values=start_values or {},
             body=body,

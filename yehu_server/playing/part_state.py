@@ -77,7 +77,7 @@ class PartState:
         return self._instrument.spec.notes
 
     @property
-    def people(self) -> int:
+    def players(self) -> int:
         """How many players there are, whether they play or rest."""
         return len(self.instruments)
 

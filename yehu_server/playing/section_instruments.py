@@ -50,9 +50,9 @@ def part_specs(
 
     `number`: how many others are on the stage already.
     """
-    people = section_size(playing)
-    if people > 1:
-        return section_specs(playing, rate, calibration, people=people)
+    players = section_size(playing)
+    if players > 1:
+        return section_specs(playing, rate, calibration, players=players)
     return [playing.spec(rate, calibration, body=number)]
 
 
@@ -61,26 +61,26 @@ def section_specs(
     rate: float,
     calibration: Calibration,
     *,
-    people: int,
+    players: int,
 ) -> list[InstrumentSpec]:
     """The instruments of a section; the first has that of ``PlayingOptions.spec``.
 
     `rate` (Hz).
-    `people`: number of players.
+    `players`: how many play it.
     """
     base = playing.quantities
 
     def spec(number: int) -> InstrumentSpec:
-        seed = round(own_value(INDEX[OWN_SEED], float(playing.seed), number, people))
+        seed = round(own_value(INDEX[OWN_SEED], float(playing.seed), number, players))
         tuned, own = (calibration, base) if number == 0 else vary(calibration, base, seed)
         values = {
-            address: own_value(INDEX[address], find(address).default, number, people)
+            address: own_value(INDEX[address], find(address).default, number, players)
             for address in (GAIN, PAN, DISTANCE)
         }
         player, body = replace(playing, seed=seed, quantities=own), seed if number else 0
         return player.spec(rate, tuned, start_values=values, body=body, player_number=number)
 
-    return [spec(number) for number in range(people)]
+    return [spec(number) for number in range(players)]
 
 
 def vary(

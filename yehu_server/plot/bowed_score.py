@@ -91,8 +91,8 @@ def write_bowed_score(
         panels = figure.subplots(len(rows), 1, squeeze=False)[:, 0]
         for axes, row in zip(panels, rows, strict=True):
             page.draw(axes, row)
-        told = [written.title, written.names[number], octaves.summary]
-        title = png.plain(" - ".join(filter(None, told)))
+        heading = [written.title, written.names[number], octaves.summary]
+        title = png.plain(" - ".join(filter(None, heading)))
         panels[0].set_title(f"{title}\n{page.head}", loc="left", fontsize=12, color=INK)
 
     size = (WIDTH, 0.9 + LINE_INCHES * len(rows))
@@ -190,9 +190,9 @@ class _Page:
         own = string_of(note, self._within)
         before = string_of(self._part.notes[at - 1], self._within) if at else ""
         finger = note.marked("finger")
-        told = [f"{finger.value:g}" if finger is not None and finger.value else ""]
-        told.append(own if own != before else "")
-        text = " ".join(filter(None, told))
+        labels = [f"{finger.value:g}" if finger is not None and finger.value else ""]
+        labels.append(own if own != before else "")
+        text = " ".join(filter(None, labels))
         axes.text(x, -1.2, text, fontsize=7, color=STRING, ha="center", va="center")
         axes.text(x, -2.55, note_name(note.pitch), fontsize=5.5, color="0.6", ha="center")
 

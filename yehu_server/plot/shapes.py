@@ -150,7 +150,7 @@ def energy(simulation: Any, *, ax: Axes | None = None) -> Axes:
     """Draw the energy balance: what bow, finger and hammer gave, and where it is.
 
     What was stored and lost is stacked; its upper edge lies on the line of what was given, and
-    the title tells the largest power that is missing.
+    the title states the largest power that is missing.
 
     Parameters
     ----------

@@ -29,8 +29,8 @@ from yehu_server.scores.written.part_bowing import Played, bowed
 from yehu_server.scores.written.performed import performed
 from yehu_server.scores.written.tempo import WrittenClock
 
-BLOCK = 64  # frames between two looks at the bow
-MOST_TURNS = 2  # of a note that are told: more are a tremolo
+BLOCK = 64  # frames between two readings of the bow
+MOST_TURNS = 2  # of a note that are counted: more are a tremolo
 SOONER_S = 1e-6
 
 

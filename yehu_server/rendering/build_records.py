@@ -1,8 +1,8 @@
-"""Records of what was built, which tell what is up to date, and the manifest of a folder.
+"""Records of what was built, which show what is up to date, and the manifest of a folder.
 
 Each folder of results has a hidden folder: a record for each result, and what is being made.
 A record holds a key of all that the result depends on, hashes of the files it was made from, and
-what may be told of it again.
+what may be reported of it again.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ def keep(
     """Write the record of results that are in their places.
 
     The key is of all that they depend on beside the files they were made from, `read`. The results
-    are the target, and what was made beside it. The line is what may be told of them again.
+    are the target, and what was made beside it. The line is what may be reported of them again.
     """
     made = {}
     for path in results:

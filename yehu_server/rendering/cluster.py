@@ -1,7 +1,7 @@
 """Do jobs on a cluster of machines, by Dask: the same jobs, with the same results.
 
-A job whose worker dies is given to another one, by Dask's scheduler. docs/cluster.md tells how to
-start a cluster.
+A job whose worker dies is given to another one, by Dask's scheduler. docs/cluster.md describes how
+to start a cluster.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from yehu_server.util.files import read_text, why
 PORT = 8786  # Dask's own choice
 _ADDRESS = re.compile(r"(?:(tcp|tls|ucx|ws|wss)://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+)(?::(\d+))?/?")
 CONNECT_S = 10.0
-LOOK_EVERY_S = 2.0  # at how many workers there are
+CHECK_EVERY_S = 2.0  # at how many workers there are
 JOBS_PER_THREAD = 4  # in flight, so that no worker waits for the next
 FEWEST_JOBS = 16
 BATCHES = 4  # in which they are sent off
@@ -69,9 +69,9 @@ class Cluster:
 
     The address is that of the scheduler, such as ``tcp://10.0.0.1:8786``, or its file. `setup`,
     which has to be picklable, is called in each process of a worker before its first job, by one
-    process of a machine at a time. `warn` is told, in one line, what is no error. Raises YehuError
-    where there is no such scheduler, no worker, or one that has another version; where Dask is not
-    installed.
+    process of a machine at a time. `warn` is called with a line about what is no error. Raises
+    YehuError where there is no such scheduler, no worker, or one that has another version; where
+    Dask is not installed.
     """
 
     def __init__(
@@ -89,10 +89,10 @@ class Cluster:
 
     def __enter__(self) -> Self:
         for name in ("distributed", "tornado.application", "asyncio"):
-            logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is told in one line
+            logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is one line of ours
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of versions: `_check` tells what matters
+                warnings.simplefilter("ignore")  # of versions: `_check` reports what matters
                 self._client = self._open.enter_context(plain_client(self.address, CONNECT_S))
         except (OSError, ValueError, TypeError, ImportError, TimeoutError) as error:
             raise YehuError(f"{self.address}: no Dask scheduler answers there") from error
@@ -120,17 +120,17 @@ class Cluster:
         ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
         jobs: dict[str, int] = {}
         futures: dict[str, Any] = {}
-        room, looked = 0, -LOOK_EVERY_S
-        is_told = False
+        room, checked = 0, -CHECK_EVERY_S
+        is_warned = False
         try:
             while True:
-                if time.monotonic() - looked >= LOOK_EVERY_S:
+                if time.monotonic() - checked >= CHECK_EVERY_S:
                     threads = self._reached(self._client.nthreads)
                     room = max(FEWEST_JOBS, JOBS_PER_THREAD * len(threads))
-                    looked = time.monotonic()
-                    if not threads and not is_told:
+                    checked = time.monotonic()
+                    if not threads and not is_warned:
                         self._warn(f"{self.address}: no worker is left; waiting for one")
-                    is_told = not threads
+                    is_warned = not threads
                 free = room - len(futures)
                 if free >= room // BATCHES:
                     for job, future in self._begin(name, perform, itertools.islice(waiting, free)):
@@ -163,7 +163,7 @@ class Cluster:
         """Wait for a moment; return the futures that have ended, and their results."""
         futures = []
         with contextlib.suppress(queue.Empty):
-            futures.append(ended.get(timeout=LOOK_EVERY_S))
+            futures.append(ended.get(timeout=CHECK_EVERY_S))
             while True:
                 futures.append(ended.get_nowait())
         done = [future for future in futures if future.status == "finished"]

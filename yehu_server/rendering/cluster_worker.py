@@ -53,15 +53,15 @@ def _level() -> str:
         return platform.machine()
 
 
-def identity_of(told: Any) -> Identity:
-    """The identity that another process told by `who`; one that is like none where it is none."""
-    if isinstance(told, (list, tuple)) and len(told) == 3 and all(type(x) is str for x in told):
-        return Identity(*told)
+def identity_of(sent: Any) -> Identity:
+    """The identity that another process sent by `who`; one that is like none where it is none."""
+    if isinstance(sent, (list, tuple)) and len(sent) == 3 and all(type(x) is str for x in sent):
+        return Identity(*sent)
     return Identity("?", "", "")
 
 
 def who() -> tuple[str, str, str]:
-    """Tell version, code and level of processors of this process, as plain texts."""
+    """Return version, code and level of processors of this process, as plain texts."""
     return astuple(identity())
 
 

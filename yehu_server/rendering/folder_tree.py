@@ -45,7 +45,7 @@ def tree_of(folder: Path, output: Path, ending: str) -> Tree:
     """Find all scores below a folder.
 
     Hidden files and folders are left out, and the output's own folder where that is within. Links
-    are followed, but no folder is looked into twice. `ending` is that of the files to write, such
+    are followed, but no folder is read twice. `ending` is that of the files to write, such
     as ".wav". Raises ScoreError where the folder cannot be read.
     """
     problems: list[tuple[str, str]] = []
@@ -60,7 +60,7 @@ def tree_of(folder: Path, output: Path, ending: str) -> Tree:
 
 
 def _names(folder: Path, output: Path, problems: list[tuple[str, str]]) -> Iterator[str]:
-    """Yield the names of scores, relative to the folder; tell of folders that cannot be read."""
+    """Yield the names of scores, relative to the folder; warn of folders that cannot be read."""
 
     def is_unreadable(error: OSError) -> None:
         place = os.path.relpath(error.filename, folder)
@@ -85,7 +85,7 @@ def _targets(names: list[str], ending: str) -> dict[str, str]:
     """What each score is rendered to, by its name; none where that is taken.
 
     Of several that differ in nothing but their endings, or in capitals, which some disks do not
-    tell apart, one has the plain name, and others keep their own ending before the new one.
+    distinguish, one has the plain name, and others keep their own ending before the new one.
     """
     taken: set[str] = set()
     targets: dict[str, str] = {}

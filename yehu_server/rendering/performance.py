@@ -205,7 +205,7 @@ class Performance:
 def _target_pitch(instrument: Instrument) -> float | None:
     """Return the pitch of the sounding key with its bend (fractional MIDI note), if one sounds.
 
-    Meters tell it too, but only those of an instrument that the callback plays.
+    Meters have it too, but only those of an instrument that the callback plays.
     """
     player = np.frombuffer(instrument.memory, RIG, count=1)["player"][0]
     sounding = int(player["sounding"])

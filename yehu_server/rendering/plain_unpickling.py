@@ -13,7 +13,7 @@ from typing import Any
 
 
 class ForeignError(Exception):
-    """Stands for whatever object another process sent; its class tells the name of the sent one.
+    """Stands for whatever object another process sent; its class has the name of the sent one.
 
     It is an exception, since Dask asserts that what it hands on as one is one.
     """

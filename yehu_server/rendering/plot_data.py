@@ -17,13 +17,13 @@ STEP_S = 0.01  # between two columns, at least
 WINDOW_S = 0.046  # of which each column is
 TOP_HZ = 8000.0
 SILENT_DB = -120.0
-HEARD_DB = -60.0  # below, no pitch is looked for
+HEARD_DB = -60.0  # below, no pitch is searched
 
 
 class PlotData:
     """Level, spectrum and pitch of a sound at up to `COLUMNS` times, and the pitches asked for.
 
-    Rate and A4 are in Hz; the pitch of a sound is looked for where there is one voice. Between two
+    Rate and A4 are in Hz; the pitch of a sound is searched where there is one voice. Between two
     columns there are `step` frames.
     `step_s` sets their distance; by default it is such that there are not too many.
     """

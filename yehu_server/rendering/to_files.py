@@ -81,7 +81,7 @@ def render(
 ) -> Summary:
     """Render parts, each on an instrument of its own, to a sound file.
 
-    `progress` is called with the seconds done and those of the score; `may_replace` tells whether
+    `progress` is called with the seconds done and those of the score; `may_replace` says whether
     an older file may be replaced. The target is `PIPE` for standard output. Stems are a file for
     each part, and one for the room unless it is dry; their sum is the mix. `watch` gathers what a
     picture shows. Raises YehuError where it fails; no partial file is left.

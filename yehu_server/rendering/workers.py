@@ -26,8 +26,8 @@ from yehu_server.util.signals import on_termination
 ProgressCallback = Callable[[float, float], None]  # what is done, and of what
 Perform = Callable[[Any, ProgressCallback], Any]
 MOST_TRIES = 2  # of a job whose process dies
-GOODBYE_S = 10.0
-TOLD_EVERY_S = 0.2
+EXIT_WAIT_S = 10.0
+REPORT_EVERY_S = 0.2
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class _Worker:
 
     def end(self) -> str:
         """Wait until it has ended; return how it did."""
-        self.process.join(GOODBYE_S)
+        self.process.join(EXIT_WAIT_S)
         if self.process.is_alive():
             self.process.kill()
             self.process.join()
@@ -78,30 +78,30 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
     """Do all tasks; yield what becomes of them, as it does.
 
     `perform` is a function of a module, called in another process with a task and a function to
-    tell the progress: what is done, of what. Its result, and tasks, have to be picklable; it must
+    report the progress: what is done, of what. Its result, and tasks, have to be picklable; it must
     not raise. At most `workers` processes run. Raises YehuError where no process can be started.
     """
     context = multiprocessing.get_context("spawn")
     waiting = deque((job, 1) for job in range(len(tasks)))
     tries: dict[int, int] = {}
-    crew: list[_Worker] = []
+    pool: list[_Worker] = []
     try:
-        while waiting or any(worker.job >= 0 for worker in crew):
-            for worker in crew:
+        while waiting or any(worker.job >= 0 for worker in pool):
+            for worker in pool:
                 if worker.job < 0 and waiting:
                     job, tries[job] = waiting.popleft()
                     worker.begin(job, tasks[job])
-            while waiting and len(crew) < workers:
-                crew.append(_Worker(context, perform))
+            while waiting and len(pool) < workers:
+                pool.append(_Worker(context, perform))
                 job, tries[job] = waiting.popleft()
-                crew[-1].begin(job, tasks[job])
-            ready = wait([worker.connection for worker in crew])
-            for worker in [each for each in crew if each.connection in ready]:
+                pool[-1].begin(job, tasks[job])
+            ready = wait([worker.connection for worker in pool])
+            for worker in [each for each in pool if each.connection in ready]:
                 job = worker.job
                 try:
                     share, result = worker.connection.recv()
                 except (EOFError, OSError):
-                    crew.remove(worker)
+                    pool.remove(worker)
                     worker.connection.close()
                     how = worker.end()
                     if job < 0:
@@ -115,9 +115,9 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
                     worker.job = -1
                 yield Event(job, share, result)
     finally:
-        for worker in crew:
+        for worker in pool:
             worker.connection.close()
-        for worker in crew:
+        for worker in pool:
             worker.end()
 
 
@@ -127,17 +127,17 @@ def _serve(connection: Connection, perform: Perform) -> None:
     on_termination(_interrupt)
     tasks: queue.SimpleQueue[Any] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(connection, tasks), daemon=True).start()
-    told = [time.monotonic()]
+    reported = [time.monotonic()]
 
-    def tell(done: float, total: float) -> None:
+    def report(done: float, total: float) -> None:
         now = time.monotonic()
-        if now - told[0] >= TOLD_EVERY_S and total > 0.0:
-            told[0] = now
+        if now - reported[0] >= REPORT_EVERY_S and total > 0.0:
+            reported[0] = now
             connection.send((min(done / total, 0.99), None))
 
     try:
         while (task := tasks.get()) is not None:
-            connection.send((1.0, perform(task[0], tell)))
+            connection.send((1.0, perform(task[0], report)))
     except (KeyboardInterrupt, OSError):  # what was being made has been put away
         os._exit(0)
 

@@ -99,11 +99,11 @@ class Simulation:
             for name in ("finger", "string")
             if name in sizes
         }
-        told = dict(self.meta)
-        version = told.pop("version", __version__)
+        metadata = dict(self.meta)
+        version = metadata.pop("version", __version__)
         plain = {
             name: value if isinstance(value, str | int | float) else as_json(value)
-            for name, value in told.items()
+            for name, value in metadata.items()
         }
         source = {"source": f"yehu-server {version}", "sha256": hash_of(self.arrays)}
         others = {name: each for name, each in found.items() if name not in coordinates}
@@ -205,9 +205,9 @@ def simulate(
             arrays[f"string_{i + 1}"] = np.array(shaped[i])
             length = gesture.quantities.strings[i].L
             arrays[f"x_{i + 1}"] = np.linspace(0.0, length, int(m["N"][i]) + 1)
-    told = {"gesture": dict(gesture.source), "seed": int(gesture.quantities.bow.hair)}
+    asked = {"gesture": dict(gesture.source), "seed": int(gesture.quantities.bow.hair)}
     own = None if more is None else more[0]
-    return Simulation(arrays, told | about(m, state[0], frames, gesture.quantities, own))
+    return Simulation(arrays, asked | metadata_of(m, state[0], frames, gesture.quantities, own))
 
 
 def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, Floats]:
@@ -242,10 +242,10 @@ def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, F
     return arrays
 
 
-def about(
+def metadata_of(
     m: Any, state: Any, frames: int, quantities: Quantities, more: Any = None
 ) -> dict[str, Any]:
-    """What a run's metadata tell of the model (MODEL, REFINED) and its state (STATE) at the end."""
+    """The metadata of a run, of its model (MODEL, REFINED) and its state (STATE) at the end."""
     return {
         "version": __version__,
         "instrument": as_data(quantities),

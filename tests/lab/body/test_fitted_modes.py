@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from lab.body.bodies import DAMPING, HZ, MASS, admittance, off_db, rms
 
 from yehu_lab.body import Curve, Measurement, fit, fitting
-from yehu_lab.body.modes import Problem, amounts_of, look
+from yehu_lab.body.modes import Problem, amounts_of, step_at
 from yehu_server.core.physics.quantities import Quantities, measured_body
 from yehu_server.errors import MeasurementError
 
@@ -144,7 +144,7 @@ def test_no_other_amounts_above_zero_are_better():
 def test_at_the_true_frequencies_the_true_masses_are_found():
     problem = Problem(LINES, admittance(LINES), np.ones(len(LINES)))
     points = np.log(np.stack([HZ, DAMPING_RATIO], axis=1))
-    step = look(problem, points, problem.wanted)
+    step = step_at(problem, points, problem.wanted)
     _, lengths = problem.columns(points)
     assert step.amounts / lengths == pytest.approx(1.0 / MASS, rel=1e-4)
 
@@ -153,12 +153,12 @@ def test_the_error_falls_as_its_gradient_tells():
     """Against the difference of two errors, a little to each side."""
     problem = Problem(LINES, admittance(LINES), 1.0 / np.abs(admittance(LINES)))
     points = np.log(np.stack([HZ[:4] * 1.02, DAMPING_RATIO[:4] * 1.3], axis=1))
-    step = look(problem, points, problem.wanted)
+    step = step_at(problem, points, problem.wanted)
     for i in range(4):
         for column in range(2):
             by = np.zeros((4, 2))
             by[i, column] = 1e-5
-            ahead = look(problem, points + by, problem.wanted).error
-            back = look(problem, points - by, problem.wanted).error
+            ahead = step_at(problem, points + by, problem.wanted).error
+            back = step_at(problem, points - by, problem.wanted).error
             slope = 0.5 * (ahead - back) / 2e-5
             assert step.gradient[i + 4 * column] == pytest.approx(slope, rel=1e-3, abs=1e-4)

@@ -2,7 +2,7 @@
 
 Notes near the body's modes (A4 at 439 Hz above all) and the open F string jump to other
 registers under a fast or a heavy bow. The table for each string is found by playing the model
-(`yehu_lab.practising.practice`); `default_bowing_table` is what that search starts from.
+(`yehu_lab.practising.bowing_search`); `default_bowing_table` is what that search starts from.
 """
 
 from __future__ import annotations

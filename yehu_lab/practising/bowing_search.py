@@ -1,7 +1,7 @@
 """Practise: find how each note is bowed at each place from the bridge, by playing it.
 
 Each note is played first, and after others, slurred and separate, at several speeds and pressures;
-the ear of the player (``player.ear``), at the string, tells whether it speaks: with one slip in a
+the ear of the player (``player.ear``), at the string, judges whether it speaks: with one slip in a
 period, at its pitch. What the body radiates has to have that pitch, too: the bow may keep a mode of
 it going beside a high note. Where it doesn't speak, other shares of Schelleng's limit, places
 nearby, slower bows and a firmer finger are tried. What is farther from what is asked for has to be
@@ -19,14 +19,14 @@ from typing import Any
 
 import numpy as np
 
+from yehu_lab.practising.candidates import DEFAULT, ROUNDS, lighter, lost, moved
 from yehu_lab.practising.passages import (
     Passage,
-    Search,
+    SearchedNote,
     passages_of,
     pitches_near_notes,
     stops_of,
 )
-from yehu_lab.practising.recipes import DEFAULT, ROUNDS, lighter, lost, moved
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
@@ -49,20 +49,20 @@ QUICK = (0.2, 0.24)  # speeds (m/s) for which a light bow is practised
 BEFORE_S, EARLY_S, LATE_S, UP_S, EACH_S = 0.2, 0.13, 0.38, 0.385, 0.4
 LISTEN_S = 0.06  # before LATE_S
 SPEEDS, PRESSURES = (0.12, 0.16, 0.2, 0.25), (0.2, 0.3, 0.42, 0.55)
-# Passages that a recipe is judged by, of which the first few tell those that are worth the others;
+# Passages that a bowing is judged by, of which the first few find those that are worth the others;
 # and of a light, quick bow.
 TRIES, HEAT, QUICK_TRIES = 16, 5, 8
-AGAIN, FINALISTS = 500_000, 4  # what begins the other passages; recipes that play them
+AGAIN, FINALISTS = 500_000, 4  # what begins the other passages; bowings that play them
 # It speaks: certainty and slips in a period; cents early, when the ear has not yet tuned it, and
 # late. Weight of early.
 CERTAIN, FEWEST, MOST, NEAR_EARLY, NEAR_LATE, EARLY = 0.97, 0.7, 1.4, 60.0, 15.0, 0.3
 NEAR_OPEN = 8.0  # of open strings, which nothing tunes
 OFF_WEIGHT = 600.0  # cents of the first error that count as much as never to speak
 GOOD, BETTER = 0.96, 0.015  # a score that is not improved, and by how much another must be better
-REGISTERS = 3.0  # how far below and above a note its other registers are looked for
+REGISTERS = 3.0  # how far below and above a note its other registers are searched
 
 
-class Practice:
+class BowingSearch:
     """Practises on an instrument at a rate (Hz).
 
     `values`: values of parameters, by address: those of the bow's place, speed and pressure alone
@@ -121,7 +121,7 @@ class Practice:
                     start = table[string, place, note - FIRST].copy()
                     there = None if place == DEFAULT else moved(table, string, note, place)
                     found = self._best(
-                        Search(string, note, place, start, there, self._notes), workers
+                        SearchedNote(string, note, place, start, there, self._notes), workers
                     )
                     self.notes_changed += int(np.any(found != start))
                     table[string, place, note - FIRST] = found
@@ -130,8 +130,8 @@ class Practice:
         table[0, :, : LOWEST_NOTE - FIRST] = table[0, :, LOWEST_NOTE - FIRST, None]
         return table
 
-    def _best(self, search: Search, workers: ThreadPoolExecutor) -> Array:
-        """The best recipe of a note at a place; that which it starts from where that is good."""
+    def _best(self, search: SearchedNote, workers: ThreadPoolExecutor) -> Array:
+        """The best bowing of a note at a place; that which it starts from where that is good."""
         string, place, start = search.string, search.place, search.start
         seed = 1000 * search.note + 100 * string + place
         speeds, pressures = self._speeds, self._pressures
@@ -140,7 +140,7 @@ class Practice:
 
         def scores(tried: list[Array], passages: list[Passage]) -> Array:
             found = list(workers.map(lambda m: self.score(search, m, passages), tried))
-            return np.array(found) - [lost(recipe, start) for recipe in tried]
+            return np.array(found) - [lost(bowing, start) for bowing in tried]
 
         def choose(best: Array, score: float, tried: Iterable[Array]) -> tuple[Array, float]:
             tried = list(tried)
@@ -172,24 +172,24 @@ class Practice:
             best = best if after > before + BETTER else start
         return self._lightly(search, best) if FLAUTANDO in pressures else best
 
-    def _lightly(self, search: Search, usual: Array) -> Array:
-        """A recipe with a share for flautando at which a quick bow speaks."""
+    def _lightly(self, search: SearchedNote, usual: Array) -> Array:
+        """A bowing with a share for flautando at which a quick bow speaks."""
         passages = passages_of(search, search.note, QUICK_TRIES, QUICK, (FLAUTANDO,))
         best, most = usual, -math.inf
-        for recipe, loss in lighter(usual):
-            score = self.score(search, recipe, passages) - loss
+        for bowing, loss in lighter(usual):
+            score = self.score(search, bowing, passages) - loss
             if score > most + BETTER:
-                best, most = recipe, score
+                best, most = bowing, score
             if score >= GOOD:
                 break
         return best
 
-    def score(self, search: Search, recipe: Array, passages: Iterable[Passage]) -> float:
+    def score(self, search: SearchedNote, bowing: Array, passages: Iterable[Passage]) -> float:
         """How well a note speaks in some passages: at best 1."""
         table = default_bowing_table()
         stopped = self._pitches[search.sounds] - search.above
         for row in {math.floor(stopped), math.ceil(stopped)}:
-            table[search.string, :, row - FIRST] = recipe
+            table[search.string, :, row - FIRST] = bowing
         spec = InstrumentSpec(self._rate, self._tuned, calibration=self._calibration, bowing=table)
         instrument = Instrument(spec)
         instrument.disable_pressure_correction()
@@ -209,7 +209,7 @@ class Practice:
         return (speaks - off / OFF_WEIGHT) / count
 
     def _play(
-        self, instrument: Instrument, commands: Player, search: Search, passage: Passage
+        self, instrument: Instrument, commands: Player, search: SearchedNote, passage: Passage
     ) -> tuple[bool, bool, float]:
         """Whether a note speaks early and late in a passage, and its error (cents) early."""
         start = instrument.frame

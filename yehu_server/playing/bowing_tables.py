@@ -1,4 +1,7 @@
-"""Read and write what was practised: shipped for usual sample rates, or the user's own."""
+"""Read and write bowing tables: those shipped for usual sample rates, or the user's own.
+
+Users know such a file as a practice: `practise` writes it, `--practice` takes it.
+"""
 
 from __future__ import annotations
 
@@ -27,8 +30,8 @@ LOWEST = (0.02, 0.0, 0.0, 0.0, 0.2, 0.0)
 HIGHEST = (2.0, 12.0, 12.0, 12.0, 5.0, 10.0)
 
 
-def shipped_practice(rate: float) -> Array:
-    """The practice that comes with this version, of the nearest sample rate (Hz)."""
+def shipped_bowing_table(rate: float) -> Array:
+    """The bowing table that comes with this version, of the nearest sample rate (Hz)."""
     tables = _shipped()
     return tables[min(tables, key=lambda practised: abs(log(practised / rate)))].copy()
 
@@ -47,7 +50,7 @@ def as_text(data: Any) -> str:
 
 
 def as_data(table: Array, rate: float) -> dict[str, Any]:
-    """A table of bowing as JSON values: what is bowed otherwise than in `default_bowing_table`."""
+    """A bowing table as JSON values: what is bowed otherwise than in `default_bowing_table`."""
     ordinary = default_bowing_table()
     bowing = {
         name: {
@@ -64,7 +67,7 @@ def as_data(table: Array, rate: float) -> dict[str, Any]:
 
 
 def table_of(data: Any) -> Array:
-    """The table of bowing of JSON values that `as_data` made; raises ParameterError."""
+    """The bowing table of JSON values that `as_data` made; raises ParameterError."""
     table = default_bowing_table()
     try:
         if data["format"] != FORMAT or data["version"] != VERSION:
@@ -73,22 +76,22 @@ def table_of(data: Any) -> Array:
             for place, notes in places.items():
                 own = table[STRING_NAMES.index(name), PLACES.index(float(place))]
                 for note, values in notes.items():
-                    own[int(note) - FIRST] = _recipe(note, values)
+                    own[int(note) - FIRST] = _bowing_of(note, values)
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
         raise ParameterError("is not a practice") from error
     return table
 
 
-def _recipe(note: str, values: Any) -> Array:
-    row = np.array(values, np.float64)
-    if row.shape != (BOWING_SIZE,) or not FIRST <= int(note) <= LAST:
+def _bowing_of(note: str, values: Any) -> Array:
+    bowing = np.array(values, np.float64)
+    if bowing.shape != (BOWING_SIZE,) or not FIRST <= int(note) <= LAST:
         raise ParameterError(f"note {note}: expected {BOWING_SIZE} numbers")
-    if not np.all((row >= LOWEST) & (row <= HIGHEST)):  # also refuses NaN
+    if not np.all((bowing >= LOWEST) & (bowing <= HIGHEST)):  # also refuses NaN
         raise ParameterError(f"note {note}: a value is out of range")
-    return row
+    return bowing
 
 
-def read_practice(path: Path) -> Array:
+def read_bowing_table(path: Path) -> Array:
     """Read a practice file; raises ScoreError if not readable, ParameterError if it is none."""
     try:
         return table_of(parse_json(read_text(path, MOST_BYTES)))
@@ -100,18 +103,18 @@ def read_practice(path: Path) -> Array:
         raise ParameterError(f"{path}: is not a practice ({error})") from error
 
 
-def practice_beside(instrument: Path | None) -> Path | None:
-    """The practice of an instrument file: beside it, of the same name and ``.practice.json``."""
-    return next((path for path in practices_beside(instrument) if path.is_file()), None)
+def bowing_table_beside(instrument: Path | None) -> Path | None:
+    """The bowing table beside an instrument file, of the same name and ``.practice.json``."""
+    return next((path for path in bowing_tables_beside(instrument) if path.is_file()), None)
 
 
-def practices_beside(instrument: Path | None) -> list[Path]:
-    """Where the practice of an instrument file is looked for, whether it is there or not."""
+def bowing_tables_beside(instrument: Path | None) -> list[Path]:
+    """Where the bowing table of an instrument file would be, whether it is there or not."""
     if instrument is None or not instrument.name:
         return []
     return [instrument.with_suffix(".practice.json")]
 
 
-def write_practice(path: Path, table: Array, rate: float) -> None:
+def write_bowing_table(path: Path, table: Array, rate: float) -> None:
     """Write a practice file; raises OutputError where it cannot be written."""
     write_bytes(path, as_text(as_data(table, rate)).encode())

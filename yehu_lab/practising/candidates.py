@@ -1,4 +1,4 @@
-"""The recipes that practising tries for a note, beside the best that it knows so far."""
+"""The bowings that practising tries for a note, beside the best that it knows so far."""
 
 from __future__ import annotations
 
@@ -72,40 +72,40 @@ def lighter(usual: Array) -> Iterator[tuple[Array, float]]:
 
 
 def moved(table: Array, string: int, note: int, place: int) -> Array:
-    """The recipe of a note at the default place, with the bow moved to another.
+    """The bowing of a note at the default place, with the bow moved to another.
 
     On the F string it moves as far as ordinarily.
     """
-    recipe = table[string, DEFAULT, note - FIRST].copy()
+    bowing = table[string, DEFAULT, note - FIRST].copy()
     ordinary = default_bowing_table()[string, :, note - FIRST, DISTANCE_FACTOR]
-    recipe[DISTANCE_FACTOR] *= ordinary[place] / ordinary[DEFAULT]
+    bowing[DISTANCE_FACTOR] *= ordinary[place] / ordinary[DEFAULT]
     farthest = FARTHEST / PLACES[place]
-    recipe[DISTANCE_FACTOR] = min(max(recipe[DISTANCE_FACTOR], NEAREST / PLACES[place]), farthest)
-    return recipe
+    bowing[DISTANCE_FACTOR] = min(max(bowing[DISTANCE_FACTOR], NEAREST / PLACES[place]), farthest)
+    return bowing
 
 
-def lost(recipe: Array, usual: Array) -> float:
-    """What a recipe loses for its distance from the usual one."""
-    away = abs(log(recipe[DISTANCE_FACTOR] / usual[DISTANCE_FACTOR]))
-    return AWAY * away + CHANGED * abs(log(recipe[AT_LIGHT] / usual[AT_LIGHT]))
+def lost(bowing: Array, usual: Array) -> float:
+    """What a bowing loses for its distance from the usual one."""
+    away = abs(log(bowing[DISTANCE_FACTOR] / usual[DISTANCE_FACTOR]))
+    return AWAY * away + CHANGED * abs(log(bowing[AT_LIGHT] / usual[AT_LIGHT]))
 
 
-def changed(recipe: Array, column: int, value: float) -> Array:
-    """A recipe with another value."""
-    other = recipe.copy()
+def changed(bowing: Array, column: int, value: float) -> Array:
+    """A bowing with another value."""
+    other = bowing.copy()
     other[column] = value
     return other
 
 
 def _near(best: Array, place: int) -> list[float]:
-    """Bow positions close to that of a recipe."""
+    """Bow positions close to that of a bowing."""
     return [PLACES[place] * best[DISTANCE_FACTOR] * near for near in FINE_FARTHERS]
 
 
 def _varied(
     best: Array, string: int, place: int, positions: Iterable[float], shares: Iterable[float]
 ) -> Iterator[Array]:
-    """A recipe with the bow elsewhere and other shares of Schelleng's limit."""
+    """A bowing with the bow elsewhere and other shares of Schelleng's limit."""
     for position in sorted(positions):
         if not NEAREST <= position <= FARTHEST:
             continue

@@ -22,7 +22,7 @@ from yehu_server.util.processes import python_command
 THREADS = "OPENBLAS_NUM_THREADS"
 
 
-def fit_apart(measurement: Measurement, **how: Any) -> Fit:
+def fit_in_process(measurement: Measurement, **how: Any) -> Fit:
     """Fit a body as `fit` does; raises YehuError where that does, or the process ends."""
     if os.environ.get(THREADS) == "1":
         return fit(measurement, **how)

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache, partial
-from itertools import combinations, product
+from itertools import product
 
 import forks
 import numba
@@ -26,14 +26,8 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.mailbox import (
     APPLIED_AT_ONCE,
-    HEAP,
-    LINE,
     LIVE_BUDGET,
-    MIDI_INPUTS,
-    PAGES,
     RING,
-    SMALL_RING,
-    SOUND_INPUT,
 )
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import TABLES_TO
@@ -233,19 +227,6 @@ def test_a_full_ring_drops_and_counts_what_comes_and_keeps_what_it_has(make):
         np.testing.assert_array_equal(numbers(instrument.applied_commands()), np.arange(RING))
 
 
-def test_a_writer_of_times_far_ahead_leaves_the_heap_to_the_others():
-    for writer, far in ((MIDI_INPUTS, 10**15), (PAGES, FAR), (SOUND_INPUT, 10**15)):
-        instrument = offline()
-        for _ in range(2 * HEAP // SMALL_RING):
-            for _ in range(SMALL_RING):
-                assert native.post_from.call(
-                    instrument.address, writer, far, *UNHEARD[0], 0.0, 0.0
-                ), writer
-            run(instrument, 1)
-        assert instrument._rig["mail"]["pending_events"][0] == 0, writer
-        assert instrument.dropped_events == 2 * HEAP, writer
-
-
 def test_reports_nobody_reads_are_dropped_and_counted_and_the_older_kept():
     instrument = reporting(offline())
     for number in range(RING):
@@ -261,16 +242,6 @@ def test_reports_nobody_reads_are_dropped_and_counted_and_the_older_kept():
     run(instrument, 64)
     np.testing.assert_array_equal(numbers(instrument.applied_commands()), [7])
     assert instrument.meters()["unreported"] == 100
-
-
-def test_cursors_are_words_of_their_own_in_cache_lines_of_their_own():
-    posted, read = memory.POSTED_AT, memory.READ_AT
-    drained, reported = memory.DRAINED_AT, memory.REPORTED_AT
-    for at in (posted, read, drained, reported, memory.VERSION_AT, memory.TAPED_AT):
-        assert at % 8 == 0  # an atomic word may not lie across two
-    for one, other in combinations([(posted,), (read,), (drained, reported)], 2):
-        for mine, its in product(one, other):
-            assert abs(mine - its) >= 8 * LINE
 
 
 # ---------------------------------------------------------------- the heap: a plain model
@@ -335,19 +306,6 @@ def test_commands_apply_by_frame_and_then_as_posted_whatever_the_order_of_postin
     assert meters["waiting"] == len(model.waiting)
 
 
-def test_thousands_in_any_order_come_out_sorted():
-    chance = random.Random(1)
-    instrument = reporting(offline())
-    frames = [chance.randrange(2000) for _ in range(HEAP)]
-    for number, frame in enumerate(frames):
-        post_numbered(instrument, number, frame)
-    run(instrument, 2100)
-    commands = instrument.applied_commands()
-    expected = sorted(range(len(frames)), key=lambda number: (frames[number], number))
-    np.testing.assert_array_equal(numbers(commands), expected)
-    np.testing.assert_array_equal(commands["frame"], sorted(frames))  # none has 32 on a frame
-
-
 # ---------------------------------------------------------------- the heap: single promises
 
 
@@ -364,18 +322,6 @@ def test_at_most_so_many_commands_apply_on_one_frame_and_the_rest_on_the_next():
     assert frames.tolist() == [50, 51, 52, 53]
     assert counts.tolist() == [APPLIED_AT_ONCE] * 3 + [10]
     assert instrument.meters()["late_events"] == 0  # they were posted in time
-
-
-def test_more_than_wait_at_once_in_the_order_of_frames_apply_on_their_frames():
-    instrument = reporting(offline())
-    count = HEAP + HEAP // 2
-    for number in range(count):
-        post_numbered(instrument, number, 100 + number // 10)
-    run(instrument, 100 + count)
-    commands = instrument.applied_commands()
-    np.testing.assert_array_equal(numbers(commands), np.arange(count))
-    np.testing.assert_array_equal(commands["frame"], 100 + np.arange(count) // 10)
-    assert instrument.meters()["late_events"] == 0
 
 
 def test_a_live_instrument_takes_in_so_many_commands_for_each_64_frames():
@@ -464,29 +410,4 @@ def test_a_command_that_came_while_the_process_died_comes_once_and_no_other_is_l
         np.testing.assert_array_equal(numbers(instrument.applied_commands()), expected)
 
 
-def test_a_heap_that_was_left_out_of_order_is_mended_and_takes_more():
-    ensemble, expected = waiting_commands()
-    instrument, heap = ensemble.first, ensemble.first._rig["events"][0]
-    heap[:MANY] = heap[np.random.default_rng(1).permutation(MANY)]
-    died(ensemble)
-    post_numbered(instrument, MANY, 300)
-    post_numbered(instrument, MANY + 1, 700)
-    run(ensemble, 1000)
-    found = numbers(instrument.applied_commands())
-    np.testing.assert_array_equal(found, [MANY, *expected, MANY + 1])
-
-
 # ---------------------------------------------------------------- blocks
-
-
-def test_even_more_than_can_wait_at_once_apply_the_same_in_blocks_of_any_size():
-    def applied(block: int) -> np.ndarray:
-        instrument = reporting(offline())
-        for number in range(HEAP):
-            post_numbered(instrument, number, 10 + number // 20)
-        for number in range(500):
-            post_numbered(instrument, number, 30 + 7 * number % 500)
-        run(instrument, 3200, block=block)
-        return instrument.applied_commands()
-
-    np.testing.assert_array_equal(applied(1), applied(64))

@@ -14,7 +14,6 @@ from yehu_server.rendering.true_peak import TruePeak
 RATE = 44100
 KNEE = 10.0 ** (-3.0 / 20.0)
 
-sizes = st.floats(allow_nan=False)
 knees = st.sampled_from([KNEE, 0.063, 0.5, 1.0])
 
 
@@ -23,20 +22,6 @@ knees = st.sampled_from([KNEE, 0.063, 0.5, 1.0])
 def test_the_limiter_leaves_what_is_below_its_knee(share, knee):
     x = share * min(knee, CEILING)
     assert limit(x, knee) == x
-
-
-@settings(max_examples=100)
-@given(sizes | st.floats(-3.0, 3.0), knees)
-def test_the_limiter_is_odd_and_never_exceeds_its_ceiling(x, knee):
-    assert abs(limit(x, knee)) <= CEILING
-    assert limit(-x, knee) == -limit(x, knee)
-
-
-@settings(max_examples=100)
-@given(st.tuples(sizes, sizes) | st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)), knees)
-def test_the_limiter_keeps_the_order_of_sizes(pair, knee):
-    low, high = sorted(pair)
-    assert limit(low, knee) <= limit(high, knee)
 
 
 def test_the_limiter_has_no_corner():
@@ -83,12 +68,6 @@ def test_a_loud_instrument_is_bent_from_where_the_limiter_begins_and_clipped_at_
         np.testing.assert_allclose(loud, [limit(x, knee) for x in as_it_is], atol=1e-5)
     cut = bowed(output__gain=24.0, output__limiter=0.0)
     np.testing.assert_allclose(cut, np.clip(as_it_is, -CEILING, CEILING), atol=1e-5)
-
-
-def test_the_bodys_gain_is_of_what_it_radiates_alone():
-    for blend, factor in ((0.0, 10 ** (-6 / 20)), (1.0, 1.0)):
-        quiet, usual = (bowed(body__gain=gain, body__blend=blend) for gain in (-6.0, 0.0))
-        np.testing.assert_allclose(quiet, factor * usual.astype(float), atol=1e-6)
 
 
 def test_the_blend_goes_from_the_body_to_the_bridge():

@@ -7,9 +7,6 @@ import pytest
 
 from yehu_server.core.physics import elementary
 from yehu_server.core.physics.elementary import (
-    SLIGHT,
-    one_minus_inverse_root,
-    power_of_2,
     sine_and_cosine,
 )
 from yehu_server.core.physics.power import INTERVALS, TABLES, power, prepare_power
@@ -24,24 +21,6 @@ def test_sine_and_cosine_are_the_c_librarys_for_a_quarter_turn_to_either_side():
     found = np.array([sine_and_cosine(x) for x in half_turns])
     assert np.abs(found[:, 0] - np.sin(math.pi * half_turns)).max() <= ROUNDING
     assert np.abs(found[:, 1] - np.cos(math.pi * half_turns)).max() <= 3e-15
-
-
-def test_powers_of_two_are_the_c_librarys():
-    x = np.concatenate([np.linspace(-890.0, 890.0, 10_001), np.linspace(-1.0, 1.0, 10_001)])
-    found = np.array([power_of_2(value) for value in x])
-    assert np.abs(found / np.exp2(x) - 1.0).max() <= ROUNDING
-    assert power_of_2(-3.0) == 0.125
-    assert 0.0 < power_of_2(-1e9) < 1e-260  # as good as nothing
-    assert math.isnan(power_of_2(math.nan))
-
-
-def test_a_slight_argument_is_exact_as_well():
-    t = 10.0 ** np.linspace(-20.0, 6.0, 20_001)
-    found = np.array([one_minus_inverse_root(value) for value in t])
-    root = np.sqrt(1.0 + t)
-    assert np.abs(found / (t / (root * (1.0 + root))) - 1.0).max() <= ROUNDING
-    assert t.min() < SLIGHT < t.max()
-    assert one_minus_inverse_root(0.0) == 0.0
 
 
 # ---------------------------------------------------------------- of any number
@@ -128,9 +107,3 @@ def test_a_power_is_the_c_librarys_over_all_magnitudes(exponent):
     found = [power(of, x) for x in (5e-324, 1e-310, 1e-200, 1e200, 1.7e308)]
     assert np.all(np.isfinite(found))
     assert 0.0 < min(found[:3]) <= max(found[:3]) < 1.0 < min(found[3:])
-
-
-def test_a_deeper_penetration_has_a_higher_power():
-    of = tables(900.0, 0.65)
-    found = np.array([power(of, x) for x in 10.0 ** np.linspace(-30.0, 2.0, 50_001)])
-    assert np.all(np.diff(found) > 0.0)

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
-from yehu_server.core.controls.slots import SHARE
 from yehu_server.core.controls.slots import SPEED as SLOT_OF_SPEED
-from yehu_server.core.player.stroke import END, SLOWEST
+from yehu_server.core.player.stroke import END
 
 LENGTH, SPEED = 0.7, 0.2
 
@@ -34,14 +33,6 @@ def test_a_bow_that_comes_to_its_end_turns_there():
     assert between == pytest.approx((1.0 - 2.0 * END) * LENGTH / SPEED, rel=0.1)
 
 
-def test_an_endless_bow_never_turns():
-    playing = Playing(variation=0.0, bow_length=0.0)
-    playing.on(74)
-    speed, place = drawn(playing, 8.0)
-    assert len(turns(speed)) == 0
-    assert place[-1] > 1.4
-
-
 def test_a_change_within_a_note_is_a_dip_and_no_click():
     playing = Playing(variation=0.0)
     playing.commands.write("/bow/noise", 0.0)
@@ -67,14 +58,6 @@ def test_short_notes_alternate():
         playing.off(74)
         playing.play(0.02)
     assert directions == [1.0, -1.0] * 6
-
-
-def test_a_note_that_is_known_to_be_long_is_bowed_more_slowly():
-    playing = Playing(variation=0.0, note_length=5.0)
-    playing.on(74)
-    speed, _ = drawn(playing, 5.0)
-    assert len(turns(speed)) == 0
-    assert SLOWEST * SPEED <= speed.max() < 0.7 * SPEED
 
 
 def test_a_note_that_needs_more_hair_than_is_left_goes_the_other_way():
@@ -113,24 +96,3 @@ def test_a_bow_that_somebody_else_draws_has_no_end():
     speed, place = drawn(playing, 5.0)
     assert len(turns(speed)) == 0
     assert place[-1] > 1.4
-
-
-def test_one_direction_is_kept_if_requested():
-    playing = Playing(variation=0.0, direction=1.0)
-    for _ in range(8):
-        playing.on(74)
-        speed, place = drawn(playing, 0.5)
-        assert speed[-1] > 0.0
-        assert place.max() <= LENGTH
-        playing.off(74)
-        playing.play(0.05)
-
-
-@pytest.mark.parametrize(("note", "lighter"), [(70, True), (76, False)])
-def test_a_stroke_on_the_inner_string_begins_lighter(note, lighter):
-    """Under a heavy bow B flat 4 begins half a semitone flat."""
-    playing = Playing(variation=0.0, listening=0.0)
-    playing.on(note)
-    share = playing.play(0.4, "value")[0][:, SHARE]
-    assert (share[15] < 0.9 * share[-1]) == lighter  # after 75 ms
-    assert share[40] == pytest.approx(share[-1])

@@ -8,22 +8,19 @@ import json
 import os
 import signal
 import socket
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import aiohttp
-import mido
 import numpy as np
 import pytest
 from live.page.serving import HOST, start, stop
-from midi_input import receive
 from waiting import PATIENCE_S, until
-from web_client import Refused, WebSocket, ask
+from web_client import Refused, WebSocket
 
 from yehu_server.ahead.interpreter import snapshot_layout, snapshot_length
-from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
+from yehu_server.core.player.commands import BEGIN, EXPRESS, HOLD, RAMP, WRITE
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live import limits
 from yehu_server.live.options import PartOptions
@@ -220,17 +217,6 @@ def test_the_connections_of_a_host_shut_no_other_out(server) -> None:
             connection.close()
 
 
-def test_foreign_pages_are_refused(server) -> None:
-    assert get(server, "/", Origin="http://example.com")[0] == 403
-    assert get(server, "/", Host="example.com")[0] == 403
-    assert get(server, "/socket", Origin="http://example.com", Upgrade="websocket")[0] == 403
-
-
-def test_oscquery_leads_to_the_page(server) -> None:
-    answer = ask(server.web.port, "/panel/")
-    assert (answer.status // 100, answer.headers["Location"]) == (3, url(server))
-
-
 # ---------------------------------------------------------------- snapshots
 
 
@@ -251,19 +237,6 @@ def test_snapshots_come_sixty_times_a_second_to_pages_that_want_them(server) -> 
 
 
 # ---------------------------------------------------------------- commands
-
-
-def test_a_page_does_not_end_the_keys_of_others(server) -> None:
-    message = mido.Message("note_on", note=72, velocity=90)
-    receive(server.player, message, frame=server.player.frame_of(), port=0)
-
-    async def play(page: Page) -> None:
-        await page.command(command(BEGIN, 0, 72.0, 72.0), command(END, 0, 72.0, 0.0))
-        await asyncio.to_thread(until, lambda: server.player.notes_played, "no note")
-
-    with_pages(server, play, 1)
-    time.sleep(0.1)
-    assert sounds(server, 72.0)
 
 
 def test_a_command_ahead_is_applied_at_its_frame(server) -> None:
@@ -352,48 +325,6 @@ def test_a_page_plays_its_part_and_lets_go_of_it_as_it_leaves(server) -> None:
     with_pages(server, play, 2)
     assert first.pitch is None
     until(lambda: not second.held() and second.pitch is None, "it still sounds")
-
-
-def test_silence_in_a_page_silences_its_part(server) -> None:
-    for player in server.players:
-        player.key_on(69.0, 90.0, frame=player.frame_of())
-    until(lambda: all(player.pitch for player in server.players), "no notes")
-
-    async def panic(page: Page) -> None:
-        await page.command(command(STOP, 0, 1.0))
-        await asyncio.to_thread(until, lambda: server.players[1].pitch is None, "still there")
-
-    with_pages(server, panic, 2)
-    assert server.players[0].pitch is not None
-
-
-def test_a_snapshot_is_of_the_parts_own_instrument_and_the_level_that_of_the_mix(server) -> None:
-    for player, value in zip(server.players, (25.0, 75.0), strict=True):
-        player.set(VIBRATO, value, frame=player.frame_of())
-    server.player.key_on(69.0, 90.0, frame=server.player.frame_of())
-
-    async def snapshot(page: Page, value: float) -> None:
-        while (await page.snapshot(VIBRATO, value.__eq__))[snapshot_layout()["rms"][0]] < 1e-3:
-            pass
-
-    for part, value in ((1, 25.0), (2, 75.0)):
-        with_pages(server, lambda page, value=value: snapshot(page, value), part)
-
-
-def test_the_room_is_one_for_all_and_a_section_tells_the_parts_place(server) -> None:
-    first, second = server.players
-
-    async def furnish(page: Page) -> None:
-        await page.command(command(WRITE, INDEX[SIZE], 12.0))
-        await page.snapshot(SIZE, (12.0).__eq__)
-        await page.snapshot(PAN, second.value(PAN).__eq__)
-        await page.command(command(WRITE, INDEX[PAN], 0.25))
-        await page.snapshot(PAN, (0.25).__eq__)
-
-    with_pages(server, furnish, 2)
-    assert first.value(SIZE) == 12.0
-    until(lambda: second.value(PAN) == 0.25, "the pan")
-    assert server.players[1].instrument.target(PAN) != 0.25  # the first player's own place
 
 
 # ---------------------------------------------------------------- sound

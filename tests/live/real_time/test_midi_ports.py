@@ -22,7 +22,7 @@ from yehu_server.live.midi import input_process
 from yehu_server.live.midi.feed import MidiFeed, SharedRing
 from yehu_server.live.midi.input_process import Inputs
 from yehu_server.live.midi.ports import MidiOptions, MidiPorts
-from yehu_server.live.midi.routes import Router, is_wanted, stable_names
+from yehu_server.live.midi.routes import Router
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
 from yehu_server.params.table import FINGERS
@@ -47,31 +47,6 @@ for line in sys.stdin:
         port.delete()
     else:
         ports[client].send_message(list(bytes.fromhex("".join(words))))
-    print("done", flush=True)
-os._exit(0)
-"""
-
-# One client with two ports whose names differ in a number only; "close" closes the first.
-ALIKE = """
-import os, sys, jack
-client = jack.Client("twins", no_start_server=True)
-ports = [client.midi_outports.register(f"midi {number}") for number in (1, 2)]
-data = []
-
-@client.set_process_callback
-def process(frames):
-    for port in list(ports):
-        port.clear_buffer()
-    if data:
-        ports[-1].write_midi_event(0, data.pop())
-
-client.activate()
-for line in sys.stdin:
-    order, *words = line.split()
-    if order == "close":
-        ports.pop(0).unregister()
-    elif order == "send":
-        data.append(bytes.fromhex("".join(words)))
     print("done", flush=True)
 os._exit(0)
 """
@@ -301,36 +276,6 @@ def test_a_program_that_dies_takes_its_notes_with_it_and_no_other_ones(keys, jac
     assert heard.server.midi.connected == ["keyboard:out"]
 
 
-def test_only_the_ports_asked_for_are_opened_and_one_of_our_own_is_there(
-    witness, sender, jackd, until
-):
-    heard = witness(patterns=["piano"], virtual="yehu in")
-    sender.tell("open drums out")
-    sender.tell("open piano out")
-    heard.hears("MIDI: piano:out is connected")
-    time.sleep(0.6)
-    assert sorted(heard.server.midi.connected) == ["piano:out", "yehu in"]
-    until(lambda: any("yehu in" in port for port in jackd.ports()), "our own port", 2.0)
-    sender.tell("send drums 90 45 60")
-    heard.plays(67.0, sender, "send piano 90 43 60")
-
-
-def test_of_two_ports_with_one_name_the_one_that_stays_is_heard(listening, jackd):
-    heard = listening
-
-    twins = Program(ALIKE, jackd.environment)
-    try:
-        heard.hears("MIDI: twins:midi #2 is connected")
-        heard.plays(69.0, twins, "send 90 45 60")  # the second
-        heard.forget()
-        twins.tell("close")
-        heard.hears("is gone")
-        time.sleep(1.2)
-        heard.plays(67.0, twins, "send 90 43 60")
-    finally:
-        twins.kill()
-
-
 # ---------------------------------------------------------------- bytes of any kind
 
 
@@ -381,40 +326,6 @@ def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listenin
 
 
 # ---------------------------------------------------------------- names
-
-
-def test_a_port_has_the_same_name_whenever_it_is_there(subtests):
-    for names, stable in [
-        ([], []),
-        (["Keystep:Keystep MIDI 1 24:0"], ["Keystep MIDI 1"]),
-        (["Keystep:Keystep MIDI 1 128:0"], ["Keystep MIDI 1"]),
-        (["Midi Through:Midi Through Port-0 14:0"], ["Midi Through Port-0"]),
-        (["LPK25 0"], ["LPK25"]),
-        (["LPK25 0", "LPK25 1"], ["LPK25", "LPK25 #2"]),
-        (["A:out", "B:out"], ["A:out", "B:out"]),
-        (["IAC Driver Bus 1"], ["IAC Driver Bus"]),
-        (["  spaced  "], ["spaced"]),
-        (["x"] * 3, ["x", "x #2", "x #3"]),
-        (["7"], ["7"]),
-        (["琴 1:琴 MIDI 1 20:0"], ["琴 1:琴 MIDI 1"]),
-    ]:
-        with subtests.test(names=names, stable=stable):
-            assert stable_names(names) == stable
-
-
-def test_ports_are_wanted_by_words_of_their_name(subtests):
-    for name, patterns, wanted in [
-        ("Keystep MIDI", [], True),
-        ("Midi Through Port-0", [], False),
-        ("MIDI THRU", [], False),
-        ("Breakthrough", [], True),
-        ("Midi Through Port-0", ["through"], True),
-        ("Keystep MIDI", ["key midi"], True),
-        ("Keystep MIDI", ["piano", "STEP"], True),
-        ("Keystep MIDI", ["key piano"], False),
-    ]:
-        with subtests.test(name=name, patterns=patterns, wanted=wanted):
-            assert is_wanted(name, patterns) is wanted
 
 
 def feed() -> MidiFeed:

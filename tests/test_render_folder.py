@@ -239,9 +239,6 @@ def test_a_process_that_is_killed_takes_no_other_score_with_it(long, command):
     assert not leavings(long / "out")
 
 
-# ---------------------------------------------------------------- a full disk
-
-
 # ---------------------------------------------------------------- wrong calls
 
 

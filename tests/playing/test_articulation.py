@@ -41,9 +41,6 @@ def test_a_note_without_dynamics_is_fingered_and_waits_for_the_breath(player, li
     assert listener.where() == ("F", 5)
 
 
-# ---------------------------------------------------------------- vibrato and tremolo
-
-
 # ---------------------------------------------------------------- pizzicato
 
 

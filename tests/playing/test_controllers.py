@@ -97,9 +97,6 @@ def test_poly_pressure_presses_the_finger_of_its_own_note_only_and_ends_with_it(
         assert listener.press == PRESS
 
 
-# ---------------------------------------------------------------- controllers
-
-
 # ---------------------------------------------------------------- reset all controllers
 
 

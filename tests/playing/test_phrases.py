@@ -96,9 +96,6 @@ def test_a_trill_alternates_between_two_notes(low):
     assert np.nanmax(np.abs(off)) < 0.8
 
 
-# ---------------------------------------------------------------- bends and pressing
-
-
 # ---------------------------------------------------------------- vibrato, tremolo, dynamics
 
 

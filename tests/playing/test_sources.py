@@ -110,9 +110,6 @@ def test_an_nrpn_is_stepped_from_where_it_or_its_target_is(playing):
     assert cc(*[(97, 0)] * 127) == pytest.approx(0.0, abs=1e-12)
 
 
-# ---------------------------------------------------------------- notes
-
-
 # ---------------------------------------------------------------- terms
 
 

@@ -120,6 +120,3 @@ def test_mido_agrees_message_for_message_where_it_is_said_to(subtests, written):
     for case in [case for case in CASES if case.mido != UNASKED]:
         with subtests.test(case=case):
             assert made_by_mido(case, written(case.data)) == case.mido
-
-
-# ---------------------------------------------------------------- the corpus

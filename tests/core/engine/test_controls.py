@@ -187,6 +187,14 @@ def test_vibrato_rocks_the_fingers_that_are_down_by_so_many_cents(instrument):
     assert np.ptp(controls[8000:, X_B]) < 1e-5  # nor the bow
 
 
+def test_vibrato_may_press_instead(instrument):
+    put(instrument, finger_1_press=2.0, vibrato_press=0.25, vibrato_rate=5.0)
+    controls = rows(instrument, 1.0)
+    press = controls[:, place(1) + 1]
+    assert (press.min(), press.max()) == pytest.approx((1.5, 2.5), abs=1e-3)
+    assert len(set(controls[:, place(1)])) == 1
+
+
 def test_vibrato_comes_in_after_a_while_and_gently(instrument):
     put(instrument, finger_1_press=1.0, vibrato_depth=40.0, vibrato_onset=0.0)
     instrument.write("/vibrato/onset", 1.0, ramp_ms=1000.0)

@@ -408,6 +408,3 @@ def test_a_command_that_came_while_the_process_died_comes_once_and_no_other_is_l
         run(ensemble, 1000)
         expected.remove(number)
         np.testing.assert_array_equal(numbers(instrument.applied_commands()), expected)
-
-
-# ---------------------------------------------------------------- blocks

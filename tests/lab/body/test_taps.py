@@ -192,6 +192,3 @@ def test_coherence_tells_of_noise():
     )
     assert np.mean(measured.admittance.within(2200.0, 4000.0).coherence) > 0.95
     assert any("coherence is below" in line for line in measured.warnings)
-
-
-# ---------------------------------------------------------------- taps that are made

@@ -459,9 +459,6 @@ def test_who_is_not_allowed_is_counted_and_never_answered(listen, client, keeper
     assert ports.traffic.packets == ports.traffic.connections == 0
 
 
-# ---------------------------------------------------------------- where to listen
-
-
 # ---------------------------------------------------------------- the thread
 
 

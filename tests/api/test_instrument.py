@@ -74,13 +74,6 @@ def test_the_note_that_is_named_ends(fiddle):
     assert level(fiddle.play(0.2)) < 0.01 * level(sounding[-8000:])
 
 
-def test_stop_ends_all_at_once(fiddle):
-    fiddle.note_on("G4")
-    fiddle.play(0.4)
-    fiddle.stop()
-    assert np.abs(fiddle.play(0.05)[-100:]).max() < 1e-6
-
-
 # ---------------------------------------------------------------- parameters and the bow
 
 

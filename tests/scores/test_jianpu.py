@@ -136,6 +136,13 @@ def test_titles_and_names_of_parts_are_kept():
     assert (score.title, [part.name for part in score.parts]) == ("二泉映月", ["Yehu", "Erhu"])
 
 
+def test_a_pickup_is_bar_0():
+    score = written("3/4,4 5 1 1 1 2 2 2")
+    assert [score.place(note.beat)[0] for note in score.parts[0].notes] == [
+        "0", "1", "1", "1", "2", "2", "2",
+    ]  # fmt: skip
+
+
 def test_movements_follow_each_other_and_parts_sound_together():
     score = written("4/4 1 - - - NextPart 3 - - - NextScore 2/4 5 - NextPart 6 -")
     assert [[(note.beat, note.pitch) for note in part.notes] for part in score.parts] == [

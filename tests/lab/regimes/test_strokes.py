@@ -1,11 +1,5 @@
 """Whole strokes in one compiled call."""
 
-import json
-import os
-import subprocess
-import sys
-
-import forks
 import numpy as np
 import pytest
 
@@ -91,23 +85,3 @@ def test_schellengs_limits_are_his_formulas_and_bracket_helmholtz_motion():
         study = base | {"vary": {"position": [beta], "force": forces}}
         is_helmholtz = find(*batch(study)[2])["regime"] == HELMHOLTZ
         assert is_helmholtz.tolist() == [False, True, False], beta
-
-
-PRINT = """
-import numpy as np
-from yehu_lab.regimes.strokes import find
-from yehu_lab.sweeps.study import study_of
-bow = {"bow_velocity": [[0.0, 0.0], [0.001, 0.2]], "bow_force": -0.4, "bow_position": 0.28,
-       "finger_position": 0.25, "press_force": 2.0}
-study = study_of({"gesture": {"duration": 0.011, "controls": bow}, "vary": {"bow_force": [-0.4]}})
-found = find(*study.bow.strokes(study.axes, np.zeros((1, 1), int)))
-print([float(found[name][0]) for name in found.dtype.names])
-"""
-
-
-def test_plain_python_finds_what_compiled_code_finds():
-    command, environment = [sys.executable, "-c", PRINT], os.environ | {"NUMBA_DISABLE_JIT": "1"}
-    plain = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    compiled = forks.run(code=PRINT)
-    numbers = [json.loads(each.stdout.replace("nan", "NaN")) for each in (plain, compiled)]
-    assert numbers[0] == pytest.approx(numbers[1], rel=1e-3, nan_ok=True)

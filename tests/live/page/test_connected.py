@@ -7,7 +7,6 @@ import contextlib
 import json
 import os
 import signal
-import socket
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -17,12 +16,10 @@ import numpy as np
 import pytest
 from live.page.serving import HOST, start, stop
 from waiting import PATIENCE_S, until
-from web_client import Refused, WebSocket
 
 from yehu_server.ahead.interpreter import snapshot_layout, snapshot_length
 from yehu_server.core.player.commands import BEGIN, EXPRESS, HOLD, RAMP, WRITE
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.live import limits
 from yehu_server.live.options import PartOptions
 from yehu_server.live.page.players import CHANNELS, LOWEST
 from yehu_server.live.page.sockets import COMMANDS, NO_PART, NOW, SNAPSHOT, WRONG
@@ -193,28 +190,6 @@ def test_pages_get_the_module_and_what_captures_begin_with_once_they_are_there(s
     until(lambda: get(server, "/yehu.wasm")[0] == 200, "no module")
     assert get(server, "/yehu.wasm")[1]["Content-Type"] == "application/wasm"
     assert json.loads(get(server, "/captures/48000.json", **IDENTITY)[2])["rate"] == 48000
-
-
-def test_the_connections_of_a_host_shut_no_other_out(server) -> None:
-    port = server.pages.port
-    crowd = [
-        socket.create_connection((HOST, port)) for _ in range(limits.WEB_CONNECTIONS_A_HOST + 50)
-    ]
-    try:
-        for connection in crowd:
-            with contextlib.suppress(OSError):  # the oldest were closed
-                connection.sendall(b"GET / HTTP/1.1\r\nHo")  # half a request
-        sockets = [
-            WebSocket(port, "/sound", source="127.0.0.7") for _ in range(limits.WEB_SOCKETS_A_HOST)
-        ]
-        with pytest.raises(Refused):
-            WebSocket(port, "/sound", source="127.0.0.7")
-        WebSocket(port, "/sound", source="127.0.0.8").vanish()
-        for one in sockets:
-            one.vanish()
-    finally:
-        for connection in crowd:
-            connection.close()
 
 
 # ---------------------------------------------------------------- snapshots

@@ -100,15 +100,6 @@ def test_the_proposals_status_codes(port):
     assert (answer.status, answer.body) == (200, b"")
 
 
-def test_answers_are_json_and_no_answer_is_kept_or_taken_for_another_type(port):
-    assert ask(port, "/").headers["Content-Type"] == "application/json"
-    answers = [ask(port, "/"), ask(port, "/yehu/nothing"), ask(port, "/", Host="evil.example")]
-    assert [answer.status for answer in answers] == [200, 404, 403]
-    for answer in answers:
-        assert answer.headers["Cache-Control"] == "no-store"
-        assert answer.headers["X-Content-Type-Options"] == "nosniff"
-
-
 # ---------------------------------------------------------------- pages
 
 

@@ -12,6 +12,7 @@ from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.live.part_addresses import OF_PARTS, group
 from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, node_at
+from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
 from yehu_server.playing import learn as learned
 from yehu_server.playing.bind import Bind
@@ -167,6 +168,18 @@ def test_one_may_subscribe_to_several_parts_each_in_its_form(still, players):
     assert still.peer.received() == []
 
 
+@pytest.mark.usefixtures("players")
+def test_a_part_has_a_status(still):
+    names = [row.name for row in PART_STATUS]
+    heard = still.ask("/part/3/status")
+    assert [one.address for one in heard] == [f"/yehu/part/3/status/{name}" for name in names]
+    heard = still.ask("/get", "/yehu/part/2/status/keys")
+    assert [one.arguments for one in heard] == [[1.0]]  # which the services of the tests give
+    still.ask("/part/2/subscribe/status", 60.0)
+    (error,) = errors(still.ask("/part/2/status/keys", 1.0))
+    assert "cannot be set" in error
+
+
 # ---------------------------------------------------------------- mappings, learning, presets
 
 
@@ -206,6 +219,28 @@ def test_what_a_part_learns_all_parts_of_its_mapping_have(still, players, monkey
     assert "one for all parts" in error
     (error,) = errors(still.ask("/part/2/learn", "/yehu/part/3/playing/volume"))
     assert "another part" in error
+
+
+def test_a_preset_is_loaded_by_a_part_and_leaves_what_all_share(still, players, monkeypatch):
+    preset = Preset("loud", {VOLUME: 0.5, "/room/size": 30.0})
+    monkeypatch.setattr(players[0].presets, "load", lambda _name: preset)
+    monkeypatch.setattr(players[1].presets, "load", lambda _name: preset)
+    heard = still.ask("/part/2/preset/load", "loud")
+    assert {one.address for one in heard} == {
+        "/yehu/part/2/preset/loaded",
+        f"/yehu/part/2{VOLUME}",
+        "/yehu/error",
+    }
+    expected = "/room/size: one for all parts, left out; /yehu/preset/load sets what all share"
+    assert errors(heard) == [expected]
+    assert values(players) == [1.0, 0.5, 1.0]
+    assert [player.value("/room/size") for player in players] == [5.0] * 3
+    assert not {*players[1].sound()} & {*SHARED}
+    assert {*SHARED} < {*players[0].sound()}
+    for first in ("", "/part/1"):
+        players[0].write("/room/size", 5.0, frame=0)
+        assert not errors(still.ask(f"{first}/preset/load", "loud"))
+        assert players[0].value("/room/size") == 30.0
 
 
 # ---------------------------------------------------------------- messages that wait

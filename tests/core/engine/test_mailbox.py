@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache, partial
-from itertools import product
+from itertools import combinations, product
 
 import forks
 import numba
@@ -26,8 +26,14 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.mailbox import (
     APPLIED_AT_ONCE,
+    HEAP,
+    LINE,
     LIVE_BUDGET,
+    MIDI_INPUTS,
+    PAGES,
     RING,
+    SMALL_RING,
+    SOUND_INPUT,
 )
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import TABLES_TO
@@ -227,6 +233,19 @@ def test_a_full_ring_drops_and_counts_what_comes_and_keeps_what_it_has(make):
         np.testing.assert_array_equal(numbers(instrument.applied_commands()), np.arange(RING))
 
 
+def test_a_writer_of_times_far_ahead_leaves_the_heap_to_the_others():
+    for writer, far in ((MIDI_INPUTS, 10**15), (PAGES, FAR), (SOUND_INPUT, 10**15)):
+        instrument = offline()
+        for _ in range(2 * HEAP // SMALL_RING):
+            for _ in range(SMALL_RING):
+                assert native.post_from.call(
+                    instrument.address, writer, far, *UNHEARD[0], 0.0, 0.0
+                ), writer
+            run(instrument, 1)
+        assert instrument._rig["mail"]["pending_events"][0] == 0, writer
+        assert instrument.dropped_events == 2 * HEAP, writer
+
+
 def test_reports_nobody_reads_are_dropped_and_counted_and_the_older_kept():
     instrument = reporting(offline())
     for number in range(RING):
@@ -242,6 +261,16 @@ def test_reports_nobody_reads_are_dropped_and_counted_and_the_older_kept():
     run(instrument, 64)
     np.testing.assert_array_equal(numbers(instrument.applied_commands()), [7])
     assert instrument.meters()["unreported"] == 100
+
+
+def test_cursors_are_words_of_their_own_in_cache_lines_of_their_own():
+    posted, read = memory.POSTED_AT, memory.READ_AT
+    drained, reported = memory.DRAINED_AT, memory.REPORTED_AT
+    for at in (posted, read, drained, reported, memory.VERSION_AT, memory.TAPED_AT):
+        assert at % 8 == 0  # an atomic word may not lie across two
+    for one, other in combinations([(posted,), (read,), (drained, reported)], 2):
+        for mine, its in product(one, other):
+            assert abs(mine - its) >= 8 * LINE
 
 
 # ---------------------------------------------------------------- the heap: a plain model

@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 from sound import alone, bow
 
+from yehu_server.core.engine import native
 from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine.ensemble import TAPE_FRAMES, Ensemble
 from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.warming import all_functions, functions_beside
 from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
 from yehu_server.core.player.commands import BEGIN, DRAW, HOLD, SLIDE, WRITE
@@ -233,6 +235,19 @@ def bowed(**how: object) -> Ensemble:
     ensemble = alone(RATE, **how)
     bow(ensemble.first)
     return ensemble
+
+
+def test_a_callback_of_no_frames_does_no_harm():
+    instrument = Instrument(InstrumentSpec(RATE))
+    out = np.zeros(64, np.float32)
+    instrument.process(out)
+    before = instrument.meters().copy()
+    assert native.callback.call(None, out.ctypes.data, 0, None, 0, instrument.address) == 0
+    after = instrument.meters().copy()
+    assert instrument.frame == 64
+    assert after["window"] == before["window"]
+    assert np.isfinite(after["load"])
+    assert after["loads"].sum() in {before["callbacks"], after["callbacks"]}
 
 
 def test_what_a_process_left_that_died_while_it_played_is_mended():

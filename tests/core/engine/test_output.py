@@ -14,6 +14,7 @@ from yehu_server.rendering.true_peak import TruePeak
 RATE = 44100
 KNEE = 10.0 ** (-3.0 / 20.0)
 
+sizes = st.floats(allow_nan=False)
 knees = st.sampled_from([KNEE, 0.063, 0.5, 1.0])
 
 
@@ -22,6 +23,13 @@ knees = st.sampled_from([KNEE, 0.063, 0.5, 1.0])
 def test_the_limiter_leaves_what_is_below_its_knee(share, knee):
     x = share * min(knee, CEILING)
     assert limit(x, knee) == x
+
+
+@settings(max_examples=100)
+@given(sizes | st.floats(-3.0, 3.0), knees)
+def test_the_limiter_is_odd_and_never_exceeds_its_ceiling(x, knee):
+    assert abs(limit(x, knee)) <= CEILING
+    assert limit(-x, knee) == -limit(x, knee)
 
 
 def test_the_limiter_has_no_corner():

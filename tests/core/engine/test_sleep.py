@@ -14,6 +14,7 @@ from yehu_server.core.engine.sleep import QUIET, WINDOW
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN, END, HOLD, WRITE
 from yehu_server.core.player.parameter_indices import EXPRESSION, INDEX, TREMOLO
+from yehu_server.core.stage.seat import SPAN
 
 RATE = 44100.0
 FROM = 5000  # frame of the first event, by which all sleep
@@ -131,6 +132,23 @@ def test_a_note_is_the_same_after_a_silence_that_was_slept_through_and_one_that_
         assert (slept(one) > WINDOW) == (not keeps_awake)
     assert np.abs(heard[0]).max() > 1e-3
     np.testing.assert_array_equal(heard[0], heard[1])
+
+
+def test_it_wakes_as_if_it_had_been_computed_all_the_time():
+    heard = []
+    for speed in (0.0, 0.1):  # a bow that moves in the air keeps it awake
+        ensemble = Ensemble([InstrumentSpec(RATE)])
+        one = ensemble.first
+        damp(one)
+        one.write("/bow/speed", speed, ramp_ms=0.0)
+        pluck(one, FROM)
+        pluck(one, 5 * SPAN)
+        out, counts = blocks(ensemble, 1024, 6, SPAN)
+        heard.append(out)
+        assert (counts[-1][0] > SPAN) == (speed == 0.0)
+        assert (counts[-1][0] == 0) == (speed != 0.0)
+    assert np.abs(heard[0][FROM:]).max() > 1e-3
+    np.testing.assert_allclose(heard[0], heard[1], rtol=1e-6, atol=1e-9)
 
 
 def test_a_parameter_that_is_set_in_sleep_holds_afterwards():

@@ -64,6 +64,14 @@ def test_peak_and_rms_are_those_of_the_last_whole_window(rate, block):
     assert meters["window_frames"] == frames - end
 
 
+def test_each_window_tells_of_its_own_samples_only():
+    instrument = bowed()
+    assert np.abs(run(instrument, RATE // 2)).max() > 0.01
+    instrument.write("/output/level", 0.0, ramp_ms=0.0)
+    run(instrument, RATE // 10)
+    assert (instrument.meters()["peak"], instrument.meters()["rms"]) == (0.0, 0.0)
+
+
 # ---------------------------------------------------------------- shapes
 
 
@@ -356,6 +364,15 @@ def test_a_reader_never_sees_half_of_a_record():
     assert min(found) >= 0
     assert sum(found) > 1000
     assert instrument.meters()["frame"] == times - 1
+
+
+def test_while_a_block_is_being_published_the_one_before_is_read():
+    instrument = Instrument(InstrumentSpec(RATE))
+    run(instrument, 64)
+    before = instrument.meters().copy()
+    instrument._rig["version"][0, 0] += 1  # the audio side was interrupted here
+    instrument._rig["published"]["callbacks"] = 777
+    assert instrument.meters()["callbacks"] == before["callbacks"]
 
 
 def test_lost_states_and_commands_are_reported():

@@ -32,7 +32,28 @@ def sounding(run):
     return pitch_of(run["bridge_force"][-round(0.3 * RATE) :], RATE)
 
 
+def penetration(run):
+    """eta of the first finger on both strings, read from the grid at the end of a run (m)."""
+    s, now = run.state[0], int(run.state["motion"]["level"][0])
+    eta = []
+    for i in range(layout.STRINGS):
+        at = layout.GHOST + int(s["contacts"]["first"][i])
+        u = s["motion"]["u"][now, i, at : at + layout.STENCIL]
+        eta.append(float(s["contacts"]["weights"][i] @ u))
+    return np.array(eta) - float(s["motion"]["U"][now, 0])
+
+
 # --- pressing -----------------------------------------------------------------------------
+
+
+def test_two_strings_at_rest_carry_the_whole_press():
+    for press in (0.3, 1.0, 3.0):
+        run = play(lambda t, press=press: {"press": [press * np.minimum(1.0, t / 0.05)]}, 2.0)
+        forces = run.finger(0)[-1, 1:]
+        assert forces.sum() == pytest.approx(press, rel=1e-6)
+        # ... each as the contact law has it, eqs. (4) and (5) without motion.
+        law = FINGER.K_f * penetration(run) ** FINGER.alpha
+        assert forces == pytest.approx(law, rel=1e-4)
 
 
 @pytest.mark.parametrize("x_f", [0.05, 0.10, 0.15])
@@ -124,6 +145,17 @@ def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
 
 
 # --- the contact law ----------------------------------------------------------------------
+
+
+def test_a_finger_that_glides_drags_the_pitch_with_it():
+    def glide(t):
+        x_f = np.interp(t, [0.35, 0.5], [0.05, 0.10])
+        return {**bowed(t), "x_f": [x_f], "press": [2.0]}
+
+    force = play(glide, 1.0, ledger=False)["bridge_force"]
+    low = pitch_of(force[round(0.2 * RATE) : round(0.35 * RATE)], RATE)
+    high = pitch_of(force[round(0.7 * RATE) :], RATE)
+    assert cents(high, low) == pytest.approx(1200.0 * math.log2(0.25 / 0.20), abs=25.0)
 
 
 def test_of_two_fingers_the_one_nearer_to_the_bridge_decides_the_pitch():

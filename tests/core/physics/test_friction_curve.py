@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from core.physics.runs import play
 
+from yehu_server.core.physics import refined
 from yehu_server.core.physics.friction_curve import solve_curve
 from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.errors import ParameterError
 
 YEHU = Quantities()
 BOW = YEHU.bow
@@ -59,3 +61,19 @@ def test_a_bowed_string_sticks_without_giving_way_and_slips_along_the_curve():
         f_b[slips], 0.5 * np.sign(v_r)[slips] * coefficient(v_r[slips]), rtol=1e-9
     )
     assert int(run.state["unconverged"][0]) == 0
+
+
+@pytest.mark.parametrize("v_b", [0.5, 1.0])
+def test_a_light_bow_that_always_slips_feels_the_curve_and_viscous_friction(v_b):
+    stribeck = BOW.mu_C + (BOW.mu_S - BOW.mu_C) * math.exp(-((v_b / BOW.v_s) ** 2))
+    for law, mu in ((CURVE, coefficient(v_b)), ({}, stribeck)):
+        bow = dict(law.get("bow", {}), epsilon_2=0.004)
+        run = play({"F_N": 0.01, "v_b": v_b}, 0.05, quantities=override(YEHU, {"bow": bow}))
+        expected = 0.01 * mu + 0.004 * v_b
+        assert np.abs(run["f_b"][-100:]).mean() == pytest.approx(expected, rel=0.03)
+
+
+def test_hair_of_some_width_has_no_friction_by_a_curve():
+    wide = override(YEHU, {"bow": {"friction": "hyperbolic", "width": 0.008}})
+    with pytest.raises(ParameterError, match="hyperbolic is for hair of no width"):
+        refined.prepare(wide, 44100.0)

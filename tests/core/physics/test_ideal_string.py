@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from yehu_lab.plot.cells import RATE_ERROR
 from yehu_server import simulate
 from yehu_server.core.physics.quantities import read_quantities
 from yehu_server.util.files import shipped_folder
@@ -64,3 +65,23 @@ def test_a_pluck_of_the_shipped_ideal_string_decays_by_what_its_bridge_takes():
     left = ((25.0 - wave) / (25.0 + wave)) ** (2.0 * periods)
     found = energy[round(0.22 * 44100) - 1] / energy[round(0.02 * 44100)]
     assert 10.0 * math.log10(found) == pytest.approx(10.0 * math.log10(left), rel=0.06)
+
+
+def test_the_error_bar_of_maps_is_what_was_measured(ideal):
+    """The mean difference of shares of Helmholtz motion between 44.1 and 352.8 kHz."""
+    from validate import results
+
+    assert ideal
+    maps = [
+        {row["map"]: row["helmholtz"] for row in rows} for rows in results()["convergence"].values()
+    ]
+    shares = [100.0 * abs(each["rate 44100"] - each["rate 352800"]) for each in maps]
+    assert pytest.approx(sum(shares) / len(shares), abs=0.05) == RATE_ERROR
+
+
+def test_the_page_has_what_was_measured(ideal):
+    from validate import results
+    from validation.tables import PAGE, page
+
+    assert ideal
+    assert PAGE.read_text(encoding="utf-8") == page(results()), "run: scripts/validate.py write"

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from core.physics.runs import play, rows
+from core.physics.runs import bump, play, rows, shaped
 from pitch import cents, pitch_of
 
 from yehu_server.core.physics import kernel, layout, time_loop
@@ -40,6 +40,14 @@ def test_bowing_the_other_way_gives_the_mirrored_sound():
         for v_b in (0.3, -0.3)
     )
     assert np.array_equal(one["pressure"], -other["pressure"])
+
+
+def test_a_bow_force_below_the_lift_force_is_a_lifted_bow():
+    lift = YEHU.bow.lift_force
+    lifted = play({"F_N": 0.999 * lift, "v_b": 0.3}, 0.1, ledger=False)
+    assert not lifted["bridge_force"].any()
+    touching = play({"F_N": 1.001 * lift, "v_b": 0.3}, 0.1, ledger=False)
+    assert touching["bridge_force"].any()
 
 
 # --- one machine --------------------------------------------------------------------------
@@ -168,3 +176,19 @@ def test_rows_of_another_shape_are_refused_and_leave_the_state_alone():
         with pytest.raises(ValueError, match="expected 20 rows of"):
             time_loop.run(model, state, None, controls, probes, ledger)
         assert state == before
+
+
+def test_a_state_that_blew_up_is_lost_too():
+    """A bridge force beyond a meganewton is no sound, though it is a number."""
+    model = kernel.prepare(YEHU, RATE)
+    state = shaped(model, 0, bump(0.02, 0.26, 1e9))
+    probes, ledger = np.zeros((200, layout.probe_columns(1))), np.zeros((200, len(layout.LEDGER)))
+    time_loop.run(model, state, None, rows(200, 1, {}), probes, ledger)
+    assert state["lost"][0] == 1
+    assert np.abs(probes[:, layout.BRIDGE_FORCE]).max() < 1e6
+    # At rest from then on: every probe but the finger's height is zero.
+    where = when_lost(probes)
+    assert not np.delete(probes[where + 1 :], layout.FINGER_PROBES, axis=1).any()
+    # The ledger has no numbers for that sample; what comes after is booked from rest.
+    assert np.isnan(ledger[where]).all()
+    assert np.abs(ledger[where + 1 :, layout.LEDGER.index("energy_error")]).max() < 1e-9

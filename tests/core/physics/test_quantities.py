@@ -8,7 +8,8 @@ from itertools import product
 
 import pytest
 
-from yehu_server.core.physics.grid import check_rate
+from yehu_server.core.physics.grid import check_rate, intervals
+from yehu_server.core.physics.layout import MAX_INTERVALS
 from yehu_server.core.physics.quantities import Quantities, override, read_body
 from yehu_server.errors import ParameterError
 
@@ -178,3 +179,12 @@ def test_sample_rates_from_22050_to_192000_are_possible():
     for rate in (0.0, -44100.0, 22049.0, 192001.0, math.inf, math.nan):
         with pytest.raises(ParameterError, match="sample rate"):
             check_rate(rate)
+
+
+def test_a_string_too_short_or_too_fine_for_its_grid_is_refused():
+    stiff = override(YEHU, {"string_1": {"L": 0.35, "T": 500.0, "r": 5e-3, "E": 1e12}})
+    with pytest.raises(ParameterError, match="grid intervals"):
+        intervals(stiff.string_1, 1.0 / 22050.0)
+    slack = override(YEHU, {"string_1": {"L": 1.0, "T": 1.0, "E": 0.0, "sigma_1": 0.0}})
+    with pytest.raises(ParameterError, match=str(MAX_INTERVALS)):
+        intervals(slack.string_1, 1.0 / 192000.0)

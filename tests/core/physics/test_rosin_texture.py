@@ -70,6 +70,21 @@ def test_the_string_stays_on_the_same_hair_while_it_sticks():
     assert grain(0.01)[0] == 4  # a light one slips
 
 
+def test_the_noise_runs_as_fast_as_the_bow():
+    # Under a bow too light to catch the string, friction is mu_C F_N times the texture's factor.
+    coarse = replace(YEHU, bow=replace(YEHU.bow, grain=1e-3))
+
+    def centroid_hz(v_b):
+        curves = {"F_N": 0.01, "v_b": v_b, "texture": 0.1}
+        run = play(lambda time: {**curves, "y_b": v_b * time}, 1.0, quantities=coarse)
+        noise = run["f_b"][4410:]
+        noise = noise - noise.mean()
+        power = np.abs(np.fft.rfft(noise * np.hanning(len(noise)))) ** 2
+        return (np.fft.rfftfreq(len(noise), 1.0 / run.rate) * power).sum() / power.sum()
+
+    assert centroid_hz(1.6) == pytest.approx(2.0 * centroid_hz(0.8), rel=0.1)
+
+
 def test_friction_loses_energy_and_the_ledger_closes():
     run = bowed(depth=0.3, rate=48000.0)
     assert np.abs(run["energy_error"]).max() < 2e-9 * run.power

@@ -52,6 +52,18 @@ def test_cubic_weights_read_every_cubic_exactly_that_is_zero_at_the_ends_or_they
 
 
 @few
+@given(contacts(), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+def test_linear_weights_read_every_line_exactly(contact, offset, slope):
+    N, position = contact
+    position = min(position, N - 1.5)
+    first, weights = placed(place_linear, position, N)
+    value = read(on_grid(offset + slope * np.arange(N + 1.0) / N), first, weights)
+    assert value == pytest.approx(offset + slope * position / N, abs=1e-14)
+    # ... and no more than two nodes, or a bow would not be a point between its neighbours.
+    assert np.count_nonzero(weights) <= 2
+
+
+@few
 @given(contacts(), st.sampled_from([place_cubic, place_linear]), st.integers(0, 2**32 - 1))
 def test_spreading_is_the_transpose_of_reading_and_never_moves_the_fixed_ends(contact, place, seed):
     """<u, J f> = (I u) f: a force works on exactly the motion that it reads."""

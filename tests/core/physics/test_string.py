@@ -10,7 +10,7 @@ from pitch import cents
 
 from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics import string as string_module
-from yehu_server.core.physics.grid import intervals
+from yehu_server.core.physics.grid import intervals, least_spacing
 from yehu_server.core.physics.kernel import derive
 from yehu_server.core.physics.quantities import Quantities, StringQuantities
 from yehu_server.core.physics.string import advance_nodes, prepare_strings, support
@@ -148,6 +148,14 @@ def test_the_finest_grid_is_stable_and_one_interval_more_is_not(string, rate):
     assert not largest[1] < 1e6
 
 
+@both_strings
+def test_the_grid_leaves_room_for_a_raised_tension(i):
+    string, k = YEHU.strings[i], 1.0 / 44100.0
+    raised = replace(string, T=1.5 * string.T)
+    assert intervals(string, k, headroom=1.5) == grid_bound(raised, k)
+    assert intervals(string, k, headroom=1.5) < intervals(string, k)
+
+
 # ---------------------------------------------------------------- given other tension and loss
 
 
@@ -165,3 +173,15 @@ def test_a_string_that_is_retuned_is_as_one_made_so(rate):
     for field in set(layout.MODEL.names) - {"ghat"}:
         np.testing.assert_allclose(model[field], made[field], rtol=1e-12, err_msg=field)
     assert state["contacts"]["placed"] == 0  # its compliances have to be worked out anew
+
+
+@both_strings
+@three_rates
+def test_no_more_loss_is_taken_than_the_grid_bears(i, rate):
+    model, state = kernel.prepare(YEHU, rate), np.zeros(1, layout.STATE)
+    silk = YEHU.strings[i]
+    kernel.retune(model, state, i, silk.T, silk.sigma_0, 1.0)
+    most = float(model["sigma_1"][0, i])
+    assert silk.sigma_1 < most < 1.0
+    spacing = least_spacing(replace(silk, sigma_1=most), 1.0 / rate)
+    assert spacing == pytest.approx(float(model["h"][0, i]), rel=1e-9)

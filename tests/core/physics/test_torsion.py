@@ -6,6 +6,8 @@ from core.physics.runs import play
 
 from yehu_server.core.physics import kernel, layout, refined, time_loop
 from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.torsion import place_twist
+from yehu_server.errors import ParameterError
 
 YEHU = Quantities()
 TWISTED = override(YEHU, {"torsion": "on"})
@@ -75,3 +77,18 @@ def test_a_finger_that_grips_holds_the_surface():
         shapes = np.sin(np.pi * np.arange(1, 17) * 0.1 / YEHU.bridge_x)
         travel[grip] = abs(change @ shapes) / np.abs(change).max()
     assert travel[1e4] < 0.01 * travel[0.0]
+
+
+def test_shapes_of_modes_follow_the_bow():
+    model, more = kernel.prepare(TWISTED, 44100.0), refined.prepare(TWISTED, 44100.0)
+    for x in (0.0, 0.05, 0.15, 0.3, 0.26):
+        place_twist(model[0], more[0], 2, x)
+        expected = np.sin(np.arange(1, 17) * np.pi * x / YEHU.bridge_x)
+        np.testing.assert_allclose(more["twist_shapes"][0, 2], expected, atol=1e-13)
+
+
+def test_a_stiffness_without_a_mode_at_this_rate_is_refused():
+    stiff = override(TWISTED, {"string_2": {"G": 1e12}})
+    with pytest.raises(ParameterError, match="string_2: G 1e\\+12 Pa puts its torsional modes"):
+        refined.prepare(stiff, 44100.0)
+    assert refined.prepare(YEHU, 44100.0) is None  # there is nothing to refine

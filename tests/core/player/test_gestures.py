@@ -1,7 +1,7 @@
 """Articulations: what the hands do at which time of a note."""
 
 from collections.abc import Callable
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from yehu_server.core.controls.slots import (
     FINGER_POSITION,
     FINGER_PRESS,
     ONSET,
+    SHARE,
     SIDE,
     SPEED,
 )
@@ -93,6 +94,22 @@ def test_slides_begin_away_and_end_on_the_pitch():
     assert turning.max() == pytest.approx(2.0, abs=0.02)
 
 
+def test_a_slide_or_a_trill_in_a_note_stays_on_one_string():
+    """Also on the open C5, which is stopped on the F string, or where its finger would not fit."""
+    wrong = []
+    slides = ("passed-slide", "fall", "turning-slide", "sliding-vibrato")
+    trills = ("trill", "wide-trill", "mordent")
+    for names, first, notes in ((slides, 76, (71, 72, 79)), (trills, 70, (71, 72, 73, 76))):
+        for name, note in product(names, notes):
+            playing = held(name, first)
+            playing.play(0.2)
+            playing.on(note)
+            strings = every_5_ms(playing, 0.4, lambda player: player["string"])
+            if len(set(strings)) != 1 or (name in slides and not playing.player["position"] > 0.0):
+                wrong.append((name, note))
+    assert wrong == []
+
+
 def test_a_slide_goes_over_to_another_string_with_another_finger():
     for first, second in ((70, 79), (79, 70)):
         playing = held("ordinary", first, portamento=1.0, portamento_time=200.0)
@@ -131,6 +148,23 @@ def test_a_finger_touches_the_node_of_a_harmonic_and_no_other_note():
     assert lengths[84] == (1, 0.02, half)
     assert lengths[79] == (1, 0.02, third)
     assert lengths[74][1] > 0.5
+
+
+def test_strokes_in_a_hurry_come_sooner_and_lighter():
+    wrong = []
+    for since, is_hurried in ((0.4, False), (0.2, False), (0.08, True)):
+        playing = Playing(variation=0.0, listening=0.0)
+        playing.on(74)
+        playing.play(since)
+        before = float(playing.controls["target"][SHARE])
+        playing.off(74)
+        playing.on(74)
+        speed = np.abs(playing.play(0.025, "value")[0][-1, SPEED])
+        arrived = speed > 0.95 * abs(float(playing.controls["target"][SPEED]))
+        lighter = float(playing.controls["target"][SHARE]) < 0.9 * before
+        if (arrived, lighter) != (is_hurried, is_hurried):
+            wrong.append((since, arrived, lighter))
+    assert wrong == []
 
 
 def test_a_trill_beats_a_second_above_some_seven_times_a_second_and_a_mordent_once():

@@ -145,6 +145,15 @@ def test_a_string_that_has_no_period_is_leant_on_less_by_a_player_who_listens(no
     assert pressures[1] == pytest.approx(pressures[0] * play.player["pressure_factor"])
 
 
+def test_vibrato_is_not_corrected_away():
+    vibrato, pitches = {"vibrato": 30.0, "vibrato_rate": 2.0}, []
+    for play in (Play(1.0, -30.0, **vibrato), Play(0.0, 0.0, **vibrato)):
+        sound = play.note(74, 1.6)
+        pitches.append([error(sound, at, at + 0.03, 74) for at in np.arange(0.6, 1.5, 0.01)])
+    assert abs(np.mean(pitches[0])) < 5.0
+    assert np.ptp(pitches[0]) == pytest.approx(np.ptp(pitches[1]), rel=0.1)
+
+
 @pytest.mark.parametrize("note", [65, 72])
 @pytest.mark.parametrize("detuned", DETUNED)
 def test_an_open_string_is_left_as_it_is_tuned(note, detuned):

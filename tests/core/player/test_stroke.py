@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
+from yehu_server.core.controls.slots import SHARE
 from yehu_server.core.controls.slots import SPEED as SLOT_OF_SPEED
-from yehu_server.core.player.stroke import END
+from yehu_server.core.player.stroke import END, SLOWEST
 
 LENGTH, SPEED = 0.7, 0.2
 
@@ -60,6 +61,14 @@ def test_short_notes_alternate():
     assert directions == [1.0, -1.0] * 6
 
 
+def test_a_note_that_is_known_to_be_long_is_bowed_more_slowly():
+    playing = Playing(variation=0.0, note_length=5.0)
+    playing.on(74)
+    speed, _ = drawn(playing, 5.0)
+    assert len(turns(speed)) == 0
+    assert SLOWEST * SPEED <= speed.max() < 0.7 * SPEED
+
+
 def test_a_note_that_needs_more_hair_than_is_left_goes_the_other_way():
     # Long notes down and short ones up: in the end a down-bow has no hair left.
     playing = Playing(variation=0.0)
@@ -96,3 +105,13 @@ def test_a_bow_that_somebody_else_draws_has_no_end():
     speed, place = drawn(playing, 5.0)
     assert len(turns(speed)) == 0
     assert place[-1] > 1.4
+
+
+@pytest.mark.parametrize(("note", "lighter"), [(70, True), (76, False)])
+def test_a_stroke_on_the_inner_string_begins_lighter(note, lighter):
+    """Under a heavy bow B flat 4 begins half a semitone flat."""
+    playing = Playing(variation=0.0, listening=0.0)
+    playing.on(note)
+    share = playing.play(0.4, "value")[0][:, SHARE]
+    assert (share[15] < 0.9 * share[-1]) == lighter  # after 75 ms
+    assert share[40] == pytest.approx(share[-1])

@@ -54,6 +54,13 @@ def played(note: int, **values: float) -> tuple[float, float]:
     return found[-1, DEPTH], found[-1, UPWARD]
 
 
+def test_the_player_narrows_it_at_a5_alone_of_two_neighbours():
+    assert played(82, vibrato=30.0) == (30.0, 0.0)
+    depth, upward = played(81, vibrato=30.0)
+    assert depth == pytest.approx(15.0)
+    assert 0.3 < upward < 0.7
+
+
 def test_it_is_narrower_where_brilliance_raises_a_harmonic_that_the_body_swings():
     """The body radiates A4 itself evenly, and its second harmonic not."""
     plain = vibrato_table(measured_body(), A4, OPEN_NOTES)
@@ -61,6 +68,12 @@ def test_it_is_narrower_where_brilliance_raises_a_harmonic_that_the_body_swings(
     depth, upward = played(69, vibrato=30.0)
     assert depth == pytest.approx(20.0)
     assert upward > 0.3
+
+
+def test_the_players_own_is_narrower_near_the_nut():
+    depths = [played(note, phrasing=0.5)[0] for note in (66, 70, 79)]
+    assert depths == pytest.approx([20.0, 28.0, 30.0])
+    assert played(66, vibrato=30.0)[0] == 30.0  # what is requested is not
 
 
 def test_a_long_open_string_is_stopped_on_the_other_for_its_vibrato():

@@ -63,6 +63,24 @@ def test_a_room_that_was_changed_decays_as_is_asked_of_it_now(before):
         assert measured == pytest.approx(decay_at(centre, 0.4, 0.4), rel=0.05), centre
 
 
+def stored(room: Room) -> float:
+    """Energy of all that is on its way in the lines."""
+    record = room.record[0]
+    lines = zip(record["line"], record["length"], strict=True)
+    on_their_way = (line[(room.frame - 1 - np.arange(n)) & record["mask"]] for line, n in lines)
+    return float(sum(np.square(samples).sum() for samples in on_their_way))
+
+
+def test_a_network_without_loss_keeps_its_energy():
+    room = Room(48000.0, HALL)
+    room.record["b_0"], room.record["b_1"], room.record["a_1"] = 1.0, 0.0, 0.0
+    room.response(0.5)
+    before = stored(room)
+    assert before > 0.01
+    room.hear(np.zeros((10 * 48000, 2)))
+    assert stored(room) == pytest.approx(before, rel=1e-12)
+
+
 # By when a field is as dense as nature's: 4000 echoes a second, by Kuttruff's formula.
 @pytest.mark.parametrize("rate", [44100.0, 96000.0])
 @pytest.mark.parametrize(("name", "begins_s", "full_s"), [

@@ -7,18 +7,21 @@ import contextlib
 import json
 import os
 import signal
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import aiohttp
+import mido
 import numpy as np
 import pytest
 from live.page.serving import HOST, start, stop
+from midi_input import receive
 from waiting import PATIENCE_S, until
 
 from yehu_server.ahead.interpreter import snapshot_layout, snapshot_length
-from yehu_server.core.player.commands import BEGIN, EXPRESS, HOLD, RAMP, WRITE
+from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, WRITE
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live.options import PartOptions
 from yehu_server.live.page.players import CHANNELS, LOWEST
@@ -192,6 +195,12 @@ def test_pages_get_the_module_and_what_captures_begin_with_once_they_are_there(s
     assert json.loads(get(server, "/captures/48000.json", **IDENTITY)[2])["rate"] == 48000
 
 
+def test_foreign_pages_are_refused(server) -> None:
+    assert get(server, "/", Origin="http://example.com")[0] == 403
+    assert get(server, "/", Host="example.com")[0] == 403
+    assert get(server, "/socket", Origin="http://example.com", Upgrade="websocket")[0] == 403
+
+
 # ---------------------------------------------------------------- snapshots
 
 
@@ -212,6 +221,19 @@ def test_snapshots_come_sixty_times_a_second_to_pages_that_want_them(server) -> 
 
 
 # ---------------------------------------------------------------- commands
+
+
+def test_a_page_does_not_end_the_keys_of_others(server) -> None:
+    message = mido.Message("note_on", note=72, velocity=90)
+    receive(server.player, message, frame=server.player.frame_of(), port=0)
+
+    async def play(page: Page) -> None:
+        await page.command(command(BEGIN, 0, 72.0, 72.0), command(END, 0, 72.0, 0.0))
+        await asyncio.to_thread(until, lambda: server.player.notes_played, "no note")
+
+    with_pages(server, play, 1)
+    time.sleep(0.1)
+    assert sounds(server, 72.0)
 
 
 def test_a_command_ahead_is_applied_at_its_frame(server) -> None:

@@ -44,6 +44,13 @@ def test_another_machine_needs_the_pin_and_has_to_wait_if_it_guesses(monkeypatch
     assert Admission(None).role_of(ELSEWHERE, "") == "own"  # without guests all may do all
 
 
+def test_however_many_machines_guess_few_are_remembered() -> None:
+    admission = Admission(Guests("play", "123456"))
+    for number in range(2 * limits.PEERS):
+        assert admission.role_of(f"198.51.{number // 256}.{number % 256}", "000000") is None
+    assert len(admission._tries) <= limits.PEERS + 1
+
+
 # ---------------------------------------------------------------- roles
 
 COMMANDS = {

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from live.page.bound import placeless, rows_of
 from live.page.browser import drive
 
 from yehu_server.params.table import TABLE
+from yehu_server.playing.mapping import load
 
 INDEX = {param.address: index for index, param in enumerate(TABLE)}
 VIBRATO, BOW_POSITION = INDEX["/playing/vibrato"], INDEX["/playing/bow_position"]
@@ -42,6 +44,18 @@ def test_a_button_beside_each_parameter_teaches_too_by_all_kinds_of_controls(fou
         "CC 20 Gain",
     ]
     assert found["stopped"] == found["all"]  # whoever stops waiting has taught nothing
+
+
+def test_the_file_is_a_mapping_of_the_server_s(found, tmp_path) -> None:
+    """Python's reader makes of it the very mapping that the page plays by."""
+    assert found["file"]["name"] == "my-keyboard.toml"
+    path = tmp_path / found["file"]["name"]
+    path.write_text(found["file"]["text"])
+    mapping = load(str(path))
+    assert [*map(placeless, found["merged"])] == rows_of(mapping)
+    (bind,) = mapping.of("cc 74")
+    assert (bind.target, bind.span) == ("/playing/vibrato", (40.0, 5.0))
+    assert [bind.is_soft for bind in mapping.of("pressure") + mapping.of("bend")] == [True, False]
 
 
 def test_what_was_taught_belongs_to_its_mapping_and_is_remembered_until_it_is_forgotten(found):

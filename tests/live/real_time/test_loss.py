@@ -226,6 +226,18 @@ def test_a_note_in_the_middle_of_which_the_audio_process_dies_does_not_hang(stop
     assert it.keys == (0, 0)
 
 
+def test_a_note_goes_on_where_the_audio_process_dies_between_two_blocks(stopped, until):
+    it = stopped(in_block=False)
+    it.kill()
+    assert it.server.ensemble.gaps == []
+    assert it.player.pitch == 67.0
+    assert it.keys == (1, 1)
+    assert peak(it.server.ensemble.taped(it.instrument.frame - 1000)[1]) > SOUNDS
+    it.player.key_off(67.0, frame=it.player.frame_of())
+    until(lambda: it.player.pitch is None, "its end", 5.0)
+    assert it.keys == (0, 0)
+
+
 @pytest.mark.parametrize("end", ["key_off", pytest.param("panic", marks=pytest.mark.slow)])
 def test_a_key_that_was_pressed_while_the_audio_process_died_can_be_let_go(stopped, until, end):
     it = stopped(in_block=True)

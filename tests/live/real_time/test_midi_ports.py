@@ -22,7 +22,7 @@ from yehu_server.live.midi import input_process
 from yehu_server.live.midi.feed import MidiFeed, SharedRing
 from yehu_server.live.midi.input_process import Inputs
 from yehu_server.live.midi.ports import MidiOptions, MidiPorts
-from yehu_server.live.midi.routes import Router
+from yehu_server.live.midi.routes import Router, is_wanted, stable_names
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
 from yehu_server.params.table import FINGERS
@@ -326,6 +326,40 @@ def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listenin
 
 
 # ---------------------------------------------------------------- names
+
+
+def test_a_port_has_the_same_name_whenever_it_is_there(subtests):
+    for names, stable in [
+        ([], []),
+        (["Keystep:Keystep MIDI 1 24:0"], ["Keystep MIDI 1"]),
+        (["Keystep:Keystep MIDI 1 128:0"], ["Keystep MIDI 1"]),
+        (["Midi Through:Midi Through Port-0 14:0"], ["Midi Through Port-0"]),
+        (["LPK25 0"], ["LPK25"]),
+        (["LPK25 0", "LPK25 1"], ["LPK25", "LPK25 #2"]),
+        (["A:out", "B:out"], ["A:out", "B:out"]),
+        (["IAC Driver Bus 1"], ["IAC Driver Bus"]),
+        (["  spaced  "], ["spaced"]),
+        (["x"] * 3, ["x", "x #2", "x #3"]),
+        (["7"], ["7"]),
+        (["琴 1:琴 MIDI 1 20:0"], ["琴 1:琴 MIDI 1"]),
+    ]:
+        with subtests.test(names=names, stable=stable):
+            assert stable_names(names) == stable
+
+
+def test_ports_are_wanted_by_words_of_their_name(subtests):
+    for name, patterns, wanted in [
+        ("Keystep MIDI", [], True),
+        ("Midi Through Port-0", [], False),
+        ("MIDI THRU", [], False),
+        ("Breakthrough", [], True),
+        ("Midi Through Port-0", ["through"], True),
+        ("Keystep MIDI", ["key midi"], True),
+        ("Keystep MIDI", ["piano", "STEP"], True),
+        ("Keystep MIDI", ["key piano"], False),
+    ]:
+        with subtests.test(name=name, patterns=patterns, wanted=wanted):
+            assert is_wanted(name, patterns) is wanted
 
 
 def feed() -> MidiFeed:

@@ -133,6 +133,15 @@ def test_slurred_notes_overlap_and_others_do_not():
     assert overlaps(play(*FOUR, signs=words)) == [True, True, False]
 
 
+def test_a_repeated_note_under_a_slur_goes_on_in_the_same_direction():
+    score = play(note(0, 1, 67), note(1, 1, 67), spans=[span("slur", 0, 1)])
+    notes = notes_of(score)
+    assert notes[0].end_s <= notes[1].start_s
+    directions = settings(score, "/playing/direction")
+    assert directions[0][0] == 0.0
+    assert {value for _, value in directions[:-1]} == {1.0}
+
+
 def test_short_marks_shorten_and_as_a_word_all_notes_but_slurred_ones():
     shares = {"staccato": 0.5, "staccatissimo": 0.3, "spiccato": 0.35, "tenuto": 1.0}
     for mark, share in shares.items():
@@ -314,6 +323,12 @@ def test_grace_notes_take_their_time_from_their_note():
     assert starts[3] < 1.5 * QUARTER_S
     assert notes[-1].end_s == pytest.approx(3 * QUARTER_S)
     assert notes[1].end_s > notes[2].start_s  # on one bow
+
+
+def test_a_grace_note_of_the_same_pitch_does_not_end_its_note():
+    small, own = notes_of(play(note(0, 2, 67, before=(Grace(67.0),))))
+    assert small.end_s == own.start_s
+    assert own.end_s == 2 * QUARTER_S
 
 
 def test_a_note_between_the_keys_is_bent_there():

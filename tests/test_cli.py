@@ -15,7 +15,6 @@ import signal
 import subprocess
 import sys
 import time
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -27,7 +26,6 @@ from commands import COMMAND, is_one_line
 from forks import start
 from midi_files import midi_file, notes
 
-import yehu_server
 from yehu_server.cli import _parser, main
 from yehu_server.cli.arguments import Parser
 from yehu_server.cli.serve import _Ending
@@ -36,7 +34,6 @@ from yehu_server.live.audio.output import SharedMemory
 from yehu_server.scores.score import LONGEST_DURATION_H
 from yehu_server.util.sound_file import sound_file
 
-ROOT = Path(__file__).resolve().parents[1]
 FULL = Path("/dev/full")
 EXAMPLE = {
     "duration": 0.05,
@@ -94,32 +91,6 @@ def test_help_lists_all_commands(command):
     assert set(listed) == {name for name in COMMANDS if " " not in name}
 
 
-def test_the_pages_that_help_names_come_along(subtests, command, monkeypatch):
-    monkeypatch.setenv("COLUMNS", "1000")  # no path is broken over two lines
-    wheel = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]
-    wheel = wheel["targets"]["wheel"]
-    for name in COMMANDS:
-        with subtests.test(name):
-            code, out, err = command(*name.split(), "--help")
-            assert (code, err) == (0, "")
-            assert f"yehu-server {name} " in out
-            pages = re.findall(rf"{re.escape(str(ROOT))}\S*\w\.md\b|(?<!\S)\w\S*\.md\b", out)
-            assert pages or name not in (
-                "serve",
-                "build",
-                "replay",
-                "simulate",
-                "surfaces",
-                "sweep",
-            )
-            for page in pages:
-                assert Path(page).is_file()
-                inside = Path(page).relative_to(ROOT)
-                assert inside.parts[0] in wheel["only-include"]
-                assert wheel["sources"][inside.parts[0]] == f"yehu_server/{inside.parts[0]}"
-                assert not any(inside.is_relative_to(left_out) for left_out in wheel["exclude"])
-
-
 def parsers() -> Iterator[Parser]:
     """Those of all commands and their actions."""
     waiting = [_parser()]
@@ -154,15 +125,6 @@ def test_the_examples_of_help_can_be_given():
     for words in examples:
         given = list(itertools.takewhile(lambda word: word not in ("<", ">", "|"), words))
         _parser(given).parse_args(given)  # exits where one is wrong
-
-
-def test_brackets_in_help_are_no_markup(command):
-    assert "yehu-server[follow]" in command("follow", "--help")[1]
-    assert "yehu-server[cluster]" in command("dataset", "--help")[1]
-
-
-def test_the_version_is_told(command):
-    assert command("--version") == (0, f"yehu-server {yehu_server.__version__}\n", "")
 
 
 def test_a_call_that_is_not_complete_gets_one_line(subtests, refused):
@@ -309,17 +271,6 @@ def test_a_wrong_instrument_or_gesture_gets_one_line_and_no_file(
             assert not list(out.iterdir())
 
 
-def test_a_name_with_a_line_break_is_still_one_line(refused, tune, tmp_path, out):
-    for words in (
-        ("simulate", tmp_path / "no\nsuch.json", "-o", out / "x.npz"),
-        ("render", tune, "-o", tmp_path / "no\nsuch" / "x.wav"),
-        ("render", tune, "-o", out / "x.wav", "--instrument", tmp_path / "no\nsuch.toml"),
-        ("render", tune, "-o", out / "x.wav", "--mapping", tmp_path / "no\nsuch.toml"),
-        ("render", tune, "-o", out / "x.wav", "--no\nsuch"),
-    ):
-        assert "such" in refused(*words)
-
-
 # ---------------------------------------------------------------- where results go
 
 
@@ -338,13 +289,6 @@ def test_a_place_where_nothing_can_be_written_is_refused_and_left_as_it_is(
     assert (tmp_path / "file").read_text() == "mine"
     assert not (tmp_path / "none").exists()
     assert not list(out.iterdir())
-
-
-def test_an_output_folder_that_is_read_only_is_refused(refused, into, out):
-    out.chmod(0o500)
-    if os.access(out, os.W_OK):
-        pytest.skip("this user may write everywhere")
-    assert "is not writable" in refused(*into, out / "x")
 
 
 @pytest.mark.parametrize("name", ["x", "x.wav", "x.flac"])

@@ -122,23 +122,6 @@ def test_one_functions_code_does_not_pass_for_anothers(kept):
         read_checksummed(other)
 
 
-def test_sound_bytes_that_are_no_code_are_compiled_anew(kept, caplog):
-    kept.start()
-    for file in (kept.source, kept.file):
-        write_checksummed(file, b"not of numba")
-    assert kept.start() == (4, False)
-    assert len(caplog.messages) == 1
-
-
-def test_a_folder_in_the_place_of_the_code_is_no_reason_not_to_play(kept, caplog):
-    kept.start()
-    for file in (kept.source, kept.file):
-        file.unlink()
-        file.mkdir()
-    assert kept.start() == (4, False)
-    assert len(caplog.messages) == 2  # that it is damaged, and that it cannot be kept
-
-
 @contextmanager
 def another_level(name="another"):
     with pytest.MonkeyPatch.context() as patch:
@@ -174,14 +157,6 @@ def test_what_was_compiled_on_one_processor_is_only_optimised_on_another(kept, m
     with another_level("a third"):
         assert kept.start(twice) == (8, True)
     assert names == ["twice", "third_of", "thrice"]
-
-
-def test_code_of_another_level_is_left_alone(kept):
-    kept.start()
-    with another_level():
-        assert kept.start() == (4, True)
-    assert len(list(kept.folder.glob("*.code"))) == 2
-    assert kept.start() == (4, True)
 
 
 @pytest.mark.parametrize("lost", ["its file", "its name"])

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import sys
-from ipaddress import IPv4Interface
 from pathlib import Path
 
 import pytest
 
 from yehu_server import cli
 from yehu_server.cli.config import MOST_VALUES, parse
-from yehu_server.cli.report import connect_lines, query_line
 from yehu_server.cli.serve_options import options_of
-from yehu_server.playing.pitch_and_level import note_name
 
 # MIDI systems of other machines, which RtMidi was not compiled for.
 ELSEWHERE = "core" if sys.platform != "darwin" else "windows"
@@ -72,14 +69,6 @@ def test_an_option_that_may_be_repeated_adds_to_those_of_the_file(file):
     assert read.parts[0].playing.settings == (("/playing/volume", 0.5), ("/playing/volume", 0.25))
 
 
-def test_a_file_counts_for_its_own_command_line_only(file):
-    file.write_text('rate = 48000\nmidi-in = ["keystep"]\n')
-    parser = cli._parser()
-    parse(["serve", "--config", str(file)], parser)
-    plain = parse(["serve"], parser)
-    assert (plain.rate, plain.midi_in) == (None, [])
-
-
 def test_an_error_in_the_file_names_file_and_line(subtests, file, refused):
     for text, reason in [
         ("help = true", "cannot ask for help"),
@@ -118,21 +107,6 @@ def test_a_wrong_option_is_one_clear_line(subtests, refused):
             assert reason in refused("serve", *words)
 
 
-def test_a_phone_is_told_the_exact_line():
-    lan = IPv4Interface("192.168.5.5/22")
-    local = connect_lines("127.0.0.1", 9000, lan, is_open=True)
-    assert "--osc 192.168.5.5:9000 --osc-allow 192.168.4.0/22" in local[1]
-    far = connect_lines("::", 9000, lan, is_open=True)
-    assert "host 192.168.5.5, send port 9000" in far[1]
-    assert "anyone" in far[2]
-    assert connect_lines("::1", 9000, lan, is_open=True)[0].startswith("OSC at [::1]:9000 ")
-    assert len(connect_lines("192.168.5.5", 9000, lan, is_open=False)) == 2
-
-
-def test_pitches_have_names():
-    assert [note_name(p) for p in (65.0, 69.12, 71.98)] == ["F4", "A4+12", "C5-2"]
-
-
 def test_oscquery_is_for_this_machine_until_said_otherwise():
     http = options().http
     assert http.address == ("127.0.0.1", 9001)
@@ -141,14 +115,3 @@ def test_oscquery_is_for_this_machine_until_said_otherwise():
     assert "192.0.2.7" not in options("--http-allow", "198.51.100.0/24").http.allowed
     assert options("--http", "none").http is None
     assert options("--no-http").http is None
-
-
-def test_announcing_may_be_asked_for_or_forbidden():
-    asked = [options(*words).announce for words in ((), ("--announce",), ("--no-announce",))]
-    assert asked == [None, True, False]
-
-
-def test_a_browser_is_told_the_exact_line():
-    assert query_line("127.0.0.1", 9001, "192.168.1.5") == "OSCQuery at http://127.0.0.1:9001/"
-    assert query_line("0.0.0.0", 9001, "192.168.1.5") == "OSCQuery at http://192.168.1.5:9001/"  # noqa: S104
-    assert query_line("::1", 9001, "192.168.1.5") == "OSCQuery at http://[::1]:9001/"

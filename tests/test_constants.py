@@ -42,10 +42,6 @@ def here() -> list[str]:
     return constants()
 
 
-def test_there_are_constants(here):
-    assert any(line.startswith("yehu_server.core.player.drift TREMOR_RADIUS") for line in here)
-
-
 @pytest.mark.parametrize(
     "processor",  # the first has the least of what this one has
     [pytest.param(each, marks=[pytest.mark.slow][: each != V2]) for each in PROCESSORS],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 
 import numpy as np
 import pytest
@@ -58,9 +57,3 @@ def test_what_is_wrong_is_told_before_it_listens(command, hum, tmp_path, monkeyp
         if (code, out, err.count("\n")) != (2, "", 1):
             wrong.append((words, code, err))
     assert not wrong
-
-
-def test_where_a_library_is_missing_the_extra_is_named(command, hum, tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "swift_f0", None)
-    code, _, err = command("follow", hum, "-o", tmp_path / "a.wav")
-    assert (code, "pip install yehu-server[follow]" in err) == (2, True)

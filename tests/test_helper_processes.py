@@ -5,7 +5,6 @@ from __future__ import annotations
 import multiprocessing
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -40,16 +39,6 @@ def test_modules_of_the_current_folder_are_not_run(strange, capsys):
     process.join()
     assert process.exitcode == 0
     assert not (strange / "ran").exists()
-
-
-def test_a_helper_finds_what_its_parent_does(tmp_path, monkeypatch):
-    (tmp_path / "only_here.py").write_text("import sys; print(sys.argv[1:], __name__)")
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(sys, "path", ["", *sys.path])
-    run = subprocess.run(
-        python_command("only_here", "a", "b c"), capture_output=True, text=True, check=False
-    )
-    assert (run.stdout, run.stderr) == ("['a', 'b c'] __main__\n", "")
 
 
 def test_the_end_of_a_helper_is_acted_on_however_it_came(monkeypatch):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import socket
 import threading
 
 import pytest
@@ -28,19 +27,6 @@ def test_a_reason_is_news_once():
     assert [backoff.is_news(reason) for reason in ("a", "a", "b", "b", "a")] == [1, 0, 1, 0, 1]
     backoff.worked()
     assert backoff.is_news("a")
-
-
-def test_why_says_what_the_system_says():
-    assert why(TOO_MANY) == os.strerror(errno.EMFILE)
-    assert why(OSError(errno.EFBIG, "File too large, above 1 KiB")).endswith("above 1 KiB")
-    with (
-        socket.create_server(("127.0.0.1", 0)) as taken,
-        pytest.raises(OSError, match="in use") as raised,
-    ):
-        socket.create_server(taken.getsockname())
-    assert why(raised.value) == os.strerror(errno.EADDRINUSE)
-    assert why(RuntimeError("can't start new thread")) == "can't start new thread"
-    assert why(MemoryError()) == "MemoryError"
 
 
 class Work:

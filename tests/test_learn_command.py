@@ -6,7 +6,6 @@ import contextlib
 import json
 import socket
 import threading
-import time
 
 import pytest
 from waiting import until
@@ -144,23 +143,3 @@ def test_the_bindings_of_a_server_are_shown_with_where_they_are(server, at, caps
     out = capsys.readouterr().out
     assert "100 %" in out
     assert "/playing/portamento_time" in out
-
-
-def test_a_server_that_does_not_answer_or_has_no_name_is_told_of(refused):
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
-        free.bind(("127.0.0.1", 0))
-        at = f"127.0.0.1:{free.getsockname()[1]}"
-    for words in (("learn", "/playing/vibrato"), ("mappings", "show", "--live")):
-        began = time.monotonic()
-        assert "no server answers" in refused(*words, "--server", at)
-        assert time.monotonic() - began < 5.0
-    assert "expected HOST:PORT" in refused("learn", "/playing/vibrato", "--server", "127.0.0.1:x")
-
-
-def test_what_learning_takes_away_is_told_and_given_back(server, at, capsys):
-    with a_fader_that_moves(server):
-        main(["learn", "/playing/speed", *at])
-    out = capsys.readouterr().out
-    assert "\n  cc 16 moves /yehu/playing/speed no longer, until --forget\n" in out
-    assert main(["learn", "--forget", "/playing/speed", *at]) == 0
-    assert capsys.readouterr().out.endswith("\n  cc 16 moves /yehu/playing/speed again\n")

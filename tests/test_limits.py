@@ -12,7 +12,6 @@ pytest.importorskip("resource", reason="there is no such limit on Windows")
 
 from yehu_server.cli import serve as limits
 from yehu_server.cli.serve import FILES_NEEDED, MOST_FILES, allow_files
-from yehu_server.errors import YehuError
 
 
 def serve(files: int, *words: str) -> subprocess.CompletedProcess[str]:
@@ -70,11 +69,3 @@ def test_as_many_files_are_taken_as_the_user_may_have(monkeypatch, before, after
     monkeypatch.setattr(limits, "resource", system)
     allow_files(40)
     assert system.limits == after
-
-
-def test_a_system_that_grants_no_more_is_not_asked_twice(monkeypatch):
-    system = System(20, -1)
-    monkeypatch.setattr(limits, "resource", system)
-    monkeypatch.setattr(system, "setrlimit", lambda *_: (_ for _ in ()).throw(ValueError))
-    with pytest.raises(YehuError, match="20 open files are too few: 40 are needed"):
-        allow_files(40)

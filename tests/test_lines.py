@@ -15,7 +15,7 @@ import pytest
 from yehu_server.cli import _parser, main, serve, terminal
 from yehu_server.cli.devices import devices_report
 from yehu_server.cli.report import bindings_table, mapping_report, status_line
-from yehu_server.errors import FIRST, LAST, one_line, shortened
+from yehu_server.errors import FIRST, LAST, one_line
 from yehu_server.live.audio.devices import AudioDevice
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
@@ -31,14 +31,6 @@ def test_what_would_steer_a_terminal_is_spelled_out():
 @pytest.mark.parametrize("text", ["", "take 1.wav", "椰胡　〈曲〉.mid", "naïve\xa0ö"])
 def test_ordinary_text_of_any_language_stays(text):
     assert one_line(text) == text
-
-
-def test_a_long_line_keeps_both_its_ends():
-    cut = shortened("a" * 100_000 + "reason")
-    assert cut.startswith("aaa")
-    assert cut.endswith("reason")
-    assert len(cut) == FIRST + LAST + len(" ... ")
-    assert shortened("a" * (FIRST + LAST)) == "a" * (FIRST + LAST)
 
 
 def is_plain(text: str) -> bool:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
-import pytest
-
 from yehu_server.playing.mapping import load, shipped_mappings
 
 
@@ -49,12 +47,6 @@ def test_a_file_of_ones_own_is_shown_and_checked(mappings, tmp_path):
     assert mappings("check", path)[:2] == (0, f"{path}: right, 1 binds\n")
 
 
-def test_the_bend_is_shown_as_its_range_says(mappings):
-    bend = json.loads(mappings("show", "keyboard", "--json")[1])["bind"][0]
-    assert (bend["source"], bend["from"], bend["to"]) == ("bend", None, None)
-    assert "bend range" in mappings("show", "keyboard")[1]
-
-
 # ---------------------------------------------------------------- files of ones own
 
 WRONG = """\
@@ -64,35 +56,6 @@ source = "cc 1/34"
 target = "/playing/volume"
 smoothing = -1
 """
-
-
-@pytest.fixture
-def own(config_home):
-    folder = config_home / "yehu-server" / "mappings"
-    folder.mkdir(parents=True)
-    return folder
-
-
-def test_ones_own_mappings_are_listed_as_such(mappings, own):
-    (own / "pedals.toml").write_text('about = "three pedals"\n')
-    (own / "wind.toml").write_text('base = "wind"\nabout = "a gentler one"\n')
-    (own / "wrong.toml").write_text("mpe = 3\n")
-    code, out, _ = mappings("list")
-    lines = dict(line.split(maxsplit=1) for line in out.splitlines())
-    assert code == 0
-    assert sorted(lines) == sorted({*shipped_mappings(), "pedals", "wrong"})
-    assert lines["pedals"] == "yours: three pedals"
-    assert lines["wind"] == "yours: a gentler one"
-    assert "wrong.toml:1: mpe: expected" in lines["wrong"]
-    assert json.loads(mappings("list", "--json")[1]) == lines
-    assert "yours" not in lines["keyboard"]
-
-
-def test_a_name_is_looked_for_among_ones_own_first(mappings, refused, own):
-    (own / "wind.toml").write_text('base = "wind"\nabout = "a gentler one"\n')
-    assert mappings("show", "wind")[1].startswith("wind: a gentler one\n")
-    assert "yours: mine/wind" in refused("mappings", "show", "winds")
-    assert "wind" in refused("mappings", "check", "wind")  # a file, which there is not
 
 
 def test_all_that_is_wrong_with_files_is_told_line_by_line(mappings, tmp_path):
@@ -152,21 +115,6 @@ def test_a_preset_converted_or_shown_as_json_is_the_same_again(subtests, mapping
             shown.write_text(mappings("show", name, "--json")[1])
             assert mappings("convert", shown, "-o", target, "--overwrite")[0] == 0
             assert load(str(target)) == load(name)
-
-
-def test_json_of_an_older_form_is_taken_too(mappings, tmp_path):
-    path = tmp_path / "shown.json"
-    bend = {"source": "bend", "target": "/playing/bend", "from": None, "to": None}
-    wheel = {"source": "cc 1", "target": "/playing/vibrato", "from": 40.0, "to": 0.0}
-    binds = [bend | {"curve": "linear"}, wheel | {"curve": "s"}]
-    data = {"name": "old", "about": "", "mpe": True, "start": {}, "bind": binds}
-    path.write_text(json.dumps(data))
-    target = tmp_path / "mine.toml"
-    mappings("convert", path, "-o", target)
-    mapping = load(str(target))
-    assert (mapping.name, mapping.mpe) == ("old", True)
-    assert mapping.binds[0].is_by_range
-    assert mapping.binds[1].ends == (40.0, 0.0)
 
 
 def test_what_cannot_be_converted_writes_nothing(refused, tmp_path):

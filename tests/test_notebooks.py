@@ -61,17 +61,6 @@ def pictures(outputs: list[dict]) -> list[np.ndarray]:
     return [matplotlib.image.imread(io.BytesIO(base64.b64decode(data))) for data in found if data]
 
 
-def test_a_notebook_says_first_what_it_is_for_and_is_kept_without_outputs():
-    assert {path.name for path in FOLDER.iterdir()} == set(SHOWN)
-    for name in SHOWN:
-        first = cells_of(FOLDER / name)[0]
-        assert first["cell_type"] == "markdown"
-        assert first["source"][0].startswith("# ")
-        assert "pip install" in "".join(first["source"]) or name.startswith("2")
-        for cell in code_of(FOLDER / name):
-            assert (cell["outputs"], cell["execution_count"]) == ([], None), name
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SHOWN)
 def test_a_notebook_runs_and_shows_pictures_and_sounds(name, tmp_path, environment):

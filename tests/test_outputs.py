@@ -52,11 +52,6 @@ def test_a_take_does_not_go_over_what_is_read_nor_over_a_link_to_it(
     assert files[name].read_text() == before
 
 
-def test_a_take_does_not_go_over_the_config_that_names_it(refused, tmp_path):
-    (tmp_path / "c.toml").write_text('capture = "c.toml"\noverwrite = true\n')
-    assert "--capture would overwrite an input" in refused("serve", "--config", "c.toml")
-
-
 def test_two_things_do_not_go_to_one_file(refused, tmp_path):
     (tmp_path / "folder").symlink_to(tmp_path)
     for other in ("x.wav", "./x.wav", tmp_path / "x.wav", "folder/x.wav"):

@@ -69,11 +69,6 @@ def test_each_part_has_its_own_instrument():
     assert [str(part.playing.instrument) for part in parts] == [erhu, ideal, erhu]
 
 
-def test_inputs_are_given_to_parts():
-    options = served("--parts", "2", "--part", "1=keystep", "--part", "2=:3", "--part", "1=breath")
-    assert options.midi.routes == [Route(0, "keystep"), Route(1, "", 2), Route(0, "breath")]
-
-
 def test_a_file_has_the_parts_too(tmp_path):
     path = tmp_path / "serve.toml"
     path.write_text(
@@ -84,16 +79,6 @@ def test_a_file_has_the_parts_too(tmp_path):
     assert options.midi.routes == [Route(0, "keystep"), Route(1, "seaboard")]
     assert options.parts[1].playing.mapping.name == "mpe"
     assert options.parts[1].playing.settings == (("/room/pan", 0.5),)
-
-
-def test_each_part_follows_the_files_of_its_mapping():
-    options = served("--parts", "2", "--watch", "--part-mapping", "2=wind")
-    assert [part.reread().name for part in options.parts] == ["keyboard", "wind"]
-
-
-def test_mpe_is_of_the_parts_without_a_mapping_of_their_own():
-    options = served("--parts", "2", "--mpe", "--part-mapping", "2=wind")
-    assert [part.playing.mapping.mpe for part in options.parts] == [True, False]
 
 
 def test_what_parts_cannot_have_is_one_line(subtests, refused):

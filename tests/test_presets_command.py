@@ -100,38 +100,8 @@ def test_a_program_change_of_a_file_acts_only_if_asked_for(rendered):
     assert rendered("--programs", programs=(6, 1))[0] == plain
 
 
-def test_unknown_programs_are_told(rendered):
-    sound, told = rendered("--programs", programs=(41, 25, 41))
-    assert "no preset for the programs 25, 41: ignored" in told
-    assert sound == rendered()[0]
-
-
-def test_a_folder_of_ones_own_is_heard(rendered, own):
-    (own / "mine.toml").write_text(
-        HEAD + 'program = 41\n[values]\n"/playing/tremolo" = 9\n"/a/b" = 1\n'
-    )
-    by_file, told = rendered("--preset", own / "mine.toml")
-    assert "unknown parameter '/a/b'" in told
-    assert by_file != rendered()[0]
-    assert rendered("--preset", "mine", "--presets", own)[0] == by_file
-    assert rendered("--programs", "--presets", own, programs=(41,))[0] == by_file
-
-
 def test_what_is_set_wins_over_a_preset(rendered):
     words = ("--set", "/playing/tremolo=0", "--set", "/playing/attack=40")
     assert rendered("--preset", "tremolo", *words)[0] == rendered()[0]
     programs = rendered("--programs", *words, programs=(6,))[0]
     assert programs == rendered()[0]
-
-
-def test_the_gain_asked_for_wins_over_a_presets(rendered, tmp_path):
-    path = tmp_path / "soft.toml"
-    path.write_text(HEAD + '[values]\n"/output/gain" = -12\n')
-    assert rendered("--preset", path)[0] != rendered()[0]
-    assert rendered("--preset", path, "--gain-db", 0)[0] == rendered()[0]
-
-
-def test_a_preset_that_there_is_not_is_named(refused, tmp_path):
-    words = ("render", tmp_path / "in.mid", "-o", tmp_path / "out.wav", "--preset")
-    assert "no preset 'nothing' (there are: courtyard" in refused(*words, "nothing")
-    assert "none.toml: No such file" in refused(*words, tmp_path / "none.toml")

@@ -141,16 +141,6 @@ def test_the_format_is_asked_for_or_goes_by_the_ending(play, tmp_path, midi):
 # ---------------------------------------------------------------- what is heard, and what is not
 
 
-@pytest.mark.parametrize("block", [1, 333, 10**6])
-def test_the_block_size_within_is_not_heard(phrase, block):
-    expected = samples(phrase)
-    assert rms(expected) > 0.01
-    if block > 1:
-        np.testing.assert_array_equal(samples(phrase, block=block), expected)
-    fixed = samples(phrase, block=block, tail_s=0.1)
-    np.testing.assert_array_equal(fixed, expected[: len(fixed)])
-
-
 def test_the_seed_changes_the_performance_and_only_by_its_chance(play, phrase):
     _, usual = play(phrase)
     np.testing.assert_array_equal(play(phrase, "--seed", 0)[1], usual)
@@ -172,37 +162,6 @@ def test_normalize_puts_the_true_peak_at_minus_1_dbfs(play, phrase, subtype, gai
     assert 20.0 * math.log10(np.abs(between).max()) == pytest.approx(-1.0, abs=0.15)
     assert summary["peak"] == pytest.approx(np.abs(sound).max(), abs=STEP[subtype])
     assert summary["rms"] == pytest.approx(rms(sound), abs=STEP[subtype])
-
-
-def test_normalize_changes_nothing_but_the_level(play, phrase):
-    _, usual = play(phrase, "--tail", 0, "--subtype", "float")
-    _, scaled = play(phrase, "--tail", 0, "--subtype", "float", "--normalize")
-    factor = np.abs(scaled).max() / np.abs(usual).max()
-    np.testing.assert_allclose(scaled, factor * usual, rtol=1e-5, atol=1e-9)
-
-
-def test_normalize_leaves_silence_as_it_is(play, midi):
-    summary, sound = play(midi(cc(0.1, 20, 1)), "--normalize")
-    assert not sound.any()
-    assert (summary["peak"], summary["rms"], summary["notes_played"]) == (0.0, 0.0, 0)
-
-
-def test_gain_is_in_decibels(play, phrase):
-    words = ("--tail", 0, "--subtype", "float", "--gain-db")
-    _, low = play(phrase, *words, -26)
-    _, high = play(phrase, *words, -20)
-    np.testing.assert_allclose(high, 10 ** (6 / 20) * low, rtol=1e-5, atol=1e-9)
-    _, by_address = play(phrase, "--set", "/output/gain=-20", *words[:-1])
-    np.testing.assert_allclose(by_address[4410:], high[4410:], rtol=1e-5, atol=1e-9)
-
-
-@pytest.mark.parametrize("subtype", ["16", "float"])
-def test_the_limiter_keeps_a_loud_rendering_within_full_scale(play, phrase, subtype):
-    summary, sound = play(phrase, "--tail", 0, "--gain-db", 24, "--subtype", subtype)
-    assert 0.85 < np.abs(sound).max() < 0.9  # the wave between the samples is higher
-    assert summary["peak"] < 0.9
-    # Limited, not wrapped around: no sample jumps from one end to the other.
-    assert np.abs(np.diff(sound)).max() < 1.0
 
 
 # ---------------------------------------------------------------- the tail
@@ -277,13 +236,6 @@ def test_what_the_tenth_channel_leaves_out_is_told(play, duet, midi, tmp_path, c
     ]
 
 
-def test_the_other_channels_are_not_heard_at_all(play, duet, midi):
-    _, chosen = play(duet, "--channel", 3, "--tail", 0.5)
-    alone = midi(*notes((0.2, 0.2, 77, 64), channel=3), cc(0.6, 20, 0), name="alone.mid")
-    _, expected = play(alone, "--tail", 0.5)
-    np.testing.assert_array_equal(chosen, expected)
-
-
 # ---------------------------------------------------------------- settings, mapping, instrument
 
 
@@ -294,14 +246,6 @@ def test_a_setting_is_held_whatever_notes_and_controllers_say(play, midi):
     faint = midi(cc(0, 16, 0), *notes((0, 0.4, 70, 1)), name="faint.mid")
     assert not np.array_equal(samples(firm), samples(faint))
     np.testing.assert_array_equal(play(firm, *settings)[1], play(faint, *settings)[1])
-
-
-def test_a_setting_of_the_bow_is_held_through_all_notes(play, midi):
-    # A lifted bow plays no note.
-    _, sound = play(
-        midi(*notes(*((0.2 * n, 0.1, 65, 64) for n in range(5)))), "--set", "/bow/side=0"
-    )
-    assert np.abs(sound).max() < QUIET
 
 
 def test_a_mapping_file_says_what_controllers_do(play, midi, tmp_path):
@@ -342,19 +286,6 @@ def test_a_note_out_of_range_sounds_where_the_policy_puts_it(play, midi):
         assert summary["notes_out_of_range"] == alone
         _, expected = play(midi(*notes((0, 0.3, fitted, 64))), "--tail", 0.2)
         np.testing.assert_array_equal(sound, expected)
-
-
-def test_notes_moved_into_the_range_are_told(command, midi, tmp_path):
-    _, _, err = command("render", midi(*notes((0.0, 0.1, 32, 64))), "-o", tmp_path / "x.wav")
-    assert "moved to fit F4 to F6" in err
-
-
-def test_skipped_notes_are_counted_but_not_played(play, midi):
-    summary, sound = play(midi(*notes((0, 0.3, 64, 64), (0.3, 0.3, 90, 64))), "--range", "skip")
-    assert summary["notes_out_of_range"] == 2
-    assert summary["notes_played"] == 0
-    assert summary["channels"] == {}
-    assert not sound.any()
 
 
 # ---------------------------------------------------------------- several files, other rates
@@ -474,8 +405,3 @@ def test_plain_notes_are_shaped_and_may_be_left_as_they_are(midi, play):
 
     assert vibrato(plain) < 5.0
     assert vibrato(alive) > 15.0
-
-
-def test_the_phrasing_of_a_setting_counts(midi, play):
-    told = play(midi(*notes(*PLAIN)), "--set", "/playing/phrasing=0.2", "--rubato", 0.7)[0]
-    assert (told["phrasing"], told["rubato"]) == (0.2, 0.7)

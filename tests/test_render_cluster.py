@@ -134,14 +134,6 @@ def rendered(songs, command, monkeypatch, tmp_path_factory):
     return run
 
 
-def test_workers_render_from_the_commands_folder(alone, songs, rendered, command):
-    code, _, err = rendered(Here)
-    assert (code, err) == (1, "yehu-server: broken.mid: has a damaged header at byte 0\n")
-    assert results_in(songs / "out") == alone
-    code, out, _ = command("render", "in", "-o", "out", *DRY)
-    assert f"0 rendered, {SCORES} up to date, 1 failed" in out
-
-
 def test_workers_that_do_not_see_the_output_are_told(songs, rendered):
     class Away(Here):
         def perform_all(self, perform, tasks):

@@ -187,15 +187,6 @@ def test_by_track_each_track_with_notes_is_a_part_whatever_its_channel(play, tmp
     assert len(play(score, "--ensemble")[0]["parts"]) == 1
 
 
-def test_controllers_in_a_track_without_notes_reach_those_who_play_on_their_channel(play, tmp_path):
-    fade = (0.0, mido.Message("control_change", channel=1, control=7, value=0))
-    score = tracks_file(tmp_path / "conducted.mid", [fade], line(1, 67), line(2, 74))
-    words = ("--ensemble", "--by", "track", "--stems", tmp_path / "stems", "--dry")
-    _, _, (first, second) = play(score, *words)
-    assert np.abs(first).max() > 0.05
-    assert np.abs(second[4410:]).max() < 1e-4
-
-
 def test_more_tracks_than_a_stage_has_room_for_are_refused(refused, tmp_path):
     many = tracks_file(tmp_path / "many.mid", *(line(1 + n % 9, 67) for n in range(17)))
     words = ("render", many, "-o", tmp_path / "out.wav", "--ensemble", "--by", "track")
@@ -257,14 +248,6 @@ def test_each_part_is_moved_into_the_range_of_its_own_instrument(tmp_path):
         for part in players.parts
     ]
     assert keys == [[74, 75, 76, 77], [62, 63, 64, 65]]
-
-
-def test_channels_that_nobody_plays_are_told(command, trio, tmp_path):
-    (tmp_path / "solo.toml").write_text("[[part]]\nchannel = 2\n", encoding="utf-8")
-    words = ("render", trio, "-o", tmp_path / "out.wav", "--ensemble", tmp_path / "solo.toml")
-    code, _, err = command(*words)
-    assert code == 0
-    assert "no part plays channel 1, 5" in err
 
 
 def test_what_an_ensemble_file_names_must_be_there(refused, trio, tmp_path):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import io
 import json
 import multiprocessing
@@ -21,7 +20,7 @@ from forks import in_the_place_of_workers, start
 from midi_files import midi_file, notes
 from waiting import LONG_S, until
 
-from yehu_server.cli import _parser, main, render_folder
+from yehu_server.cli import main
 from yehu_server.core.player.bowing import default_bowing_table
 from yehu_server.playing.bowing_tables import write_bowing_table
 from yehu_server.util.sound_file import is_rendered
@@ -153,18 +152,6 @@ def test_only_what_changed_is_rendered_again(folder, command):
     assert changed == {"y.wav", "with space.wav"}
 
 
-def test_another_option_or_version_renders_all_again(monkeypatch):
-    def key(*words: object) -> str:
-        return render_folder.base_key(_parser().parse_args(["render", "in", "-o", "out", *words]))
-
-    same = [key(), key("--quiet"), key("--json"), key("--jobs", "1"), key("--overwrite")]
-    assert len(set(same)) == 1
-    other = [("--dry",), ("--rate", "48000"), ("--seed", "1"), ("--set", "/bow/side=1")]
-    keys = {key(*words) for words in other} | {key()}
-    monkeypatch.setattr("yehu_server.util.__version__", "x")
-    assert len(keys | {key()}) == len(other) + 2
-
-
 def test_a_changed_mapping_or_a_practice_beside_the_instrument_renders_again(tmp_path, command):
     tune(tmp_path / "in" / "a.mid")
     mapping, instrument = tmp_path / "m.toml", tmp_path / "mine.toml"
@@ -190,17 +177,6 @@ def test_a_file_of_the_users_own_is_not_replaced(folder, command):
     assert own.read_bytes() == b"my own"
     command("render", folder / "in", "-o", folder / "out", *DRY, "--overwrite")
     assert is_rendered(own)
-
-
-def test_a_score_that_failed_is_tried_again(folder, command):
-    words = ("render", folder / "in", "-o", folder / "out", *DRY)
-    code, out, err = command(*words)
-    assert code == 1
-    assert "broken.mid: has a damaged header at byte 0" in err
-    assert "0 rendered, 5 up to date, 2 failed" in out
-    assert manifest(folder / "out")["empty.mid"] == {"file": "empty.mid", "error": "is empty"}
-    tune(folder / "in" / "broken.mid")
-    assert "1 rendered, 5 up to date, 1 failed" in command(*words)[1]
 
 
 # ---------------------------------------------------------------- interrupted
@@ -263,22 +239,6 @@ def test_a_process_that_is_killed_takes_no_other_score_with_it(long, command):
     assert not leavings(long / "out")
 
 
-# ---------------------------------------------------------------- a full disk
-
-
-def test_a_file_that_is_too_large_for_the_disk_is_told(tmp_path):
-    tune(tmp_path / "in" / "a.mid")
-    tune(tmp_path / "in" / "b.mid", seconds=3.0)
-    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536));"
-    words = ("render", tmp_path / "in", "-o", tmp_path / "out", *DRY, "--jobs", 1)
-    process = start(*words, code=limit + COMMAND)
-    _, err = process.communicate(timeout=120)
-    assert process.returncode == 1
-    assert err == "yehu-server: b.mid: cannot write: File too large\n"
-    assert set(sounds(tmp_path / "out")) == {"a.wav"}
-    assert not leavings(tmp_path / "out")
-
-
 # ---------------------------------------------------------------- wrong calls
 
 
@@ -307,16 +267,3 @@ def test_a_wrong_call_gets_one_line_and_makes_nothing(subtests, refused, tmp_pat
             assert wrong in refused("render", *words.split())
             assert not list(tmp_path.rglob("*.wav"))
     assert (tmp_path / "taken" / "manifest.jsonl").read_text() == "mine\n"
-
-
-def test_an_output_without_permission_is_refused(refused, tmp_path, monkeypatch):
-    tune(tmp_path / "in" / "a.mid")
-    (tmp_path / "out").mkdir()
-
-    def denied(*_, **__):
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-
-    monkeypatch.setattr("pathlib.Path.mkdir", denied)
-    assert "cannot write: Permission denied" in refused(
-        "render", tmp_path / "in", "-o", tmp_path / "out", *DRY
-    )

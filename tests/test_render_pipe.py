@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import io
-import json
 import os
 import subprocess
-import wave
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +15,6 @@ from forks import run, start
 from midi_files import midi_file, notes
 
 from yehu_server.cli.render_pipe import BROKEN_PIPE
-from yehu_server.rendering.true_peak import TruePeak
 
 DRY = ("--dry", "--tail", "0")  # in little time
 
@@ -56,26 +53,6 @@ def test_a_wav_stream_has_a_length_that_is_not_known_and_can_be_read(tune, alone
         assert rate == 44100
         assert sound.shape == alone.shape
         assert np.abs(sound - alone).max() < 2.0 ** (-14 if subtype == "16" else -22)
-
-
-def test_a_program_that_reads_strictly_from_a_pipe_reads_it(tune):
-    done = piped("render", tune, "-o", "-", "--mono", *DRY)
-    with wave.open(io.BytesIO(done.stdout)) as file:
-        assert (file.getnchannels(), file.getsampwidth(), file.getframerate()) == (1, 3, 44100)
-        assert len(file.readframes(10**6)) // 3 == round(0.3 * 44100)
-
-
-def test_normalized_sound_can_be_piped(tune):
-    done = piped("render", tune, "-o", "-", "--format", "raw", "--normalize", *DRY)
-    meter = TruePeak()
-    meter.add(np.frombuffer(done.stdout, "<f4").reshape(-1, 2))
-    assert meter.finish() == pytest.approx(10.0 ** (-1.0 / 20.0), rel=1e-5)
-
-
-def test_the_summary_goes_to_the_errors(tune):
-    done = piped("render", tune, "-o", "-", "--json", *DRY)
-    assert json.loads(done.stderr)["notes_played"] == 2
-    assert piped("render", tune, "-o", "-", "--quiet", *DRY).stderr == b""
 
 
 def test_a_reader_that_has_had_enough_ends_it_quietly(tmp_path):
@@ -127,10 +104,3 @@ def test_sound_does_not_go_to_a_terminal(tune):
     os.close(ours)
     assert done.returncode == 2
     assert "standard output is a terminal" in done.stderr
-
-
-def test_a_file_may_be_called_by_a_dash(tune, tmp_path, monkeypatch, command):
-    monkeypatch.chdir(tmp_path)
-    tune.rename(tmp_path / "-")
-    assert command("render", "./-", "-o", "./x", *DRY)[0] == 0
-    assert (tmp_path / "x").exists()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +10,7 @@ from midi_files import midi_file, notes
 
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
-from yehu_server.rendering.plot_data import COLUMNS, PlotData
+from yehu_server.rendering.plot_data import PlotData
 from yehu_server.scores.smf.reader import read_score
 
 DRY = ("--dry", "--tail", 0)  # in little time
@@ -49,36 +47,12 @@ def test_level_peak_pitch_and_spectrum_of_a_sine():
     assert column.max() == pytest.approx(-20.0, abs=1.5)
 
 
-def test_a_click_is_where_it_was():
-    sound = np.zeros(round(RATE))
-    sound[round(0.5 * RATE)] = 1.0
-    watch = watched(sound, 1.0)
-    assert watch.times_s[watch.levels_db.argmax()] == pytest.approx(0.5, abs=0.025)  # half a window
-    assert watch.times_s[watch.peaks_db.argmax()] == pytest.approx(0.5, abs=0.01)
-
-
-def test_the_end_is_measured_too():
-    watch = watched(sine(440.0, 0.1, 0.5), 0.5)
-    watch.finish()
-    assert watch.times_s[-1] == pytest.approx(0.5, abs=0.011)
-    assert watch.duration_s == 0.5
-
-
 @pytest.mark.parametrize("size", [1, 64, 44100])
 def test_the_pieces_do_not_matter(size):
     sound = np.random.default_rng(1).normal(0.0, 0.1, (4410, 2))
     one, other = watched(sound, 0.1), watched(sound, 0.1, size)
     assert np.array_equal(one.levels_db, other.levels_db)
     assert np.array_equal(one.spectra_db, other.spectra_db)
-
-
-def test_a_long_score_has_no_more_columns_than_a_picture():
-    watch = PlotData(1000.0, 3600.0, 2)
-    for _ in range(3600):
-        watch.take(np.zeros((1000, 2)), (None, 60.0))
-    assert 0.9 * COLUMNS < len(watch.times_s) <= COLUMNS
-    assert math.isnan(watch.asked[1][0, 0])
-    assert watch.asked[1][0, 1] == 60.0
 
 
 # ---------------------------------------------------------------- what is drawn
@@ -141,9 +115,3 @@ def test_what_is_no_picture_of_ours_is_not_replaced_and_a_wrong_name_gets_one_li
     ):
         assert wrong in refused("render", tune, "-o", "a.wav", "--plot", plot)
         assert not (tmp_path / "a.wav").exists()
-
-
-def test_where_matplotlib_is_missing_the_extra_is_named(tune, refused, tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    err = refused("render", tune, "-o", tmp_path / "a.wav", "--plot", tmp_path / "a.png")
-    assert "install yehu-server[plots]" in err

@@ -15,7 +15,6 @@ from yehu_server.playing.pitch_and_level import a_weighted_db
 
 RATE = 44100
 MOST_CHANGE_DB = 1.0  # of the loudness, by the usual room
-HALL = 'version = 1\n[values]\n"/room/size" = 20.0\n"/room/decay" = 2.0\n"/room/level" = 0.6\n'
 
 
 @pytest.fixture
@@ -58,22 +57,6 @@ def test_the_usual_room_leaves_the_loudness_as_it_is(play, tune):
         for sound in (play(tune), play(tune, "--dry"))
     ]
     assert abs(loudness[0] - loudness[1]) < MOST_CHANGE_DB
-
-
-def test_a_room_is_a_preset_that_may_be_joined_with_a_sound(play, tune, tmp_path):
-    (tmp_path / "hall.toml").write_text(HALL, encoding="utf-8")
-    end = int(1.9 * RATE)
-    for sound in ((), ("--preset", "pizzicato")):
-        words = (tune, "--tail", 2, *sound)
-        in_hall = play(*words, "--room", tmp_path / "hall.toml")
-        assert rms(in_hall[end:]) > 4.0 * rms(play(*words)[end:])
-
-
-def test_what_is_no_room_is_refused(refused, tune, tmp_path):
-    words = ("render", tune, "-o", tmp_path / "out.wav")
-    assert "pizzicato: not a room: it sets" in refused(*words, "--room", "pizzicato")
-    assert "no preset 'barn'" in refused(*words, "--room", "barn")
-    assert "--dry has no room" in refused(*words, "--room", "pizzicato", "--dry")
 
 
 def test_one_player_has_stems_too(command, tune, tmp_path):

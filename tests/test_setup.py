@@ -63,13 +63,6 @@ def test_uv_installs_where_pip_would_look(checkout, asked):
     assert call.endswith("check out/.venv/bin/python --require-hashes -r x")
 
 
-def test_pip_installs_where_uv_cannot(checkout):
-    write(checkout / ".venv" / "bin" / "uv", "exit 1")
-    told = run(checkout, 'PATH=$venv/bin:$PATH; install_packages --require-hashes -r x; cat "$log"')
-    assert told.startswith("pip -I -m pip ")
-    assert told.endswith("--require-hashes -r x\n")
-
-
 def test_bytecode_is_kept_also_where_the_environment_would_not_have_it(checkout):
     run(checkout, 'fingerprint >"$venv/stamp-run"')
     done = subprocess.run(

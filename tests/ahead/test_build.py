@@ -9,7 +9,7 @@ import pytest
 
 from yehu_server.ahead import build_hash as hashing
 from yehu_server.ahead.build import build, page_linker
-from yehu_server.ahead.build_hash import build_hash, section_of, with_section
+from yehu_server.ahead.build_hash import build_hash
 from yehu_server.ahead.memory_images import image
 from yehu_server.core.engine.mailbox import SERVER
 from yehu_server.core.engine.rig import RIG, memory_bytes
@@ -23,7 +23,6 @@ from yehu_server.playing.tables import Controls
 from yehu_server.playing.tuning import RangePolicy, read_tuning
 
 BEGUN_BY = ("options.py", "tables.py", "calibrations.json", "practices.json")
-EMPTY = b"\0asm\1\0\0\0"
 
 
 def test_what_memory_begins_with_counts_in_the_hash(tmp_path, monkeypatch):
@@ -39,15 +38,6 @@ def test_what_memory_begins_with_counts_in_the_hash(tmp_path, monkeypatch):
             file.write("more = 1\n")
         hashes.add(build_hash.__wrapped__())
     assert len(hashes) == 1 + len(BEGUN_BY)
-
-
-def test_a_section_is_read_as_it_was_written_and_what_has_none_tells_nothing():
-    other = bytes((1, 3, 0, 0, 0))  # a section of another kind before it
-    for text in ("", "0.1.0 0123456789abcdef", "x" * 300):
-        assert section_of(with_section(EMPTY + other, text)) == text
-    no_module = b"RIFF" + with_section(EMPTY, "0.1.0 0123456789abcdef")[4:]
-    for module in (b"", b"RIFF", no_module, EMPTY, EMPTY + b"\0\xff", EMPTY + b"\0\x05\x04yeh"):
-        assert section_of(module) == ""
 
 
 def test_what_cannot_be_built_is_refused(tmp_path, monkeypatch, refused):
@@ -96,25 +86,6 @@ def test_build_tables_writes_what_a_style_has(tmp_path, command):
     )
     assert output.read_bytes() == playing.tables(Controls()).tobytes()
     assert len(output.read_bytes()) == TABLES.itemsize
-
-
-def test_build_tables_tells_the_numbers_of_named_controls(tmp_path, command):
-    faders = tmp_path / "faders.toml"
-    binds = {"/tilt": "volume", "cc 1": "speed", "/touch/1": "speed"}.items()
-    text = '[[bind]]\nsource = "{}"\ntarget = "/playing/{}"\n'
-    faders.write_text("".join(text.format(*bind) for bind in binds))
-    code, out, _ = command("build", "tables", "--mapping", faders, "-o", tmp_path / "out")
-    assert code == 0
-    assert out.splitlines()[1:] == ["control 0: /tilt", "control 1: /touch/1"]
-
-
-def test_build_tables_replaces_nothing_unasked(tmp_path, command, refused):
-    output = tmp_path / "out"
-    output.write_text("mine")
-    assert "--overwrite" in refused("build", "tables", "-o", output)
-    assert output.read_text() == "mine"
-    assert command("build", "tables", "-o", output, "--overwrite")[0] == 0
-    assert output.read_bytes() == PlayingOptions().tables(Controls()).tobytes()
 
 
 # -- images ---------------------------------------------------------------------------------------

@@ -53,16 +53,6 @@ def test_brightness_and_pitch_are_told_apart():
     assert repr(unpitched).endswith("no common pitch>")
 
 
-def test_it_is_drawn_in_one_call():
-    matplotlib = pytest.importorskip("matplotlib")
-    matplotlib.use("Agg")
-    figure = yehu.compare(tones(), tones(), RATE).plot()
-    assert [axes.get_ylabel() for axes in figure.axes] == [
-        "dB of all power", "dB of the loudest", "pitch",
-    ]  # fmt: skip
-    assert all(len(axes.lines) >= 2 for axes in figure.axes)
-
-
 def test_what_cannot_be_compared_is_told(told):
     told("sample_rate", yehu.compare, tones(), tones())
     told("nowhere.wav", yehu.compare, "nowhere.wav", tones(), RATE)

@@ -5,7 +5,6 @@ import pickle
 
 import numpy as np
 import pytest
-from fiddles import SLACK, SLACK_TOML
 from pitch import cents, pitch_of
 
 import yehu_server as yehu
@@ -75,31 +74,6 @@ def test_the_note_that_is_named_ends(fiddle):
     assert level(fiddle.play(0.2)) < 0.01 * level(sounding[-8000:])
 
 
-def test_the_finger_slides_and_bends(fiddle):
-    fiddle.note_on("G4")
-    fiddle.play(0.3)
-    fiddle.slide("B4")
-    assert heard(fiddle.play(0.5), 71) == pytest.approx(0.0, abs=12.0)
-    fiddle.bend(1.0)
-    assert heard(fiddle.play(0.5), 72) == pytest.approx(0.0, abs=12.0)
-
-
-def test_a_note_that_is_struck_harder_is_louder():
-    levels = []
-    for velocity in (30, 120):
-        fiddle = yehu.Instrument(seed=1)
-        fiddle.note_on("G4", velocity)
-        levels.append(level(fiddle.play(0.5)))
-    assert levels[1] > 2.0 * levels[0]
-
-
-def test_stop_ends_all_at_once(fiddle):
-    fiddle.note_on("G4")
-    fiddle.play(0.4)
-    fiddle.stop()
-    assert np.abs(fiddle.play(0.05)[-100:]).max() < 1e-6
-
-
 # ---------------------------------------------------------------- parameters and the bow
 
 
@@ -147,13 +121,6 @@ def test_the_bow_is_drawn_by_hand(fiddle):
     assert level(fiddle.play(0.1)) < 1e-3
 
 
-def test_a_plucked_string_rings_and_decays(fiddle):
-    fiddle.pluck(1.5)
-    sound = fiddle.play(0.8)
-    begin = round(0.05 * RATE)
-    assert level(sound[begin : 2 * begin]) > 5.0 * level(sound[-begin:]) > 0.0
-
-
 def test_controls_reach_the_model_as_they_are_given(fiddle):
     speed = np.array([0.0, 0.2, -0.1])
     force = np.linspace(0.2, 0.8, 7)
@@ -185,25 +152,6 @@ def test_record_gives_the_sound_of_play_and_every_signal():
     assert arrays["contact_force"].shape == (frames, 4, 2)
     assert arrays["string_1"].shape == (math.ceil(frames / 50), len(arrays["x_1"]))
     assert arrays["strings_time"][1] == pytest.approx(50 / RATE)
-
-
-def test_the_shapes_belong_to_their_moments():
-    # A string that is held aside by a pluck is a triangle whose top is where it is plucked, and
-    # its height there is the force over both slopes' tension.
-    fiddle = yehu.Instrument()
-    fiddle.set("/pluck/position", 0.5)
-    fiddle.set("/pluck/force", 1.0)
-    run = fiddle.record(0.012, strings_every=1)
-    shape, x = run.arrays["string_1"], run.arrays["x_1"]
-    pulled = int(np.argmax(run.arrays["pluck_force"]))
-    # The pull lasts 12 ms, some periods of the string: it follows nearly at rest.
-    T, L = fiddle.quantities.string_1.T, fiddle.quantities.bridge_x
-    height = 1.0 * 0.5 * L * 0.5 * L / (T * L)
-    assert np.abs(shape[pulled]).max() == pytest.approx(height, rel=0.15)
-    assert x[np.abs(shape[pulled]).argmax()] == pytest.approx(0.15, abs=0.01)
-    assert not shape[0].any()
-    assert not shape[:, [0, -1]].any()  # both ends are fixed
-    assert np.abs(np.diff(shape, axis=0)).max(axis=1)[100:].min() > 0.0  # each has its own
 
 
 def test_stereo_has_two_sides_and_a_room_and_one_channel_has_none():
@@ -265,16 +213,6 @@ def test_what_is_wrong_is_told_in_one_line(fiddle, told):
         ("seed", {"seed": -1}),
     ):
         told(names, yehu.Instrument, **options)
-
-
-def test_an_instrument_of_other_strings_is_tuned(tmp_path):
-    file = tmp_path / "mine.toml"
-    file.write_text(SLACK_TOML)
-    from_file, from_mapping = (yehu.Instrument(instrument=each) for each in (file, SLACK))
-    assert from_file.quantities == from_mapping.quantities
-    assert from_file.quantities.string_1.reach == 3.0
-    from_file.note_on("G4")
-    assert heard(from_file.play(0.6), 67) == pytest.approx(0.0, abs=12.0)
 
 
 @pytest.mark.parametrize("stereo", [False, True])

@@ -51,23 +51,6 @@ def test_in_a_notebook_it_is_a_player_that_holds_the_sound(device, monkeypatch):
     device.assert_not_called()
 
 
-def test_a_rendering_brings_its_rate_and_shows_itself_as_a_player(device):
-    tune = yehu.render([("A4", 0.0, 0.2)], sample_rate=48000, tail=0.0)
-    yehu.play(tune)
-    device.assert_called_once_with(ANY, 48000, blocking=True)
-    np.testing.assert_array_equal(device.call_args.args[0], tune.sound)
-    found, rate = of_page(tune)
-    assert rate == 48000
-    np.testing.assert_allclose(found, tune.sound, atol=2.0**-15)
-
-
-def test_pressure_is_scaled_to_be_heard(device):
-    run = yehu.simulate({"duration": 0.05, "controls": {"bow_force": 0.7, "bow_velocity": 0.3}})
-    yehu.play(run)
-    played = device.call_args.args[0]
-    assert np.abs(played).max() == pytest.approx(10.0 ** (-1.0 / 20.0))
-
-
 def test_without_a_device_or_a_sound_one_line_says_so(device, told):
     for names, sound, rate in (
         ("sound", "a.wav", None),

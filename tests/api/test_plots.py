@@ -13,7 +13,6 @@ import yehu_server as yehu
 from yehu_lab.regimes.columns import FINDING, HELMHOLTZ
 from yehu_lab.sweeps.result import Result, result_of
 from yehu_lab.sweeps.study import study_of
-from yehu_server import YehuError
 
 RATE = 44100
 BOWED = {"bow_force": [[0, 0], [0.03, 0.7]], "bow_velocity": [[0, 0], [0.03, 0.3]]}
@@ -71,32 +70,6 @@ def test_a_spectrogram_is_brightest_at_the_sine_and_has_its_pitch_over_it(plt):
     assert axes.get_ylim() == (0.0, 4.0)
 
 
-def test_pitch_and_level_of_an_array(plt):
-    for hertz in (440.0, 442.0):  # the pitch is counted from the reference
-        played = line(yehu.plot.pitch(sine(hertz), RATE, a4=hertz), "played").get_ydata()
-        assert np.nanmedian(played) == pytest.approx(69.0, abs=0.02)
-        plt.figure()
-    middle = line(yehu.plot.level(sine(440.0), RATE), "level (rms)").get_ydata()[10:-10]
-    assert middle == pytest.approx(-20.0 - 3.01, abs=0.3)
-
-
-def test_the_pitch_of_a_rendering_has_what_was_asked_for():
-    tune = yehu.render([("G4", 0.0, 0.4), ("C5", 0.4, 0.4)], dry=True, mono=True)
-    axes = yehu.plot.pitch(tune)
-    asked = line(axes, "asked").get_ydata()
-    assert set(np.round(asked[np.isfinite(asked)])) == {67.0, 72.0}
-    played = line(axes, "played")
-    at = np.searchsorted(played.get_xdata(), [0.25, 0.65])
-    assert played.get_ydata()[at] == pytest.approx([67.0, 72.0], abs=0.2)
-
-
-def test_the_pitch_of_a_simulation_is_found_however_quiet_it_is():
-    pressure = 1e-6 * sine(440.0)
-    quiet = types.SimpleNamespace(arrays={"pressure": pressure}, meta={"sample_rate": RATE})
-    axes = yehu.plot.pitch(quiet)
-    assert np.nanmedian(line(axes, "played").get_ydata()) == pytest.approx(69.0, abs=0.02)
-
-
 # ---------------------------------------------------------------- runs
 
 
@@ -143,14 +116,6 @@ def test_the_stack_of_energies_ends_at_what_was_given():
     assert "W missing" in axes.get_title("left")
 
 
-def test_a_plucked_string_begins_with_its_energy():
-    pluck = {"string": 1, "position": 0.1, "amplitude": 0.001}
-    axes = yehu.plot.energy(yehu.simulate({"duration": 0.1, "pluck": pluck}, energy=True))
-    # A triangle of height a: T a^2 / 2 (1 / x + 1 / (L - x)), and a little for its stiffness.
-    expected = 1e3 * 0.5 * 50.61 * 1e-6 * (1.0 / 0.1 + 1.0 / 0.2)
-    assert line(axes, "given").get_ydata() == pytest.approx(expected, rel=0.1)
-
-
 # ---------------------------------------------------------------- maps
 
 
@@ -174,16 +139,6 @@ def test_regimes_are_drawn_where_they_were_found(plt):
     assert mesh.get_coordinates()[0, :, 0].tolist() == pytest.approx([0.05, 0.15, 0.25])
 
 
-def test_a_third_axis_is_looked_at_where_it_is_told():
-    axes = {"bow_force": [0.1, 0.2], "press_force": [0.5, 1.0, 2.0], "bow_velocity": [0.1, 0.2]}
-    grid = np.arange(12).reshape(2, 3, 2) % 7
-    found = result(axes, regime=grid)
-    with pytest.raises(YehuError, match="press_force"):
-        yehu.plot.regimes(found, "bow_velocity", "bow_force")
-    drawn = yehu.plot.regimes(found, "bow_velocity", "bow_force", at={"press_force": 1.1})
-    np.testing.assert_array_equal(drawn.collections[0].get_array().reshape(2, 2), grid[:, 1])
-
-
 def test_schellengs_limits_are_his_closed_forms():
     beta = np.geomspace(0.05, 0.3, 5)
     forces = np.geomspace(0.05, 3.0, 4)
@@ -200,16 +155,6 @@ def test_schellengs_limits_are_his_closed_forms():
     np.testing.assert_allclose(lower * upper.get_xdata() ** 2, lower[0] * upper.get_xdata()[0] ** 2)
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
     assert labels(axes)[-2:] == ["Schelleng's upper limit", "Schelleng's lower limit"]
-
-
-def test_schelleng_counts_bow_positions_from_the_finger():
-    stopped = {"press_force": 1.5, "finger_position": 0.1}
-    axes = {"bow_position": [0.25, 0.28], "bow_force": [0.1, 1.0]}
-    found = result(axes, stopped, regime=[[1, 1]] * 2)
-    (mesh,) = yehu.plot.schelleng(found).collections
-    places = mesh.get_coordinates()[0, :, 0]
-    middles = 0.5 * (places[1:] + places[:-1])
-    assert middles.tolist() == pytest.approx([0.1, 0.25])  # of 0.2 m
 
 
 def test_guettler_counts_periods_from_the_first_slip_and_leaves_out_what_never_came():
@@ -238,15 +183,6 @@ def test_a_sweep_is_drawn_as_the_map_that_its_axes_are_for(plt):
 
 
 # ---------------------------------------------------------------- axes in, axes out
-
-
-def test_it_draws_into_the_axes_that_it_is_given(run, plt):
-    figure, panels = plt.subplots(1, 3)
-    found = result({"bow_position": [0.25, 0.28], "bow_force": [0.1, 1.0]}, regime=[[1, 1]] * 2)
-    assert yehu.plot.spectrogram(sine(440.0), RATE, ax=panels[0]) is panels[0]
-    assert yehu.plot.strings(run, 0.1, ax=panels[1]) is panels[1]
-    assert yehu.plot.schelleng(found, ax=panels[2]) is panels[2]
-    assert plt.get_fignums() == [figure.number]
 
 
 def test_what_cannot_be_drawn_is_told_in_one_line(run, monkeypatch, told):

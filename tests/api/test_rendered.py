@@ -1,6 +1,5 @@
 """``yehu.render``: files and lists of notes to sound, as the command renders them."""
 
-import math
 import shlex
 from pathlib import Path
 
@@ -61,20 +60,6 @@ def test_it_is_the_sound_of_the_command(plain, tmp_path, monkeypatch, command, o
     np.testing.assert_array_equal(found.sound, expected)
 
 
-def test_it_tells_what_it_was(tune):
-    found = yehu.render(str(tune), tail=0.5)
-    assert found.duration == pytest.approx(0.6 + 0.5, abs=0.01)
-    assert found.sound.shape == (round(found.duration * RATE), 2)
-    assert found.sound.dtype == np.float32
-    assert (found.name, found.warnings) == ("tune", ())
-    assert found.summary.notes_played == 2
-    assert found.summary.peak == pytest.approx(np.abs(found.sound).max())
-    times, asked = found.asked
-    assert asked[np.searchsorted(times, 0.15)] == pytest.approx(67.0)
-    assert asked[np.searchsorted(times, 0.45)] == pytest.approx(72.0)
-    assert math.isnan(asked[-1])
-
-
 def test_what_could_not_be_played_as_written_is_told(tmp_path):
     low = midi_file(tmp_path / "low.mid", notes((0.0, 0.2, 40, 90)))
     assert yehu.render(low).warnings == ("moved to fit F4 to F6: three octaves up",)
@@ -130,16 +115,6 @@ def test_notes_come_in_any_form():
         iter(PHRASE),
     ):
         np.testing.assert_array_equal(yehu.render(same, tail=0.0).sound, expected)
-
-
-def test_a_repeated_note_is_struck_twice_and_lasts():
-    notes_of = [("A4", 0.0, 0.5), ("A4", 0.3, 0.5)]
-    found = yehu.render(notes_of, tail=0.0)
-    assert found.summary.notes_played == 2
-    assert found.duration == pytest.approx(0.8, abs=0.01)
-    times, asked = found.asked
-    assert asked[np.searchsorted(times, 0.7)] == 69.0
-    np.testing.assert_array_equal(yehu.render(notes_of[::-1], tail=0.0).sound, found.sound)
 
 
 # ---------------------------------------------------------------- what is refused

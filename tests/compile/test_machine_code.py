@@ -7,16 +7,13 @@ import re
 import struct
 import subprocess
 import sys
-import tomllib
 import zlib
-from contextlib import nullcontext
 from functools import cache
 from pathlib import Path
 
 import compile_all
 import pytest
 
-from yehu_server.cli import terminal
 from yehu_server.cli.terminal import warn_of_compiling
 from yehu_server.compile import cache_folder, levels, machine_code
 from yehu_server.compile.cache_folder import source_hash
@@ -219,28 +216,6 @@ def test_commands_tell_that_something_is_compiled(monkeypatch, capsys):
                 Native, "is_cached", property(lambda self, missing=missing: self is not missing)
             )
             assert "compiling for this machine, once" in warned(more)
-
-
-@pytest.mark.parametrize("more", [{}, COMPILED])
-def test_commands_show_how_far_compiling_is(more, monkeypatch, capsys):
-    def warm_up(progress, more):
-        progress(1.0, 4.0)
-        asked.append(more)
-
-    shown, asked = [], []
-    bar = nullcontext(lambda done, total: shown.append((done, total)))
-    monkeypatch.setattr(warming, "warm_up", warm_up)
-    monkeypatch.setattr(terminal, "progress_bar", lambda *_: bar)
-    terminal.compile_all(argparse.Namespace(quiet=True), more)
-    assert (shown, asked) == ([(25.0, 100.0)], [more])
-    assert capsys.readouterr().err == ""
-
-
-def test_a_release_takes_the_files_along():
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    (pattern,) = project["tool"]["hatch"]["build"]["artifacts"]
-    shipped_folder = Path(machine_code.__file__).parent / "shipped"
-    assert (shipped_folder / "a.code").relative_to(ROOT).match(pattern)
 
 
 @pytest.mark.slow

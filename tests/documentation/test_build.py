@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.errors import OutputError, YehuError
+from yehu_server.errors import YehuError
 
-PLAYER = '<audio controls src="data:audio/wav;base64,c291bmQ="></audio>'
 HOOKS = Path(__file__).parents[2] / "scripts" / "documentation" / "hooks.py"
 
 
@@ -43,21 +42,6 @@ def test_a_site_replaces_an_earlier_one_whole(build, tmp_path):
     build(tmp_path / "site", "later")
     assert "later" in (tmp_path / "site" / "index.html").read_text()
     assert names_in(tmp_path) == {"site", "source"}
-
-
-def test_what_others_have_put_into_a_folder_is_not_lost(build, tmp_path):
-    (tmp_path / "home").mkdir()
-    (tmp_path / "home" / "diary.txt").write_text("mine")
-    with pytest.raises(OutputError, match=r"has other files, such as diary\.txt"):
-        build(tmp_path / "home")
-    assert names_in(tmp_path / "home") == {"diary.txt"}
-    build(tmp_path / "site")
-    (tmp_path / "site" / "CNAME").write_text("example.org")
-    with pytest.raises(OutputError, match="has other files, such as CNAME"):
-        build(tmp_path / "site")
-    with pytest.raises(OutputError, match="Not a directory"):
-        build(tmp_path / "site" / "CNAME")
-    assert (tmp_path / "site" / "CNAME").read_text() == "example.org"
 
 
 NIGHTLY = ("index.md#none", "#none", "none.png")
@@ -103,29 +87,6 @@ def notebooks(monkeypatch, tmp_path):
         return tmp_path / "note.ipynb"
 
     return module, written
-
-
-def test_a_notebook_becomes_a_page_with_its_code_and_what_it_shows(notebooks):
-    module, written = notebooks
-    shows = [
-        {"output_type": "stream", "text": ["1\n"]},
-        {"output_type": "display_data", "data": {"image/png": "aGVs\nbG8=", "text/plain": "<F>"}},
-        {"output_type": "execute_result", "data": {"text/plain": ["array", "(2)"]}},
-        {"output_type": "display_data", "data": {"text/html": PLAYER, "text/plain": "<A>"}},
-    ]
-    text, files = module.shown(written(TITLE, code("print(1)", *shows), code('"```"')))
-    assert text.rstrip().split("\n\n") == [
-        "# A note",
-        '<a href="note.ipynb" download>This notebook as a file</a>',
-        "Some words.",
-        "```python\nprint(1)\n```",
-        "```text\n1\n```",
-        "![what the code above draws](note_1.png)",
-        "```text\narray(2)\n```",
-        "[What the code above plays](note_2.wav)",
-        '``````python\n"```"\n``````',
-    ]
-    assert files == {"note_1.png": b"hello", "note_2.wav": b"sound"}
 
 
 @pytest.mark.slow

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import re
-import string
-import unicodedata
 from collections import Counter
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 import soundfile
-from fontTools.ttLib import TTFont
-from latex2mathml.converter import convert
 from live.page.browser import drive, missing, running
 from markdown_it import MarkdownIt
 from pages import PAGES, ROOT
@@ -95,23 +91,6 @@ def test_a_page_reads_on_the_site_as_on_github(subtests, content, place):
             assert not re.search(r"<a [^>]*>[\w/.-]+\.md</a>", here.text)
 
 
-def test_the_font_of_equations_has_their_characters():
-    """Single letters are drawn as mathematical italics."""
-    blocks = [
-        tex for page in PAGES for tex in re.findall(r"```math\n(.*?)\n```", page.text, re.DOTALL)
-    ]
-    drawn = {sign for tex in blocks for sign in "".join(Elements(convert(tex)).words)}
-    letters = drawn.intersection(string.ascii_letters) - {"h"}  # which is Planck's constant
-    sizes = {letter: "SMALL" if letter.islower() else "CAPITAL" for letter in letters}
-    named = (f"MATHEMATICAL ITALIC {size} {each.upper()}" for each, size in sizes.items())
-    with TTFont(ROOT / "docs" / "site" / "math.woff") as font:
-        assert len(blocks) > 10
-        assert "MATH" in font
-        known = font.getBestCmap()
-    assert {each for each in drawn if ord(each) not in known} <= {"\n"}
-    assert {name for name in named if ord(unicodedata.lookup(name)) not in known} == set()
-
-
 def test_a_page_begins_with_its_one_title_and_says_what_it_is_for(subtests):
     for page in PAGES:
         with subtests.test(page.name):
@@ -137,45 +116,12 @@ def test_links_out_of_the_docs_lead_to_pages_of_the_site(site, content):
 
 
 @pytest.mark.slow
-def test_a_figure_opens_large(content):
-    page = content("playability.html")
-    figures = [name for name in page.all("img", "src") if name and name.endswith(".png")]
-    assert figures
-    assert set(figures) <= set(page.all("a", "href"))
-
-
-@pytest.mark.slow
-def test_links_to_sounds_have_players_below(site, content):
-    links = re.findall(r"\((\S+\.flac)\)", (ROOT / "docs" / "playing.md").read_text("utf-8"))
-    page = content("playing.html")
-    assert links
-    assert page.all("audio", "src") == links
-    assert set(page.all("audio", "preload")) == {"none"}
-    for link in links:
-        assert (site / link).read_bytes() == (ROOT / "docs" / link).read_bytes()
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("module", [yehu, body, plot])
 def test_every_public_name_has_a_place_on_the_pages_of_the_interface(content, site, module):
     names = {f"{module.__name__}.{name}" for name in module.__all__ if not name.startswith("_")}
     for path in (site / "api").glob("*.html"):
         names -= {row.get("id") for _, row in content(f"api/{path.name}").found}
     assert names == set()
-
-
-def test_what_would_be_loaded_from_elsewhere_is_warned_of(monkeypatch, caplog):
-    monkeypatch.syspath_prepend(ROOT / "scripts" / "documentation")
-    import hooks
-
-    page = type("Page", (), {"file": type("File", (), {"src_uri": "a.md"})})
-    for text in ('<img alt="" src="https://x.org/a.png">', '<script src="//x.org/a.js">'):
-        caplog.clear()
-        hooks.on_post_page(text, page=page, config=None)
-        assert "loads" in caplog.text
-    caplog.clear()
-    hooks.on_post_page('<a href="https://x.org/"><img src="a.png"></a>', page=page, config=None)
-    assert not caplog.text
 
 
 # ---------------------------------------------------------------- in a browser

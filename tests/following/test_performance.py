@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from yehu_server.errors import ScoreError
 from yehu_server.following.frames import HOP_S
 from yehu_server.following.heard import Heard
 from yehu_server.following.notes import strokes_of
-from yehu_server.following.performance import STYLES, FollowOptions, dynamics_of, performed
+from yehu_server.following.performance import FollowOptions, dynamics_of, performed
 from yehu_server.scores.midi_export import midi_of_performance
 from yehu_server.scores.score import Setting, notes_of
 from yehu_server.scores.smf.reader import read_score
@@ -57,12 +56,6 @@ def test_low_voices_are_moved_by_octaves_as_little_as_can_be():
         assert asked(found, 60) == pytest.approx(pitch + semitones, abs=0.02)
 
 
-def test_a_note_beyond_the_range_is_moved_alone_and_counted():
-    found = played(held((np.nan, 9), (66.0, 200), (np.nan, 20), (92.0, 60), (np.nan, 9)))
-    assert (found.semitones, found.notes_moved) == (0.0, 1)
-    assert asked(found, 250) == pytest.approx(80.0, abs=0.02)
-
-
 def test_a_correction_moves_notes_to_the_tuning():
     swing, rest = 70.3 + 0.4 * np.sin(np.arange(200) * 0.2), held((np.nan, 9))
     curves = []
@@ -90,26 +83,6 @@ def test_dynamics_are_as_loud_as_their_source_says():
     assert dynamics_of(np.array([0.0, -12.0, -35.0])) == pytest.approx([1.0, 0.5, 0.1], abs=0.06)
 
 
-def test_a_style_plays_less_of_the_loudness():
-    level = np.concatenate((np.full(109, -40.0), np.full(100, -20.0)))
-    pitches = held((np.nan, 9), (70.0, 200))
-    least = [
-        min(settings(played(pitches, level=level, style=STYLES[name]), "/playing/dynamics"))
-        for name in ("exact", "gentle", "even")
-    ]
-    assert least[0] < least[1] < least[2] == 1.0
-
-
-def test_a_slow_beginning_is_played_slowly():
-    pitches, even = held((np.nan, 9), (70.0, 200)), np.full(209, -20.0)
-    slow = even.copy()
-    slow[9:29] = np.linspace(-60.0, -20.0, 20)
-    quickly, slowly = (
-        settings(played(pitches, level=level), "/playing/attack") for level in (even, slow)
-    )
-    assert slowly[0] > 2.0 * quickly[0]
-
-
 def test_its_midi_file_has_the_same_notes_and_bends(tmp_path):
     found = played(held((np.nan, 9), (70.3, 100), (73.4, 100), (np.nan, 9)))
     data, lost = midi_of_performance(found.score, 0.5)
@@ -119,11 +92,6 @@ def test_its_midi_file_has_the_same_notes_and_bends(tmp_path):
     wheel = [event.message.pitch for event in again.events if event.message.type == "pitchwheel"]
     assert wheel[0] * 24 / 8191 == pytest.approx(0.3, abs=0.01)
     assert set(lost) == {"/playing/attack", "/playing/variation"}
-
-
-def test_a_voice_without_notes_is_refused():
-    with pytest.raises(ScoreError, match="no note"):
-        played(held((np.nan, 100), (70.0, 4), (np.nan, 100)))
 
 
 def test_a_c5_that_moves_is_not_played_on_the_open_string():

@@ -15,9 +15,7 @@ from yehu_lab.practising.bowing_search import (
     EACH_S,
     EARLY_S,
     LATE_S,
-    LISTEN_S,
     BowingSearch,
-    has_pitch,
 )
 from yehu_lab.practising.candidates import slower
 from yehu_lab.practising.passages import Passage, SearchedNote
@@ -62,26 +60,6 @@ def test_a_manner_that_speaks_is_distinguished_from_one_that_cannot(table_search
     search = SearchedNote(string, note, DEFAULT, good)
     assert 0.7 < table_search.score(search, good, PASSAGES) <= 1.0
     assert table_search.score(search, bad, PASSAGES) < 0.6
-
-
-def test_a_mode_that_drowns_a_note_is_not_taken_for_it():
-    time = np.arange(round(LISTEN_S * RATE)) / RATE
-    note, mode = (np.sin(2.0 * np.pi * hz * time) for hz in (1318.51, 566.0))
-    for loudness, has in ((0.0, True), (0.1, True), (0.8, False), (3.0, False)):
-        assert has_pitch(note + loudness * mode, RATE, 88.0) == has, loudness
-    assert not has_pitch(0.0 * note, RATE, 88.0)
-
-
-def test_the_score_of_a_manner_is_always_the_same(table_search):
-    bowing = default_bowing_table()[0, PLACE, 70 - FIRST]
-    search = SearchedNote(0, 70, PLACE, bowing)
-    scores = {table_search.score(search, bowing, PASSAGES) for _ in range(3)}
-    assert len(scores) == 1
-
-
-def test_a_tuning_moves_each_note_to_its_nearest_pitch():
-    tuned = practising.pitches_near_notes({66.0: 66.3, 67.0: 66.9, 68.0: 68.6}.get)
-    assert [tuned[note] for note in (65, 66, 67, 68, 69)] == [65.0, 66.3, 66.9, 68.0, 68.6]
 
 
 def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late(monkeypatch):

@@ -60,17 +60,6 @@ def test_a_study_makes_one_file(study, tmp_path, capsys):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["found.npz", "study.toml"]
 
 
-def test_more_may_be_varied_than_the_study_does(study, tmp_path):
-    words = ["--vary", "speed=0.1,0.3", "--vary", "force=0.5", "--quiet"]
-    assert main(["sweep", study, "-o", str(tmp_path / "found.npz"), *words]) == 0
-    result = Result.load(tmp_path / "found.npz")
-    assert {name: len(values) for name, values in result.axes.items()} == {
-        "force": 1,
-        "position": 2,
-        "speed": 2,
-    }
-
-
 def test_a_gesture_is_varied_and_its_signals_kept(gesture, tmp_path):
     target, folder = tmp_path / "found.npz", tmp_path / "runs"
     words = ["--vary", "bow_force=0.3:1:2", "--vary", "bow_velocity=0.1,0.2", "--quiet"]
@@ -103,15 +92,6 @@ def test_signals_of_another_sweep_are_kept_unless_they_may_be_overwritten(
     assert run("0.7", "--overwrite") == 0
     names = {path.name for path in folder.iterdir()}
     assert names == {"0.npz", "mine.npz", "study.json"}
-
-
-def test_an_earlier_result_is_replaced_only_when_asked(study, tmp_path, capsys):
-    target = tmp_path / "found.npz"
-    target.write_text("mine")
-    assert main(["sweep", study, "-o", str(target)]) == 2
-    assert "--overwrite replaces it" in capsys.readouterr().err
-    assert main(["sweep", study, "-o", str(target), "--overwrite", "--quiet"]) == 0
-    assert len(Result.load(target)) == 6
 
 
 def test_a_wrong_call_is_told_in_a_line_before_anything_runs(gesture, study, tmp_path, refused):
@@ -166,16 +146,6 @@ def test_a_result_is_drawn(found, tmp_path, column):
     picture = (tmp_path / "found.png").read_bytes()
     assert picture.startswith(b"\x89PNG")
     assert len(picture) > 10_000
-
-
-def test_a_page_is_one_file_that_asks_for_no_other(found, tmp_path, capsys):
-    page = tmp_path / "found.html"
-    assert main(["sweep", "show", str(found), "-o", str(page), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["strokes"] == 6
-    text = page.read_text(encoding="utf-8")
-    assert "<title>Light and heavy</title>" in text
-    assert "http" not in text.replace("http-equiv", "")
-    assert "__" not in text
 
 
 def test_what_cannot_be_drawn_is_told(found, tmp_path, monkeypatch, refused):

@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from web_client import walk
 from wire import f32
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.live.osc import clients, handler
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.live.part_addresses import OF_PARTS, group_of
-from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, is_listenable, node_at
+from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, node_at
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
-from yehu_server.params.table import find as param
 from yehu_server.playing import learn as learned
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.learn import LearnedSource
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.parts import places, player_of
+from yehu_server.playing.parts import player_of
 from yehu_server.playing.player import Player
 
 VOLUME = "/playing/volume"
@@ -224,22 +221,6 @@ def test_what_a_part_learns_all_parts_of_its_mapping_have(still, players, monkey
     assert "another part" in error
 
 
-@pytest.mark.usefixtures("players")
-def test_a_part_that_learns_hears_ones_own_address(still, wire, monkeypatch):
-    found = []
-
-    def learn(mapping, _target, source, **_how):
-        found.append(source)
-        return mapping, "a file"
-
-    monkeypatch.setattr(learned, "learn", learn)
-    still.ask("/part/3/learn", VOLUME)
-    for place in (0.0, 0.3, 0.6, 0.9, 0.5, 0.1, 0.6, 0.9):
-        still.take(wire.message("/my/fader", place))
-        still.clock.now += 0.1
-    assert [source.source for source in found] == ["/my/fader"]
-
-
 def test_a_preset_is_loaded_by_a_part_and_leaves_what_all_share(still, players, monkeypatch):
     preset = Preset("loud", {VOLUME: 0.5, "/room/size": 30.0})
     monkeypatch.setattr(players[0].presets, "load", lambda _name: preset)
@@ -260,15 +241,6 @@ def test_a_preset_is_loaded_by_a_part_and_leaves_what_all_share(still, players, 
         players[0].write("/room/size", 5.0, frame=0)
         assert not errors(still.ask(f"{first}/preset/load", "loud"))
         assert players[0].value("/room/size") == 30.0
-
-
-def test_a_morph_of_rooms_in_another_part_than_the_first_says_what_it_leaves_out(still, players):
-    (error,) = errors(still.ask("/part/3/preset/morph", "study", "hall", 1.0))
-    assert error.startswith("/room/size, /room/decay, /room/damping, /room/level: one for all")
-    assert players[2].value("/room/size") == players[0].value("/room/size") == 5.0
-    assert players[2].value("/body/width") == 0.4  # of the hall, and a body is each part's own
-    assert not errors(still.ask("/preset/morph", "study", "hall", 1.0))
-    assert players[0].value("/room/size") == 25.0
 
 
 # ---------------------------------------------------------------- messages that wait
@@ -305,25 +277,6 @@ def test_the_tree_has_each_part_with_all_that_is_its_own(still, players):
     writable = {path for path, node in walk(part) if node["ACCESS"] & 2}
     known = {one for one in still.handler.addresses if one.startswith("/yehu/part/2/")}
     assert writable == known
-
-
-def test_one_may_listen_to_what_the_parts_have():
-    for address in ("/part/1/playing/volume", "/part/3/playing/volume/unit", "/status/load"):
-        assert is_listenable(address, 3)
-    for address in [
-        *("/part/2/status/load", "/part/4/playing/volume", "/part/0/playing/volume", "/part/2"),
-        *("/part/2/room/size", "/part/2/part/2/playing/volume"),
-    ]:
-        assert not is_listenable(address, 3)
-
-
-def test_parts_sit_side_by_side_within_the_room():
-    pan = param("/room/pan")
-    for count in range(2, MOST_PARTS + 1):
-        pans = [dict(place)["/room/pan"] for place in places(count)]
-        assert pan.lo < pans[0] == pytest.approx(-pans[-1])
-        assert pans[-1] < pan.hi
-        assert np.diff(pans) == pytest.approx((pans[-1] - pans[0]) / (count - 1))
 
 
 # ---------------------------------------------------------------- a whole server

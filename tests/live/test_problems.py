@@ -7,7 +7,6 @@ from types import SimpleNamespace
 import pytest
 from wire import StillTime
 
-from yehu_server.cli.report import status_line
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.live import housekeeper
@@ -20,12 +19,6 @@ from yehu_server.live.housekeeper import (
 from yehu_server.playing.delay import Delay
 
 DROPS, LOSSES = "packets were dropped", "the state was lost"
-
-
-STATUS = {
-    "note": -1.0, "bow_speed": 0.0, "device": "a device with a long name", "peak_db": -160.0,
-    "load": 0.1, "missed_deadlines": 0, "underruns": 0, "midi_ports": "", "recording": "",
-}  # fmt: skip
 
 
 @pytest.fixture
@@ -90,24 +83,3 @@ def test_there_is_a_line_at_once_and_then_one_a_minute(clock) -> None:
     ]  # fmt: skip
     assert "(242 so far)" in said[-1]
     assert "--blocksize" in said[0]
-
-
-def test_the_end_has_the_sum_if_there_were_any(clock) -> None:
-    said: list[str] = []
-    report = UnderRunReport(said.append)
-    report.report(0)
-    report.sum_up(0, 0)
-    assert said == []
-    report.report(1)
-    clock.now += 30.0
-    report.report(5)
-    report.sum_up(5, 1)
-    assert said[1:] == ["5 under-runs and 1 missed deadline in 30 s"]
-
-
-def test_the_status_line_begins_with_them_where_there_are_any() -> None:
-    assert status_line(STATUS).startswith("a device")
-    assert "under-runs 0" in status_line(STATUS)
-    line = status_line(STATUS | {"underruns": 16_600})
-    assert line.startswith("under-runs 16600 | missed 0 | a device")
-    assert line.count("under-runs") == 1

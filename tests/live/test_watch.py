@@ -45,10 +45,3 @@ def test_a_changed_file_is_taken_up_while_a_note_sounds_or_refused_whole(watched
     assert watched.player.pitch is not None
     assert send(20) == 1.0
     assert send(22) == 0.0
-
-
-def test_without_it_a_file_is_read_once(make_live, path):
-    live = make_live(playing=PlayingOptions(mapping=load(str(path))))
-    path.write_text("wrong")
-    live.wait_frames(60_000)
-    assert live.said == []

@@ -16,15 +16,10 @@ from yehu_server.params.preset_file import (
     morph,
     preset_from,
 )
-from yehu_server.params.spec import Curve, Place
+from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE
 
 HEAD = "version = 1\n"
-
-
-def of(**values: float) -> Preset:
-    """A preset of parameters under /playing."""
-    return Preset("one", {f"/playing/{name}": value for name, value in values.items()})
 
 
 # ---------------------------------------------------------------- files
@@ -46,12 +41,6 @@ def test_a_preset_may_have_all_the_players_and_nothing_that_the_player_moves():
     assert not any(POSSIBLE[address].player_controlled for address in POSSIBLE)
     assert set(SAVED) == set(POSSIBLE) - NOT_SAVED
     assert set(POSSIBLE) >= NOT_SAVED
-
-
-def test_what_a_file_says_of_itself_is_kept():
-    preset = parse(HEAD + 'about = "a  line\\nor two"\nprogram = 128\n', "mine")
-    assert preset == Preset("mine", {}, "a line or two", 128)
-    assert parse(HEAD, "mine").program is None
 
 
 def test_an_unknown_address_is_left_out_with_a_remark_and_the_rest_is_read():
@@ -101,35 +90,6 @@ def test_a_morph_begins_and_ends_at_the_very_values():
     third = {address: param.from_unit(1.0 / 3.0) for address, param in POSSIBLE.items()}
     for amount, values in ((0.0, one.values), (-3.0, one.values), (1.0, third), (7.0, third)):
         assert morph(one, Preset("other", third), amount) == values
-
-
-def test_half_way_is_half_the_way_along_the_curve():
-    one = Preset("one", {address: param.lo for address, param in POSSIBLE.items()})
-    other = Preset("other", {address: param.hi for address, param in POSSIBLE.items()})
-    for address, half in morph(one, other, 0.5).items():
-        param = POSSIBLE[address]
-        if param.is_choice:
-            assert half == param.hi, address
-        elif param.curve is Curve.EXP:
-            assert half == pytest.approx((param.lo * param.hi) ** 0.5), address
-        else:
-            assert half == pytest.approx(0.5 * (param.lo + param.hi)), address
-
-
-def test_a_switch_turns_over_at_a_half_and_is_never_between():
-    on, off = of(pizzicato=1.0), of(pizzicato=0.0)
-    for one, other in ((on, off), (off, on)):
-        for amount in (0.01, 0.49, 0.5, 0.99):
-            end = other if amount >= 0.5 else one
-            assert morph(one, other, amount) == end.values
-
-
-def test_what_only_one_names_goes_to_or_from_its_default():
-    default = POSSIBLE["/playing/vibrato"].default
-    assert morph(of(vibrato=40.0), of(), 0.25) == {
-        "/playing/vibrato": pytest.approx(40.0 + 0.25 * (default - 40.0))
-    }
-    assert morph(of(), of(vibrato=40.0), 0.0) == {"/playing/vibrato": default}
 
 
 def test_a_morph_never_leaves_the_range():

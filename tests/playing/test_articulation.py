@@ -17,19 +17,6 @@ def key(note: float) -> Key:
 # ---------------------------------------------------------------- dynamics
 
 
-def test_less_dynamics_is_a_slower_bow_and_a_lower_level_while_a_note_sounds(player, listener):
-    player.note_on(key(75))
-    loud = listener["/bow/speed"], listener["/output/level"]
-    player.write("/playing/dynamics", 0.5)
-    assert listener["/bow/speed"] == pytest.approx(loud[0] * 0.725)
-    assert listener["/output/level"] == pytest.approx(0.5**1.5)
-    player.write("/playing/dynamics", 1.0)
-    assert (listener["/bow/speed"], listener["/output/level"]) == loud
-    player.note_off(key(75))
-    player.write("/playing/dynamics", 0.3)
-    assert listener["/bow/speed"] == 0.0
-
-
 def test_without_dynamics_the_bow_leaves_the_string_and_comes_back_with_them(player, listener):
     player.write("/playing/attack", 33.0)
     player.write("/playing/release", 77.0)
@@ -52,35 +39,6 @@ def test_a_note_without_dynamics_is_fingered_and_waits_for_the_breath(player, li
     assert not listener.of("/bow/side")
     player.write("/playing/dynamics", 0.5)
     assert listener.where() == ("F", 5)
-
-
-# ---------------------------------------------------------------- vibrato and tremolo
-
-
-def test_vibrato_and_tremolo_are_as_requested(player, listener):
-    player.note_on(key(75))
-    assert listener["/vibrato/depth"] == 0.0
-    for command, moved, value in [
-        ("vibrato", "/vibrato/depth", 25.0),
-        ("vibrato_rate", "/vibrato/rate", 6.5),
-        ("vibrato_press", "/vibrato/press", 0.2),
-        ("tremolo", "/bow/tremolo", 9.0),
-        ("tremolo", "/bow/tremolo", 0.0),
-    ]:
-        player.write(f"/playing/{command}", value)
-        assert listener[moved] == value
-
-
-def test_the_vibrato_of_each_note_comes_in_anew_without_delay_at_once(player, listener):
-    player.write("/playing/vibrato_delay", 0.0)
-    player.note_on(key(75))
-    assert [move.value for move in listener.of("/vibrato/onset")] == [1.0]
-    player.write("/playing/vibrato_delay", 600.0)
-    for note in (77, 79):
-        player.note_on(key(note))
-        begins, comes = listener.of("/vibrato/onset")[-2:]
-        assert (begins.value, begins.ramp_ms) == (0.0, 0.0)
-        assert (comes.value, comes.ramp_ms) == (1.0, 600.0)
 
 
 # ---------------------------------------------------------------- pizzicato
@@ -137,16 +95,6 @@ def hands(listener, tune) -> Checked:
     player = Checked(listener, tuning=Tuning("test", tuple(map(tune, KEYS))))
     player.write("/playing/variation", 0.0)
     return player
-
-
-def test_a_tuning_says_where_keys_are(listener):
-    player = hands(listener, lambda note: {75: 74.5, 76: None}.get(note, note))
-    player.note_on(key(75.0))
-    assert listener.where() == ("C", 2.5)
-    assert player.notes_out_of_range == 0
-    assert not player.note_on(key(76.0))
-    assert player.notes_out_of_range == 1
-    assert listener.where() == ("C", 2.5)
 
 
 def test_a_tuning_a_little_below_the_open_string_is_that_and_one_far_below_moved_by_octaves(

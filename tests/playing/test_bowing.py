@@ -87,12 +87,6 @@ def test_pressure_goes_from_flautando_to_scratch_without_a_step():
         assert 0.0 < np.diff(pressures).min() < np.diff(pressures).max() < 0.1
 
 
-def test_between_two_notes_a_pitch_is_bowed_in_between():
-    for string, note in ((0, 66), (0, 71), (1, 73), (1, 83)):
-        middle = np.mean([usual(string, note), usual(string, note + 1)], axis=0)
-        assert bowed(string, note + 0.5) == pytest.approx(middle)
-
-
 def test_between_two_places_a_note_is_bowed_in_between_and_beyond_them_as_at_the_last():
     table = default_bowing_table()
     table[0, :, :, DISTANCE_FACTOR] = np.arange(len(PLACES))[:, None]
@@ -121,14 +115,6 @@ def listener() -> Watched:
     return Watched(calibration=ideal(), bowing=bowing)
 
 
-def test_a_difficult_note_is_bowed_no_faster_than_it_bears(player, listener):
-    player.write("/playing/speed", 0.3)
-    player.note_on(Key(0, 69))
-    assert abs(listener["/bow/speed"]) == SLOWEST
-    player.note_on(Key(0, 74))
-    assert abs(listener["/bow/speed"]) == 0.3
-
-
 def test_the_bow_moves_farther_for_a_note_that_wants_it_and_back_unless_it_is_held(
     player, listener
 ):
@@ -140,13 +126,6 @@ def test_the_bow_moves_farther_for_a_note_that_wants_it_and_back_unless_it_is_he
     player.write("/bow/position", 0.12, hold=True)
     player.note_on(Key(0, 66))
     assert listener["/bow/position"] == 0.12
-
-
-def test_the_finger_presses_hard_enough_for_its_note(player, listener):
-    player.note_on(Key(0, 66))
-    assert listener.press == HARDEST
-    player.write("/playing/press", 5.0)
-    assert listener.press == 5.0
 
 
 def test_a_loud_note_is_turned_down_as_far_as_evenness_is_asked(player, listener):

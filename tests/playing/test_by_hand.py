@@ -12,7 +12,6 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.part_state import Key
-from yehu_server.playing.pitch_and_level import a_weighted_db
 from yehu_server.playing.player import Player
 
 
@@ -35,31 +34,6 @@ def test_the_bow_follows_the_finger_to_the_other_string_until_it_is_lifted(playe
         sides.append(listener["/bow/side"])
     player.draw(0.0, 0.0)
     assert [*sides, listener["/bow/side"]] == [1.0, -1.0, 1.0, 0.0]
-
-
-def test_lifting_touches_only_a_bow_drawn_by_hand_and_a_note_takes_it_back(player, listener):
-    player.note_on(Key(0, 67))
-    moves = len(listener.moves)
-    player.lift()
-    assert len(listener.moves) == moves
-    player.note_off(Key(0, 67))
-    player.draw(0.2, 0.7)
-    player.lift()
-    assert (listener["/bow/speed"], listener["/bow/side"]) == (0.0, 0.0)
-    player.draw(0.2, 0.7)
-    player.note_on(Key(0, 74))
-    assert listener["/bow/assist"] == 1.0
-    assert listener.where() == ("C", 2.0)
-
-
-def test_a_sounding_note_may_lie_between_the_keys_and_slides_to_a_pitch(player, listener):
-    player.note_on(Key(0, 67.5))
-    assert listener.where() == ("F", 2.5)
-    player.slide(68.25)
-    assert listener.where() == ("F", 3.25)
-    player.note_off(Key(0, 67.5))
-    assert listener["/bow/speed"] == 0.0
-    assert (player.slide(20.0), player.slide(120.0)) == (65.0, 89.0)  # the nearest there is
 
 
 # ---------------------------------------------------------------- what is told, and how loud it is
@@ -116,18 +90,6 @@ def drawn_by_hand(pitches, seconds: float, evenness: float) -> np.ndarray:
         instrument.process(sound)
         out.append(sound)
     return np.concatenate(out)
-
-
-def test_by_hand_the_loudest_note_is_not_much_louder_than_the_softest():
-    """Notes are bowed as each needs; by hand nothing does that, so the loudness is less even."""
-
-    def spread(evenness: float) -> float:
-        sounds = [drawn_by_hand([pitch], 0.6, evenness) for pitch in (66, 73, 78)]
-        levels = [a_weighted_db(sound[-11025:], RATE) for sound in sounds]
-        return max(levels) - min(levels)
-
-    assert spread(0.0) > 15.0
-    assert spread(1.0) < 8.0
 
 
 def test_a_slide_by_hand_is_evened_out_without_a_click():

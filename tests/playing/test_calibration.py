@@ -13,7 +13,7 @@ from pitch import cents, hertz, pitch_of
 from sound import run, run_for
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import (
     OPEN_NOTES,
     PITCHES,
@@ -22,7 +22,6 @@ from yehu_server.core.player.calibration import (
     Calibration,
 )
 from yehu_server.core.player.intonation import balance_db, position_of
-from yehu_server.playing import calibration_store
 from yehu_server.playing.calibration import _completed, calibration_key
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
@@ -41,12 +40,6 @@ def test_a_calibration_is_of_its_rate_its_instrument_and_its_pitch():
         for a4 in (440.0, 442.0)
     }
     assert len(keys) == 12
-
-
-def test_what_is_shipped_is_not_measured_again(monkeypatch):
-    monkeypatch.setattr(calibration_store, "calibrate", None)
-    for rate in RATES:
-        assert calibration_for(int(rate), a4=440) == calibration_for(rate)
 
 
 def test_a_note_that_could_not_be_measured_is_between_its_neighbours_at_each_speed():
@@ -165,18 +158,3 @@ def loudness(note: int, velocity: int, wheel: int | None, **settings: float) -> 
     return a_weighted_db(
         run(begun(note, 44100.0, velocity, wheel, **settings), 30870)[13230:], 44100.0
     )
-
-
-def test_another_reference_pitch_is_calibrated_for(monkeypatch, tmp_path, everything):
-    monkeypatch.setattr(calibration_store, "data_folder", lambda: tmp_path)
-    # Fingers that reach less far have fewer notes to measure.
-    near = {f"string_{number}": {"reach": 3.0} for number in (1, 2)}
-    quantities = MEASURED if everything else override(MEASURED, near)
-    told = []
-    calibration_for(
-        22050.0, quantities, a4=430.0, progress=lambda done, total: told.append((done, total))
-    )
-    assert told[-1] == ((36, 36) if everything else (8, 8))
-    for note in (72, 77, 84) if everything else (68, 72, 75):
-        pitch = heard(note, 22050.0, 80, None, 430.0, quantities)
-        assert abs(cents(pitch, 430.0 / 440.0 * hertz(note))) < 10.0

@@ -9,12 +9,9 @@ import numpy as np
 import pytest
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import PLACES
 from yehu_server.core.player.calibration import GAINS
 from yehu_server.errors import ParameterError
-from yehu_server.params.table import find
 from yehu_server.playing import calibration_store
-from yehu_server.playing.bowing_tables import shipped_bowing_table
 from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
 from yehu_server.util import checksummed
@@ -100,16 +97,6 @@ def test_on_a_full_disk_it_is_measured_and_told_in_one_line(kept, caplog, monkey
     assert "No space left on device" in line
 
 
-def test_what_cannot_be_written_is_measured_once(kept, monkeypatch):
-    """The parts of an ensemble share a calibration, on a disk that is full or read-only, too."""
-    (kept.folder / "file").touch()
-    for times, nowhere in enumerate(("file", "none"), start=1):
-        monkeypatch.setattr(calibration_store, "data_folder", lambda at=nowhere: kept.folder / at)
-        monkeypatch.setattr(calibration_store, "_unkept", {})
-        assert kept.ask() == kept.ask() == MEASURED
-        assert kept.measured == times
-
-
 def spoiled(**changes):
     return {**json.loads(json.dumps(asdict(MEASURED))), **changes}
 
@@ -136,15 +123,3 @@ def test_what_no_measuring_could_have_found_is_no_calibration(subtests):
     ]:
         with subtests.test(data=data), pytest.raises(ParameterError):
             read_calibration(data, Quantities(), 441.0)
-
-
-def test_a_calibration_is_of_how_notes_are_bowed_at_the_usual_place(kept):
-    bowing = shipped_bowing_table(50000.0)
-    usual = PLACES.index(find("/playing/bow_position").default)
-    bowing[:, usual - 1] *= 1.1
-    calibrations = [calibration_for(50000.0, a4=441.0, bowing=each) for each in (None, bowing)]
-    assert kept.measured == 1
-    bowing[:, usual] *= 1.1
-    calibrations += [calibration_for(50000.0, a4=441.0, bowing=bowing) for _ in range(2)]
-    assert kept.measured == 2
-    assert calibrations == [MEASURED] * 4

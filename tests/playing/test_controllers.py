@@ -47,16 +47,6 @@ def test_rpn_0_sets_the_bend_range(midi, player):
         assert player.value("/playing/bend") == pytest.approx(semitones), data
 
 
-def test_a_new_bend_range_is_heard_at_once_and_in_later_notes(midi, listener):
-    midi.on(77)
-    midi.bend(-8192)
-    midi.rpn(0, 0, (6, 3))
-    assert listener.where() == ("C", 2)
-    midi.off(77)
-    midi.on(80)
-    assert listener.where() == ("C", 5)
-
-
 def test_data_entry_for_anything_else_leaves_the_bend_range_alone(midi, player):
     midi.on(77)
     midi.bend(8191)
@@ -72,26 +62,6 @@ def test_data_entry_for_anything_else_leaves_the_bend_range_alone(midi, player):
         for control, value in [*preamble, (6, 12), (38, 50), (96, 0), (97, 0), (97, 0)]:
             midi.cc(control, value)
         assert player.value("/playing/bend") == 2.0, preamble
-
-
-def test_each_channel_has_its_own_bend_and_bend_range(midi, listener):
-    midi.rpn(0, 0, (6, 12), channel=2)
-    midi.bend(8191, channel=1)
-    midi.bend(4096, channel=2)
-    midi.on(77, channel=1)
-    assert listener.where() == ("C", 7)
-    midi.on(77, channel=2)
-    assert listener.where()[1] == pytest.approx(11, abs=0.01)
-    midi.off(77, channel=2)  # back to the held one
-    assert listener.where() == ("C", 7)
-
-
-def test_the_bend_of_one_channel_does_not_choose_the_string_for_another(midi, listener):
-    midi.bend(-8192, channel=1)
-    midi.on(77, channel=1)
-    midi.off(77, channel=1)
-    midi.on(72, channel=2)
-    assert listener.where() == ("C", None)
 
 
 # ---------------------------------------------------------------- pressure
@@ -125,17 +95,6 @@ def test_poly_pressure_presses_the_finger_of_its_own_note_only_and_ends_with_it(
     for note in (77, 79):
         midi.on(note)
         assert listener.press == PRESS
-
-
-# ---------------------------------------------------------------- controllers
-
-
-def test_a_bend_does_not_bring_the_velocity_back(midi, player, listener):
-    midi.on(75, velocity=1)
-    player.write("/playing/pressure", 0.5)
-    midi.bend(100)
-    midi.touch(20)
-    assert listener["/bow/pressure"] == 0.5
 
 
 # ---------------------------------------------------------------- reset all controllers
@@ -176,24 +135,6 @@ def test_reset_all_controllers_ends_poly_pressure_and_what_only_the_pedal_held(
     assert listener.press == PRESS
     midi.off(77)
     assert player.sounding is None
-
-
-def test_reset_all_controllers_keeps_the_bend_range_but_closes_data_entry(midi, player):
-    midi.rpn(0, 0, (6, 12))
-    midi.cc(121, 0)
-    midi.cc(6, 5)
-    midi.on(77)
-    midi.bend(8191)
-    assert player.value("/playing/bend") == 12.0
-
-
-def test_reset_all_controllers_does_not_bend_the_note_of_another_channel(midi, listener):
-    midi.on(77, channel=1)
-    midi.bend(8191, channel=1)
-    midi.touch(127, channel=1)
-    midi.cc(121, 0, channel=2)
-    assert listener.where() == ("C", 7)
-    assert listener.press == HARDEST
 
 
 def test_rpn_1_and_2_tune_the_notes_of_a_channel(midi, listener):

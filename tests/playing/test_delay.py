@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.playing.delay import HELD_WINDOWS, Delay
@@ -37,24 +35,6 @@ def test_what_two_windows_in_a_row_tell_is_waited_for():
         assert device.window(period) == BLOCK + HANDLING
         assert device.window(period) == period + HANDLING
         assert device.delay.period == period
-
-
-def test_what_happens_once_is_an_accident():
-    device = Device()
-    chance = np.random.default_rng(1)
-    for _ in range(100):
-        assert device.window(chance.choice([3000.0, 14400.0])) == BLOCK + HANDLING
-        assert device.delay.period == BLOCK
-        for _ in range(chance.integers(1, 3)):
-            device.window(BLOCK)
-
-
-def test_a_device_that_is_a_little_early_or_late_changes_nothing():
-    device = Device()
-    chance = np.random.default_rng(1)
-    for period in (128, 1024):
-        waits = {device.window(period + chance.uniform(-40.0, 23.0), period) for _ in range(200)}
-        assert waits - {BLOCK + HANDLING} <= {period + HANDLING}
 
 
 def test_a_device_that_asks_for_less_is_believed_after_a_while():

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import os
 import tomllib
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from curves import from_unit
 
 from yehu_server.cli import main
-from yehu_server.errors import MappingError, OutputError, ParameterError
+from yehu_server.errors import MappingError, OutputError
 from yehu_server.params.table import TABLE
 from yehu_server.playing.learn import LearnedSource, changes, learn, unlearn
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
-from yehu_server.playing.mapping_file import read_mapping_file
 
 KNOB = LearnedSource("cc 20")
 
@@ -57,22 +54,6 @@ def test_every_parameter_that_the_player_does_not_move_can_be_learned(everything
         assert load("mine/keyboard") == mapping, param.address
 
 
-def test_what_is_learned_moves_the_notes_of_every_box():
-    of_all = {"cc 20": True, "bend": True, "pressure": True, "poly-pressure": False, "/x": False}
-    for source, is_global in of_all.items():
-        mapping, _ = learn(load("keyboard"), "/playing/vibrato", LearnedSource(source), soft=False)
-        (bind,) = mapping.of(source)
-        assert bind.is_global is is_global, source
-
-
-def test_what_the_player_moves_and_what_comes_from_no_file_cannot_be_learned(settings):
-    with pytest.raises(ParameterError, match="/bow/speed is moved by the player"):
-        learn(load("keyboard"), "/bow/speed", KNOB, soft=False)
-    with pytest.raises(MappingError, match="comes from no file"):
-        learn(Mapping("bare", ()), "/playing/vibrato", KNOB, soft=False)
-    assert not settings.exists()
-
-
 def test_nothing_else_moves_what_was_learned_and_a_knob_moves_what_it_learned_last():
     assert movers(load("keyboard"), "/playing/pressure") == ["velocity"]
     mapping, _ = learn(load("keyboard"), "/playing/pressure", KNOB, soft=False)
@@ -87,12 +68,6 @@ def test_nothing_else_moves_what_was_learned_and_a_knob_moves_what_it_learned_la
     assert count == 1
     assert movers(mapping, "/playing/pressure") == ["velocity"]
     assert unlearn(mapping, "/playing/pressure") == (mapping, 0)
-
-
-def test_zones_that_the_command_line_asked_for_stay():
-    mapping, _ = learn(replace(load("keyboard"), mpe=True), "/playing/vibrato", KNOB, soft=False)
-    assert mapping.mpe
-    assert unlearn(mapping, "/playing/vibrato")[0].mpe
 
 
 def test_a_file_of_ones_own_keeps_its_comments_and_order(tmp_path):
@@ -218,15 +193,6 @@ def test_after_all_is_forgotten_all_is_as_it_was(subtests, file, alone):
             assert binds(mapping) == binds(before)
 
 
-def test_what_was_learned_otherwise_stays_as_something_is_forgotten(file):
-    mapping = taught(load(str(file)), GAIN, "cc 5")
-    mapping = unlearn(taught(mapping, VIBRATO, "cc 21"), GAIN)[0]
-    assert movers(mapping, VIBRATO) == ["cc 21"]
-    assert moved_by(mapping, "cc 5") == ["/playing/vibrato_press"]
-    again = unlearn(taught(mapping, GAIN, "cc 21"), GAIN)[0]
-    assert binds(again) == binds(mapping)
-
-
 def test_a_learned_bind_comes_back_where_it_was_changed_by_hand(file):
     changed = ['curve = "s"', "span = [0, 30]", "invert = true", "smoothing = 50", "channel = 2"]
     for change in ["", *changed]:
@@ -237,17 +203,6 @@ def test_a_learned_bind_comes_back_where_it_was_changed_by_hand(file):
         before = load(str(file))
         again, _ = unlearn(taught(before, VIBRATO, "cc 21"), VIBRATO)
         assert again.binds == (before.binds if change else ()), change
-
-
-def test_what_is_kept_survives_conversion_by_way_of_json(file, tmp_path, capsys):
-    taught(load(str(file)), "/output/gain", "cc 5")
-    assert main(["mappings", "show", str(file), "--json"]) == 0
-    shown = capsys.readouterr().out
-    assert len(json.loads(shown)["bind"][-1]["replaces"]) == 2
-    (tmp_path / "shown.json").write_text(shown)
-    assert main(["mappings", "convert", str(tmp_path / "shown.json")]) == 0
-    (tmp_path / "again.toml").write_text(capsys.readouterr().out)
-    assert read_mapping_file(tmp_path / "again.toml").binds == read_mapping_file(file).binds
 
 
 def test_what_is_wrong_in_what_is_kept_is_told_with_its_place(file, capsys):

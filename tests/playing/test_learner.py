@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import mido
 
-from yehu_server.playing.learn import LearnedSource, Learner
+from yehu_server.playing.learn import Learner
 
 
 def cc(control: int, *values: int, channel: int = 0) -> list[mido.Message]:
@@ -59,21 +59,3 @@ def test_two_halves_are_found_as_one_of_fourteen_bits_where_there_are_two():
     assert heard(pairs)[:1] == ["cc 1/33"]
     assert set(heard(pairs)) == {"cc 1/33"}
     assert heard(cc(33, 0, 64)) == ["cc 33"]
-
-
-def test_a_non_registered_parameter_is_found_by_its_number():
-    assert heard([*cc(99, 2), *cc(98, 44), *cc(6, 0, 64)]) == ["nrpn 300"]
-    assert heard([*cc(99, 127), *cc(98, 127), *cc(6, 0, 64)]) == []
-    assert heard([*cc(99, 2), *cc(98, 44), *cc(101, 0), *cc(100, 0), *cc(6, 0, 64)]) == []
-
-
-def test_an_address_of_the_users_own_is_found_with_its_range():
-    for sent, found in [
-        ([0.2, 0.22, 0.3], [LearnedSource("/fader1")]),
-        ([0.0, 1.0], [LearnedSource("/fader1")]),
-        ([10.0, 12.0, 60.0], [LearnedSource("/fader1", (0.0, 127.0))]),
-        ([0.5], []),
-    ]:
-        learner = Learner()
-        answers = [learner.learn_from_address("/fader1", argument) for argument in sent]
-        assert [answer for answer in answers if answer] == found

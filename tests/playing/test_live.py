@@ -63,14 +63,6 @@ def test_what_arrives_is_heard_a_constant_time_later(live, instrument):
     assert np.diff(frames) == pytest.approx(48, abs=1)
 
 
-def test_messages_of_one_source_keep_their_order_over_corrections_of_the_clock(live):
-    frames = iter([100, 200, 190, 210, 205])
-    arrivals = Arrivals(lambda _arrived_ns: next(frames), live.instrument.rate)
-    assert [arrivals.frame_of(0) for _ in range(5)] == [100, 200, 200, 210, 210]
-    frames = iter([10**7, 300])  # a device that began anew
-    assert [arrivals.frame_of(0) for _ in range(2)] == [10**7, 300]
-
-
 def test_messages_of_one_source_keep_their_order_where_the_delay_becomes_shorter(live, instrument):
     instrument.process(np.zeros(480, np.float32))
     arrivals, frames = Arrivals(live.frame_of, instrument.rate), []
@@ -79,22 +71,6 @@ def test_messages_of_one_source_keep_their_order_where_the_delay_becomes_shorter
         frames.append(arrivals.frame_of(time.monotonic_ns() + 100_000 * number))
     assert frames == sorted(frames)
     assert frames[30] - frames[10] >= 1072 - 176  # more, unless the clock has come to its end
-
-
-def test_what_arrives_is_played_before_what_is_tagged_for_later(live, instrument):
-    live.key_on(67.0, 90.0, frame=500)  # with a time tag
-    receive(live, mido.Message("note_on", note=72, velocity=90), frame=300, port=0)
-    receive(live, mido.Message("note_off", note=72), frame=350, port=0)
-    live.key_off(67.0, frame=600)
-    pitches = []
-    for _ in range(7):  # frames 0, 100, ... 600
-        run(instrument, 1)
-        pitches.append(live.pitch)
-        run(instrument, 99)
-    assert pitches == [
-        None, None, None, pytest.approx(72.0, abs=0.5), None, pytest.approx(67.0, abs=0.5), None
-    ]  # fmt: skip
-    assert instrument.target("/bow/speed") == 0.0
 
 
 @pytest.mark.parametrize("ending", ["note_off", "end_notes", "panic"])
@@ -106,13 +82,6 @@ def test_a_note_that_is_ended_before_it_begins_does_not_hang(live, instrument, e
     run(instrument, 1000)
     assert live.pitch is None
     assert instrument.target("/bow/speed") == 0.0
-
-
-def test_direct_writes_to_the_instrument_do_not_wait_for_decisions(live, instrument):
-    live.key_on(67.0, 90.0, frame=500)
-    live.set("/bow/position", 0.2, frame=100)
-    run(instrument, 101)
-    assert instrument.target("/bow/position") == 0.2
 
 
 def test_what_was_set_is_told_until_it_is_reached_and_then_what_became_of_it(live, instrument):
@@ -189,13 +158,6 @@ def test_nothing_sounds_on_after_the_end_and_a_panic_is_silent_within_ten_millis
     assert np.abs(tail[-4800:]).max() < 1e-3
     assert not (ending == "panic" and tail[480:].any())
     assert instrument.target("/bow/speed") == 0.0
-
-
-def test_a_held_setting_stays_through_notes_and_controllers(live):
-    live.hold("/playing/speed", 0.5)
-    receive(live, mido.Message("control_change", control=16, value=0), frame=0, port=0)
-    live.key_on(67.0, 90.0, frame=0)
-    assert live.value("/playing/speed") == 0.5
 
 
 def test_many_threads_take_turns_without_a_torn_note(live, instrument):

@@ -51,11 +51,6 @@ def test_a_shipped_mapping_is_explained_and_audible_before_any_controller_moves(
     assert listener["/output/level"] > 0.3
 
 
-def test_the_mappings_for_players_are_there():
-    names = {"keyboard", "keyboard-expressive", "wind", "mpe", "sustain-pedal-tremolo"}
-    assert names <= {*SHIPPED}
-
-
 def test_the_keyboard_mapping_gives_each_controller_its_role():
     roles = {
         "bend": ["/playing/bend"],
@@ -92,19 +87,6 @@ def test_a_span_is_spread_along_its_curve_over_the_way_of_the_controller():
     assert from_unit(bind, 0.3) + from_unit(bind, 0.7) == pytest.approx(1.0)
 
 
-def test_without_a_span_and_a_curve_those_of_the_target_are_taken(read):
-    (bind,) = read(BIND).binds
-    assert (from_unit(bind, 0.0), from_unit(bind, 1.0)) == pytest.approx((0.05, 2.0))
-    (bind,) = read(BIND.replace("pressure", "speed")).binds
-    assert from_unit(bind, 0.5) == pytest.approx((0.03 * 0.6) ** 0.5)
-
-
-def test_one_source_may_move_several_targets(read):
-    mapping = read(BIND + BIND.replace("pressure", "volume"))
-    assert [bind.target for bind in mapping.of("cc 4")] == ["/playing/pressure", "/playing/volume"]
-    assert mapping.of("cc 5") == ()
-
-
 def test_a_mapping_without_a_name_has_its_files_which_needs_no_toml_ending(read, tmp_path):
     assert read(BIND).name == "mine"
     assert read('name = "yours"\n').name == "yours"
@@ -138,24 +120,6 @@ def test_what_is_no_mapping_says_so(read, tmp_path):
 # ---------------------------------------------------------------- what else a file says
 
 
-def test_a_mapping_says_where_parameters_begin_that_are_not_held(read, player):
-    text = '[start]\n"/playing/dynamics" = 0.4\n'
-    player.mapped(read(text))
-    assert player.value("/playing/dynamics") == 0.4
-    player.write("/playing/dynamics", 0.9, hold=True)
-    player.mapped(read(text))
-    assert player.value("/playing/dynamics") == 0.9
-
-
-def test_a_mapping_may_give_the_sustain_pedal_another_meaning(read, player, listener):
-    midi = player.mapped(read('[[bind]]\nsource = "cc 64"\ntarget = "/playing/tremolo"\n'))
-    midi.receive(mido.Message("note_on", note=74, velocity=80))
-    midi.receive(mido.Message("control_change", control=64, value=127))
-    assert listener["/bow/tremolo"] == 20.0
-    midi.receive(mido.Message("note_off", note=74))
-    assert player.sounding is None
-
-
 def test_key_switches_choose_articulations_and_sound_no_notes(player, listener):
     midi = player.mapped(load("keyboard-articulations"))
     chosen = []
@@ -170,11 +134,3 @@ def test_key_switches_choose_articulations_and_sound_no_notes(player, listener):
     assert listener["/bow/side"] != 0.0
     midi.receive(mido.Message("control_change", control=32, value=5))
     assert player.value("/playing/articulation") == 5.0
-
-
-def test_without_key_switches_low_keys_play_and_a_bank_number_changes_nothing(player, listener):
-    midi = player.mapped(load("keyboard"))
-    midi.receive(mido.Message("control_change", control=32, value=5))
-    midi.receive(mido.Message("note_on", note=39, velocity=80))
-    assert player.value("/playing/articulation") == 0.0
-    assert listener["/bow/side"] != 0.0

@@ -168,11 +168,6 @@ def test_all_errors_of_a_file_are_told_in_the_order_of_its_lines_unless_there_ar
     assert len(caught.value.more) == MOST_ERRORS - 1
 
 
-def test_an_error_in_a_list_of_inline_tables_has_the_line_of_the_list(read):
-    with pytest.raises(MappingError, match=r"mine\.toml:2: bind 2: needs a source"):
-        read('\nbind = [{source = "cc 1", target = "/playing/volume"},\n {}]\n')
-
-
 keys = st.text("ab-_1", min_size=1, max_size=3) | st.text("a.\"'=[]{}#\\ ", max_size=4).map(
     json.dumps
 )
@@ -244,20 +239,6 @@ def test_a_file_begins_with_its_base_and_replaces_what_its_controllers_did(read)
     assert mapping.start == keyboard.start
 
 
-def test_a_bind_replaces_the_same_controller_in_seven_bits_but_not_on_other_channels(read):
-    mapping = read('base = "keyboard"\n' + BIND.replace("cc 4", "cc 1/33"))
-    assert mapping.of("cc 1") == ()
-    assert mapping.of("cc 1/33")
-    mapping = read('base = "keyboard"\n' + BIND.replace("cc 4", "cc 7") + "channel = 2\n")
-    assert [bind.channels for bind in mapping.of("cc 7")] == [(), (2,)]
-
-
-def test_what_begins_elsewhere_and_the_zones_go_over_the_base(read):
-    mapping = read('base = "mpe"\nmpe = false\n[start]\n"/playing/speed" = 0.1\n')
-    assert (mapping.mpe, read('base = "mpe"\n').mpe) == (False, True)
-    assert dict(mapping.start) == dict(load("mpe").start) | {"/playing/speed": 0.1}
-
-
 def test_a_base_may_have_a_base_and_the_shipped_comes_before_the_users(own, read):
     own("wind", 'base = "wind"\n' + BIND)
     own("pedal", 'base = "mine/wind"\nabout = "my pedal"\n')
@@ -290,17 +271,6 @@ def test_bases_that_go_round_or_are_wrong_are_refused_by_their_file(own, read):
 
 
 # ---------------------------------------------------------------- written anew
-
-
-def test_what_is_tidied_keeps_its_comments_and_inline_tables_become_tables(tmp_path):
-    path = tmp_path / "mine.toml"
-    path.write_text(FULL)
-    written = canonical(read_mapping_file(path), FULL)
-    assert written == FULL.replace('"nrpn 2/44"', '"nrpn 300"').replace("[2, 1]", "[1, 2]")
-    path.write_text('bind = [{source = "cc 1", target = "/playing/volume"}]\n')
-    written = canonical(read_mapping_file(path), path.read_text())
-    assert '[[bind]]\nsource = "cc 1"\n' in written
-    assert read_mapping_file(path, written) == read_mapping_file(path)
 
 
 def test_what_is_tidied_says_what_it_shall_whatever_the_text_said():

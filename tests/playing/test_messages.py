@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import mido
 import pytest
-from hands import Checked
 
 from yehu_server.playing.part_state import Key
-from yehu_server.playing.tuning import RangePolicy
 
 
 def silent(listener, player) -> bool:
@@ -46,33 +44,6 @@ def test_all_channels_but_the_tenth_play_or_those_chosen(player, mapping, chosen
     assert player.notes_played == 2 * len(playing)
 
 
-def test_the_tenth_channel_moves_nothing(midi, listener):
-    midi.on(75)
-    heard = len(listener.moves)
-    midi.on(40, channel=10)
-    midi.bend(8191, channel=10)
-    midi.touch(127, channel=10)
-    for control in (1, 7, 11, 64, 120, 121, 123):
-        midi.cc(control, 127, channel=10)
-    assert len(listener.moves) == heard
-    assert not listener.silenced
-
-
-def test_messages_that_are_none_of_the_players_business_change_nothing(player, listener, mapping):
-    midi = player.mapped(mapping)
-    heard = len(listener.moves)
-    for message in (
-        mido.Message("program_change", program=40),
-        mido.Message("clock"),
-        mido.Message("sysex", data=(1, 2, 3)),
-        mido.Message("control_change", control=20, value=99),
-        mido.MetaMessage("set_tempo", tempo=400_000),
-        mido.MetaMessage("end_of_track"),
-    ):
-        midi.receive(message)
-    assert len(listener.moves) == heard
-
-
 def test_a_message_acts_at_its_frame(player, listener, mapping):
     midi = player.mapped(mapping)
     heard = len(listener.moves)
@@ -82,26 +53,7 @@ def test_a_message_acts_at_its_frame(player, listener, mapping):
     assert listener.silenced == [321]
 
 
-def test_a_skipped_note_leaves_the_sounding_one_alone(listener, mapping):
-    player = Checked(listener, RangePolicy.SKIP)
-    midi = player.mapped(mapping)
-    midi.receive(mido.Message("note_on", note=75, velocity=30))
-    heard = list(listener.moves)
-    midi.receive(mido.Message("note_on", note=40, velocity=127))
-    midi.receive(mido.Message("note_off", note=40))
-    assert listener.moves == heard
-    assert player.sounding == Key(0, 75)
-
-
 # ---------------------------------------------------------------- the pedal
-
-
-def test_the_pedal_is_down_from_64(midi, player):
-    for value, down in ((0, False), (63, False), (64, True), (127, True)):
-        midi.cc(64, value)
-        midi.on(75)
-        midi.off(75)
-        assert (player.sounding is not None) == down, value
 
 
 def test_a_key_pressed_again_under_the_pedal_is_held_by_the_hand(midi, player, listener):
@@ -134,12 +86,3 @@ def test_mode_messages_end_every_note(midi, player, listener, control):
         midi.on(80)
         assert player.sounding == Key(0, 80)
         midi.off(80)
-
-
-def test_a_mode_message_leaves_the_notes_of_other_channels(midi, player, listener):
-    midi.on(75)
-    for control in (120, 123):
-        midi.cc(control, 0, channel=2)
-        assert player.sounding == Key(0, 75)
-        assert listener["/bow/side"] == -1.0
-        assert not listener.silenced

@@ -36,17 +36,6 @@ def test_a_direct_write_takes_one_parameter_over_until_the_next_note(player, lis
         player.notes_off(player.held())
 
 
-def test_a_finger_that_is_pressed_stays_until_the_next_note_which_has_the_next_finger(
-    player, listener
-):
-    player.note_on(key(75))
-    player.write("/finger/1/press", 4.0)
-    player.write("/playing/press", 2.2)
-    assert listener["/finger/1/press"] == 4.0
-    player.note_on(key(77))
-    assert listener["/finger/1/press"] == 0.0
-
-
 def test_a_direct_write_leaves_the_other_parameters_to_the_player_and_outlives_its_note(
     player, listener
 ):
@@ -62,14 +51,6 @@ def test_a_direct_write_leaves_the_other_parameters_to_the_player_and_outlives_i
     assert listener["/bow/pressure"] == 0.5
     player.note_off(key(75))
     assert listener["/bow/speed"] == 0.11
-
-
-def test_release_gives_the_bow_back_to_the_player(player, listener):
-    player.note_on(key(75))
-    player.write("/bow/speed", 0.11)
-    player.release()
-    player.write("/playing/speed", 0.33)
-    assert listener["/bow/speed"] == 0.33
 
 
 def test_a_held_write_stays_through_notes_until_release(player, listener):
@@ -97,22 +78,6 @@ def test_newtons_written_are_newtons_heard_until_the_next_note_and_held_ones_thr
     player.write("/bow/force", 0.9, hold=True)
     player.note_on(key(75))
     assert (listener["/bow/force"], listener["/bow/assist"]) == (0.9, 0.0)
-
-
-def test_the_next_note_takes_the_level_back_too(player, listener):
-    player.write("/playing/volume", 0.5)
-    player.note_on(key(75))
-    player.write("/output/level", 1.0)
-    player.write("/playing/volume", 0.25)
-    assert listener["/output/level"] == 1.0
-    player.note_on(key(76))
-    assert listener["/output/level"] == pytest.approx(0.0625)
-
-
-def test_what_the_player_never_moves_stays_as_written(player, listener):
-    player.write("/output/gain", 0.3)
-    player.note_on(key(75))
-    assert [move.value for move in listener.of("/output/gain")] == [0.3]
 
 
 def test_a_held_command_stays_until_release_whatever_controllers_say_and_can_be_set_anew(

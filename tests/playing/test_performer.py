@@ -8,7 +8,6 @@ import pytest
 from hands import Checked, Move, Watched, ideal
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import FIRST, TOP_SPEED, default_bowing_table
 from yehu_server.core.player.velocity import NEUTRAL
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.calibration_store import calibration_for
@@ -92,19 +91,6 @@ def test_strokes_go_in_turn_or_the_way_that_is_asked_for():
         assert signs == expected
 
 
-def test_a_new_seed_begins_another_sequence_and_an_old_one_the_same():
-    player, listener = hands(1.0)
-    heard = []
-    for seed in (3.0, 4.0, 3.0):
-        player.write("/engine/seed", seed)
-        player.write("/playing/direction", 1.0)
-        for note in (66, 68, 70):
-            player.note_on(key(note))
-            heard.append(listener["/bow/speed"])
-            player.note_off(key(note))
-    assert heard[:3] == heard[6:] != heard[3:6]
-
-
 def test_without_calibration_fingers_go_to_where_an_ideal_string_is_in_tune():
     calibration = calibration_for(44100.0)
     listener = Watched(quantities=calibration.tuned(YEHU), calibration=calibration)
@@ -125,13 +111,6 @@ def test_without_calibration_fingers_go_to_where_an_ideal_string_is_in_tune():
     assert 1e-4 < abs(measured - by_itself) < 0.01
 
 
-def test_a_slurred_note_is_a_step_of_the_next_finger(player, listener):
-    for note, finger in zip((66, 68, 70, 67, 66, 68), (1, 2, 3, 4, 1, 2), strict=True):
-        player.note_on(key(note))
-        assert listener.finger == finger
-        assert listener.of(f"/finger/{finger}/position")[-1].ramp_ms == 0.0
-
-
 def test_a_finger_lands_before_the_one_before_it_leaves(player, listener):
     player.note_on(key(66))
     player.note_on(key(68))
@@ -139,20 +118,6 @@ def test_a_finger_lands_before_the_one_before_it_leaves(player, listener):
     lifting = listener.of("/finger/1/press")[-1]
     assert (landing.value, lifting.value) == (1.5, 0.0)
     assert landing.ramp_ms < lifting.ramp_ms
-
-
-def test_a_portamento_begins_where_the_finger_is(player, listener):
-    player.write("/playing/portamento", 1.0)
-    player.note_on(key(66))
-    player.note_on(key(68))
-    assert listener.finger == 1
-    assert listener.where() == ("F", 1)
-
-
-def test_the_same_place_on_the_other_string_takes_the_same_finger(player, listener):
-    player.note_on(key(69))
-    player.note_on(key(76))
-    assert (listener.finger, listener.where()) == (1, ("C", 4))
 
 
 # ---------------------------------------------------------------- one note at a time
@@ -199,14 +164,6 @@ def test_all_sound_off_silences_the_instrument_at_its_frame_and_lifts_the_hand(p
     assert listener.where() == ("C", 2)
 
 
-def test_everything_a_note_moves_happens_at_its_frame(player, listener):
-    player.note_on(key(66), frame=123)
-    assert {move.frame for move in listener.moves} == {123}
-    heard = len(listener.moves)
-    player.note_off(key(66), frame=456)
-    assert {move.frame for move in listener.moves[heard:]} == {456}
-
-
 # ---------------------------------------------------------------- strokes
 
 
@@ -219,17 +176,6 @@ def test_overlapping_notes_share_one_stroke_across_the_strings_too(player, liste
             player.note_off(held)
         assert listener["/bow/speed"] == 0.2
         held = key(note)
-
-
-def test_a_held_note_returns_on_the_same_stroke_and_its_key_struck_again_is_a_new_one(
-    player, listener
-):
-    player.note_on(key(66))
-    player.note_on(key(66))
-    assert listener["/bow/speed"] == -0.2
-    player.note_on(key(70))
-    player.note_off(key(70))
-    assert listener["/bow/speed"] == -0.2
 
 
 def test_a_stroke_begins_and_ends_in_the_times_set_for_it(player, listener):
@@ -277,12 +223,6 @@ def test_the_bow_stays_still_and_the_finger_up_when_no_note_sounds(player, liste
     assert listener.of("/finger/1/position") == []
 
 
-def test_pressing_harder_does_not_close_an_open_string(player, listener):
-    player.note_on(key(65))
-    player.write("/playing/press", 5.0)
-    assert listener.press == 0.0
-
-
 # ---------------------------------------------------------------- bending
 
 
@@ -301,21 +241,6 @@ def test_a_bend_moves_the_finger_along_its_string_as_far_as_it_goes(subtests):
             for bend, where in bends.items():
                 player.write("/playing/bend", bend)
                 assert listener.where() == where, bend
-
-
-def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string_as_that_is_bowed():
-    bowing = default_bowing_table()
-    bowing[0, :, 71 - FIRST, TOP_SPEED] = 0.11
-    player, listener = hands(bowing=bowing)
-    player.note_on(key(73))
-    player.write("/playing/bend", -2.0)
-    assert (listener.where(), listener["/bow/speed"]) == (("F", 6), 0.11)
-
-
-def test_a_note_begun_with_the_wheel_moved_starts_bent(player, listener):
-    player.write("/playing/bend", 0.5)
-    player.note_on(key(75))
-    assert listener.where() == ("C", 3.5)
 
 
 # ---------------------------------------------------------------- out of range
@@ -358,14 +283,6 @@ def test_notes_out_of_range_go_where_the_policy_says(policy, expected):
         assert player.sounding is None
 
 
-def test_notes_are_counted_once_each(player):
-    for note in (40, 66, 66, 100, 89):
-        player.note_on(key(note))
-        player.note_off(key(note))
-    assert player.notes_played == 5
-    assert player.notes_out_of_range == 2
-
-
 # ---------------------------------------------------------------- variation
 
 
@@ -403,15 +320,6 @@ def test_with_variation_no_two_notes_are_alike_and_all_are_close():
         values = [abs(move.value) for move in heard if move.address == address and move.value]
         assert len(set(values)) == 4
         assert values == pytest.approx([value] * 4, rel=0.15)
-
-
-def test_a_bend_keeps_the_variation_of_its_note():
-    player, listener = hands(1.0, seed=5)
-    player.note_on(key(75))
-    before = listener.position
-    for bend in (1.0, 0.0):
-        player.write("/playing/bend", bend)
-    assert listener.position == before
 
 
 # ---------------------------------------------------------------- level

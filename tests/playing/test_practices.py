@@ -15,8 +15,6 @@ from midi_files import midi_file, notes
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
-    AT_LIGHT,
-    DISTANCE_FACTOR,
     FIRST,
     LAST,
     PLACES,
@@ -26,10 +24,7 @@ from yehu_server.core.player.bowing import (
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.playing.bowing_tables import (
     FORMAT,
-    HIGHEST,
-    LOWEST,
     VERSION,
-    as_data,
     bowing_table_beside,
     read_bowing_table,
     shipped_bowing_table,
@@ -97,15 +92,6 @@ def test_a_table_that_was_written_is_read_back(tmp_path):
     again = read_bowing_table(path)
     write_bowing_table(path, again, RATE)
     assert np.array_equal(read_bowing_table(path), again)
-
-
-def test_only_notes_that_are_bowed_otherwise_are_written():
-    table = default_bowing_table()
-    usual = as_data(table, RATE)["bowing"]
-    assert not any(notes for places in usual.values() for notes in places.values())
-    table[0, PLACE, 70 - FIRST, AT_LIGHT] = 0.7
-    usual["inner"]["0.1"] = {"70": as_data(table, RATE)["bowing"]["inner"]["0.1"]["70"]}
-    assert as_data(table, RATE)["bowing"] == usual
 
 
 def spoiled(**changes: object) -> dict:
@@ -183,15 +169,6 @@ def test_the_practice_beside_an_instrument_is_found_where_it_is_a_file(tmp_path)
 
 
 # ---------------------------------------------------------------- what is shipped
-
-
-def test_what_is_shipped_is_within_bounds():
-    for rate in (44100.0, 48000.0, 96000.0):
-        table = shipped_bowing_table(rate)
-        assert table.shape == default_bowing_table().shape
-        assert np.all((table >= LOWEST) & (table <= HIGHEST))
-        positions = table[..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
-        assert 0.05 < positions.min() < positions.max() < 0.5
 
 
 def test_what_is_shipped_belongs_to_the_nearest_rate_and_cannot_be_spoiled():

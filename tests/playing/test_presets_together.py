@@ -3,29 +3,12 @@
 import pytest
 
 from yehu_server.errors import PresetError
-from yehu_server.params.table import find
 from yehu_server.playing.preset_folders import MOST_TOGETHER, Presets, is_name
-
-ROOMS = ("dry", "study", "courtyard", "hall")
-OF_A_ROOM = {
-    *("/room/size", "/room/decay", "/room/damping", "/room/level", "/room/distance", "/body/width")
-}
 
 
 @pytest.fixture
 def presets(own_presets) -> Presets:
     return Presets(own_presets)
-
-
-def test_a_room_leaves_the_bow_as_it_is_and_a_bow_the_room(presets):
-    for name in presets.names():
-        addresses = set(presets.load(name).values)
-        assert addresses == OF_A_ROOM if name in ROOMS else not addresses & OF_A_ROOM
-
-
-def test_the_study_is_the_room_that_there_is_without_a_preset(presets):
-    values = presets.load("study").values
-    assert values == {address: find(address).default for address in OF_A_ROOM}
 
 
 def test_a_bow_and_a_room_go_together_and_of_two_rooms_the_last_one_holds(presets):

@@ -61,42 +61,6 @@ def test_a_new_beginning_is_taken_where_nobody_has_moved_it(make, player):
     assert player.value(EXPRESSION) == 0.7
 
 
-def test_a_pedal_that_becomes_something_else_holds_nothing(make, player):
-    midi = make()
-    midi.cc(64, 127)
-    midi.on(75)
-    midi.off(75)
-    to(midi, Bind("cc 64", VOLUME))
-    assert player.sounding is None
-
-
-def test_zones_that_come_or_go_end_the_notes(make, player):
-    midi = make()
-    midi.on(75, channel=4)
-    to(midi, mpe=True)
-    assert player.sounding is None
-    midi.cc(64, 127, channel=1)
-    midi.on(75, channel=4)
-    midi.off(75, channel=4)
-    assert player.sounding is not None  # under its master's pedal
-
-
-def test_a_bind_that_becomes_soft_or_another_soft_one_keeps_its_hold(make, player):
-    midi = make(Bind("cc 1", VOLUME))
-    midi.cc(1, 127)
-    midi.cc(1, 20)
-    midi.on(75)
-    to(midi, Bind("cc 1", VOLUME, is_soft=True), Bind("cc 1", EXPRESSION, is_soft=True))
-    assert player.value(VOLUME) == pytest.approx(20 / 127)
-    assert player.value(EXPRESSION) == 1.0  # a new target has to be met
-    midi.cc(1, 90)
-    assert player.value(VOLUME) == pytest.approx(90 / 127)
-    to(midi, Bind("cc 1", VOLUME, (0.0, 0.5), is_soft=True))
-    assert player.value(VOLUME) == pytest.approx(45 / 127)
-    midi.cc(1, 20)
-    assert player.value(VOLUME) == pytest.approx(10 / 127)
-
-
 # ---------------------------------------------------------------- its file
 
 
@@ -152,19 +116,6 @@ def test_a_wrong_file_is_refused_once_and_read_again_when_it_is_right(watch, pat
     assert settled(watch) is None
     path.write_text(BIND.format(77))
     assert settled(watch).binds[0].source == "cc 77"
-
-
-def test_a_file_that_is_replaced_or_gone_for_a_while_is_followed(watch, path):
-    other = path.with_name("other")
-    other.write_text(BIND.format(7))
-    stat = path.stat()
-    os.utime(other, ns=(stat.st_atime_ns, stat.st_mtime_ns))  # same size, same time
-    other.replace(path)
-    assert settled(watch).binds[0].source == "cc 7"
-    path.unlink()
-    assert "No such file" in refusal(watch)
-    path.write_text(BIND.format(8))
-    assert settled(watch).binds[0].source == "cc 8"
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from yehu_server.playing.bind import Bind
-from yehu_server.playing.mapping import Mapping, load
+from yehu_server.playing.mapping import load
 
 VOLUME, PRESS, BEND = "/playing/volume", "/playing/press", "/playing/bend"
 KEYS, BREATH = 0, 1  # ports
@@ -71,27 +71,6 @@ def test_from_its_first_note_on_a_port_has_its_controllers_to_itself(studio, pla
     assert player.value(VOLUME) == 1.0
     studio.cc(7, 60, port=BREATH)
     assert player.value(VOLUME) == 1.0
-
-
-def test_a_note_that_cannot_be_played_makes_no_keyboard(make, player):
-    studio = make(Bind("cc 7", VOLUME))
-    studio.on(75)
-    studio.on(36, channel=10, port=BREATH)  # a drum pad
-    studio.cc(7, 30, port=BREATH)
-    assert player.value(VOLUME) == 30 / 127
-
-
-def test_a_wheel_without_keys_bends_beside_the_keyboards_own_by_its_own_range(studio, player):
-    studio.on(75)
-    studio.bend(4096, port=BREATH)
-    assert player.pitch == pytest.approx(76.0, abs=1e-3)
-    studio.bend(-8191)
-    assert player.pitch == pytest.approx(74.0, abs=1e-3)
-    for control, value in ((101, 0), (100, 0), (6, 12)):
-        studio.cc(control, value, port=BREATH)
-    assert player.pitch == pytest.approx(79.0, abs=2e-3)
-    studio.on(77)
-    assert player.pitch == pytest.approx(81.0, abs=2e-3)
 
 
 def test_a_box_that_ends_its_sound_or_is_reset_lets_go_of_the_keyboards_notes(make, player):
@@ -173,36 +152,6 @@ def test_a_global_controller_of_another_keyboard_or_channel_moves_the_note(learn
             assert player.value(VOLUME) == value / 127
 
 
-def test_a_global_knob_on_the_drums_channel_is_heard_and_others_there_are_not(make, player):
-    studio = make(Bind("cc 7", VOLUME, is_global=True), Bind("cc 11", "/playing/expression"))
-    studio.on(75)
-    studio.cc(7, 30, channel=10, port=BREATH)
-    studio.cc(11, 30, channel=10, port=BREATH)
-    studio.cc(64, 127, channel=10, port=BREATH)
-    assert player.value(VOLUME) == 30 / 127
-    assert player.value("/playing/expression") == 1.0
-    studio.off(75)
-    assert player.sounding is None
-
-
-def test_a_global_bind_of_one_channel_hears_no_other(make, player):
-    studio = make(Bind("cc 7", VOLUME, is_global=True, channels=(2,)))
-    studio.on(75)
-    studio.cc(7, 30, port=BREATH)
-    assert player.value(VOLUME) == 1.0
-    studio.cc(7, 30, channel=2, port=BREATH)
-    assert player.value(VOLUME) == 30 / 127
-
-
-def test_a_mapping_that_becomes_global_is_so_at_once(studio, player):
-    studio.on(80, port=BREATH)
-    studio.on(75)
-    studio.cc(7, 30, port=BREATH)
-    assert player.value(VOLUME) == 1.0
-    studio.player.remap(Mapping("other", (Bind("cc 7", VOLUME, is_global=True),)))
-    assert player.value(VOLUME) == 30 / 127
-
-
 # ---------------------------------------------------------------- what stays with its channel
 
 
@@ -231,18 +180,6 @@ def test_what_a_member_of_an_mpe_zone_moves_is_its_notes_alone(make, player, is_
     studio.on(70, channel=4, port=BREATH)
     assert player.value(PRESS) == 6.0
     assert player.pitch == pytest.approx(94.0, abs=0.01)
-
-
-def test_a_global_knob_moves_mpe_notes_until_they_move_it_themselves(make, player):
-    studio = make(Bind("cc 74", VOLUME, is_global=True))
-    studio.rpn(0, 6, (6, 15), port=KEYS)
-    studio.on(70, channel=4)
-    studio.cc(74, 30, port=BREATH)
-    assert player.value(VOLUME) == 30 / 127
-    studio.cc(74, 60, channel=4)
-    assert player.value(VOLUME) == 60 / 127
-    studio.on(72, channel=5)
-    assert player.value(VOLUME) == 30 / 127
 
 
 def test_the_master_of_a_zone_speaks_for_its_zone_alone_unless_it_is_global(make, player):

@@ -20,7 +20,7 @@ from yehu_server.core.midi.record import IN_PORT, MIDI, clear_held, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.player import commands as kinds
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.params.table import ENGINE, SLOT, TABLE, find
+from yehu_server.params.table import TABLE, find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.options import PlayingOptions
@@ -196,14 +196,6 @@ def test_keys_thirty_milliseconds_apart_are_a_line():
         assert [told.settled()[-1] for told in four.told].count(72) == together
 
 
-def test_there_may_be_more_notes_than_players():
-    two = section(2)
-    on(two, 65, *CHORD, frame=0)
-    assert [told.settled() for told in two.told] == [[76], [72]]
-    off(two, 65, *CHORD, frame=BEAT)
-    assert not any(told.settled() for told in two.told)
-
-
 def test_keys_that_overlap_or_follow_one_that_has_ended_are_no_chord_but_a_line(four):
     on(four, 67, frame=0)
     on(four, 69, frame=BEAT)
@@ -225,23 +217,6 @@ def test_players_whose_note_ends_rest_and_the_others_play_on(ten):
     for told in ten.told:
         assert told.of(kinds.END)[-1].other == 0.0  # or its player would wait for another end
         assert told.settled() == []
-
-
-def test_one_voice_moves_on_while_the_other_is_held(four):
-    on(four, 76, 67, frame=0)
-    off(four, 76, frame=BEAT)
-    on(four, 74, frame=BEAT)
-    assert [told.settled() for told in four.told] == [[74]] * 2 + [[67]] * 2
-    off(four, 74, 67, frame=2 * BEAT)
-    on(four, 72, frame=2 * BEAT)
-    assert all(told.settled() == [72] for told in four.told)
-
-
-def test_a_note_has_its_own_expression_in_a_chord(four):
-    address = "/playing/pressure"
-    on(four, 76, frame=0, values={address: 0.6})
-    on(four, 67, frame=0, values={address: 0.2})
-    assert [told.value(address) for told in four.told] == [0.6, 0.6, 0.2, 0.2]
 
 
 def test_a_key_that_sounds_again_has_its_expression_again(four):
@@ -313,18 +288,6 @@ def test_settings_reach_all_with_what_is_a_players_own(four):
     assert len({told.value("/engine/seed") for told in four.told}) == 4
 
 
-def test_a_setting_is_there_from_the_first_sample_in_every_player(four):
-    four.commands.start_with("/output/gain", 2.0)
-    for told in four.told:
-        jump = told.of(kinds.RAMP)[-1]
-        assert ENGINE[jump.index].address == "/output/gain"
-        assert (jump.frame, jump.other) == (0, 0.0)
-        assert jump.value == told.value("/output/gain") == pytest.approx(2.0 - 6.0206)
-    alone = section(1)
-    alone.commands.start_with("/output/gain", 2.0)
-    assert alone.told[0].all[-1] == Posted(kinds.RAMP, 0, SLOT["/output/gain"], 2.0, 0.0)
-
-
 def test_fewer_and_more_may_play_but_not_more_than_there_are(four):
     assert four.commands.value("/playing/section") == 4.0
     on(four, 67, frame=0)
@@ -338,29 +301,6 @@ def test_fewer_and_more_may_play_but_not_more_than_there_are(four):
     on(four, 72, frame=5 * BEAT)
     assert all(told.settled() == [72] for told in four.told)
     assert section(1).commands.write("/playing/section", 16.0) == 1.0
-
-
-def test_a_gain_that_is_held_stays_so_as_players_rest(four):
-    four.commands.write("/output/gain", -5.0, hold=True)
-    four.commands.write("/playing/section", 1.0)
-    last = [w for w in four.told[0].all if w.index == INDEX["/output/gain"]][-1]
-    assert (last.kind, last.value) == (kinds.HOLD, -5.0)
-
-
-def test_the_pitch_is_that_of_the_first_who_plays(four):
-    assert four.commands.pitch is None
-    four.told[2].sounding_pitch = 67.0
-    assert four.commands.pitch == 67.0
-
-
-def test_the_finger_of_those_who_play_the_last_key_slides(four):
-    on(four, 76, frame=0)
-    on(four, 67, frame=0)
-    four.commands.slide(68.0, frame=BEAT)
-    assert [len(told.of(kinds.SLIDE)) for told in four.told] == [0, 0, 1, 1]
-    off(four, 76, 67, frame=2 * BEAT)
-    four.commands.slide(70.0, frame=3 * BEAT)
-    assert all(told.of(kinds.SLIDE)[-1].value == 70.0 for told in four.told)
 
 
 def test_notes_that_ended_with_the_audio_process_are_forgotten(four):

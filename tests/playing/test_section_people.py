@@ -10,18 +10,15 @@ from hands import ideal
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.midi.section_players import DISTANCE, GAIN, OWN_SEED, PAN, own_value
+from yehu_server.core.midi.section_players import DISTANCE, GAIN, PAN, own_value
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.radiation import response
-from yehu_server.core.player.calibration import wave_speed
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.part_state import Key
 from yehu_server.playing.section_instruments import (
     MODE,
     SIZE,
-    TUNED_CENTS,
-    section_size,
     section_specs,
     vary,
 )
@@ -54,23 +51,6 @@ def test_players_sit_beside_each_other_around_the_place_of_the_part():
         side = 0.5 * (pans[-1] - pans[0])
         assert side == pytest.approx(min(0.06 * (people - 1), 0.35))
         assert np.mean(pans) == pytest.approx(min(max(place, side - 1.0), 1.0 - side))
-
-
-def test_players_have_seeds_of_their_own():
-    seeds = own(OWN_SEED, 65535.0, 16)
-    assert seeds[0] == 65535.0
-    assert len(set(seeds)) == 16
-    assert all(0.0 <= seed < 65536.0 for seed in seeds)
-    assert not set(seeds) & {*own(OWN_SEED, 0.0, 16), *own(OWN_SEED, 1.0, 16)}
-
-
-def test_instruments_of_one_maker_are_in_tune_with_each_other():
-    for seed, string in product(SEEDS, (0, 1)):
-        calibration, base = ideal(), Quantities()
-        tuned, own = vary(calibration, base, seed)
-        usual = wave_speed(calibration.tuned(base), string)
-        ratio = wave_speed(tuned.tuned(own), string) / usual
-        assert abs(1200.0 * np.log2(ratio)) <= TUNED_CENTS * 1.001, (seed, string)
 
 
 def test_strings_hair_and_rosin_differ_within_the_tolerances_of_one_maker():
@@ -127,12 +107,6 @@ def test_bodies_are_passive_within_the_tolerances_and_radiate_about_alike(subtes
             own, usual = radiated(body), radiated(measured)
             assert abs(10.0 * np.log10(own.mean() / usual.mean())) < 2.0
             assert abs(10.0 * np.log10(own / usual)).mean() > 0.3  # and yet not the same
-
-
-def test_a_mapping_preset_or_setting_asks_for_players():
-    assert section_size(PlayingOptions()) == 1
-    assert section_size(PlayingOptions(start=(("/playing/section", 4.0),))) == 4
-    assert section_size(PlayingOptions(settings=(("/playing/section", 8.0),))) == 8
 
 
 def test_a_part_of_one_player_is_the_instrument_of_its_style():

@@ -55,19 +55,6 @@ def test_hard_and_soft_targets_of_one_controller_do_not_disturb_each_other(make,
     assert at(midi, 20) == pytest.approx(20 / 127)
 
 
-def test_each_channel_picks_up_for_itself(make, at, player):
-    midi = make(SOFT)
-    midi.player.set(VOLUME, 0.5)
-    midi.on(70)
-    assert at(midi, 0, 127, channel=1) == 1.0
-    midi.on(72, channel=2)
-    assert player.value(VOLUME) == 0.5
-    assert at(midi, 127, channel=2) == 0.5
-    assert at(midi, 0, channel=2) == 0.0
-    midi.off(72, channel=2)
-    assert player.value(VOLUME) == 1.0
-
-
 def test_the_master_of_a_zone_picks_up_for_its_members(make, at, player):
     midi = make(SOFT, mpe=True)
     midi.player.set(VOLUME, 0.5)
@@ -75,17 +62,6 @@ def test_the_master_of_a_zone_picks_up_for_its_members(make, at, player):
     assert at(midi, 0, channel=1) == 0.5
     assert at(midi, 127, 10, channel=1) == pytest.approx(10 / 127)
     assert player.value(VOLUME) == pytest.approx(10 / 127)
-
-
-def test_a_reset_lets_the_controller_wait_again(make, at, player):
-    target = "/playing/expression"
-    midi = make(Bind("cc 1", target, is_soft=True))
-    at(midi, 127, 64)
-    assert player.value(target) == pytest.approx(64 / 127)
-    at(midi, 0, control=121)
-    assert player.value(target) == 1.0
-    at(midi, 64)
-    assert player.value(target) == 1.0
 
 
 def test_an_osc_fader_waits_too(make, player):
@@ -100,12 +76,3 @@ def test_an_osc_fader_waits_too(make, player):
     assert player.value(VOLUME) == 0.1
     midi.player.move("/fader", 1.1)
     assert player.value(VOLUME) == pytest.approx(0.11)
-
-
-def test_fourteen_bits_are_picked_up_by_either_half(make, at):
-    midi = make(Bind("cc 1/33", VOLUME, is_soft=True))
-    midi.player.set(VOLUME, 0.5)
-    assert at(midi, 60) == 0.5
-    assert at(midi, 127, control=33) == 0.5
-    assert at(midi, 62) == pytest.approx(62 * 128 / 16383)
-    assert at(midi, 5, control=33) == pytest.approx((62 * 128 + 5) / 16383)

@@ -62,14 +62,6 @@ def test_what_is_no_source_is_refused_in_one_line(subtests):
 # ---------------------------------------------------------------- 14 bits
 
 
-def test_a_fine_half_without_a_coarse_one_moves_nothing(playing, player):
-    _, cc = playing(Bind("cc 1/33", "/playing/expression"))
-    cc((33, 5))
-    assert player.value("/playing/expression") == 1.0
-    cc((1, 3), (121, 0), (33, 5))  # which a reset forgets
-    assert player.value("/playing/expression") == 1.0
-
-
 def test_two_controls_make_fourteen_bits(playing):
     """The coarse half acts at once; the fine one is nothing then, and never changes it."""
     _, cc = playing(Bind("cc 1/33", VOLUME))
@@ -77,15 +69,6 @@ def test_two_controls_make_fourteen_bits(playing):
         assert round(cc((1, coarse)) * 16383) == coarse * 128
         for fine in (0, 1, 126, 127):
             assert round(cc((33, fine)) * 16383) == coarse * 128 + fine
-
-
-def test_each_bind_hears_what_it_names_and_on_one_target_the_finer_counts(playing, player):
-    both = (Bind("cc 1/33", VOLUME), Bind("cc 1", VOLUME), Bind("cc 33", "/playing/expression"))
-    _, cc = playing(*both)
-    assert cc((1, 127)) == pytest.approx(127 * 128 / 16383)
-    assert player.value("/playing/expression") == 1.0
-    assert cc((33, 64)) == pytest.approx((127 * 128 + 64) / 16383)
-    assert player.value("/playing/expression") == pytest.approx(64 / 127)
 
 
 # ---------------------------------------------------------------- NRPN
@@ -125,31 +108,6 @@ def test_an_nrpn_is_stepped_from_where_it_or_its_target_is(playing):
     assert cc((97, 0), (97, 0)) == pytest.approx(0.5 - 1 / 127)
     assert cc(*[(96, 0)] * 127) == 1.0
     assert cc(*[(97, 0)] * 127) == pytest.approx(0.0, abs=1e-12)
-
-
-def test_each_channel_selects_for_itself(playing):
-    _, cc = playing(Bind("nrpn 300", VOLUME))
-    cc((99, 2), (98, 44), channel=2)
-    assert cc((6, 0), channel=1) == 1.0
-    assert cc((6, 0), channel=2) == 0.0
-
-
-# ---------------------------------------------------------------- notes
-
-
-def test_a_note_moves_by_its_key_also_when_it_comes_back(playing, player):
-    midi, _ = playing(Bind("note", "/playing/attack", (10.0, 200.0)))
-    for key in (0, 1, 60, 126, 127):
-        midi.on(key)
-        assert player.value("/playing/attack") == pytest.approx(10.0 + 190.0 * key / 127)
-    midi.off(127)
-    assert player.value("/playing/attack") == pytest.approx(10.0 + 190.0 * 126 / 127)
-
-
-def test_of_velocity_and_key_of_one_note_the_bind_named_last_counts(playing, player):
-    midi, _ = playing(Bind("note", VOLUME), Bind("velocity", VOLUME))
-    midi.on(70, velocity=127)
-    assert player.value(VOLUME) == 1.0
 
 
 # ---------------------------------------------------------------- terms
@@ -259,21 +217,3 @@ def test_what_the_player_does_not_move_is_bound_as_well(house, listener, player)
     assert listener["/string/inner/tuning"] == -200.0
     house.on(70, 127)
     assert listener["/body/blend"] == 1.0
-
-
-def test_what_is_held_is_not_moved_by_a_bind(house, listener, player):
-    player.write("/output/gain", -6.0, hold=True)
-    house.cc(20, 127)
-    house.on(70, 127)
-    assert listener["/output/gain"] == -6.0
-    assert player.value("/output/gain") == -6.0
-
-
-def test_one_channels_gain_comes_with_its_notes(house, listener):
-    house.cc(20, 127)
-    house.cc(20, 0, channel=2)
-    house.on(70, 127, channel=2)
-    assert listener["/output/gain"] == -12.0
-    house.off(70, channel=2)
-    house.on(70, 127)
-    assert listener["/output/gain"] == 12.0

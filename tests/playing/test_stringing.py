@@ -6,27 +6,18 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
-from hands import ideal
 from pitch import cents, hertz, pitch_of
 
 import yehu_server as yehu
 from yehu_lab.practising.passages import SearchedNote, pitches_near_notes, stops_of
 from yehu_server import YehuError
-from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, override, read_quantities
-from yehu_server.core.player.calibration import PITCHES, Calibration
+from yehu_server.core.player.calibration import PITCHES
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
-from yehu_server.live.page.facts import facts
 from yehu_server.playing.bowing_tables import bowing_table_beside, read_bowing_table
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
-from yehu_server.playing.part_state import Key
-from yehu_server.playing.player import Player
 from yehu_server.playing.stringing import notes_of, range_text
-from yehu_server.scores.capture_header import SessionStart, header_of, read_header
-from yehu_server.scores.octaves import NoteSpan, octaves_of
-from yehu_server.util.documents import Fields
 from yehu_server.util.files import shipped_folder
 
 ERHU = shipped_folder("examples") / "erhu.toml"
@@ -106,15 +97,6 @@ def test_notes_above_those_of_a_yehu_begin_in_tune(erhu):
         assert off == pytest.approx(0.0, abs=8.0), note
 
 
-def test_an_erhu_slides_to_the_pitch_that_is_asked_for(erhu):
-    erhu.reset()
-    erhu.note_on(64)
-    erhu.play(0.3)
-    erhu.slide(67)
-    sound = erhu.play(0.9)
-    assert cents(pitch_of(sound[-8192:], RATE), hertz(67)) == pytest.approx(0.0, abs=12.0)
-
-
 def test_what_an_erhu_does_not_have_is_told_by_its_own_range(erhu):
     with pytest.raises(YehuError, match=r"D4 to A6 \(62 to 93\)"):
         erhu.note_on("C7")
@@ -132,36 +114,6 @@ def test_its_calibration_is_kept_and_read_again():
     assert read_calibration(asdict(found), quantities, 440.0) == found
 
 
-def in_fourths() -> InstrumentSpec:
-    """A fiddle in G4 and C5, that is calibrated as an ideal one."""
-    made = ideal()
-    calibration = Calibration(440.0, made.tensions, made.sharpening, made.levels, (67, 72))
-    return InstrumentSpec(float(RATE), tuned(2.0, 0.0), calibration=calibration)
-
-
-def test_strings_in_fourths_are_stopped_where_their_notes_are():
-    spec = in_fourths()
-    for note, string, stop in ((67, 0, 0), (71, 0, 4), (72, 1, 0), (79, 1, 7), (50, 0, 0)):
-        instrument = Instrument(spec)
-        commands = Player(instrument)
-        assert (commands.notes.ends, commands.policy.fit(66.0, commands.notes)) == ((67, 89), 78.0)
-        commands.write("/playing/variation", 0.0)
-        commands.note_on(Key(0, note), tuned=float(note))
-        instrument.process(np.zeros(256, np.float32))
-        player = instrument._rig["player"][0]
-        length = player["wave_speed"][string] / (2.0 * hertz(spec.notes.open_notes[string]))
-        place = spec.quantities.bridge_x - length * 2.0 ** (-stop / 12.0)
-        assert player["string"] == string
-        assert player["position"] == pytest.approx(place if stop else -1.0, abs=1e-9)
-
-
-def test_captures_keep_what_a_fiddle_is_tuned_to():
-    start = SessionStart((in_fourths(), InstrumentSpec(float(RATE))), True)
-    again = read_header(Fields(header_of(start)), header_of(start)["version"])
-    assert [each.notes for each in again.players] == [each.notes for each in start.players]
-    assert again.players[0].calibration == start.players[0].calibration
-
-
 def test_what_is_practised_are_notes_that_the_fiddle_has():
     search = SearchedNote(0, 70, 0, np.zeros(6), notes=NoteRange((67, 72)))
     assert (search.sounds, search.is_high_on_inner) == (72, True)
@@ -176,16 +128,3 @@ def test_what_is_practised_are_notes_that_the_fiddle_has():
                 for string, note in stops_of(notes)
             }
             assert {notes.lowest, notes.highest} <= sounding <= known.keys(), (open_notes, reaches)
-
-
-def test_the_page_of_a_server_has_the_notes_of_its_instrument():
-    made = facts(NoteRange((D4, A4), (11.5, 24.0)))
-    told = made["notes"]["OPEN"], made["notes"]["LOWEST_NOTE"], made["notes"]["HIGHEST_NOTE"]
-    assert told == ([62.0, 69.0], D4, A6)
-    assert (made["isYehu"], facts()["isYehu"]) == (False, True)
-
-
-def test_parts_are_moved_into_the_range_of_the_fiddle():
-    notes = [NoteSpan(0.0, 1.0, (62.0,)), NoteSpan(1.0, 2.0, (74.0,))]
-    assert octaves_of(notes, 0.5, NoteRange((D4, A4))).of_notes == (0, 0)
-    assert octaves_of(notes, 0.5).of_notes == (1, 1)

@@ -65,13 +65,6 @@ def test_quarter_comma_meantone(read):
     assert tuning.pitch(69, 440.0) == pytest.approx(68.8974, abs=1e-4)  # C keeps its place
 
 
-def test_equal_divisions_put_each_step_on_the_next_key(read):
-    for steps in (7, 19):
-        tuning = read(scl(*(f"{1200 * n / steps:.6f}" for n in range(1, steps)), "2/1"))
-        for key in (0, 30, 60, 61, 69, 90, 127):
-            assert tuning.pitch(key, 440.0) == pytest.approx(60 + 12 * (key - 60) / steps, abs=1e-6)
-
-
 def test_a_scale_repeats_at_its_last_note_octave_or_not(read):
     bohlen_pierce = "27/25 25/21 9/7 7/5 75/49 5/3 9/5 49/25 15/7 7/3 63/25 25/9 3/1"
     tuning = read(scl(*bohlen_pierce.split()))
@@ -110,22 +103,6 @@ def test_a_note_is_cents_or_a_ratio_and_what_follows_is_ignored(subtests, read):
             assert cents(read(scl(line)), 60, 61)[1] == pytest.approx(expected, abs=1e-3)
 
 
-def test_a_scale_without_notes_has_its_first_only(read):
-    tuning = read("nothing\n0\n")
-    assert [tuning.pitch(key, 440.0) for key in (60, 61, 60.5)] == [60.0, None, None]
-
-
-def test_a_scale_is_named_by_its_description(read):
-    for text, name in [
-        (scl("2/1"), "A scale"),
-        ("\n1\n2/1", "mine"),
-        ("Größe\n1\n2/1", "Größe"),
-        ("Größe\n1\n2/1".encode("latin-1"), "Größe"),
-        (b"\xef\xbb\xbfmarked\n1\n2/1", "marked"),
-    ]:
-        assert read(text).name == name
-
-
 def test_any_line_ends_and_lines_after_the_last_note_or_an_end_mark(read):
     text = scl("3/2", "2/1") + "whatever follows\n"
     for end in ("\n", "\r\n", "\r"):
@@ -160,26 +137,6 @@ def test_white_keys_play_a_seven_note_scale_and_black_ones_nothing(read):
         assert tuning.pitch(key - 24, 264.0) == pytest.approx(45 + 12 * math.log2(ratio))
     silent = {key for key in range(60, 72) if tuning.pitch(key, 440.0) is None}
     assert silent == {61, 63, 66, 68, 70}
-
-
-def test_over_an_unmapped_key_the_pitch_goes_from_one_mapped_key_to_the_next(read):
-    tuning = read(scl(*MAJOR), kbm(*WHITE, octave=7))
-    low, high = tuning.pitch(60, 440.0), tuning.pitch(62, 440.0)
-    assert tuning.pitch(60.5, 440.0) == pytest.approx(low + (high - low) / 4)
-    assert tuning.pitch(61.5, 440.0) == pytest.approx(low + (high - low) * 3 / 4)
-
-
-def test_keys_beyond_the_first_and_last_are_unmapped(read):
-    tuning = read(scl(*TWELVE), kbm(first=50, last=80))
-    found = [key for key in range(-1, 129) if tuning.pitch(key, 440.0) is not None]
-    assert found == list(range(50, 81))
-    assert tuning.pitch(49.5, 440.0) is None
-    assert tuning.pitch(80.5, 440.0) is None
-    assert tuning.pitch(math.nan, 440.0) is None
-
-
-def test_the_reference_may_be_a_key_that_is_not_played(read):
-    assert read(scl(*TWELVE), kbm(last=60)).pitch(60, 440.0) == pytest.approx(60)
 
 
 def test_the_map_repeats_at_its_octave_degree_or_at_the_end_of_the_scale(read):

@@ -88,15 +88,6 @@ def test_a_members_bend_spans_48_semitones_and_the_masters_adds_two(zone, player
     assert player.pitch == pytest.approx(71.0, abs=0.01)
 
 
-def test_what_one_member_is_told_of_its_bend_range_holds_for_all(zone, player):
-    zone.rpn(0, 0, (6, 24), channel=4)
-    zone.on(70, channel=9)
-    zone.bend(2048, channel=9)
-    assert player.pitch == pytest.approx(76.0, abs=0.01)
-    zone.bend(8191)
-    assert player.pitch == pytest.approx(78.0, abs=0.01)  # the master keeps its two
-
-
 def test_pressure_is_each_notes_own_and_the_masters_where_it_has_none(zone, listener):
     zone.touch(127)
     zone.on(70, channel=2)
@@ -130,12 +121,6 @@ def test_a_new_configuration_ends_notes_and_forgets_bends(zone, player):
     assert player.pitch == pytest.approx(70.0)
     zone.on(74, channel=10)  # outside the zone: percussion again
     assert player.pitch == pytest.approx(70.0)
-
-
-def test_another_port_has_zones_of_its_own(zone, player):
-    zone.on(70, channel=3, port=1)
-    zone.bend(8191, channel=3, port=1)
-    assert player.pitch == pytest.approx(72.0)
 
 
 def test_the_mpe_preset_begins_as_a_zone(make, player):

@@ -7,7 +7,6 @@ import random
 
 import numpy as np
 import pytest
-from plugin.sounds import FRAMES, PHRASE, script
 
 pytestmark = pytest.mark.slow
 RATES = (1234.5678, 8000, 12345.678, 22050, 45678.901, 123456.78, 384000, 768000)
@@ -80,15 +79,6 @@ def test_any_values_do_no_harm(play, shown):
         assert np.abs(samples).max() <= 1.0
 
 
-def test_a_value_is_the_same_by_an_event_and_by_a_flush(play, shown):
-    wanted = some_values(random.Random(3), shown)
-    usual = {each.number: each.default for each in shown.values()}
-    for word, values in (("set", wanted), ("flush", wanted), ("idle", wanted), ("foreign", usual)):
-        lines = [f"0 {word} {number} {value}" for number, value in wanted.items()]
-        found = reported_values(play(lines, 64)[1])
-        assert found == pytest.approx(values, rel=1e-9), word
-
-
 def test_a_state_comes_back_byte_by_byte(play, shown, tmp_path):
     first, second = tmp_path / "first", tmp_path / "second"
     values = some_values(random.Random(4), shown)
@@ -106,10 +96,3 @@ def test_what_is_no_state_is_refused(play, shown, tmp_path):
         reports = play([f"0 load {state}"], 64)[1]
         assert reports["loaded"] == [[0.0]], size
         assert reported_values(reports) == usual
-
-
-def test_values_that_are_so_already_change_nothing(play, shown):
-    """Hosts send all of them as they begin."""
-    all_values = [f"0 set {each.number} {each.default}" for each in shown.values()]
-    after_all, _ = play(["0 play 1", *all_values, *script(PHRASE)], FRAMES)
-    assert np.array_equal(after_all, play(["0 play 1", *script(PHRASE)], FRAMES)[0])

@@ -9,13 +9,9 @@ import pytest
 from plugin.lv2_host import Plugin
 from plugin.sounds import FRAMES, PHRASE, by_library, frequency
 
-from yehu_server.plugin.carried import carried
 from yehu_server.plugin.lv2_texts import (
     FIRST_PARAMETER,
     in_lv2,
-    manifest,
-    plugin_text,
-    presets_text,
 )
 
 slow = pytest.mark.slow
@@ -75,16 +71,3 @@ def test_lilv_finds_plug_in_and_presets(built, tmp_path):
     assert not printed.stderr
     assert "sul-ponticello" in printed.stdout
     assert "Finger 4 press by hand" in printed.stdout
-
-
-def test_texts_name_each_parameter_and_preset(shown):
-    data = carried()
-    text = plugin_text(list(shown.values()))
-    for each in in_lv2(shown.values()):
-        assert f'lv2:symbol "{each.symbol}" ;' in text
-    assert "preset" not in {each.symbol for each in in_lv2(shown.values())}
-    presets = presets_text(shown.values(), data)
-    listed = manifest("Yehu.so", data.presets)
-    for name in set(data.presets) - {"none"}:
-        assert f":preset:{name}>" in presets
-        assert f":preset:{name}>" in listed

@@ -15,7 +15,6 @@ pytestmark = [
     pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb"),
 ]
 PREV, NEXT = (40, 296), (200, 296)  # places in the chooser of presets
-ZOOM = (640, 16)
 WOOD, PAPER = (0xE2, 0xBF, 0x8D), (0xF7, 0xF3, 0xEA)
 TAB, RIGHT, END = 23, 114, 115  # codes of keys
 TRIES = 100
@@ -137,20 +136,6 @@ def test_it_is_played_by_mouse_and_keys_and_the_host_hears_of_it(window, shown):
     assert becomes(window, mapping.number, len(mapping.choices) - 1)
     window(f"key {RIGHT}")  # there is none after the last
     assert not becomes(window, mapping.number, len(mapping.choices))
-
-
-def test_it_scales(window, tmp_path):
-    window("open")
-    assert window("size 1400 660")[-2:] == (1362, 660)  # the picture keeps its shape
-    window("tick")
-    large = seen(window, tmp_path / "large", lambda pixels: coloured(pixels, *WOOD) > 40000)
-    assert coloured(large[-20:, -20:], *PAPER) > 300  # up to the corner
-    window("size 680 330")
-    window(f"click {ZOOM[0]} {ZOOM[1]}")
-    for _ in range(TRIES):
-        if (asked := window("tick")[3:5]) != (0, 0):
-            break
-    assert asked == (850, 412)
 
 
 def test_closed_it_has_no_timer_and_opens_again(window):

@@ -61,19 +61,6 @@ def test_what_has_changed_is_not(target, change):
     assert build_records.up_to_date(target, "key", [target]) is None
 
 
-def test_another_key_or_another_result_is_a_change(target):
-    assert build_records.up_to_date(target, "other", [target]) is None
-    assert build_records.up_to_date(target, "key", [target, target.with_suffix(".png")]) is None
-
-
-def test_a_name_as_long_as_a_name_may_be_has_a_record(tmp_path):
-    path = tmp_path / ("a" * 251 + ".wav")
-    path.write_bytes(b"sound")
-    build_records.make_folder_for(path)
-    build_records.keep(path, "key", [], [path], {"file": "a"})
-    assert build_records.up_to_date(path, "key", [path]) == {"file": "a"}
-
-
 def test_what_a_killed_process_left_is_removed_and_records_stay(target):
     left = build_records.temporary_of(target).with_name(".yehu-server-0.part")
     left.touch()

@@ -43,12 +43,6 @@ def test_scores_that_differ_in_their_endings_go_to_files_of_their_own(made):
     assert len(set(targets)) == len(targets)
 
 
-def test_a_score_without_a_name_of_its_own_is_a_problem(tmp_path, made):
-    made("a.mid", "A.kar", "a.kar.mid")
-    found = tree_of(tmp_path / "in", tmp_path / "out", ".wav")
-    assert found.problems == (("A.kar", "another score is rendered to a file of this name"),)
-
-
 def test_a_new_file_beside_a_score_does_not_move_its_result(made):
     before = made("b.mid", "c.mid")
     after = made("b.kar", "c.MID", "c.rmi")

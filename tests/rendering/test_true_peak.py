@@ -42,8 +42,3 @@ def test_it_is_as_without_blocks_and_without_leaving_anything_out():
     assert whole > 1.1 * np.abs(sound).max()
     for block, start in itertools.product((7, 100, 3000), range(20)):  # blocks end at any place
         assert peak_of(sound[start:], block) == pytest.approx(whole, rel=1e-12)
-
-
-def test_silence_has_none():
-    assert peak_of(np.zeros((500, 2))) == 0.0
-    assert TruePeak().finish() == 0.0

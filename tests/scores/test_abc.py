@@ -153,12 +153,6 @@ def test_marks_voices_parts_and_jumps_are_understood(read):
         assert [note.pitch for note in read(f"X:1\n{tune}").parts[0].notes] == pitches
 
 
-def test_a_field_gives_a_letter_another_meaning_within_the_music_too(read):
-    head, music = "X:1\nK:C\n", "TC [U:T=!upbow!]TC\nU:T=!downbow!\nTC|"
-    marks = [note.marks[0].name for note in read(head + music).parts[0].notes]
-    assert marks == ["trill", "up-bow", "down-bow"]
-
-
 def test_a_key_may_name_accidentals(read):
     for key, pitches in (
         ("D exp _b ^f", [66.0, 70.0, 72.0]),
@@ -169,12 +163,6 @@ def test_a_key_may_name_accidentals(read):
     ):
         notes = read(f"X:1\nL:1/4\nK:{key}\nFBc|").parts[0].notes
         assert [note.pitch for note in notes] == pitches, key
-
-
-def test_a_line_may_begin_with_the_last_note_of_a_repeat(read):
-    for music in ("M:C\nL:1/1\nK:C\n|:C|\nD:|\nE|", "M:C\nL:1/1\nK:C\n|:C|\nD::\nE:|"):
-        pitches = [note.pitch for note in read(f"X:1\n{music}\n").parts[0].notes]
-        assert pitches[:5] == [60.0, 62.0, 60.0, 62.0, 64.0], music
 
 
 def test_a_file_of_several_tunes_gives_the_one_that_is_asked_for(tmp_path):

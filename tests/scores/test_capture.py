@@ -328,20 +328,6 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
     np.testing.assert_array_equal(again, expected)
 
 
-def test_commands_of_several_players_are_read_in_the_order_of_frames(tmp_path):
-    beginning = session_start_of(
-        [Instrument(InstrumentSpec(RATE)), Instrument(InstrumentSpec(RATE))], has_room=True
-    )
-    writer = CaptureWriter(tmp_path / "c", beginning=beginning)
-    for player, frames in [(1, [5, 9]), (0, [3, 7]), (1, [9]), (0, [8])]:
-        writer.commands(np.array([(frame, LIFT, 0, 0.0, 0.0) for frame in frames], COMMAND), player)
-    writer.close(10)
-    read = read_capture(tmp_path / "c")
-    found = zip(read.commands["frame"].tolist(), read.players.tolist(), strict=True)
-    assert list(found) == [(3, 0), (5, 1), (7, 0), (8, 0), (9, 1), (9, 1)]
-    assert read.beginning.has_room
-
-
 def test_what_players_have_in_common_is_written_once(tmp_path):
     of, apart = measured(), range(MOST_PARTS - 2)
     players = [InstrumentSpec(RATE, calibration=of, seed=seed, body=seed) for seed in range(3)]
@@ -359,14 +345,6 @@ def test_what_players_have_in_common_is_written_once(tmp_path):
     assert [each.calibration for each in again] == [each.calibration for each in players]
     assert [each.body for each in again] == [each.body for each in players]
     np.testing.assert_array_equal([each.bowing for each in again], [e.bowing for e in players])
-
-
-def test_a_replay_counts_what_it_did(tmp_path, write):
-    capture = read_capture(write(tmp_path / "c", RAMPS, end=9600))
-    result = replay(capture, tmp_path / "x.wav", format_name="wav", subtype="float")
-    assert result.events == 3
-    assert result.duration_s == 0.2
-    assert (tmp_path / "x.wav").exists()
 
 
 # ---------------------------------------------------------------- files of version 1
@@ -708,12 +686,6 @@ def test_a_file_of_version_2_sounds_as_it_did_without_a_room(tmp_path):
     samples = replayed(path)
     assert rms(samples) > 0.001
     np.testing.assert_array_equal(samples, run(instrument, 9600))
-
-
-def test_a_file_of_version_2_has_no_players_in_its_lines(tmp_path):
-    path = second_version(tmp_path / "c", [[0, 1, "lift"], {"end": 9}])
-    with pytest.raises(ScoreError, match="line 2"):
-        read_capture(path)
 
 
 def test_strings_that_no_model_can_hold_are_refused_before_anything_sounds(tmp_path):

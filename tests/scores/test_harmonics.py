@@ -57,16 +57,6 @@ def test_under_its_articulation_a_key_is_where_the_finger_touches():
     assert abs(off_cents(samples, 0.0, 91.0)) < 10.0
 
 
-def test_a_harmonic_has_none_of_the_stopped_notes_other_partials():
-    samples, _ = sound((84.0, "harmonic"))
-    spectrum = np.abs(np.fft.rfft(samples[int(0.5 * RATE) : int(0.9 * RATE)] * np.hanning(17640)))
-    own, open_string = (
-        spectrum[round(hertz * 0.4) - 4 : round(hertz * 0.4) + 5].max()
-        for hertz in (1046.5, 523.25)
-    )
-    assert own > 100.0 * open_string
-
-
 def test_all_that_marks_set_is_put_back():
     _, usual = sound((67.0,), (69.0,))
     marks = ("up-bow", "harmonic", "tremolo", "vibrato", "slide-in-up", "outer-string", "spiccato")
@@ -88,16 +78,6 @@ def test_marks_are_put_back_to_a_preset_and_move_nothing_that_is_held(how, is_mo
     places = [performance.player.value("/playing/bow_position") for _ in performance.blocks()]
     assert places[-1] == 0.18
     assert (len({*places}) > 1) == is_moved
-
-
-def test_settings_of_a_part_that_is_not_played_set_nothing():
-    note = Note(Fraction(0), Fraction(1), 67.0, (Mark("pizzicato"),))
-    plain = Note(Fraction(0), Fraction(1), 67.0)
-    score = performed(Written((Part("", (plain,)), Part("", (note,)))))
-    part = rendering.Part(score, PlayingOptions(channels=frozenset({0})))
-    performance = Performance([part], Options(tail_s=0.0))
-    next(performance.blocks())
-    assert performance.player.value("/playing/pizzicato") == 0.0
 
 
 # ---------------------------------------------------------------- jianpu

@@ -11,7 +11,7 @@ import pytest
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.reader import MOST_BYTES, parse_jianpu, read_jianpu
-from yehu_server.scores.score import Metre, notes_of
+from yehu_server.scores.score import notes_of
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.written.notated import Note, Written
 from yehu_server.scores.written.performed import performed
@@ -131,11 +131,6 @@ def test_notes_last_as_is_written():
     assert notes("3[ q1 q1 q1 ] " * 1000)[-1].end == Fraction(1000)
 
 
-def test_octave_moves_do_not_move_grace_notes():
-    (note,) = notes("> g[3] 1")
-    assert (note.pitch, [grace.pitch for grace in note.before]) == (72.0, [64.0])
-
-
 def test_titles_and_names_of_parts_are_kept():
     score = written("title=二泉映月\ninstrument=Yehu\n1 NextPart\ninstrument=Erhu\n1")
     assert (score.title, [part.name for part in score.parts]) == ("二泉映月", ["Yehu", "Erhu"])
@@ -145,13 +140,6 @@ def test_a_pickup_is_bar_0():
     score = written("3/4,4 5 1 1 1 2 2 2")
     assert [score.place(note.beat)[0] for note in score.parts[0].notes] == [
         "0", "1", "1", "1", "2", "2", "2",
-    ]  # fmt: skip
-
-
-def test_before_the_first_metre_bars_have_four_quarters():
-    score = Written((), metres=(Metre(8.0, 3.0),))
-    assert [score.place(Fraction(beat)) for beat in (3, 4, 10, 11)] == [
-        ("1", 3), ("2", 0), ("3", 2), ("4", 0),
     ]  # fmt: skip
 
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import pairwise, product
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.jianpu.characters import living
 from yehu_server.scores.jianpu.reader import parse_jianpu, read_jianpu
 from yehu_server.scores.written.notated import Note
 
@@ -55,17 +54,6 @@ def test_the_mode_says_which_of_three_and_six_is_heavy():
         assert steps(f"mode={mode}\n三 六") == steps(f"调={mode}\n三 六") == heard, mode
 
 
-def test_a_sign_before_a_character_goes_over_the_mode():
-    assert steps("mode=轻六\n重三 三 重六") == [-1.5, -3.0, 5.3]
-    assert steps("mode=重六\n轻三 三 轻六") == [-3.0, -1.5, 4.0]
-
-
-def test_only_five_and_the_heavy_three_live_in_their_mode_and_no_other():
-    assert not any(note.contour for note in notes("mode=重六\n二 三 四 五 六 七 八"))
-    lives = [bool(note.contour) for note in notes("mode=活五\n二 三 四 五 六 七 八 轻三")]
-    assert lives == [False, True, False, True, False, False, False, False]
-
-
 def test_the_living_five_is_raised_and_slides_up_from_re():
     (note,) = notes("mode=活五\n五 - - -")
     assert note.pitch - DO == 2.75
@@ -78,15 +66,6 @@ def test_the_living_five_is_raised_and_slides_up_from_re():
     assert times == tuple(sorted(times))
     (alone,) = notes("活五 - - -")  # in any mode
     assert alone == note
-
-
-def test_a_living_note_of_any_length_has_few_points_in_order():
-    for character, quarters in product("三五", (Fraction(1, 16), Fraction(1, 3), 1, 999)):
-        points = living(character, Fraction(quarters))
-        assert 3 <= len(points) <= 70
-        times = [time for time, _ in points]
-        assert times == sorted(set(times))
-        assert (times[0], times[-1]) == (0.0, 1.0)
 
 
 def test_a_mode_that_nobody_knows_is_named_and_the_example_is_understood_whole():

@@ -101,12 +101,6 @@ def test_grace_notes_stand_before_and_after_with_lengths_of_their_own():
             assert [(grace.pitch, float(grace.length)) for grace in graces] == expected, text
 
 
-def test_harmonics_hold_between_their_words():
-    assert [bool(note.marks) for note in part("1 Harm: 2 3 :Harm 4").notes] == [
-        False, True, True, False,
-    ]  # fmt: skip
-
-
 def test_dynamics_and_texts_hold_from_the_note_before_them():
     for text, found in [
         ("1 \\p 2 3 - \\f 4 \\sfz", [(0, "p"), (3, "f"), (4, "sfz")]),
@@ -151,17 +145,6 @@ def test_slurs_may_lie_within_each_other_and_those_without_an_end_are_warned_of(
     assert {(span.begin, span.end) for span in spans} == {(0, 3), (1, 2)}
     assert parse_jianpu(b"1 ( 2").warnings == ("slurs without an end left out",)
     assert parse_jianpu(b"1 2 )").warnings == ("ends of slurs that did not begin left out",)
-
-
-def test_a_fermata_on_a_rest_stops_the_time():
-    played = part("1 0 \\fermata 1")
-    assert played.signs == (Sign(1, "fermata"),)
-
-
-def test_marks_within_a_repeat_come_each_time():
-    assert [note.marks for note in part("R{ 1 \\upbow 2 }").notes] == [
-        (Mark("up-bow"),), (), (Mark("up-bow"),), (),
-    ]  # fmt: skip
 
 
 def test_words_of_the_page_are_silent():

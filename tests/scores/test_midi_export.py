@@ -86,8 +86,3 @@ def test_bends_and_slides_are_in_the_file(export):
     assert controls(file, 65) == [127, 0]
     assert notes_of(again)[1].start_s < 2 * 60 / 90
     assert lost == {}
-
-
-def test_what_midi_cannot_say_is_counted(export):
-    *_, lost = export(note(0, 2, 67, Mark("up-bow")), note(2, 2, 69, Mark("up-bow")))
-    assert lost == {"/playing/direction": 1}

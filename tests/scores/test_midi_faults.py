@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import mido
 import pytest
 from midi_faults import AGREES, CASES, DIFFERS, REFUSES, UNASKED, Case
-from pages import ROOT, page
+from pages import page
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import Score
@@ -123,17 +120,3 @@ def test_mido_agrees_message_for_message_where_it_is_said_to(subtests, written):
     for case in [case for case in CASES if case.mido != UNASKED]:
         with subtests.test(case=case):
             assert made_by_mido(case, written(case.data)) == case.mido
-
-
-# ---------------------------------------------------------------- the corpus
-
-
-def test_the_corpus_is_written_with_what_is_expected(tmp_path):
-    command = [sys.executable, ROOT / "tests" / "midi_faults.py", tmp_path]
-    subprocess.run(command, check=True)
-    expected = json.loads((tmp_path / "expected.json").read_text("utf-8"))
-    assert {path.stem for path in tmp_path.glob("*.mid")} == set(expected)
-    assert {case.name: case.says for case in CASES} == {
-        name: case["says"] for name, case in expected.items()
-    }
-    assert len(expected) == len(CASES)

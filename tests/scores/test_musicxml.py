@@ -28,7 +28,7 @@ from yehu_server.errors import ScoreError
 from yehu_server.params.articulations import NUMBER
 from yehu_server.scores.musicxml import reader
 from yehu_server.scores.musicxml.reader import DEEPEST, MOST_XML_BYTES, read_musicxml
-from yehu_server.scores.written.notated import MARKS, SPANS, Mark
+from yehu_server.scores.written.notated import MARKS, SPANS
 from yehu_server.scores.written.words import meaning_of
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "marks.musicxml"
@@ -239,10 +239,6 @@ def test_title_bars_and_metre_are_those_of_the_score(read):
     assert (written.metres[-1].beat, written.metres[-1].quarters) == (1.0, 3.0)
 
 
-def test_a_rest_that_is_longer_than_its_bar_fills_the_bar(read):
-    assert read(score(note("r", 8), FOUR)).parts[0].notes[0].beat == 4
-
-
 def test_an_interrupted_ending_does_not_play_for_ever(read):
     bar = barline(location="left", ending="1 start") + FOUR + barline(repeat="backward")
     assert len(read(score(bar)).parts[0].notes) == 4
@@ -310,13 +306,6 @@ def test_a_rest_that_one_part_has_too_much_makes_no_bar_longer(read):
         "</measure></part>", f"</measure>{more}</part>"
     )
     assert [float(bar.beat) for bar in read(longer).bars] == [0.0, 6.0]
-
-
-def test_divisions_may_stand_after_the_first_notes(read):
-    late = "<attributes><divisions>12</divisions></attributes>"
-    first = "<attributes><key><fifths>1</fifths></key></attributes>"
-    written = read(score(first + note("G4", 1) + note("A4", 1) + late + note("B4", 2)))
-    assert [float(each.beat) for each in written.parts[0].notes] == [0.0, 1.0, 2.0]
 
 
 def test_endings_without_numbers_are_read_and_bars_that_nobody_plays_are_listed(read):
@@ -429,14 +418,6 @@ def test_notes_that_overlap_in_a_voice_are_cut(read):
     back = "<backup><duration>24</duration></backup>"
     notes = read(score(note("G4", 4) + back + note("A4", 2))).parts[0].notes
     assert [(each.beat, each.length, each.pitch) for each in notes] == [(0, 2, 67.0), (2, 2, 69.0)]
-
-
-def test_marks_of_tied_notes_are_those_of_the_whole(read):
-    tied = note("G4", 2, '<tied type="start"/>', articulation("accent"), more='<tie type="start"/>')
-    end = note("G4", 2, '<tied type="stop"/>', "<fermata/>", more='<tie type="stop"/>')
-    (whole,) = read(score(tied + end)).parts[0].notes
-    assert whole.length == 4
-    assert whole.marks == (Mark("accent"), Mark("fermata"))
 
 
 def test_the_example_has_every_mark_that_musicxml_can_write(read):

@@ -6,7 +6,6 @@ import mido
 import pytest
 from musicxml_text import note, score
 
-from yehu_server.core.player.note_range import NoteRange
 from yehu_server.errors import ScoreError
 from yehu_server.scores.octaves import NoteSpan, octaves_of
 from yehu_server.scores.reading import ReadOptions, read_any
@@ -124,16 +123,6 @@ def test_channels_of_mpe_are_one_part_whether_the_file_says_it_or_the_player(fil
     assert keys(read_any(file(_=tune), ReadOptions(is_mpe=True))) == moved
 
 
-def test_a_file_with_controllers_alone_says_that_it_is_silent(file):
-    remarks = read_any(file(_=controls((1, 3)))).remarks
-    assert remarks == ("has controllers and no note: nothing sounds",)
-
-
-def test_coarse_tuning_counts_for_the_range(file):
-    up = controls((101, 0), (100, 2), (6, 76))
-    assert keys(read_any(file(_=[*up, *notes(*LOW)]))) == LOW
-
-
 # ---------------------------------------------------------------- the part with the tune
 
 TUNE = sounding(67, 69, 71, 72, 74, 71, 69, 67)
@@ -168,13 +157,6 @@ def test_the_tune_is_found_among_what_accompanies_it():
         if melodic_part(names, parts) != expected
     }
     assert not wrong
-
-
-def test_a_tune_fits_the_instrument_that_plays_it():
-    erhu = NoteRange((62, 69), (32.0, 32.0))
-    wide = sounding(62, 69, 76, 83, 90, 97, 101, 97)
-    found = [melodic_part(["a", "b"], [wide, TUNE], *within) for within in ((), (erhu,))]
-    assert found == [1, 0]
 
 
 def test_parts_that_take_turns_are_distinguished_from_parts_that_sound_together():

@@ -239,24 +239,6 @@ def test_a_hairpin_leads_to_the_dynamic_after_it():
     assert velocities[1] == pytest.approx(50 + 46 * 2 / 4, abs=1)  # its end is its loudest moment
 
 
-def test_a_long_note_swells_under_a_hairpin():
-    score = play(note(0, 8, 67), signs=[sign(0, "p")], spans=[span("crescendo", 0, 8)])
-    _, *swell = [value for _, value in expressions(score)]  # the first is that of the part
-    assert swell == sorted(swell)
-    assert notes_of(score)[0].velocity == 70  # p, and 20 steps more: its loudest moment
-    below_db = 20 * 18 / 126
-    assert swell[0] == pytest.approx(127 * 10 ** (-below_db / 40), abs=1)
-    assert swell[-1] >= 126
-
-
-def test_a_note_ends_as_loud_as_the_next_begins_in_a_hairpin():
-    score = play(*FOUR, spans=[span("diminuendo", 0, 4)])
-    before = [value for time, value in expressions(score) if time < 2 * QUARTER_S][-1]
-    step_db = 40.0 * (1 - before / 127) / 2.3  # of the expression, near its top
-    velocities = [each.velocity for each in notes_of(score)]
-    assert step_db == pytest.approx((velocities[1] - velocities[2]) * 18 / 126, abs=0.35)
-
-
 def levels_db(score) -> list[tuple[float, float]]:
     """The level (dB) as time goes, by velocities and controller 11."""
     velocities = {note.start_s: note.velocity for note in notes_of(score)}
@@ -280,14 +262,6 @@ def test_a_dynamic_within_a_held_note_is_no_jump():
         steps = (found[-1][1] - found[0][1]) * 126 / 18
         assert steps == pytest.approx(DYNAMICS[after] - DYNAMICS[before], abs=1)
         assert abs(found[-1][1] - max(item for item in found if item[0] < 1.35)[1]) < 0.2
-
-
-def test_a_hairpin_within_a_held_note_begins_at_the_dynamic_before_it():
-    signs, spans = [sign(0, "f"), sign(2, "p")], [span("crescendo", 2, 8)]
-    found = levels_db(play(note(0, 8, 67), signs=signs, spans=spans))
-    lowest = min(level for _, level in found)
-    assert (lowest - found[0][1]) * 126 / 18 == pytest.approx(50 - 96, abs=2)
-    assert (found[-1][1] - lowest) * 126 / 18 == pytest.approx(20, abs=2)
 
 
 def test_between_marks_of_loudness_phrases_are_shaped_less():
@@ -314,14 +288,6 @@ def test_marks_of_loudness_keep_their_steps():
     assert found[3:8] == sorted(found[3:8])
 
 
-def test_marked_bows_get_no_more_slurs():
-    quick = [note(Fraction(n, 4), Fraction(1, 4), 67 + 2 * (n % 3)) for n in range(8)]
-    assert any(overlaps(phrased(play(*quick), 1.0)))
-    for mark in ("down-bow", "staccato"):
-        marked = [note(0, Fraction(1, 4), 67, mark), *quick[1:]]
-        assert not any(overlaps(phrased(play(*marked), 1.0)))
-
-
 # -- fingers ------------------------------------------------------------------------------------
 
 
@@ -331,14 +297,6 @@ def test_a_trill_holds_its_note_and_taps_the_other_under_one_bow():
     assert {tap.key for tap in taps} == {68}
     assert 10 <= len(taps) <= 16
     assert all(main.start_s < tap.start_s < tap.end_s < main.end_s for tap in taps)
-
-
-def test_a_trill_goes_on_under_its_wavy_line():
-    score = play(*FOUR, spans=[span("trill", 0, 1, 2.0)])
-    keys = [each.key for each in notes_of(score)]
-    assert keys.count(69) > 2  # taps, and the second note
-    assert keys.count(71) > 2
-    assert keys.count(75) == 0
 
 
 def test_ornaments_tap_their_notes_while_the_own_is_held():

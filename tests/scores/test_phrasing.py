@@ -10,8 +10,8 @@ import pytest
 from shaping import phrased
 
 from yehu_server.scores.phrases import phrases_of
-from yehu_server.scores.phrasing import LEAST_FOR_BOWS, accent, is_fingered
-from yehu_server.scores.score import COMMON_TIME, Metre, Score, ScoreEvent, notes_of
+from yehu_server.scores.phrasing import LEAST_FOR_BOWS
+from yehu_server.scores.score import COMMON_TIME, Score, ScoreEvent, notes_of
 
 BEAT_S = 0.5
 
@@ -64,14 +64,6 @@ def test_a_phrase_is_an_arch_with_accents_about_what_was_written():
     assert spans[0] < spans[1] < spans[2]
 
 
-def test_the_metre_is_that_of_the_file():
-    score = bare(*SCALE, metres=(Metre(0.0, 4.0), Metre(4.0, 3.0)))
-    assert accent(0.0, score) > accent(2.0, score) > accent(1.0, score) > accent(0.5, score)
-    assert accent(7.0, score) == accent(0.0, score)
-    assert accent(8.0, score) < accent(7.0, score)
-    assert accent(float("nan"), score) == 0.0
-
-
 def test_marked_loudness_stays():
     score = bare(*SCALE, extra=[(0.0, CONTROLLER)])
     assert velocities(phrased(score, 1.0)) == velocities(score)
@@ -119,24 +111,6 @@ def test_phrases_end_with_rests_long_notes_and_after_four_bars():
     assert [len(phrase) for phrase in phrases_of(notes_of(held))] == [7, 1]
     even = bare(*[(float(n), 1.0, 67) for n in range(20)])
     assert [len(phrase) for phrase in phrases_of(notes_of(even))] == [16, 4]
-
-
-def test_bends_and_vibrato_controllers_are_marks_of_the_left_hand():
-    left = [
-        mido.Message("pitchwheel", pitch=100),
-        mido.Message("aftertouch", value=3),
-        mido.Message("control_change", control=1, value=3),
-    ]
-    marked = [is_fingered(bare(*SCALE, extra=[(0.0, each)])) for each in (CONTROLLER, *left)]
-    assert marked == [False, True, True, True]
-
-
-def test_a_key_that_nothing_ends_lasts_to_the_end_or_until_it_is_struck_again():
-    on = mido.Message("note_on", note=70, velocity=9)
-    (note,) = notes_of(Score((ScoreEvent(0.5, on, 1.0),), 3.0))
-    assert (note.ends, note.length_s, note.beat) == (-1, 2.5, 1.0)
-    score = Score((ScoreEvent(0.0, on), ScoreEvent(1.0, on)), 3.0)
-    assert [note.length_s for note in notes_of(score)] == [1.0, 2.0]
 
 
 def test_the_bow_breathes_between_phrases_but_not_where_bows_are_marked():

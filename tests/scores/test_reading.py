@@ -20,7 +20,7 @@ from yehu_server.scores.reading import (
     read_written,
     tracks_with_notes,
 )
-from yehu_server.scores.score import COMMON_TIME, Metre, Score, ScoreEvent, concatenate, notes_of
+from yehu_server.scores.score import Score, ScoreEvent, notes_of
 from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
 
@@ -71,13 +71,6 @@ def test_a_long_capture_is_known_by_its_first_bytes(tmp_path):
     assert is_capture(path)
 
 
-def test_a_score_without_notes_names_its_file(tmp_path):
-    path = tmp_path / "silence.musicxml"
-    path.write_text(score(note("r", 4)), encoding="utf-8")
-    with pytest.raises(ScoreError, match=r"silence\.musicxml: has no note"):
-        read_any(path)
-
-
 # ---------------------------------------------------------------- parts
 
 
@@ -109,32 +102,3 @@ def test_a_part_has_its_events_and_what_moves_all_and_is_as_long_as_its_score():
     ]:
         part = part_of(SCORE, **which)
         assert (part.events, part.duration_s) == (events, SCORE.duration_s), which
-
-
-def test_events_of_a_file_know_their_track(tmp_path):
-    file = mido.MidiFile(type=1)
-    for channel in (None, 2, 4):
-        track = file.add_track()
-        if channel is not None:
-            track.append(mido.Message("note_on", channel=channel, note=70, time=10))
-    file.save(tmp_path / "three.mid")
-    score = read_score(tmp_path / "three.mid")
-    assert [(event.message.channel, event.track) for event in score.events] == [(2, 2), (4, 3)]
-    joined = concatenate([score, score])
-    assert [event.track for event in joined.events] == [2, 3, 0, 2, 3]
-
-
-def test_joined_scores_of_one_metre_keep_it():
-    """Their beats begin anew with each, so their bars do."""
-    waltz, march = (Score((), 1.0, metres=(COMMON_TIME, Metre(0.0, n))) for n in (3.0, 2.0))
-    assert concatenate([waltz, waltz]).bar_at(4.0) == (0.0, 3.0)
-    assert concatenate([waltz, march]).bar_at(4.0) == (0.0, 4.0)
-
-
-def test_the_songs_of_format_2_are_tracks(tmp_path):
-    file = mido.MidiFile(type=2)
-    for key in (70, 72):
-        file.add_track().append(mido.Message("note_on", note=key, time=10))
-    file.save(tmp_path / "songs.mid")
-    events = read_score(tmp_path / "songs.mid").events
-    assert [event.track for event in events if event.message.type == "note_on"] == [1, 2]

@@ -60,11 +60,6 @@ def test_forms_are_played_as_players_read_them():
     assert not wrong
 
 
-def test_bars_that_are_passed_over_are_found():
-    signs = ("", "segno", "tocoda", "dalsegno", "", "coda")
-    assert left_out(6, order_of([bar(each) for each in signs])) == [4]
-
-
 # -- any form -----------------------------------------------------------------------------------
 
 

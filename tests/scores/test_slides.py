@@ -98,13 +98,6 @@ def test_only_leaps_that_hands_are_free_for_slide():
     assert settings(slid(score_of(74, 79, at_first=rolled)), BEND)
 
 
-def test_a_slide_over_both_strings_is_on_the_inner_one():
-    assert settings(slid(score_of(74, 67)), STRING) == [(0.0, 1.0), (HALVES, None)]
-    assert settings(slid(score_of(74, 79)), STRING) == []
-    two = settings(slid(score_of(74, 67, 74)), STRING)
-    assert two == [(0.0, 1.0), (HALVES, 1.0), (2 * HALVES, None)]
-
-
 @pytest.mark.parametrize("keys", [(74, 79), (79, 74), (74, 67)])
 def test_the_finger_is_heard_to_leave_before_the_beat_and_to_be_there_on_it(keys):
     """By four of five players at least, each with a seed of its own."""

@@ -24,24 +24,6 @@ def read(tmp_path: Path) -> Callable[[bytes], Score]:
 # ---------------------------------------------------------------- time
 
 
-def test_a_quarter_note_lasts_half_a_second_by_default(read):
-    score = read(midi(on(0, 60) + off(100, 60) + END))
-    assert timed(score) == [(0.0, [0x90, 60, 80]), (0.5, [0x80, 60, 0])]
-    assert (score.duration_s, score.name, score.warnings) == (0.5, "tune", ())
-
-
-def test_a_tempo_change_in_another_track_moves_later_notes(read):
-    conductor = tempo(50, 1_000_000) + tempo(100, 250_000) + END
-    score = read(midi(conductor, on(0, 60) + off(50, 60) + on(50, 62) + off(100, 62) + END))
-    # 50 ticks at 5 ms, then 100 at 10 ms, then 50 at 2.5 ms
-    assert [event.time_s for event in score.events] == [0.0, 0.25, 0.75, 1.375]
-
-
-def test_the_last_of_two_tempos_at_one_tick_holds(read):
-    score = read(midi(tempo(0, 1) + tempo(0, 1_000_000) + on(100, 60) + END))
-    assert score.events[0].time_s == 1.0
-
-
 def test_many_tempo_changes_do_not_drift(read):
     track = b"".join(tempo(1, 333_333) for _ in range(30_000)) + on(0, 60) + END
     score = read(midi(tempo(0, 333_333) + track, division=7))
@@ -135,14 +117,6 @@ def test_running_status_goes_on_after_anything(read):
         assert score.warnings == ()
 
 
-def test_system_messages_are_stepped_over(read):
-    score = read(midi(b"\x00\xf2\x01\x02\x00\xf3\x01\x00\xfe\x00\xf8" + on(100, 60) + END))
-    assert timed(score) == [(0.5, [0x90, 60, 80])]
-    assert score.warnings == (
-        "a system message, which no file should hold, skipped, 4 times, first at byte 22",
-    )
-
-
 # ---------------------------------------------------------------- chunks
 
 
@@ -207,16 +181,6 @@ def test_one_song_of_several_is_chosen(songs):
         read_score(songs, song=4)
 
 
-def test_a_file_of_one_song_has_no_other_and_files_that_were_joined_have_theirs(tmp_path):
-    path = tmp_path / "x.mid"
-    path.write_bytes(midi(on(0, 60) + END, on(0, 62) + END))
-    assert read_score(path, song=1).events == read_score(path).events
-    with pytest.raises(ScoreError, match="has one song: there is no song 2"):
-        read_score(path, song=2)
-    path.write_bytes(b"".join(midi(on(0, note) + off(9, note) + END) for note in (60, 62)))
-    assert [event.message.note for event in read_score(path, song=2).events] == [62, 62]
-
-
 def test_of_many_notes_without_an_end_each_stops_at_the_next_of_its_channel(read):
     notes = on(0, 60) + on(0, 64) + on(0, 70, channel=1) + on(0, 35, channel=9)
     score = read(midi(notes + on(100, 62) + off(100, 62) + on(0, 36, channel=9) + END))
@@ -229,12 +193,6 @@ def test_of_many_notes_without_an_end_each_stops_at_the_next_of_its_channel(read
     assert score.warnings == (
         "a note without an end stopped at the next one, 2 times, first at byte 22",
     )
-
-
-def test_notes_that_a_controller_ends_are_left_alone(read):
-    for control in (120, 123, 124, 125, 126, 127):
-        score = read(midi(on(0, 60) + bytes([9, 0xB0, control, 0]) + on(0, 62) + off(9, 62) + END))
-        assert (len(score.events), score.warnings) == (4, ()), control
 
 
 def test_kinds_of_faults_are_bounded(read):

@@ -101,10 +101,6 @@ def test_a_long_silence_at_the_end_is_cut_with_a_warning(read):
     assert score.warnings == ("silence at the end cut to 30 s, at byte 30",)
 
 
-def test_nothing_in_a_row_is_nothing():
-    assert concatenate([]) == Score((), 0.0)
-
-
 def test_scores_in_a_row_may_not_last_longer_than_anybody_may_ask_for():
     half = Score((), 3600.0 * 501)
     with pytest.raises(ScoreError, match=r"lasts 1e\+03 hours, more than 1000"):

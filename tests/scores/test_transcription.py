@@ -20,10 +20,8 @@ from yehu_server.scores.midi_export import midi_file
 from yehu_server.scores.reading import read_written
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.transcription import (
-    PlayedNote,
     read_as_written,
     written_of_midi,
-    written_of_seconds,
 )
 from yehu_server.scores.written.performed import performed
 
@@ -110,30 +108,6 @@ def test_beats_are_divided_as_they_were_written(tmp_path):
         if [(note.beat, note.length, int(note.pitch)) for note in found] != expected:
             wrong.append(number)
     assert not wrong
-
-
-def test_a_hand_that_is_late_by_a_thirtieth_is_written_in_quavers():
-    chance = random.Random(7)
-    lengths = [chance.choice([0.5, 0.5, 1.0, 1.5]) for _ in range(60)]
-    begins = [sum(lengths[:at]) for at in range(len(lengths))]
-    heard = [
-        PlayedNote(
-            (begin + chance.uniform(-0.03, 0.03)) * 0.75, (begin + 0.8 * length) * 0.75, 70.0
-        )
-        for begin, length in zip(begins, lengths, strict=True)
-    ]
-    written, _ = written_of_seconds([("", heard)], tempo=80.0)
-    assert [float(note.beat) for note in written.parts[0].notes] == begins
-    alone, _ = written_of_seconds([("", heard)])
-    assert alone.tempi[0].quarters_per_minute == 80.0
-
-
-def test_steady_notes_are_written_as_beats_or_halves_of_them():
-    for step in (0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.8, 1.0, 1.2):
-        heard = [PlayedNote(step * at, step * (at + 1), 60.0, 80) for at in range(12)]
-        written, _ = written_of_seconds([("", heard)])
-        lengths = {note.length for note in written.parts[0].notes}
-        assert lengths <= {Fraction(1, 2), Fraction(1), Fraction(2)}, (step, lengths)
 
 
 def test_loudness_overlaps_and_keys_become_dynamics_slurs_and_signatures(tmp_path):

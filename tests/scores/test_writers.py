@@ -202,13 +202,6 @@ def test_what_a_notation_has_no_sign_for_is_counted_and_the_rest_written():
     assert again.parts[0].notes[1].beat == 4
 
 
-def test_a_title_is_written_once_and_none_where_there_is_none():
-    part = Part("", (Note(Fraction(0), Fraction(4), 69.0),))
-    for title in ("A tune", ""):
-        text, _ = jianpu_of(Written((part, part), title=title))
-        assert text.count("title=") == bool(title)
-
-
 def test_words_of_signs_are_read_as_what_they_say():
     said = [*WRITTEN_SIGNS.items()]
     for kind in ("articulation", "gesture"):

@@ -40,13 +40,6 @@ def test_the_server_is_in_what_speaks_to_it(tmp_path, command):
     assert command("surfaces", "-o", tmp_path, "--only", "yehu.pd", "--check")[0] == 1
 
 
-def test_a_host_may_be_a_name_or_a_number(command, tmp_path):
-    for server in ("10.0.0.7", "localhost", "studio.local", "studio:9000", "::1"):
-        words = ("-o", tmp_path, "--only", "yehu.pd", "--server", server)
-        assert command("surfaces", *words)[0] == 0
-        assert [path.name for path in tmp_path.iterdir()] == ["yehu.pd"]  # which alone is named
-
-
 def test_a_wrong_word_is_refused_and_nothing_written(refused, tmp_path):
     (tmp_path / "file").write_text("mine")
     for words, reason in (

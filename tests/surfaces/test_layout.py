@@ -37,7 +37,3 @@ def test_a_pad_sends_what_its_calls_take(pad):
         for number, argument in zip(numbers, call.arguments, strict=True):
             axis = pad.axes[number]
             assert argument.lo <= axis.lo <= axis.start <= axis.hi <= argument.hi
-
-
-def test_a_subscription_is_renewed_before_it_ends():
-    assert 2 * common_layout.SUBSCRIBE_EVERY_S < common_layout.SUBSCRIBED_S

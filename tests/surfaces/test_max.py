@@ -67,10 +67,3 @@ def test_a_pad_sends_its_calls(patch, pad):
     assert found == {
         f"prepend /yehu{call}": dict(enumerate(numbers)) for call, numbers in pad.calls
     }
-
-
-@pytest.mark.parametrize("text", ["/yehu/panic", "/yehu/release", "/yehu/bow 0 0"])
-def test_a_message_to_click_is_in_front_and_is_sent(patch, text):
-    box = patch.one(text)
-    assert box["presentation"] == 1
-    assert patch.texts_after(box) == ["s yehu.out"]

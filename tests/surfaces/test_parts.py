@@ -7,7 +7,6 @@ import pytest
 
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.params.table import TABLE
-from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.catalogue import SURFACES, bytes_of
 
 SERVER = ("127.0.0.1", 9000)
@@ -89,9 +88,3 @@ def test_files_of_parts_lie_beside_each_other_and_are_checked(tmp_path, command)
     (tmp_path / "yehu-part-2.pd").write_text("old")
     code, out, _ = command(*words, "--part", 2, "--check")
     assert (code, "yehu-part-2.pd" in out) == (1, True)
-
-
-def test_after_a_part_surfaces_are_again_for_all():
-    with common_layout.for_part(2):
-        assert common_layout.osc_address("/note") == "/yehu/part/2/note"
-    assert common_layout.osc_address("/note") == "/yehu/note"

@@ -102,18 +102,6 @@ def test_a_write_without_a_ramp_acts_on_its_frame(instrument):
     assert value(instrument, "/bow/speed") == 0.3
 
 
-def test_a_later_write_starts_from_where_the_ramp_has_come(instrument):
-    instrument.write("/bow/speed", 1.0, ramp_ms=1e3 * 100 / RATE)
-    instrument.write("/bow/speed", -0.5, frame=50, ramp_ms=1e3 * 100 / RATE)
-    speeds = []
-    for _ in range(150):
-        run(instrument, 1)
-        speeds.append(value(instrument, "/bow/speed"))
-    assert speeds[49] == pytest.approx(0.5)
-    assert max(np.abs(np.diff(speeds))) < 0.0101  # neither ramp is steeper than 1/100
-    assert speeds[-1] == -0.5
-
-
 # ---------------------------------------------------------------- the bow
 
 
@@ -133,27 +121,6 @@ def test_bow_force_is_the_asked_share_of_schellengs_limit(instrument, side, stri
     # A slow bow: fast ones are given a little more.
     assert row[F_N] == pytest.approx(side * 0.5 * schelleng(string, 0.02, 0.1), rel=0.01)
     assert row[V_B] == speed
-
-
-def test_bow_force_rises_with_speed_and_vanishes_without(instrument):
-    forces = []
-    for speed in (0.0, 0.05, 0.1, 0.2, 0.35):
-        put(instrument, bow_side=1.0, bow_speed=speed)
-        forces.append(controls(instrument)[F_N])
-    assert forces[0] == 0.0
-    assert all(np.diff(forces) > 0.0)
-    # It stays between what 0.3 of the limit and the whole limit are, at every speed.
-    for speed, force in zip((0.05, 0.1, 0.2, 0.35), forces[1:], strict=True):
-        assert 0.3 < force / schelleng(0, speed, 0.13) < 1.0 + 1e-9
-
-
-def test_without_assist_the_force_is_in_newtons_and_the_side_fades_it_whatever_the_speed(
-    instrument,
-):
-    put(instrument, bow_assist=0.0, bow_force=0.8)
-    for side, speed in ((1.0, 0.0), (0.5, 0.3), (0.0, 0.3), (-0.25, 0.1)):
-        put(instrument, bow_side=side, bow_speed=speed)
-        assert controls(instrument)[F_N] == pytest.approx(0.8 * side)
 
 
 def test_the_bow_moves_smoothly_when_a_finger_lands(instrument):
@@ -193,25 +160,6 @@ def test_a_bow_that_turns_back_before_it_has_left_a_string_bows_on(instrument, r
 
 
 # ---------------------------------------------------------------- fingers, tremolo, plucking
-
-
-def test_a_finger_that_is_up_waits_near_the_loop(instrument):
-    assert controls(instrument)[FINGER_CONTROLS] < 0.02
-    put(instrument, finger_1_position=0.12, finger_1_press=1.5)
-    run(instrument, 100)
-    put(instrument, finger_1_press=0.0)
-    assert controls(instrument)[FINGER_CONTROLS] == 0.12  # it leaves the string first
-    run(instrument, RATE // 10)
-    assert controls(instrument)[FINGER_CONTROLS] < 0.02
-
-
-def test_each_finger_is_where_it_is_put(instrument):
-    for number in (1, 2, 3, 4):
-        put(instrument, **{f"finger_{number}_position": 0.04 * number})
-        put(instrument, **{f"finger_{number}_press": 0.5 * number})
-    row = rows(instrument, 0.01)[-1]
-    for number in (1, 2, 3, 4):
-        assert tuple(row[place(number) : place(number) + 2]) == (0.04 * number, 0.5 * number)
 
 
 def test_the_bow_follows_the_finger_nearest_to_it_that_is_down(instrument):
@@ -267,14 +215,6 @@ def test_tremolo_turns_the_bow_so_often_and_its_force_with_it(instrument):
     assert slow.any()
     assert controls[slow, F_N].max() < 0.1 * controls[:, F_N].max()
     assert np.abs(np.diff(speed)).max() < 0.2 * 3.2 * np.pi * 10.0 / RATE
-
-
-def test_after_tremolo_the_bow_goes_its_way_again(instrument):
-    put(instrument, bow_speed=0.2, bow_tremolo=10.0)
-    rows(instrument, 0.13)
-    put(instrument, bow_tremolo=0.0)
-    assert rows(instrument, 0.3)[-1][V_B] == 0.2
-    assert set(rows(instrument, 0.2)[:, V_B]) == {0.2}
 
 
 def test_a_pluck_pulls_and_lets_go_by_itself(instrument):

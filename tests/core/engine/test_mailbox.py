@@ -335,19 +335,6 @@ def test_commands_apply_by_frame_and_then_as_posted_whatever_the_order_of_postin
     assert meters["waiting"] == len(model.waiting)
 
 
-def test_thousands_in_any_order_come_out_sorted():
-    chance = random.Random(1)
-    instrument = reporting(offline())
-    frames = [chance.randrange(2000) for _ in range(HEAP)]
-    for number, frame in enumerate(frames):
-        post_numbered(instrument, number, frame)
-    run(instrument, 2100)
-    commands = instrument.applied_commands()
-    expected = sorted(range(len(frames)), key=lambda number: (frames[number], number))
-    np.testing.assert_array_equal(numbers(commands), expected)
-    np.testing.assert_array_equal(commands["frame"], sorted(frames))  # none has 32 on a frame
-
-
 # ---------------------------------------------------------------- the heap: single promises
 
 
@@ -364,18 +351,6 @@ def test_at_most_so_many_commands_apply_on_one_frame_and_the_rest_on_the_next():
     assert frames.tolist() == [50, 51, 52, 53]
     assert counts.tolist() == [APPLIED_AT_ONCE] * 3 + [10]
     assert instrument.meters()["late_events"] == 0  # they were posted in time
-
-
-def test_more_than_wait_at_once_in_the_order_of_frames_apply_on_their_frames():
-    instrument = reporting(offline())
-    count = HEAP + HEAP // 2
-    for number in range(count):
-        post_numbered(instrument, number, 100 + number // 10)
-    run(instrument, 100 + count)
-    commands = instrument.applied_commands()
-    np.testing.assert_array_equal(numbers(commands), np.arange(count))
-    np.testing.assert_array_equal(commands["frame"], 100 + np.arange(count) // 10)
-    assert instrument.meters()["late_events"] == 0
 
 
 def test_a_live_instrument_takes_in_so_many_commands_for_each_64_frames():
@@ -462,31 +437,3 @@ def test_a_command_that_came_while_the_process_died_comes_once_and_no_other_is_l
         run(ensemble, 1000)
         expected.remove(number)
         np.testing.assert_array_equal(numbers(instrument.applied_commands()), expected)
-
-
-def test_a_heap_that_was_left_out_of_order_is_mended_and_takes_more():
-    ensemble, expected = waiting_commands()
-    instrument, heap = ensemble.first, ensemble.first._rig["events"][0]
-    heap[:MANY] = heap[np.random.default_rng(1).permutation(MANY)]
-    died(ensemble)
-    post_numbered(instrument, MANY, 300)
-    post_numbered(instrument, MANY + 1, 700)
-    run(ensemble, 1000)
-    found = numbers(instrument.applied_commands())
-    np.testing.assert_array_equal(found, [MANY, *expected, MANY + 1])
-
-
-# ---------------------------------------------------------------- blocks
-
-
-def test_even_more_than_can_wait_at_once_apply_the_same_in_blocks_of_any_size():
-    def applied(block: int) -> np.ndarray:
-        instrument = reporting(offline())
-        for number in range(HEAP):
-            post_numbered(instrument, number, 10 + number // 20)
-        for number in range(500):
-            post_numbered(instrument, number, 30 + 7 * number % 500)
-        run(instrument, 3200, block=block)
-        return instrument.applied_commands()
-
-    np.testing.assert_array_equal(applied(1), applied(64))

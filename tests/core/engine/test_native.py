@@ -1,6 +1,5 @@
 """The machine code of the compiled calls, and the tape."""
 
-import mmap
 import random
 import re
 import threading
@@ -19,7 +18,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.warming import all_functions, functions_beside
 from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
-from yehu_server.core.player.commands import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
+from yehu_server.core.player.commands import BEGIN, DRAW, HOLD, SLIDE, WRITE
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.core.player.record import SILENT
 
@@ -238,14 +237,6 @@ def bowed(**how: object) -> Ensemble:
     return ensemble
 
 
-def test_in_given_memory_it_sounds_the_same():
-    out, expected = np.zeros((2, 4096), np.float32)
-    bowed(memory=mmap.mmap(-1, memory.memory_bytes(1))).process(out)
-    bowed().process(expected)
-    assert np.abs(out).max() > 0.001
-    np.testing.assert_array_equal(out, expected)
-
-
 def test_a_callback_of_no_frames_does_no_harm():
     instrument = Instrument(InstrumentSpec(RATE))
     out = np.zeros(64, np.float32)
@@ -333,24 +324,6 @@ def test_a_process_that_died_within_a_note_leaves_no_string_touched_and_no_key_h
     assert np.isnan(instrument.meters()["pitch"])
 
 
-def test_after_a_process_died_within_a_note_the_next_one_is_the_first():
-    """All that is held is forgotten, so the end of another key does not make it sound again."""
-    ensemble, out = alone(RATE), np.zeros(RATE // 2, np.float32)
-    instrument = ensemble.first
-    play(instrument, 69.0, 74.0)
-    ensemble.process(out[:4000])
-    instrument._rig["meters"]["running"] = 1
-    ensemble.recover()
-    play(instrument, 77.0)
-    ensemble.process(out)
-    assert instrument.meters()["pitch"] == pytest.approx(77.0, abs=0.2)  # it varies
-    assert np.abs(out[-RATE // 8 :]).max() > 0.01
-    instrument.post(END, value=77.0)
-    ensemble.process(out)
-    assert np.isnan(instrument.meters()["pitch"])
-    assert instrument.target("/bow/side") == 0.0
-
-
 # ---------------------------------------------------------------- the tape
 
 
@@ -391,17 +364,6 @@ def test_who_comes_too_late_for_the_tape_gets_a_later_beginning():
         np.testing.assert_array_equal(samples, both[begin:])
         # The oldest are left out, since they may be written over as they are read.
         assert len(samples) < TAPE_FRAMES - 4096
-
-
-def test_who_comes_too_early_for_the_tape_gets_nothing():
-    ensemble = bowed()
-    assert len(ensemble.taped(0)[1]) == 0
-    ensemble.process(np.zeros(100, np.float32))
-    for early in (100, 1000):
-        begin, samples = ensemble.taped(early)
-        assert (begin, len(samples)) == (early, 0)
-    ensemble.reset()
-    assert len(ensemble.taped(0)[1]) == 0
 
 
 def test_another_thread_reads_only_what_has_been_played():

@@ -8,12 +8,8 @@ import numpy as np
 import pytest
 from sound import alone, run
 
-from yehu_server.core.controls.record import CHUNK
-from yehu_server.core.engine import event_dispatch, mixing, sounding
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.output import SOUNDED
-from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.sleep import QUIET, WINDOW
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN, END, HOLD, WRITE
@@ -102,32 +98,6 @@ def test_it_falls_asleep_and_wakes_at_the_same_frames_in_blocks_of_any_size(bloc
     assert np.count_nonzero(np.diff(growing)) == 4
 
 
-def test_parts_that_are_computed_apart_sleep_as_in_the_callback():
-    parts, piece, pieces = 3, 7001, 20
-    expected, counts = blocks(two_notes(parts), 64, pieces, piece)
-    ensemble = two_notes(parts)
-    for n in range(pieces):
-        first = ensemble.frame
-        end = first + piece
-        assert event_dispatch.interpret_events.call(ensemble.address, end) == end
-        sounded = np.zeros((parts, -(-piece // CHUNK)), SOUNDED)
-        for instrument, own in zip(ensemble.instruments, sounded, strict=True):
-            sounding.sound_block.call(instrument.address, piece, own.ctypes.data)
-        out = np.zeros((piece, 2), np.float32)
-        into = (out.ctypes.data, out.ctypes.data, 0)
-        mixing.mix_block.call(ensemble.address, sounded.ctypes.data, first, piece, *into)
-        np.testing.assert_array_equal(out, expected[n * piece : (n + 1) * piece])
-    assert [int(one._rig["meters"]["slept"][0]) for one in ensemble.instruments] == counts[-1]
-
-
-def test_of_sixteen_parts_those_sleep_that_rest():
-    ensemble = Ensemble([InstrumentSpec(RATE, seed=k) for k in range(MOST_PARTS)])
-    play(ensemble.instruments[5], FROM, frames=20_000)
-    _, counts = blocks(ensemble, 256, 5, 5120)
-    for part, count in enumerate(counts[-1]):
-        assert count == (FROM if part == 5 else 5 * 5120) - WINDOW
-
-
 # ---------------------------------------------------------------- what is heard
 
 
@@ -181,21 +151,6 @@ def test_it_wakes_as_if_it_had_been_computed_all_the_time():
     np.testing.assert_allclose(heard[0], heard[1], rtol=1e-6, atol=1e-9)
 
 
-def test_a_replay_that_sleeps_plays_the_same():
-    live = two_notes(2)
-    for instrument in live.instruments:
-        instrument.report_commands()
-    heard, counts = blocks(live, 100, 20, 7000)
-    again = Ensemble([InstrumentSpec(RATE, seed=k, body=k) for k in range(2)])
-    for one, other in zip(live.instruments, again.instruments, strict=True):
-        for frame, kind, index, value, extra in one.applied_commands().tolist():
-            other.post(kind, frame=frame, index=index, value=value, other=extra)
-    replayed, own = blocks(again, 1024, 20, 7000)
-    np.testing.assert_array_equal(replayed, heard)
-    assert own == counts
-    assert min(counts[-1]) > 30_000
-
-
 def test_a_parameter_that_is_set_in_sleep_holds_afterwards():
     heard = []
     for frame in (0, 10_000):
@@ -226,16 +181,6 @@ def test_a_finger_that_rests_on_a_string_lets_it_sleep_and_makes_no_sound_as_it_
     heard = run(ensemble, WINDOW // 2)
     assert 0.0 < np.abs(heard).max() < 1e-8
     np.testing.assert_allclose(one.meters()["shapes"][0], bent, atol=1e-9)
-
-
-def test_its_level_is_nothing_while_it_sleeps_and_so_is_that_of_the_mix():
-    ensemble = two_notes()
-    out = np.zeros((80_000, 2), np.float32)
-    ensemble.process(out)
-    assert is_asleep(ensemble.first)
-    meters = ensemble.first.meters()
-    assert (meters["peak"], meters["rms"], ensemble.level) == (0.0, 0.0, (0.0, 0.0))
-    assert meters["window"] > 80_000 / RATE * 50
 
 
 # ---------------------------------------------------------------- what keeps it awake

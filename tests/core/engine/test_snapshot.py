@@ -9,7 +9,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.snapshot import NO_STRING, SNAPSHOT, snapshot
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.layout import V_B, X_B
-from yehu_server.core.player.commands import BEGIN, END, HOLD
+from yehu_server.core.player.commands import BEGIN, HOLD
 from yehu_server.core.player.parameter_indices import INDEX
 
 RATE = 44100.0
@@ -61,22 +61,6 @@ def test_of_a_bowed_note_it_tells_pitch_bow_fingers_and_strings():
     moving = np.abs(found["shapes"]).max(axis=1)
     assert (moving > 1e-5).all()  # the body moves the other one
     assert (moving < 1e-2).all()
-
-
-def test_the_speed_turns_with_the_tremolo_and_after_the_note_the_bow_is_lifted():
-    instrument = Instrument(InstrumentSpec(RATE))
-    instrument.post(HOLD, index=INDEX["/playing/tremolo"], value=10.0)
-    instrument.post(HOLD, index=INDEX["/playing/bow_length"], value=0.0)
-    instrument.post(BEGIN, value=76.0, other=76.0)
-    signs = set()
-    for _ in range(100):
-        play(instrument, 441)
-        signs.add(np.sign(seen(instrument)["speed"]))
-    assert signs >= {-1.0, 1.0}
-    assert seen(instrument)["hair_length"] == 0.0  # a bow without ends has none
-    instrument.post(END, value=76.0)
-    play(instrument, 44100)
-    assert seen(instrument)["string"] == NO_STRING
 
 
 @pytest.mark.parametrize("length", [0.7, 0.3])

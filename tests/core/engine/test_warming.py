@@ -7,10 +7,8 @@ from unittest.mock import Mock
 
 import pytest
 
-from yehu_server.compile import helpers, machine_code
-from yehu_server.compile.cache_folder import cache_folder
+from yehu_server.compile import helpers
 from yehu_server.core.engine import warming
-from yehu_server.core.engine.native import post_from, read_reports
 from yehu_server.util.processes import python_command
 
 
@@ -29,42 +27,6 @@ def test_what_is_not_kept_is_compiled_by_a_process_for_each_of_two_processors(
                 patch.setattr(warming, "is_warm", lambda: False)
             warming.warm_up()
             assert [call.args[0] for call in popen.call_args_list] == commands
-
-
-def test_how_far_compiling_is_grows_to_all_of_it():
-    reported = []
-    functions = [post_from, read_reports]
-    warming.warm_up()
-    helpers.compile_apart(functions, "-test", 2, lambda done, total: reported.append((done, total)))
-    shares = [done / total for done, total in reported]
-    assert len(shares) >= len(functions)  # what is kept already has its parts in it
-    assert shares == sorted(shares)
-    assert 0.0 < shares[0] < shares[-1] <= 1.0
-    code = machine_code.file_in(cache_folder(), "-test")
-    assert code.is_file()
-    code.unlink()
-
-
-def test_two_helpers_have_little_to_compile_in_common():
-    functions = warming.all_functions()
-    weights = {function: helpers.weights(function) for function in functions}
-    work = helpers._Work(functions, None)
-    helping = [set(), set()]  # what each has begun
-    busy_for, given = [0.0, 0.0], []
-    while True:
-        turn = busy_for.index(min(busy_for))
-        before = set(helping[turn])
-        if (function := work._next(helping[turn])) is None:
-            break
-        given.append(function)
-        own = weights[function]
-        busy_for[turn] += sum(own[part] for part in helping[turn] - before)
-        busy_for[turn] += sum(own.values()) / helpers.LLVM_FASTER
-    assert sorted(map(id, given)) == sorted(map(id, functions))
-    lengths = {part: length for own in weights.values() for part, length in own.items()}
-    twice = sum(lengths[part] for part in helping[0] & helping[1])
-    assert twice < 0.08 * sum(lengths.values())
-    assert max(busy_for) < 1.1 * min(busy_for)
 
 
 def test_what_a_helper_cannot_compile_is_compiled_at_its_first_use(monkeypatch):

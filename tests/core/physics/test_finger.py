@@ -111,12 +111,6 @@ def test_a_lifted_finger_is_back_at_rest_within_40_ms_and_stays(rate):
         assert height.max() < 1e-9
 
 
-def test_a_finger_at_rest_never_moves_and_touches_nothing():
-    run = play({"F_N": 0.3, "v_b": 0.1}, 1.0, fingers=4)
-    for j in range(4):
-        assert np.all(run.finger(j) == [FINGER.rest_height, 0.0, 0.0])
-
-
 def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
     """Bit for bit: pressed, lifted, at rest, hit there by a plucked string, and pressed again."""
     rate = 22050.0

@@ -126,11 +126,6 @@ def with_changes(**changes):
     return body
 
 
-def test_another_body_file_is_read(tmp_path):
-    path = written(tmp_path, with_changes(mode_mass_kg=0.07))
-    assert override(YEHU, {"body": str(path)}).body.mass[3] == 0.07
-
-
 SECTIONS = BODY["radiation"]["sections"]
 MALFORMED = {
     "empty": "",
@@ -173,11 +168,6 @@ def test_a_malformed_or_unstable_body_is_refused_by_its_file_name(tmp_path, subt
                 read_body(path)
             assert str(path) in str(error.value)
             assert "\n" not in str(error.value)
-
-
-def test_a_folder_is_no_body_file(tmp_path):
-    with pytest.raises(ParameterError, match=r"Is a directory|regular file"):
-        read_body(tmp_path)
 
 
 # --- rates and grids ----------------------------------------------------------------------

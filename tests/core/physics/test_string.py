@@ -185,15 +185,3 @@ def test_no_more_loss_is_taken_than_the_grid_bears(i, rate):
     assert silk.sigma_1 < most < 1.0
     spacing = least_spacing(replace(silk, sigma_1=most), 1.0 / rate)
     assert spacing == pytest.approx(float(model["h"][0, i]), rel=1e-9)
-
-
-def test_the_first_node_of_every_string_begins_a_line_of_the_processors_cache():
-    model = kernel.prepare(YEHU, 44100.0)
-    state = kernel.at_rest(model)
-    rows = [
-        *model["inside"][0],
-        *state["motion"]["Delta_u"][0],
-        *state["motion"]["u"][0].reshape(-1, layout.POINTS),
-    ]
-    for row in rows:
-        assert row[layout.GHOST + 1 :].ctypes.data % layout.LINE_BYTES == 0

@@ -49,15 +49,6 @@ def test_the_shelf_raises_the_centroid_as_far_as_the_law_says(effort, place):
     assert instrument.target("/body/brilliance_frequency") == ABOVE * PLAIN_HZ
 
 
-def test_what_the_shelf_adds_to_the_loudness_is_taken_back():
-    as_the_model, brighter = bowed(PLAIN_EFFORT), bowed(0.3)
-    added = np.interp(gain_for(0.3), GAINS, LOUDER)
-    assert added > 1.0
-    evenness = as_the_model.requested("/body/evenness")
-    fell = as_the_model.target("/output/balance") - brighter.target("/output/balance")
-    assert fell == pytest.approx(evenness * added, abs=0.01)
-
-
 def test_a_bow_that_leans_harder_in_mid_note_is_brighter_and_as_loud():
     instrument = bowed(PLAIN_EFFORT)
     louder = 0.3 / instrument.requested("/playing/speed")
@@ -65,14 +56,6 @@ def test_a_bow_that_leans_harder_in_mid_note_is_brighter_and_as_loud():
     brighter = bowed(0.3)
     for address in ("/body/brilliance", "/output/balance"):
         assert instrument.target(address) == pytest.approx(brighter.target(address), abs=1e-9)
-
-
-def test_brilliance_scales_the_gain_and_at_nothing_the_model_sounds_alone():
-    half, none = bowed(0.08, brilliance=0.5), bowed(0.08, brilliance=0.0)
-    assert half.target("/body/brilliance") == pytest.approx(0.5 * gain_for(0.08), abs=0.01)
-    assert none.target("/body/brilliance") == 0.0
-    even = bowed(PLAIN_EFFORT)
-    assert none.target("/output/balance") == pytest.approx(even.target("/output/balance"), abs=0.01)
 
 
 def test_an_instrument_that_nobody_measured_is_as_the_model():

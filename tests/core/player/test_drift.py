@@ -11,7 +11,6 @@ from yehu_server.core.controls.record import (
     PRESS_DRIFT,
     SPEED_DRIFT,
 )
-from yehu_server.core.controls.slots import SLOT
 from yehu_server.core.player.drift import CORRELATION, DRIFT, TREMOR, TREMOR_HZ
 
 LONG_S = 30.0
@@ -85,17 +84,6 @@ def test_the_sound_is_the_same_for_a_seed_in_any_block_and_another_for_another()
     assert heard(5, 64) != heard(6, 64)
 
 
-def test_hands_that_rest_come_to_rest():
-    playing = Playing(variation=1.0)
-    playing.on(74)
-    playing.play(0.5)
-    assert np.abs(playing.controls["drift"]).min() > 0.0
-    playing.off(74)
-    steps = np.abs(np.diff(playing.play(0.5, "drift")[0][:, CENTS_DRIFT]))
-    assert steps.max() < 2.5  # cents in 5 ms: no leap
-    assert (playing.controls["drift"] == 0.0).all()
-
-
 @pytest.mark.parametrize(
     ("address", "which"),
     [("/bow/speed", SPEED_DRIFT), ("/bow/force", FORCE_DRIFT), ("/bow/position", PLACE_DRIFT)],
@@ -107,46 +95,6 @@ def test_what_somebody_else_moves_is_steady(address, which):
     drift = playing.play(0.5, "drift")[0][40:]
     assert (drift[:, which] == 0.0).all()
     assert np.abs(drift[:, CENTS_DRIFT]).max() > 0.0
-
-
-def test_turns_of_the_vibrato_differ_in_width_and_length():
-    playing = Playing(variation=0.25, vibrato=20.0, vibrato_delay=0.0, bow_length=0.0)
-    playing.on(74)
-    playing.play(0.3)
-    phase, width = playing.play(12.0, "vibrato", "vibrato_width")
-    begins = np.flatnonzero(np.diff(phase) < 0.0)
-    lengths = np.diff(begins)
-    assert 0.04 < lengths.std() / lengths.mean() < 0.14
-    assert 0.02 < width.std() < 0.15
-    assert width.mean() == pytest.approx(1.0, abs=0.05)
-
-
-def test_the_rate_of_a_vibrato_wanders_slowly():
-    """Turns are like the last but one, too: independent ones are not, though each is followed."""
-    playing = Playing(variation=0.5, vibrato=20.0, vibrato_delay=0.0, bow_length=0.0)
-    playing.on(74)
-    playing.play(0.3)
-    (phase,) = playing.play(25.0, "vibrato")
-    lengths = np.diff(np.flatnonzero(np.diff(phase) < 0.0)).astype(float)
-    assert np.corrcoef(lengths[:-2], lengths[2:])[0, 1] > 0.25
-
-
-def test_fingers_land_at_different_speeds():
-    def landing_s(variation: float) -> set[int]:
-        playing = Playing(variation=variation)
-        found = set()
-        for note in (74, 76, 77, 79, 81):
-            playing.on(note)
-            playing.instrument.process(np.zeros(1, np.float32))
-            presses = [SLOT[f"/finger/{finger}/press"] for finger in (1, 2, 3, 4)]
-            remaining = playing.controls["remaining"][presses]
-            target = playing.controls["target"][presses]
-            found |= {int(left) for left, to in zip(remaining, target, strict=True) if to > 0.0}
-            playing.play(0.2)
-        return found
-
-    assert len(landing_s(0.0)) == 1
-    assert len(landing_s(0.5)) > 2
 
 
 def tracks(sound: np.ndarray, note: int) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,6 @@ from yehu_server.core.player.ear import (
     BEHIND,
     EAR,
     EAR_SAMPLES,
-    SEARCHED,
     SURE,
     hear,
     prepare_ear,
@@ -118,26 +117,3 @@ def test_noise_has_no_certain_pitch(rate):
         ear = Ear(rate)
         ear.listen(np.random.default_rng(seed).normal(size=EAR_SAMPLES))
         assert ear.hear(hertz(note))[1] < 0.8, (seed, note)
-
-
-@pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize("beyond", [1.5, -1.5])
-def test_a_period_out_of_reach_is_not_certain(rate, beyond):
-    for note in range(65, 82):  # above, as many periods as are compared may be one more, or less
-        ear = Ear(rate)
-        ear.listen(pulses(phases(rate, hertz(note) * (1.0 + beyond * SEARCHED))))
-        assert ear.hear(hertz(note))[1] < SURE, note
-
-
-def test_silence_is_not_certain_and_without_slips():
-    ear = Ear(44100.0)
-    ear.listen(np.zeros(EAR_SAMPLES))
-    assert ear.hear(440.0)[1:] == (0.0, 0.0)
-
-
-def test_a_bow_that_moves_the_other_way_is_heard_alike():
-    down, up = Ear(48000.0), Ear(48000.0)
-    sound = pulses(phases(48000.0, hertz(77.3)))
-    down.listen(sound)
-    up.listen(-sound)
-    assert down.hear(hertz(77)) == up.hear(hertz(77))

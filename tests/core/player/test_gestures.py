@@ -9,15 +9,12 @@ import pytest
 from held_notes import HOP, RATE, Playing
 
 from yehu_server.core.controls.slots import (
-    DEPTH,
     FINGER_POSITION,
     FINGER_PRESS,
     ONSET,
     SHARE,
     SIDE,
     SPEED,
-    TREMOLO,
-    UPWARD,
 )
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
@@ -75,21 +72,6 @@ def test_a_sprung_bow_leaves_the_string_and_a_stopped_one_stands_on_it():
     assert stopped[at(0.9), SPEED] == 0.0
 
 
-def test_a_gesture_goes_on_while_dynamics_move():
-    """Its bow was where it should come to at once."""
-    speeds = []
-    for step_of_dynamics in (0.0, 0.0005):
-        playing = held("swell", listening=1.0, note_length=2.0, dynamics=0.7)
-        found = []
-        for step in range(40):
-            playing.commands.write("/playing/dynamics", 0.7 + step_of_dynamics * step)
-            found.append(np.abs(playing.play(0.02, "value")[0][-1, SPEED]))
-        speeds.append(np.array(found))
-    still, moved = speeds
-    assert still[30] > 1.5 * still[8]
-    assert np.abs(moved / still - 1.0)[8:].max() < 0.05
-
-
 def test_a_thrown_bow_bounces_five_times_and_ever_sooner():
     side = np.abs(played("ricochet", seconds=1.2)[:, SIDE]) > 0.5
     begins = np.flatnonzero(side[1:] & ~side[:-1]) * HOP / RATE
@@ -110,20 +92,6 @@ def test_slides_begin_away_and_end_on_the_pitch():
     turning = bends("turning-slide")
     assert turning[0] == turning[-1] == 0.0
     assert turning.max() == pytest.approx(2.0, abs=0.02)
-
-
-def test_steps_come_sooner_in_a_note_that_is_too_short_for_them():
-    wrong = []
-    for name, ends in (("large-slide-up", 0.0), ("turning-slide", 0.0), ("fall", -3.0)):
-        bend = bends(name, 0.25, note_length=0.25)
-        if bend[-1] != pytest.approx(ends, abs=0.02):
-            wrong.append((name, bend[-1]))
-    assert wrong == []
-
-
-def test_no_finger_goes_where_none_fits_by_the_loop():
-    assert bends("large-slide-up", 0.3, note=67).min() == pytest.approx(65.6 - 67)
-    assert bends("wavering", 0.3, note=65).min() == 0.0
 
 
 def test_a_slide_or_a_trill_in_a_note_stays_on_one_string():
@@ -199,32 +167,12 @@ def test_strokes_in_a_hurry_come_sooner_and_lighter():
     assert wrong == []
 
 
-def test_the_level_goes_with_the_bow_of_a_swell():
-    level = every_5_ms(held("swell", note_length=1.0), 1.0, lambda player: player["balance"])
-    assert 80 < int(np.argmax(level)) < 130
-    assert level.max() - level[10] > 4.0
-    assert level.max() - level[-1] > 4.0
-
-
 def test_a_trill_beats_a_second_above_some_seven_times_a_second_and_a_mordent_once():
     bend = bends("trill", 2.0)
     assert set(np.round(bend, 6)) == {0.0, 2.0}
     beats = np.count_nonzero((bend[1:] == 2.0) & (bend[:-1] == 0.0))
     assert 13 <= beats <= 22
     assert np.count_nonzero(np.diff(bends("mordent")) != 0.0) == 2
-
-
-def test_vibratos_of_their_own_go_before_what_is_requested():
-    pressing, straight = played("pressing-vibrato"), played("straight", vibrato=40.0)
-    assert pressing[-1, UPWARD] == 1.0
-    assert pressing[-1, DEPTH] > 20.0
-    assert straight[-1, DEPTH] == 0.0
-
-
-def test_a_tremolo_grows():
-    values = played("tremolo", seconds=1.4)
-    assert values[at(0.5), TREMOLO] == pytest.approx(13.0)
-    assert abs(values[at(1.3), SPEED]) > 1.3 * abs(values[at(0.2), SPEED])
 
 
 def test_an_ordinary_note_is_shaped_as_far_as_phrasing_says():
@@ -259,17 +207,3 @@ def test_a_vibrato_fades_with_the_last_note_and_comes_in_anew_with_the_next():
     assert onset[-1] == 1.0
     playing.off(76)
     assert playing.play(1.0, "value")[0][-1, ONSET] == 0.0
-
-
-def test_an_open_string_is_plucked_as_loud_after_a_finger_that_was_where_it_is_pulled():
-    def level(before: int | None) -> float:
-        playing = Playing(articulation=NUMBER["left-hand-pizzicato"], variation=0.0)
-        if before is not None:
-            playing.on(before)
-            playing.sound(0.4)
-            playing.off(before)
-        playing.sound(0.15)
-        playing.on(72)
-        return float(np.sqrt(np.mean(playing.sound(0.2) ** 2)))
-
-    assert level(70) == pytest.approx(level(None), rel=0.4)

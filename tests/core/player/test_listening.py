@@ -9,11 +9,8 @@ from sound import rms, run_for
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.midi.record import clear_held
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.commands import STOP
-from yehu_server.core.player.record import prepare_player
-from yehu_server.core.player.tuning_by_ear import LASTING, begin_tuning, jumps
-from yehu_server.params.table import FINGERS, TABLE
+from yehu_server.params.table import FINGERS
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.part_state import Key
@@ -98,13 +95,6 @@ def test_without_listening_it_stays_off_with_the_strings(detuned):
     assert sum(right.values()) >= len(NOTES) - 1, right
 
 
-@pytest.mark.parametrize("note", [71, 75, 84])
-def test_half_of_listening_corrects_half(note):
-    off = [error(Play(part, 30.0).note(note, 1.6), 1.3, 1.6, note) for part in (0.0, 0.5, 1.0)]
-    assert off[0] - off[2] > 20.0
-    assert off[1] == pytest.approx(0.5 * (off[0] + off[2]), abs=3.0)
-
-
 @pytest.mark.parametrize("detuned", DETUNED)
 def test_what_was_learnt_makes_the_note_right_from_its_beginning(detuned):
     right = {}
@@ -117,14 +107,6 @@ def test_what_was_learnt_makes_the_note_right_from_its_beginning(detuned):
         was_off = abs(error(first, 0.04, 0.09, note)) > 10.0
         right[note] = np.abs(off).max() < 5.0 and was_off
     assert sum(right.values()) >= len(right) - 1, right
-
-
-def test_a_reset_forgets_what_was_learnt():
-    play = Play(1.0, -30.0)
-    play.note(74, 0.6)
-    assert play.player["learnt"].any()
-    play.instrument.reset()
-    assert not play.player["learnt"].any()
 
 
 @pytest.mark.parametrize("listening", [1.0, 0.6])
@@ -192,22 +174,6 @@ def test_a_panic_ends_what_sounds_even_if_the_part_has_forgotten_it(is_panic):
     run_for(play.instrument, 0.1)
     assert play.player["held"] == 0
     assert rms(play.note(70, 0.4)[RATE // 5 :]) > 1e-3  # and the next note speaks
-
-
-def test_a_pitch_that_jumps_over_its_place_is_distinguished_from_one_that_swings():
-    values = {spec.address: spec.default for spec in TABLE}
-    player = prepare_player(Quantities(), 44100.0, values)[0]
-    begin_tuning(player, 88.0)
-
-    def counted(heard: list[float]) -> list[int]:
-        return [jumps(player, error) for error in heard]
-
-    assert counted([5.0] * LASTING)[-1] == 0
-    assert counted([-6.0] * LASTING)[-1] == 1
-    assert counted([1.0] * 50)[-1] == 1  # near its place is neither side
-    assert counted([4.0] * LASTING)[-1] == 2
-    begin_tuning(player, 88.0)
-    assert set(counted(([5.0] * (LASTING - 1) + [-5.0] * (LASTING - 1)) * 4)) == {0}
 
 
 def test_a_bow_drawn_by_hand_is_heard_and_left_alone():

@@ -40,12 +40,6 @@ def test_a_leap_from_a_long_note_slides():
     assert slide_s(1.0, 74, 79) > slide_s(0.5, 74, 79)
 
 
-def test_steps_short_notes_and_plain_playing_do_not_slide():
-    assert slide_s(0.0, 74, 79) < 0.02
-    assert slide_s(1.0, 74, 76) < 0.02
-    assert slide_s(1.0, 74, 79, held_s=0.1) < 0.02
-
-
 def first_bend(leap: float, **values: float) -> float:
     """Where the finger is from the pitch of a note (semitones) as that begins after a long one."""
     playing = Playing(phrasing=1.0, variation=0.0, listening=0.0)

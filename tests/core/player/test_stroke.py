@@ -34,14 +34,6 @@ def test_a_bow_that_comes_to_its_end_turns_there():
     assert between == pytest.approx((1.0 - 2.0 * END) * LENGTH / SPEED, rel=0.1)
 
 
-def test_an_endless_bow_never_turns():
-    playing = Playing(variation=0.0, bow_length=0.0)
-    playing.on(74)
-    speed, place = drawn(playing, 8.0)
-    assert len(turns(speed)) == 0
-    assert place[-1] > 1.4
-
-
 def test_a_change_within_a_note_is_a_dip_and_no_click():
     playing = Playing(variation=0.0)
     playing.commands.write("/bow/noise", 0.0)
@@ -113,17 +105,6 @@ def test_a_bow_that_somebody_else_draws_has_no_end():
     speed, place = drawn(playing, 5.0)
     assert len(turns(speed)) == 0
     assert place[-1] > 1.4
-
-
-def test_one_direction_is_kept_if_requested():
-    playing = Playing(variation=0.0, direction=1.0)
-    for _ in range(8):
-        playing.on(74)
-        speed, place = drawn(playing, 0.5)
-        assert speed[-1] > 0.0
-        assert place.max() <= LENGTH
-        playing.off(74)
-        playing.play(0.05)
 
 
 @pytest.mark.parametrize(("note", "lighter"), [(70, True), (76, False)])

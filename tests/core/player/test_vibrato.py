@@ -70,16 +70,6 @@ def test_it_is_narrower_where_brilliance_raises_a_harmonic_that_the_body_swings(
     assert upward > 0.3
 
 
-def test_a_narrow_one_stays_and_a_wide_one_is_narrowed_alike():
-    assert played(81, vibrato=12.0)[0] == pytest.approx(12.0)
-    assert played(81, vibrato=60.0)[0] == pytest.approx(30.0)
-
-
-def test_one_that_presses_goes_only_up_as_everywhere():
-    depth, upward = played(81, articulation=12.0)
-    assert (depth, upward) == (pytest.approx(played(82, articulation=12.0)[0]), 1.0)
-
-
 def test_the_players_own_is_narrower_near_the_nut():
     depths = [played(note, phrasing=0.5)[0] for note in (66, 70, 79)]
     assert depths == pytest.approx([20.0, 28.0, 30.0])

@@ -3,13 +3,11 @@
 import builtins
 import importlib
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from lab.body.bodies import admittance
 
-from yehu_lab.plot.body import draw, write_picture
 from yehu_server.core.physics.quantities import read_quantities
 
 HZ = np.arange(300.0, 2500.0, 6.0)
@@ -88,16 +86,6 @@ def test_what_cannot_be_done_is_one_line_and_nothing_is_written(
     assert "nothing was measured" in refused("body", "fit", "-o", tmp_path / "m.toml")
 
 
-def test_an_input_or_a_foreign_picture_is_not_overwritten(refused, response, tmp_path):
-    before = response.read_bytes()
-    (tmp_path / "y.json").symlink_to(response)
-    assert "would overwrite an input" in refused("body", "fit", response, "-o", tmp_path / "y.json")
-    assert response.read_bytes() == before
-    (tmp_path / "cat.png").write_bytes(b"\x89PNG of a cat")
-    assert "exists" in refused("body", "show", "-o", tmp_path / "cat.png")
-    assert (tmp_path / "cat.png").read_bytes() == b"\x89PNG of a cat"
-
-
 @pytest.mark.parametrize(
     ("missing", "extra", "words"),
     [
@@ -127,25 +115,3 @@ def test_a_missing_library_is_one_line_that_names_its_extra(
     monkeypatch.setattr(importlib, "import_module", without(importlib.import_module))
     assert f"yehu-server[{extra}]" in refused("body", *words)
     monkeypatch.undo()
-
-
-def test_many_modes_leave_the_picture_its_room(whole_fit, monkeypatch):
-    lines = [f"row {number}" for number in range(99)]
-    monkeypatch.setattr("yehu_lab.plot.body.lines_of", lambda _: lines)
-    body = whole_fit.body
-    modes = {name: getattr(body, name)[:1] * 64 for name in ("frequency_hz", "mass", "damping")}
-    figure = draw(replace(whole_fit, body=replace(body, **modes)))
-    panels = {axes.get_label(): axes for axes in figure.axes}
-    (text,) = panels["table"].texts
-    rows = text.get_text().splitlines()
-    assert rows[:37] == lines[:37]
-    assert rows[37:39] == ["and 28 more", ""]
-    figure.draw_without_rendering()
-    assert panels["admittance"].get_position().height > 0.2
-
-
-@pytest.mark.slow
-def test_the_same_body_has_the_same_picture(whole_fit, tmp_path):
-    write_picture(whole_fit, tmp_path / "one.png")
-    write_picture(whole_fit, tmp_path / "two.png")
-    assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()

@@ -10,8 +10,6 @@ from lab.body.bodies import off_db, rms
 
 from yehu_lab.body.body_file import read_fit
 from yehu_server.core.physics.quantities import (
-    BODY_FILE,
-    measured_body,
     read_body,
     read_quantities,
 )
@@ -64,19 +62,6 @@ def test_other_files_are_not_replaced(whole_fit, tmp_path, name):
     assert (tmp_path / name).read_text() == "bridge_x = 0.31\n"
     whole_fit.save(tmp_path / "mine.toml", overwrite=True)
     assert read_quantities(tmp_path / "mine.toml").body == whole_fit.body
-
-
-@pytest.mark.parametrize("name", ["mine.wav", "mine", "missing/mine.toml"])
-def test_other_names_are_refused(whole_fit, tmp_path, name):
-    with pytest.raises(OutputError):
-        whole_fit.save(tmp_path / name)
-    assert not list(tmp_path.iterdir())
-
-
-def test_the_shipped_body_can_be_looked_at():
-    found = read_fit(BODY_FILE)
-    assert found.body == measured_body()
-    assert found.measurement.admittance is None
 
 
 RISING = ("measured", "admittance", "frequency_hz")

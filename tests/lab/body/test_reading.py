@@ -61,14 +61,6 @@ def test_channels_are_scaled_and_may_be_skipped(taps, tmp_path):
     assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2
 
 
-def test_radiation_may_be_measured_apart(taps, tmp_path):
-    table(tmp_path / "y.csv", ["frequency_hz", "mobility_real", "imag"], HZ, Y.real, Y.imag)
-    files, channels = write_taps(taps, tmp_path / "taps")
-    measured = read([tmp_path / "y.csv"], radiation=files, radiation_channels=channels)
-    assert_is_the_yehu(measured.admittance)
-    assert measured.radiation.taps == 5
-
-
 def test_wrong_channels_are_told(taps, tmp_path):
     files, _ = write_taps(taps[:1], tmp_path / "taps")
     for channels, told in (
@@ -101,16 +93,6 @@ def test_files_that_claim_or_hold_too_much_are_refused_before_they_are_read(tmp_
         read([tmp_path / "tap.csv"])
 
 
-def test_taps_are_not_overwritten(taps, tmp_path):
-    from yehu_server.errors import OutputError
-
-    write_taps(taps[:1], tmp_path)
-    before = (tmp_path / "tap1.wav").read_bytes()
-    with pytest.raises(OutputError, match="exists"):
-        write_taps(taps[1:2], tmp_path)
-    assert (tmp_path / "tap1.wav").read_bytes() == before
-
-
 # ---------------------------------------------------------------- tables
 
 
@@ -131,15 +113,6 @@ def test_responses_are_read_however_they_are_written(tmp_path):
     for (headings, columns), (mark, decimal) in zip(written, cycle(marks), strict=False):
         path = table(tmp_path / "y.csv", headings, HZ, *columns, mark=mark, decimal=decimal)
         assert_is_the_yehu(read([path]).admittance)
-
-
-def test_the_kind_may_be_told_beside_the_file(tmp_path):
-    path = table(tmp_path / "y.csv", ["f", "real", "imag"], HZ, (Y * TURN).real, (Y * TURN).imag)
-    assert_is_the_yehu(read([path], kind="accelerance").admittance)
-    with pytest.raises(MeasurementError, match="this is an accelerance, and not a mobility"):
-        read([path], kind="mobility")
-    with pytest.raises(MeasurementError, match="--kind"):
-        read([path])
 
 
 def test_coherence_is_read_and_two_responses_are_averaged(tmp_path):
@@ -196,13 +169,6 @@ def test_missing_and_foreign_files_are_told(tmp_path):
             make()
             with pytest.raises(MeasurementError, match="x"):
                 read([tmp_path / name])
-
-
-def test_a_line_without_a_response_is_told(tmp_path):
-    values = np.where(HZ == 500.0, 0.0, Y)
-    path = table(tmp_path / "y.csv", ["f", "mobility_real", "imag"], HZ, values.real, values.imag)
-    with pytest.raises(MeasurementError, match="zero at 500 Hz"):
-        read([path])
 
 
 # ---------------------------------------------------------------- universal files
@@ -276,23 +242,9 @@ def test_taps_are_read_from_universal_files(taps, tmp_path):
     assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2
 
 
-def test_a_unit_of_nothing_is_told(tmp_path):
-    for name in ("length", "force"):
-        path = universal(tmp_path / f"{name}.uff", UNITS_MM | {name: 0.0}, data_set(Y))
-        with pytest.raises(MeasurementError, match=f"unit of {name}"):
-            read([path])
-
-
 def test_a_data_set_that_ends_early_is_told(tmp_path):
     path = universal(tmp_path / "y.uff", data_set(Y))
     lines = path.read_text().splitlines()
     path.write_text("\n".join([*lines[:-20], lines[-1]]) + "\n")
     with pytest.raises(MeasurementError, match="says 490"):
         read([path])
-
-
-def test_an_unknown_kind_of_universal_file_is_asked_for(tmp_path):
-    path = universal(tmp_path / "y.uff", data_set(Y, kind=0))
-    with pytest.raises(MeasurementError, match="--kind"):
-        read([path])
-    assert_is_the_yehu(read([path], kind="mobility").admittance, 1e-3)

@@ -35,27 +35,6 @@ def test_chance_of_one_name_tells_nothing_of_another_seed_number_or_name():
         assert abs(np.corrcoef(ones, others)[0, 1]) < 5.0 / math.sqrt(MANY)
 
 
-def test_even_draws_have_their_middle_in_the_middle():
-    values = drawn({"from": 2.0, "to": 4.0})
-    assert 2.0 <= values.min() < 2.01
-    assert 3.99 < values.max() < 4.0
-    assert values.mean() == pytest.approx(3.0, abs=0.05)
-    assert set(drawn(0.25)) == {0.25}
-
-
-def test_draws_by_ratio_have_the_geometric_mean_in_the_middle():
-    values = drawn({"from": 0.1, "to": 10.0, "spacing": "ratio"})
-    assert np.median(values) == pytest.approx(1.0, rel=0.15)
-    assert values.min() >= 0.1
-    assert values.max() <= 10.0
-
-
-def test_whole_numbers_have_both_ends_and_are_alike():
-    values, counts = np.unique(drawn({"from": -1, "to": 2, "spacing": "whole"}), return_counts=True)
-    assert values.tolist() == [-1.0, 0.0, 1.0, 2.0]
-    assert abs(counts - MANY / 4).max() < 5.0 * math.sqrt(MANY / 4)
-
-
 def test_choices_have_their_weights():
     values, counts = np.unique(
         drawn({"choose": [1, 5, 9], "weights": [1, 0, 3]}), return_counts=True

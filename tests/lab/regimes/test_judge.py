@@ -60,31 +60,12 @@ def test_a_motion_has_the_regime_that_its_slips_make(subtests):
             assert judge(-velocity, -SPEED, velocity, RATE, NOTE).regime == regime  # the other way
 
 
-def test_a_rough_stroke_keeps_its_regime():
-    noise = 0.05 * np.random.default_rng(3).standard_normal(LENGTH)
-    assert found(slips(every(PERIOD)) + noise).regime == "helmholtz"
-    assert found(slips(every(2 * PERIOD)) + noise).regime == "anomalous low"
-
-
-def test_the_pitch_is_that_of_the_slips():
-    for distance, ratio in ((100, 1.0), (97, 100 / 97), (50, 2.0), (200, 0.5)):
-        cents = 1200 * np.log2(found(slips(every(distance))).pitch_hz / (NOTE * ratio))
-        assert abs(cents) < 0.5, distance
-
-
 def test_helmholtz_motion_begins_at_the_first_slip_from_which_they_are_regular():
     begin = 1234
     early = [150, 190, 330, 340 + 3 * WIDTH, 700, 860, 1000]
     finding = found(slips([*early, *every(PERIOD, begin)]))
     assert finding.first_slip_s == pytest.approx(early[0] / RATE, abs=WIDTH / RATE)
     assert finding.helmholtz_s == pytest.approx(begin / RATE, abs=WIDTH / RATE)
-
-
-def test_where_slips_stay_irregular_there_is_no_pitch_and_helmholtz_motion_never_begins():
-    finding = found(slips(LATE[LATE < LENGTH - WIDTH]))
-    assert np.isnan([finding.pitch_hz, finding.helmholtz_s]).all()
-    assert finding.certainty == 0.0
-    assert np.isnan(found(np.full(LENGTH, -0.01), speed=0.01).first_slip_s)
 
 
 def test_level_and_brightness_are_those_of_the_sound():

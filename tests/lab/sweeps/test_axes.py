@@ -37,13 +37,3 @@ def test_what_is_no_axis_is_refused_in_a_line():
     ):
         with pytest.raises(ParameterError, match=r"^force"):
             Fields({"force": entry}).each(axis_from)
-
-
-def test_halving_steps_keeps_the_values_that_were_there_and_a_list_has_none():
-    axis = axis_of("force=0.03:5:9:log")
-    fine = axis.refined(2)
-    assert len(fine.values) == 33
-    assert fine.values[::4] == pytest.approx(axis.values)
-    assert fine.values[-1] == 5.0
-    with pytest.raises(ParameterError, match="cannot be refined"):
-        axis_of("note=65,67").refined(1)

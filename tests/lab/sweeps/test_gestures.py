@@ -25,20 +25,6 @@ def study(**vary):
     return study_of({"gesture": GESTURE, "vary": vary})
 
 
-def test_a_curve_keeps_its_shape_and_another_entry_is_set():
-    varied = study(bow_force=[-1.4], press_force=[2.0])
-    gesture = varied.bow.gesture(varied.axes, [0, 0])
-    assert gesture.controls["bow_force"] == ((0.0, 0.0), (0.02, pytest.approx(-1.4)))
-    assert gesture.controls["press_force"] == ((0.0, 2.0),)
-    assert GESTURE["controls"]["bow_force"] == [[0, 0.0], [0.02, 0.7]]
-
-
-def test_an_acceleration_is_from_rest_to_the_speed_of_the_gesture():
-    varied = study(bow_acceleration=[4.0], bow_velocity=[0.3])
-    gesture = varied.bow.gesture(varied.axes, [0, 0])
-    assert gesture.controls["bow_velocity"] == ((0.0, 0.0), (pytest.approx(0.075), 0.3))
-
-
 @pytest.mark.parametrize(
     "vary",
     [

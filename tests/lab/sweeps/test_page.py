@@ -9,19 +9,9 @@ import numpy as np
 import pytest
 from live.page.browser import SHELL
 
-from yehu_lab.plot.cells import edges, is_log
+from yehu_lab.plot.cells import is_log
 from yehu_lab.plot.study import facts_of, limits_along, write_page
-from yehu_lab.plot.sweep_maps import plane_of
 from yehu_lab.sweeps.study import study_of
-
-
-def test_the_plane_has_the_force_upright():
-    assert plane_of({"force": 5, "position": 4}) == ("position", "force")
-    assert plane_of({"note": 3, "force": 5, "acceleration": 4}) == ("acceleration", "force")
-    assert plane_of({"note": 3, "force": 5}) == ("note", "force")
-    assert plane_of({"seed": 3, "position": 2, "force": 5}) == ("position", "force")
-    assert plane_of({"speed": 3, "force": 5, "position": 4}) == ("position", "force")
-    assert plane_of({"force": 5}) == ("force", None)
 
 
 def test_a_page_has_regimes_levels_and_flattening_in_their_places(result):
@@ -46,13 +36,6 @@ def test_a_page_has_regimes_levels_and_flattening_in_their_places(result):
     assert np.abs(shown - found)[inside].max() <= 0.51 * flat["step"]
 
 
-def test_periods_count_from_the_first_slip(result):
-    periods = result.onset_periods()
-    assert np.isfinite(periods).any()
-    assert periods[np.isfinite(periods)].min() >= 0.0
-    assert periods[np.isfinite(periods)].max() < 0.1 * 523.25 * 1.1
-
-
 def test_limits_lie_on_the_side_of_the_forces():
     gesture = {"duration": 0.15, "controls": {"bow_velocity": 0.2}}
     for sign in (1.0, -1.0):  # below zero they are on the outer string
@@ -63,11 +46,6 @@ def test_limits_lie_on_the_side_of_the_forces():
         assert at.tolist() == [0, 1, 2]
         assert (sign * upper > sign * lower).all()
         assert (sign * lower > 0.0).all()
-
-
-def test_edges_lie_between_the_values():
-    assert edges(np.array([1.0, 2.0, 3.0]), log=False) == pytest.approx([0.5, 1.5, 2.5, 3.5])
-    assert edges(np.array([1.0, 4.0]), log=True) == pytest.approx([0.5, 2.0, 8.0])
 
 
 def test_values_are_drawn_by_logarithms_where_they_have_equal_ratios_or_go_far(subtests):
@@ -86,12 +64,6 @@ def test_values_are_drawn_by_logarithms_where_they_have_equal_ratios_or_go_far(s
     ]:
         with subtests.test(values=values, spread=spread, log=log):
             assert is_log(np.array(values), spread) is log
-
-
-def test_a_title_is_text_and_no_code(tmp_path, result):
-    write_page(result, tmp_path / "page.html")
-    text = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert "<h1>A short study of &lt;C5&gt;</h1>" in text
 
 
 @pytest.mark.skipif(SHELL is None, reason="needs chromium")

@@ -28,13 +28,6 @@ def refined(truth, refine=(0, 1), levels=LEVELS):
     return known
 
 
-def test_the_coarse_grid_has_every_so_many_points():
-    assert coarse_points((5, 9), (1,), 2).tolist() == [
-        r * 9 + c for r in range(5) for c in (0, 4, 8)
-    ]
-    assert len(coarse_points((5, 9), (), 0)) == 45
-
-
 def test_a_border_is_found_to_the_finest_step():
     truth = disc((65, 65))
     known = refined(truth)
@@ -60,12 +53,6 @@ def test_a_study_gets_finer_at_the_borders_that_it_asks_for(data, monkeypatch):
         assert known.done()[0].tolist() == refined(truth, levels=2).tolist(), border
 
 
-def test_a_region_of_one_kind_is_not_refined():
-    known = refined(np.zeros((17, 17), np.uint8))
-    assert len(known) == 3 * 3
-    assert (fill((17, 17), (0, 1), LEVELS, known, np.full(9, 7)) == 7).all()
-
-
 def test_an_axis_that_is_not_refined_has_maps_of_its_own():
     truth = np.stack([disc((33, 33)), np.zeros((33, 33), np.uint8)])
     known = refined(truth, refine=(1, 2))
@@ -73,19 +60,3 @@ def test_an_axis_that_is_not_refined_has_maps_of_its_own():
     assert len(own) == 5 * 5
     values = truth.reshape(-1)[known]
     assert (fill(truth.shape, (1, 2), LEVELS, known, values) == truth).mean() > 0.995
-
-
-def test_one_axis_is_halved_like_an_interval():
-    truth = (np.arange(65) >= 23).astype(np.uint8)
-    known = refined(truth, refine=(0,))
-    assert len(known) == 9 + LEVELS
-    assert {22, 23} <= set(known.tolist())
-
-
-def test_what_was_not_computed_is_as_the_point_below():
-    shape = [5, 5]
-    for axis in (0, 1):
-        known = coarse_points(shape, (axis,), 2)
-        along = np.moveaxis(fill(shape, (axis,), 2, known, np.arange(len(known))), axis, 0)
-        assert (along[:4] == along[0]).all()
-        assert (along[4] != along[0]).all()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from yehu_lab.sweeps.result import COLUMNS, Result
-from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.errors import ScoreError
 
 
 def test_a_file_holds_all_of_a_result(tmp_path, result):
@@ -19,15 +19,6 @@ def test_a_file_holds_all_of_a_result(tmp_path, result):
         assert again.columns[name].tobytes() == result.columns[name].tobytes()
 
 
-def test_a_grid_has_every_point_where_it_was_computed(result):
-    grid = result.grid("pitch_hz")
-    assert grid.shape == (9, 5) == result.shape
-    there = grid[tuple(result.index.T)]
-    assert there.tobytes() == result.columns["pitch_hz"].tobytes()
-    with pytest.raises(ParameterError, match="unknown column 'pitch'"):
-        result.grid("pitch")
-
-
 def test_xarray_has_names_values_and_units(result):
     pytest.importorskip("xarray")
     data = result.to_xarray()
@@ -36,13 +27,6 @@ def test_xarray_has_names_values_and_units(result):
     assert int(data["computed"].sum()) == len(result)
     at = data.sel(force=5.0, position=0.06)
     assert int(at["regime"]) == result.grid("regime")[-1, 0]
-
-
-def test_a_result_names_its_study_and_makes_it_again(result):
-    study = result.study()
-    assert study.shape == result.shape
-    assert result.meta["study"]["about"] == "A short study of <C5>"
-    assert "folder" not in result.meta["study"]
 
 
 def test_a_damaged_or_another_file_is_told_in_a_line(tmp_path, result):

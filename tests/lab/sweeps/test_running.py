@@ -8,7 +8,7 @@ import pytest
 
 from yehu_lab.regimes.columns import HELMHOLTZ
 from yehu_lab.sweeps import running
-from yehu_lab.sweeps.journal import Journal, journal_of
+from yehu_lab.sweeps.journal import journal_of
 from yehu_lab.sweeps.running import findings_of, perform, sweep, sweep_to
 from yehu_lab.sweeps.study import study_of
 from yehu_server.errors import OutputError, YehuError
@@ -70,16 +70,6 @@ def test_an_interrupted_study_goes_on_and_ends_the_same(tmp_path, data, result, 
         target.unlink()
 
 
-@pytest.mark.usefixtures("_small_chunks")
-def test_a_study_that_was_stopped_within_its_finest_level_ends_the_same(tmp_path, data):
-    """What is done of a level must not change which points it wants."""
-    refine = {"axes": ["force", "position"], "levels": 2}
-    study, target = study_of(data(refine=refine)), tmp_path / "mine.npz"
-    whole = sweep(study, workers=2)
-    interrupted(study, target, len(whole) - 40)
-    assert np.array_equal(sweep_to(study, target, workers=1).numbers, whole.numbers)
-
-
 def test_a_journal_of_another_study_is_kept(tmp_path, data):
     target = tmp_path / "mine.npz"
     journal_of(target).write_bytes(json.dumps({"key": "another"}).encode() + b"\n")
@@ -89,27 +79,6 @@ def test_a_journal_of_another_study_is_kept(tmp_path, data):
     with pytest.raises(OutputError, match="is not the journal of a sweep"):
         sweep_to(study_of(data()), target)
     assert journal_of(target).read_text() == "my notes"
-
-
-def test_a_journal_whose_beginning_a_full_disk_cut_off_begins_anew(tmp_path, data, result):
-    study, target = study_of(data()), tmp_path / "mine.npz"
-    Journal(target, study).close()
-    begun = journal_of(target).read_bytes()
-    for size in (0, 1, len(begun) - 1):
-        journal_of(target).write_bytes(begun[:size])
-        found = sweep_to(study, target, overwrite=False)
-        assert found.numbers.tobytes() == result.numbers.tobytes()
-        target.unlink()
-
-
-def test_a_result_is_replaced_only_where_it_may_be(tmp_path, data):
-    target = tmp_path / "mine.npz"
-    target.write_text("mine")
-    with pytest.raises(OutputError, match="exists"):
-        sweep_to(study_of(data()), target)
-    assert target.read_text() == "mine"
-    with pytest.raises(OutputError, match=r"ends in \.npz"):
-        sweep_to(study_of(data()), tmp_path / "mine.csv")
 
 
 def test_a_tension_is_a_share_of_what_the_string_is_tuned_to(data):

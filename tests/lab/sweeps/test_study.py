@@ -4,7 +4,7 @@ import pytest
 
 from yehu_lab.sweeps.journal import key_of_study
 from yehu_lab.sweeps.study import read_study, study_from_text, study_of
-from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.errors import ParameterError
 from yehu_server.util.files import shipped_folder
 
 STUDIES = sorted((shipped_folder("examples") / "studies").glob("*.toml"))
@@ -58,23 +58,6 @@ def test_what_is_wrong_in_a_study_is_told_in_a_line(data, subtests):
             assert "\n" not in str(error.value)
     with pytest.raises(ParameterError, match="expected a table"):
         study_of([data()])
-
-
-def test_what_is_no_toml_is_told(tmp_path):
-    (tmp_path / "wrong.toml").write_text("about = ")
-    with pytest.raises(ScoreError, match="not a study"):
-        read_study(tmp_path / "wrong.toml")
-
-
-def test_a_study_may_name_a_gesture_file(tmp_path):
-    (tmp_path / "mine.json").write_text('{"duration": 0.1, "controls": {"bow_velocity": 0.2}}')
-    (tmp_path / "mine.toml").write_text('gesture = "mine.json"\n[vary]\nbow_force = [0.3, 0.6]\n')
-    study = read_study(tmp_path / "mine.toml")
-    assert study.shape == (2,)
-    assert study.bow.gesture(study.axes, [1]).controls["bow_force"] == ((0.0, 0.6),)
-    (tmp_path / "mine.json").unlink()
-    with pytest.raises(ParameterError, match="No such file"):
-        read_study(tmp_path / "mine.toml")
 
 
 def test_too_many_strokes_are_refused_before_any(data):

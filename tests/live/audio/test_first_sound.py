@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
 import soundfile
 
-from yehu_server.live.audio.recordings import BEFORE_S, Recorder, Recordings
+from yehu_server.live.audio.recordings import BEFORE_S, Recorder
 
 RATE = 48_000
 
@@ -53,14 +52,3 @@ def test_it_begins_a_moment_before_and_records_later_pauses(tmp_path, said, begi
     assert len(found) == 48_000 - first
     assert np.abs(found[: begins - first]).max(initial=0.0) == 0.0
     assert found[begins - first, 1] == pytest.approx(0.25, abs=1e-3)
-
-
-def test_where_nothing_is_played_there_is_no_file_and_no_failure(tmp_path, said) -> None:
-    tape, target = Tape(np.zeros((48_000, 2), np.float32)), tmp_path / "take.wav"
-    takes = Recordings(tape, Path(tmp_path), said.append)  # type: ignore[arg-type]
-    takes.record_everything(target, waits=True)
-    play(tape, 12_000)
-    takes.close()
-    assert takes.is_whole
-    assert not target.exists()
-    assert said == [f"{target}: nothing was played, so nothing is recorded"]

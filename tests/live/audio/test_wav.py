@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import io
 import struct
-from typing import get_args
 
 import numpy as np
 import pytest
 import soundfile
 
-from yehu_server.api.playback import Subtype
-from yehu_server.util.subtypes import FORMATS, SUBTYPES
+from yehu_server.util.subtypes import SUBTYPES
 from yehu_server.util.wav_stream import WavStream, encoded
 
 EDGES = [1.0, -1.0, 0.0, -0.0, 1.5, -1.5, 2**-24, -(2**-24), 2**-31, -(2**-31), 3 * 2**-32]
@@ -74,23 +72,3 @@ def test_floats_have_the_header_that_the_format_asks_for(tmp_path, channels):
     sizes = (192000 * channels, 4 * channels)
     assert ours[b"fmt "] == struct.pack("<HHIIHHH", 3, channels, 48000, *sizes, 32, 0)
     assert ours[b"fact"] == struct.pack("<I", len(samples()))  # frames
-
-
-@pytest.mark.parametrize("subtype", ["16", "24", "float"])
-def test_the_same_samples_are_the_same_bytes(tmp_path, monkeypatch, subtype):
-    first = written(tmp_path / "first.wav", subtype, "someone")
-    monkeypatch.setattr("time.time", lambda: 0.0)
-    assert written(tmp_path / "second.wav", subtype, "someone") == first
-    assert chunks(first)[b"LIST"] == b"INFOISFT\x08\x00\x00\x00someone\0"
-
-
-def test_formats_of_samples_are_those_of_libsndfile_and_of_python_programs():
-    for form in FORMATS:
-        held = [name for name, each in SUBTYPES.items() if form in each.files]
-        known = [
-            name
-            for name, each in SUBTYPES.items()
-            if soundfile.check_format(form.upper(), each.name)
-        ]
-        assert held == known
-    assert get_args(Subtype) == tuple(SUBTYPES)

@@ -71,12 +71,6 @@ def test_inputs_that_are_not_named_play_the_parts_that_are_not():
     assert router.patterns == ["keystep", "breath"]
 
 
-def test_where_all_parts_are_named_other_inputs_play_none():
-    router = Router(routes("1=keystep", "2=seaboard"), 2)
-    assert router.parts_of("organ") == []
-    assert not router.wants_others
-
-
 def test_channels_of_an_input_play_their_parts():
     router = Router(routes("1=daw:1", "2=daw:2", "3=:3"), 3)
     assert [router.parts_of("daw", channel) for channel in range(4)] == [[0], [1], [2], []]

@@ -36,21 +36,6 @@ def test_bundles_keep_their_distances_to_the_sample_and_their_time(make_still, w
     assert still.handler.waiting == still.handler.counts.late_bundles == 0
 
 
-def test_notes_of_bundles_keep_their_distances_beside_notes_of_now(still, wire):
-    still.pass_time(0.05)
-    first = still.clock.time() + 0.1
-    for number in range(40):
-        packet = wire.message("/yehu/note", 66.0 + number % 20, 90.0)
-        still.take(wire.bundle(first + 0.01 * number, packet))
-    for number in range(60):
-        still.send("/bend", 0.01 * (number % 7))
-        still.pass_time(0.01)
-    frames = sorted(set(still.frames("/vibrato/onset")))  # begins anew with each note
-    assert len(frames) == 40
-    assert {after - before for before, after in itertools.pairwise(frames)} == {480}
-    assert still.late() == 0
-
-
 def test_a_bundle_of_the_future_makes_no_other_message_wait(still, wire):
     still.pass_time(0.05)
     for number in range(1000):
@@ -76,20 +61,6 @@ def ahead_of_its_time(still, wire, *packets: bytes) -> float:
     while still.handler.waiting:
         still.pass_time(0.001)
     return still.instrument.frame_at(round(1e9 * (due_s - still.clock.since_1970)))
-
-
-def test_a_note_of_now_waits_for_no_note_that_a_bundle_has_sent_ahead(still, wire):
-    still.pass_time(0.05)
-    tagged = ahead_of_its_time(still, wire, wire.message("/yehu/note", 74, 90))
-    arrived = still.instrument.frame_at(still.clock.monotonic_ns())
-    still.send("/note", 67, 90)
-    assert tagged - arrived > still.player.delay + 48
-    still.pass_time(0.05)
-    first, second = sorted(set(still.frames("/vibrato/onset")))  # begins anew with each note
-    assert 0 <= first - arrived <= still.player.delay + 1
-    assert abs(second - tagged) <= still.RATE / 1000
-    assert still.player.pitch == 74.0
-    assert still.late() == 0
 
 
 @pytest.mark.parametrize(
@@ -124,17 +95,6 @@ def test_a_bundle_that_comes_too_late_plays_at_once_and_is_counted(still, wire):
     assert still.player.pitch == 67.0
 
 
-def test_messages_of_a_bundle_are_heard_at_one_frame_and_in_order(still, wire):
-    still.pass_time(0.05)
-    packets = [wire.message("/yehu/bow/position", 0.1 + 0.01 * number) for number in range(20)]
-    still.take(wire.bundle(still.clock.time() + 0.1, *packets))
-    still.pass_time(0.2)
-    moves = [(frame, value) for frame, address, value in still.events if "position" in address]
-    assert len({frame for frame, _ in moves}) == 1
-    assert [value for _, value in moves] == sorted(value for _, value in moves)
-    assert len(moves) == 20
-
-
 def test_when_too_much_waits_it_is_reported_and_the_rest_plays(still, wire, monkeypatch):
     shares = Shares(20 * (limits.OVERHEAD + 28))
     monkeypatch.setattr(still.handler._schedule, "_shares", shares)
@@ -145,14 +105,6 @@ def test_when_too_much_waits_it_is_reported_and_the_rest_plays(still, wire, monk
     assert errors(still.peer.received()) == ["/yehu/bow/position"] * 2
     still.pass_time(0.3)
     assert len(still.frames("/bow/position")) == 10
-
-
-def test_errors_in_bundles_are_told_when_their_time_comes(still, wire):
-    still.take(wire.bundle(still.clock.time() + 0.1, wire.message("/yehu/nothing")))
-    still.pass_time(0.05)
-    assert errors(still.peer.received()) == []
-    still.pass_time(0.1)
-    assert errors(still.peer.received()) == ["/yehu/nothing"]
 
 
 def test_bundles_to_a_real_server_keep_their_distances(live, wire, until):

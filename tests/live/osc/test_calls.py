@@ -46,25 +46,6 @@ def test_a_note_sounds_until_it_is_ended(still):
     assert rms(still.pass_time(2.5)[-9600:]) < 1e-3
 
 
-def test_a_note_between_the_keys_is_ended_as_any(still):
-    for off in (("/note", 72.5, 0.0), ("/note", 72.5, False), ("/note/off", 72.5)):
-        still.send("/note", 72.5, 1)
-        still.pass_time(HEARD_S)
-        assert still.player.pitch == 72.5
-        still.send(*off)
-        still.pass_time(HEARD_S)
-        assert still.player.pitch is None, off
-
-
-def test_a_note_is_louder_the_harder_it_is_struck(make_still):
-    pressures = []
-    for velocity in (1, 64, 127):
-        still = make_still()
-        still.send("/note", 67, velocity)
-        pressures.append(still.value("/playing/pressure"))
-    assert pressures == sorted(set(pressures))
-
-
 def test_pitch_slides_the_sounding_note_steplessly(still):
     still.send("/note", 67, 90)
     still.pass_time(0.1)
@@ -119,18 +100,6 @@ def test_bend_and_press_are_parameters_within_bounds_and_move_the_sounding_note(
     assert pressed[-1] == 4.0
 
 
-def test_a_note_takes_back_what_was_written_directly(still):
-    still.send("/note", 74, 80)
-    still.send("/bow/speed", 0.05)
-    still.send("/playing/speed", 0.3)
-    still.pass_time(HEARD_S)
-    assert still.player.value("/bow/speed") == f32(0.05)
-    still.send("/release")
-    still.send("/playing/speed", 0.4)
-    still.pass_time(HEARD_S)
-    assert abs(still.player.value("/bow/speed")) == pytest.approx(0.4, rel=1e-3)
-
-
 # ---------------------------------------------------------------- panic and reset
 
 
@@ -166,22 +135,6 @@ def test_after_panic_or_reset_nothing_is_left(still, wire, order, end):
     assert not still.pass_time(0.1).any()
     still.send("/note", 69, 90)
     assert rms(still.pass_time(0.5)) > 1e-4
-
-
-@pytest.mark.parametrize("end", ["/panic", "/reset"])
-def test_panic_and_reset_also_end_what_a_bundle_is_about_to_do(still, wire, end):
-    still.pass_time(0.05)
-    packets = [
-        wire.message("/yehu/bow/speed", 0.3),
-        wire.message("/yehu/bow/side", 1.0),
-        wire.message("/yehu/finger/1/press", 2.0),
-    ]
-    still.take(wire.bundle(still.clock.time() + 0.02, *packets))
-    still.pass_time(0.012)
-    still.send(end)
-    still.pass_time(0.2)
-    last = {address: value for _, address, value in still.events}
-    assert (last["/bow/speed"], last["/bow/side"], last["/finger/1/press"]) == (0.0, 0.0, 0.0)
 
 
 # ---------------------------------------------------------------- ping

@@ -13,8 +13,6 @@ from yehu_server.live.osc.clients import (
     SLICE_S,
     Clients,
 )
-from yehu_server.live.osc.status import STATUS_PREFIX
-from yehu_server.params.table import UNIT
 
 
 @pytest.fixture
@@ -112,20 +110,6 @@ def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(clients, val
     assert min(counts) > 0.8 * max(counts)
 
 
-def test_who_takes_no_more_is_sent_the_last_value_later(clients, values, play, peer):
-    clients.subscribe(peer, 60.0)
-    play(20)
-    peer.received()
-    peer.takes_more = False
-    for number in range(250):
-        values.now["/a"] = float(number)
-        play(20)
-    assert sent_to(peer) == []
-    peer.takes_more = True
-    play(20)
-    assert sent_to(peer) == [("/yehu/a", [249.0])]
-
-
 # ---------------------------------------------------------------- changes
 
 
@@ -186,13 +170,6 @@ def test_who_unsubscribes_or_is_gone_is_sent_no_more(clients, values, play, peer
     assert clients.subscribers == 0
 
 
-def test_subscribers_of_no_time_get_all_values_once(clients, values, play, peer):
-    clients.subscribe(peer, 0.0)
-    values.now["/a"] = 1.0
-    play(100)
-    assert sent_to(peer) == [("/yehu/a", [1.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
-
-
 def test_there_is_room_for_so_many_subscribers_and_for_more_when_some_are_gone(clients, play):
     peers = [FakePeer(port) for port in range(limits.SUBSCRIBERS + 1)]
     assert all(clients.subscribe(peer, 1.0) for peer in peers[:-1])
@@ -223,22 +200,6 @@ def test_only_so_many_are_remembered_and_subscribers_not_forgotten_for_them(
     values.now["/a"] = 1.0
     play(20)
     assert sent_to(peer) == [("/yehu/a", [1.0])]
-
-
-@pytest.mark.parametrize("is_subscribed", [False, True])
-def test_a_peer_that_is_gone_when_it_is_sent_leaves_the_others_in_peace(
-    clients, play, peer, is_subscribed
-):
-    class Gone(FakePeer):
-        def send(self, _packet: bytes) -> None:
-            clients.forget(self)
-
-    if is_subscribed:
-        clients.subscribe(Gone(2), 10.0)
-    clients.echo(Gone(3), ["/a"])
-    clients.echo(peer, ["/a"])
-    play(20)
-    assert ("/yehu/a", [0.0]) in sent_to(peer)
 
 
 # ---------------------------------------------------------------- errors
@@ -287,22 +248,6 @@ def test_who_is_sent_much_is_sent_in_slices_between_which_others_are_served(
     assert sent_to(slow) == [(f"/yehu/{number}", [float(number)]) for number in range(100)]
     assert flushes >= 20
     assert clients.wait_s() > 0.0  # until the next round
-
-
-def test_what_is_set_while_others_are_answered_is_sent_as_it_then_is(
-    clients, values, still_time, peer
-):
-    values.now = {f"/{number}": 0.0 for number in range(100)}
-    clients.subscribe(Slow(still_time), 60.0)
-    clients.listen(peer, "/0")
-    still_time.now += 1.0
-    clients.flush()
-    values.now["/99"] = 7.0
-    clients.echo(peer, ["/99"])
-    for _ in range(100):
-        still_time.now += 0.001
-        clients.flush()
-    assert sent_to(peer) == [("/yehu/0", [0.0]), ("/yehu/99", [7.0])]
 
 
 @pytest.mark.parametrize("end", ["ignore", "forget"])
@@ -386,12 +331,3 @@ def test_who_has_nothing_to_hear_is_forgotten(clients, play, peer):
     assert len(clients._clients) == 4
     play(4000)
     assert [peer.port for peer in clients._clients] == [3]
-
-
-def test_whatever_one_is_subscribed_to_one_is_sent_changes(clients, peer, still_time):
-    for form in ("", UNIT, STATUS_PREFIX):
-        assert not clients.is_subscribed(peer)
-        clients.subscribe(peer, 10.0, form)
-        assert clients.is_subscribed(peer)
-        still_time.now += 11.0
-    assert not clients.is_subscribed(peer)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from typing import Any
 
-from wire import FakePeer, errors
-
-from yehu_server.live import limits
+from wire import FakePeer
 
 NAN, INF = math.nan, math.inf
 NOTHING: tuple[Any, ...] = ()
@@ -111,26 +108,3 @@ def test_a_malformed_packet_is_counted_and_answered(still):
         (refused,) = still.peer.received()
         assert "malformed" in refused.arguments[1]
     assert still.handler.counts.malformed == len(packets)
-
-
-def test_an_error_is_of_bounded_length_and_keeps_its_reason(still):
-    for call, reason in [
-        *((call, "unknown") for call in ("/get", "/learn", "/unlearn")),
-        *((f"/preset/{call}", "plain name") for call in ("load", "save", "delete")),
-        ("/bow/force", "expected a number"),
-    ]:
-        (refused,) = still.ask(call, "x" * 60_000)
-        assert refused.arguments[0] == "/yehu" + call
-        assert len(refused.arguments[1]) < 1100
-        assert reason in refused.arguments[1], call
-
-
-def test_near_names_are_searched_only_where_they_are_sent(still, monkeypatch):
-    searched = []
-    monkeypatch.setattr(
-        difflib, "get_close_matches", lambda *words, **_: searched.append(words) or []
-    )
-    for number in range(500):
-        still.send(f"/bow/forc{number}", 1.0)
-    assert len(errors(still.peer.received())) == limits.ERRORS_AT_ONCE
-    assert len(searched) <= 2 * limits.ERRORS_AT_ONCE

@@ -53,12 +53,6 @@ def test_what_is_framed_comes_out_again_however_it_is_cut(frame, packets, cuts):
     assert read(Framing(), *pieces) == packets
 
 
-@given(st.lists(st.integers(0, 5)))
-def test_ends_between_slip_packets_are_no_packets(counts):
-    stream = END + b"".join(b"/a\0\0" + END * (1 + count) for count in counts)
-    assert read(Framing(), stream) == [b"/a\0\0"] * len(counts)
-
-
 @given(st.binary())
 def test_answers_are_framed_as_the_peer_frames(packet):
     by_length, by_slip, unknown = Framing(), Framing(), Framing()
@@ -77,14 +71,6 @@ def test_a_packet_may_be_as_long_as_is_allowed_and_no_longer():
         read(Framing(), prefixed([longest + b"/"])[:4])
     with pytest.raises(FramingError, match="too long"):
         read(Framing(), slipped([longest + b"/"]))
-
-
-def test_what_came_before_a_length_that_is_too_long_still_counts():
-    for size in (MOST_BYTES + 1, 2**24 - 1):
-        got: list[bytes] = []
-        with pytest.raises(FramingError):
-            got.extend(Framing().packets(prefixed([b"/a\0\0"]) + struct.pack(">I", size)))
-        assert got == [b"/a\0\0"]
 
 
 @pytest.mark.parametrize("start", [END + b"/", b"/", b"#"])
@@ -146,12 +132,3 @@ def test_no_byte_of_a_slip_packet_that_comes_in_pieces_is_looked_at_again():
     assert read(framing, END, *(packet[at : at + 100] for at in range(0, 60_001, 100))) == []
     assert Sought.count == len(packet)
     assert read(framing, END) == [packet]
-
-
-def test_a_damaged_or_empty_packet_is_reported_and_the_next_is_whole():
-    whole = [b"/a\0\0", b"", b"/b\0\0"]
-    assert read(Framing(), prefixed(whole)) == whole
-    for damaged in (b"/a" + ESC + b"b", b"/a" + ESC, b"#" + ESC + ESC, b"/" + ESC + b"\0\xdc"):
-        stream = slipped([b"/a\0\0"]) + END + damaged + END + slipped([b"/b\0\0"])
-        assert read(Framing(), stream) == whole
-        assert read(Framing(), *(bytes([byte]) for byte in stream)) == whole

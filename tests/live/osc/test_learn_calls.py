@@ -71,33 +71,6 @@ def test_files_are_written_so_many_at_once_and_one_more_each_second(still, monke
     assert answers(still.ask("/learn", "/playing/vibrato"), "/learning")
 
 
-def test_a_knob_of_another_box_or_on_the_drums_channel_moves_the_note_that_sounds(still):
-    for port in (0, 1):  # keyboards, both of them
-        receive(still.player, mido.Message("note_on", note=70), frame=0, port=port)
-    for control, channel in (20, 0), (21, 9):
-        still.ask("/learn", "/playing/tremolo")  # who asks last is served
-        still.ask("/learn", "/playing/vibrato")
-        turn(still, control, 10, 20, 64, channel=channel)
-        (learned,) = answers(still.peer.received(), "/learned")
-        assert learned[:2] == ["/yehu/playing/vibrato", f"cc {control}"]
-        turn(still, control, 127, channel=channel)
-        assert still.value("/playing/vibrato") == 100.0
-
-
-def test_an_address_of_the_users_own_is_learned_as_a_knob_is(still, wire):
-    still.ask("/learn", "/output/gain")
-    for value in (0.0, 0.5):
-        still.take(wire.message("/my/fader", value))
-    assert answers(still.peer.received(), "/learned")[0][1] == "/my/fader"
-    still.take(wire.message("/my/fader", 1.0))
-    assert still.value("/output/gain") == 24.0
-    assert still.player.mapping.addresses == ("/my/fader",)
-    still.ask("/learn", "/playing/vibrato")  # one that moves something already is learned anew
-    for value in (0.0, 0.5):
-        still.take(wire.message("/my/fader", value))
-    assert [bind.target for bind in still.player.mapping.of("/my/fader")] == ["/playing/vibrato"]
-
-
 def test_listening_can_be_ended_and_ends_after_a_minute(still):
     def end_by(*arguments: object) -> None:
         assert answers(still.ask("/learn", *arguments), "/learning") == [[""]]
@@ -115,18 +88,6 @@ def test_listening_can_be_ended_and_ends_after_a_minute(still):
         assert not still.player.mapping.of("cc 20")
 
 
-@pytest.mark.parametrize("soft", [0, 1])
-def test_a_soft_one_waits_for_its_place(still, soft):
-    still.ask("/learn", "/playing/speed", soft)
-    turn(still, 20, 0, 20, 30)  # 0.2 m/s is at 80
-    assert (still.value("/playing/speed") == pytest.approx(0.2)) == bool(soft)
-    turn(still, 20, 100)
-    passed = still.value("/playing/speed")
-    assert passed > 0.25
-    turn(still, 20, 30)
-    assert still.value("/playing/speed") < 0.1
-
-
 def test_what_cannot_be_kept_is_reported_and_changes_nothing(still, config_home):
     before = still.player.mapping
     still.ask("/learn", "/playing/vibrato")
@@ -135,16 +96,6 @@ def test_what_cannot_be_kept_is_reported_and_changes_nothing(still, config_home)
     turn(still, 20, 0, 127)
     assert answers(still.peer.received(), "/error")
     assert still.player.mapping is before
-
-
-def test_what_was_learned_can_be_forgotten(still):
-    still.ask("/learn", "/playing/speed")
-    turn(still, 20, 0, 127)
-    assert not still.player.mapping.of("cc 16")  # the knob alone moves it
-    answer = answers(still.ask("/unlearn", "/playing/speed"), "/unlearned")
-    assert answer == [["/yehu/playing/speed", 1, "cc 16", "/yehu/playing/speed"]]
-    assert still.player.mapping.of("cc 16")
-    assert answers(still.ask("/unlearn", "/playing/speed"), "/unlearned")[0][1] == 0
 
 
 def test_every_binding_is_reported_with_where_it_is(still):

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import time
 from pathlib import Path
 
 import pytest
-from pythonosc.osc_bundle_builder import OscBundleBuilder
-from pythonosc.osc_message_builder import OscMessageBuilder
 from pythonosc.osc_tcp_server import MODE_1_0, MODE_1_1
 from pythonosc.tcp_client import SimpleTCPClient
 from pythonosc.udp_client import SimpleUDPClient
@@ -27,18 +24,6 @@ needs_pd = pytest.mark.skipif(not PD, reason="Pure Data is not here")
 def oscsend(live, kind: str, *words: str) -> None:
     url = f"osc.{kind}://127.0.0.1:{live.ports.port}"
     subprocess.run(["oscsend", url, *words], check=True, timeout=LONGEST_S)  # noqa: S607
-
-
-@needs_liblo
-@pytest.mark.parametrize("kind", ["udp", "tcp"])
-def test_liblo_plays_a_note_and_ends_it(live, until, kind):
-    oscsend(live, kind, "/yehu/playing/variation", "f", "0")
-    oscsend(live, kind, "/yehu/note", "ff", "67", "90")
-    until(lambda: live.player.pitch == 67.0, "the note")
-    oscsend(live, kind, "/yehu/note", "if", "67", "0")
-    until(lambda: live.player.pitch is None, "its end")
-    until(lambda: live.ports.traffic.connections == 0, "the connections to be gone")
-    assert live.is_well()
 
 
 @needs_liblo
@@ -154,19 +139,3 @@ def test_python_osc_plays_and_hears(live, until, mode):
         assert (message.address, message.params) == ("/yehu/bow/force", [0.75])
         until(lambda: live.player.pitch is not None, "the note")
     until(lambda: live.ports.traffic.connections == 0, "the connection to be gone")
-
-
-def test_python_osc_sends_bundles_ahead(live, until):
-    received, now = live.handler.counts.messages, time.time()
-    bundle = OscBundleBuilder(now + 0.3)
-    for address, value in (("/yehu/bow/position", 0.3), ("/yehu/bow/force", 1.5)):
-        message = OscMessageBuilder(address)
-        message.add_arg(value)
-        bundle.add_content(message.build())
-    with SimpleUDPClient("127.0.0.1", live.ports.port) as client:
-        client.send(bundle.build())
-    until(lambda: live.handler.counts.messages == received + 2, "the bundle")
-    until(lambda: live.handler.waiting == 0, "its time")
-    assert time.time() - now > 0.2
-    moves = {address: frame for frame, address, _ in live.settle()}
-    assert moves["/bow/position"] == moves["/bow/force"]

@@ -6,7 +6,7 @@ import itertools
 import math
 
 import pytest
-from wire import errors, f32, values
+from wire import f32, values
 
 from yehu_server.live.osc import clients
 from yehu_server.params.spec import Place
@@ -133,17 +133,6 @@ def test_a_get_after_a_set_answers_the_value_set_while_python_is_busy(shared_ser
     assert shared_server.is_well()
 
 
-def test_a_bow_drawn_by_hand_is_answered_at_once(still):
-    still.send("/note", 72.0, 90.0)
-    still.pass_time(0.1)
-    still.send("/bow", 0.25, 0.75)
-    drawn = {"/bow/speed": 0.25, "/bow/force": 0.75, "/bow/assist": 0.0}  # newtons end it
-    for _ in range(12):  # ms; the audio side takes it up meanwhile
-        assert {address: still.player.value(address) for address in drawn} == drawn
-        still.pass_time(0.001)
-    assert {address: still.target(address) for address in drawn} == drawn
-
-
 def test_what_the_hands_do_with_a_parameter_that_was_set_is_answered_once_they_do_it(still):
     still.send("/bow/speed", 0.5)
     still.pass_time(0.02)
@@ -174,17 +163,3 @@ def test_a_pattern_sets_all_that_it_fits(still):
     assert heard == {"/yehu/bow/speed": 0.25, "/yehu/playing/speed": 0.25}
     heard = values(still.ask("/finger/?/pre[a-z]s", 2.0))
     assert heard == {f"/yehu/finger/{number}/press": 2.0 for number in (1, 2, 3, 4)}
-
-
-def test_a_pattern_reaches_the_prefix_too(still, wire):
-    for start in ("/[ab]", "/a*bc", "/{ab}", "/a?cd", "/**/b"):
-        still.take(wire.message(start + "/bow/force", 0.75))
-        assert still.player.value("/bow/force") == 0.5
-    still.take(wire.message("/*/bow/force", 0.75))
-    assert still.player.value("/bow/force") == 0.75
-
-
-def test_of_a_pattern_one_that_refuses_is_reported_and_does_not_hinder_the_others(still):
-    for pattern, value in ("/{note,bend}", 1.5), ("/[nb]*", 2.5), ("/b{end,ow}", 3.5):
-        assert errors(still.ask(pattern, value))[0] == "/yehu" + pattern
-        assert still.player.value("/playing/bend") == value

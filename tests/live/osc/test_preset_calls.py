@@ -9,7 +9,6 @@ import pytest
 
 from yehu_server.live import limits
 from yehu_server.live.osc import context
-from yehu_server.params.preset_file import POSSIBLE
 from yehu_server.playing.preset_folders import Presets
 
 SHIPPED = Presets(Path(os.devnull))
@@ -25,20 +24,8 @@ def own(own_presets):
         file.unlink()
 
 
-def near(value: float) -> float:
-    return pytest.approx(value, rel=1e-6, abs=1e-6)
-
-
 def by_address(heard) -> dict[str, list]:
     return {message.address.removeprefix("/yehu"): message.arguments for message in heard}
-
-
-def test_a_loaded_preset_is_sent_value_by_value(still):
-    answer = by_address(still.ask("/preset/load", "flautando"))
-    values = SHIPPED.load("flautando").values
-    assert answer.pop("/preset/loaded") == ["flautando"]
-    assert answer == {address: [near(value)] for address, value in values.items()}
-    assert {address: still.player.value(address) for address in values} == values
 
 
 def test_a_load_is_heard_at_the_frame_of_its_time_tag_and_at_no_other(still, wire):
@@ -61,17 +48,6 @@ def test_a_held_parameter_is_sent_where_it_stays(still):
     answer = by_address(still.ask("/preset/load", "flautando"))
     assert answer["/playing/speed"] == [0.5]
     assert still.player.value("/playing/speed") == 0.5
-
-
-def test_a_morph_lies_between(still):
-    one, other = (SHIPPED.load(name).values for name in ("ordinary", "scratch"))
-    for amount, share in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (2, 1.0), (-1, 0.0)]:
-        answer = by_address(still.ask("/preset/morph", "ordinary", "scratch", amount))
-        assert set(answer) == set(one)
-        for address, [answered] in answer.items():
-            param = POSSIBLE[address]
-            low, high = param.to_unit(one[address]), param.to_unit(other[address])
-            assert param.to_unit(answered) == near(low + (high - low) * share)
 
 
 def test_a_fader_may_morph_sixty_times_a_second_without_reading_files(still, monkeypatch):
@@ -175,12 +151,3 @@ def test_unknown_addresses_of_a_file_are_told_and_the_rest_is_set_but_for_a_wron
     (refused,) = still.ask("/preset/load", "mine")
     assert "/playing/speed: 5 is not within 0.03 to 0.6 m/s" in refused.arguments[1]
     assert still.player.values() == before  # nothing of it
-
-
-def test_a_list_reads_no_files_while_the_server_plays(make_live, own, monkeypatch):
-    (own / "mine.toml").write_text(HEAD)
-    (own / "bad.toml").write_text("version = 9\n")
-    client = make_live().client()
-    monkeypatch.setattr("yehu_server.playing.preset_folders.read_text", None)
-    client.send("/preset/list")
-    assert client.wait_for("/presets") == [len(SHIPPED.names()) + 1]

@@ -39,22 +39,6 @@ def test_messages_are_handed_out_once_in_order_of_their_times(moments):
     assert not waiting
 
 
-def test_nothing_is_handed_out_before_its_time(still_time):
-    waiting = Schedule()
-    now = still_time.time()
-    assert waiting.wait_s() is None
-    waiting.add(now + 2.0, b"second", ME)
-    waiting.add(now + 1.0, b"first", ME)
-    assert waiting.wait_s() == pytest.approx(1.0 - AHEAD_S)
-    assert due(waiting) == []
-    still_time.now += 1.0 - AHEAD_S + 1e-4
-    assert due(waiting) == [(now + 1.0, b"first")]
-    assert waiting.wait_s() == pytest.approx(1.0, abs=0.01)
-    still_time.now += 5.0
-    assert waiting.wait_s() == 0.0
-    assert due(waiting) == [(now + 2.0, b"second")]
-
-
 def test_there_is_room_for_so_much_half_of_it_for_one_and_again_when_it_is_gone():
     size = 4096
     waiting, message = Schedule(most_bytes=8 * size), bytes(size - limits.OVERHEAD)
@@ -127,20 +111,6 @@ def test_a_step_of_the_worlds_clock_is_followed(still_time, step_s):
     still_time.since_1970 += step_s
     due_s = still_time.time() + 0.005
     assert abs(tags.frame_at(due_s) - true_frame(device, still_time, due_s)) <= 1.0
-
-
-def test_a_little_uncertainty_of_the_device_moves_nothing(still_time):
-    device = Device(still_time)
-    tags = TagClock(device)
-    chance = random.Random(2)
-    first = still_time.time() + 0.5
-    frames = []
-    for number in range(500):
-        due_s = first + 0.01 * number
-        still_time.now = due_s - still_time.since_1970 - 0.005
-        device.stray = chance.uniform(-4e-4, 4e-4)
-        frames.append(tags.frame_at(due_s))
-    assert {after - before for before, after in itertools.pairwise(frames)} == {480}
 
 
 def test_being_held_up_while_reading_the_clocks_moves_nothing(still_time, monkeypatch):

@@ -23,24 +23,6 @@ def test_a_subscriber_may_be_told_of_zero_to_one(still):
     assert values(still.peer.received()) == {"/yehu/playing/speed/unit": pytest.approx(0.7)}
 
 
-def test_a_subscriber_is_sent_all_and_what_others_change(live):
-    client, other = live.client(), live.client()
-    client.send("/subscribe")
-    assert client.wait_for("/subscribed") == [60.0]
-    assert set(values(client.all())) == {"/yehu" + param.address for param in TABLE}
-    other.send("/note", 67.0, 90.0)
-    changed = values(client.all())
-    assert {"/yehu/bow/speed", "/yehu/bow/side", "/yehu/finger/1/press"} <= set(changed)
-    other.send("/playing/volume", 0.25)
-    assert client.wait_for("/playing/volume") == [0.25]
-    assert other.wait_for("/playing/volume") == [0.25]
-    client.send("/unsubscribe")
-    client.wait_for("/unsubscribed")
-    other.send("/playing/volume", 0.5)
-    other.wait_for("/playing/volume")
-    assert client.all() == []
-
-
 def test_another_server_may_follow_and_neither_answers_the_other(live, make_live, until):
     follower, client = make_live(), live.client()
     client.send("/subscribe", 30, follower.ports.port)
@@ -68,21 +50,6 @@ def test_a_client_names_the_port_it_listens_on(live):
     other.send("/playing/volume", 0.5)
     other.wait_for("/playing/volume")
     assert listens.all() == []
-
-
-@pytest.mark.parametrize("slip", [False, True], ids=["prefixed", "slip"])
-def test_a_subscriber_may_be_at_the_end_of_a_stream(live, slip):
-    stream, other = live.stream(slip=slip), live.client()
-    stream.send("/subscribe", 30, 7400)  # over a stream answers go back by the stream alone
-    assert stream.wait_for("/subscribed") == [30.0]
-    assert len(stream.all()) == len(TABLE)
-    other.send("/playing/volume", 0.25)
-    assert stream.wait_for("/playing/volume") == [0.25]
-    stream.close()
-    other.send("/playing/volume", 0.5)
-    other.wait_for("/playing/volume")
-    live.wait_frames(4800)
-    assert live.handler.clients.subscribers == 0
 
 
 def test_who_subscribes_and_hangs_up_at_once_is_no_subscriber(live, until, wire):
@@ -119,13 +86,6 @@ def test_a_server_never_talks_to_itself(make_live, kit, host):
 # ---------------------------------------------------------------- the status
 
 
-def test_the_status_is_asked_for_like_any_value(still):
-    assert values(still.ask("/get", "/yehu/status/load")) == {"/yehu/status/load": 0.5}
-    assert values(still.ask("/get", "/status/recordin[g]")) == {"/yehu/status/recording": ""}
-    heard = values(still.ask("/get", "/status/*"))
-    assert set(heard) == {f"/yehu/status/{value.name}" for value in STATUS}
-
-
 def test_who_subscribes_to_the_status_is_sent_it_at_once_and_then_each_change(still):
     heard = values(still.ask("/subscribe/status", 2.0))
     assert heard.pop("/yehu/subscribed") == 2.0
@@ -144,28 +104,3 @@ def test_who_subscribes_to_the_status_is_sent_it_at_once_and_then_each_change(st
     still.pass_time(0.5)
     assert still.peer.received() == []
     assert still.handler.clients.subscribers == 0
-
-
-def test_who_subscribes_to_both_is_sent_both_until_it_unsubscribes(still):
-    still.ask("/subscribe", 60.0)
-    still.ask("/subscribe/status", 60.0)
-    still.player.set("/playing/attack", 50.0, frame=0)
-    still.services.names.append("take")
-    still.pass_time(0.3)
-    heard = values(still.peer.received())
-    assert heard == {"/yehu/playing/attack": 50.0, "/yehu/status/recording": "take"}
-    still.ask("/unsubscribe")
-    still.player.set("/playing/attack", 60.0, frame=0)
-    still.services.names.append("another")
-    still.pass_time(0.5)
-    assert still.peer.received() == []
-
-
-def test_status_is_sent_line_by_line(shared_server):
-    client = shared_server.client()
-    client.send("/status")
-    heard = values(client.all())
-    status = shared_server.server.status()
-    assert set(heard) == {f"/yehu/status/{name}" for name in status}
-    assert heard["/yehu/status/rate"] == 48000.0
-    assert heard["/yehu/status/osc_buffer_bytes"] == shared_server.ports.traffic.buffer_bytes

@@ -12,7 +12,7 @@ import time
 import pytest
 
 from yehu_server.params.table import TABLE
-from yehu_server.surfaces import common_layout, puredata
+from yehu_server.surfaces import puredata
 from yehu_server.surfaces.common_layout import (
     BOW_FORCE,
     BOW_SPEED,
@@ -118,41 +118,6 @@ def test_a_slider_follows_the_server_says_nothing_back_and_shows_what_it_has_mov
     until(lambda: live.player.value("/playing/speed") == pytest.approx(0.3), "the move")
     client.send("/playing/vibrato", 77.0)
     until(lambda: "watched: set 77" in patch.printed, "the change, sent when the slider rests")
-
-
-def test_a_key_begins_before_the_last_one_ends(live, until, patch, monkeypatch):
-    heard = []
-    for name in ("key_on", "key_off"):
-        call = getattr(live.player, name)
-
-        def hear(note, *words, name=name, call=call, **named):
-            heard.append((name, note))
-            return call(note, *words, **named)
-
-        monkeypatch.setattr(live.player, name, hear)
-    patch.move(common_layout.local_name(puredata.KEY), 2)
-    patch.move(common_layout.local_name(puredata.KEY), 4)
-    until(lambda: ("key_off", 67.0) in heard, "the end of G4")
-    assert heard[-2:] == [("key_on", 69.0), ("key_off", 67.0)]
-
-
-def test_keys_end_and_panic(live, until, patch):
-    patch.move(common_layout.local_name(puredata.KEY), 2)
-    until(lambda: live.player.pitch == 67.0, "G4")
-    patch.move(common_layout.local_name(puredata.KEY), 4)
-    until(lambda: live.player.pitch == 69.0, "A4")
-    patch.move(common_layout.local_name(puredata.END), "bang")
-    until(lambda: live.player.pitch is None, "its end")
-    patch.move(common_layout.local_name(puredata.KEY), 4)
-    until(lambda: live.player.pitch == 69.0, "the same key again")
-    patch.move(common_layout.local_name(puredata.PANIC), "bang")
-    until(lambda: live.player.pitch is None, "panic")
-    patch.move("/yehu/bow/speed", 0.2)
-    until(lambda: live.player.value("/bow/speed") == pytest.approx(0.2), "the bow")
-    patch.move(common_layout.local_name(puredata.LIFT), "bang")
-    until(lambda: live.player.value("/bow/speed") == 0.0, "the bow lifted")
-    patch.move(common_layout.local_name(puredata.RELEASE), "bang")
-    assert live.is_well()
 
 
 def along(axis: Axis, unit: float) -> float:

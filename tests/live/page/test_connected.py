@@ -7,7 +7,6 @@ import contextlib
 import json
 import os
 import signal
-import socket
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -20,12 +19,10 @@ import pytest
 from live.page.serving import HOST, start, stop
 from midi_input import receive
 from waiting import PATIENCE_S, until
-from web_client import Refused, WebSocket, ask
 
 from yehu_server.ahead.interpreter import snapshot_layout, snapshot_length
-from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
+from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, WRITE
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.live import limits
 from yehu_server.live.options import PartOptions
 from yehu_server.live.page.players import CHANNELS, LOWEST
 from yehu_server.live.page.sockets import COMMANDS, NO_PART, NOW, SNAPSHOT, WRONG
@@ -198,37 +195,10 @@ def test_pages_get_the_module_and_what_captures_begin_with_once_they_are_there(s
     assert json.loads(get(server, "/captures/48000.json", **IDENTITY)[2])["rate"] == 48000
 
 
-def test_the_connections_of_a_host_shut_no_other_out(server) -> None:
-    port = server.pages.port
-    crowd = [
-        socket.create_connection((HOST, port)) for _ in range(limits.WEB_CONNECTIONS_A_HOST + 50)
-    ]
-    try:
-        for connection in crowd:
-            with contextlib.suppress(OSError):  # the oldest were closed
-                connection.sendall(b"GET / HTTP/1.1\r\nHo")  # half a request
-        sockets = [
-            WebSocket(port, "/sound", source="127.0.0.7") for _ in range(limits.WEB_SOCKETS_A_HOST)
-        ]
-        with pytest.raises(Refused):
-            WebSocket(port, "/sound", source="127.0.0.7")
-        WebSocket(port, "/sound", source="127.0.0.8").vanish()
-        for one in sockets:
-            one.vanish()
-    finally:
-        for connection in crowd:
-            connection.close()
-
-
 def test_foreign_pages_are_refused(server) -> None:
     assert get(server, "/", Origin="http://example.com")[0] == 403
     assert get(server, "/", Host="example.com")[0] == 403
     assert get(server, "/socket", Origin="http://example.com", Upgrade="websocket")[0] == 403
-
-
-def test_oscquery_leads_to_the_page(server) -> None:
-    answer = ask(server.web.port, "/panel/")
-    assert (answer.status // 100, answer.headers["Location"]) == (3, url(server))
 
 
 # ---------------------------------------------------------------- snapshots
@@ -352,48 +322,6 @@ def test_a_page_plays_its_part_and_lets_go_of_it_as_it_leaves(server) -> None:
     with_pages(server, play, 2)
     assert first.pitch is None
     until(lambda: not second.held() and second.pitch is None, "it still sounds")
-
-
-def test_silence_in_a_page_silences_its_part(server) -> None:
-    for player in server.players:
-        player.key_on(69.0, 90.0, frame=player.frame_of())
-    until(lambda: all(player.pitch for player in server.players), "no notes")
-
-    async def panic(page: Page) -> None:
-        await page.command(command(STOP, 0, 1.0))
-        await asyncio.to_thread(until, lambda: server.players[1].pitch is None, "still there")
-
-    with_pages(server, panic, 2)
-    assert server.players[0].pitch is not None
-
-
-def test_a_snapshot_is_of_the_parts_own_instrument_and_the_level_that_of_the_mix(server) -> None:
-    for player, value in zip(server.players, (25.0, 75.0), strict=True):
-        player.set(VIBRATO, value, frame=player.frame_of())
-    server.player.key_on(69.0, 90.0, frame=server.player.frame_of())
-
-    async def snapshot(page: Page, value: float) -> None:
-        while (await page.snapshot(VIBRATO, value.__eq__))[snapshot_layout()["rms"][0]] < 1e-3:
-            pass
-
-    for part, value in ((1, 25.0), (2, 75.0)):
-        with_pages(server, lambda page, value=value: snapshot(page, value), part)
-
-
-def test_the_room_is_one_for_all_and_a_section_says_the_parts_place(server) -> None:
-    first, second = server.players
-
-    async def furnish(page: Page) -> None:
-        await page.command(command(WRITE, INDEX[SIZE], 12.0))
-        await page.snapshot(SIZE, (12.0).__eq__)
-        await page.snapshot(PAN, second.value(PAN).__eq__)
-        await page.command(command(WRITE, INDEX[PAN], 0.25))
-        await page.snapshot(PAN, (0.25).__eq__)
-
-    with_pages(server, furnish, 2)
-    assert first.value(SIZE) == 12.0
-    until(lambda: second.value(PAN) == 0.25, "the pan")
-    assert server.players[1].instrument.target(PAN) != 0.25  # the first player's own place
 
 
 # ---------------------------------------------------------------- sound

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import mido
@@ -18,13 +15,10 @@ from yehu_server.core.midi.record import MIDI
 from yehu_server.core.midi.tables import MOST_BINDS, TABLES
 from yehu_server.core.player.commands import KINDS
 from yehu_server.core.player.parameter_indices import INDEX, IS_ENGINES, IS_PLAYER_CONTROLLED
-from yehu_server.errors import ParameterError
 from yehu_server.live.page import examples, facts
-from yehu_server.live.page.facts import tunings
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import SLOT, TABLE, find
 from yehu_server.playing.mapping import load, shipped_mappings
-from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tuning import read_tuning
 from yehu_server.scores.smf.reader import read_score
 
@@ -38,21 +32,6 @@ def known() -> dict:
     text = facts.module(facts.facts())
     body = text.removeprefix(facts.HEAD).removeprefix("export default ").rstrip().rstrip(";")
     return json.loads(re.sub(r",\n}$", "\n}", body))
-
-
-def test_the_facts_are_the_same_in_each_process():
-    program = "from yehu_server.live.page import facts; print(facts.module(facts.facts()))"
-    seed = "2" if os.environ.get("PYTHONHASHSEED") == "1" else "1"
-    text = subprocess.run(
-        [sys.executable, "-c", program],
-        env=os.environ | {"PYTHONHASHSEED": seed},
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=ROOT,
-    ).stdout
-    assert text.rstrip() == facts.module(facts.facts()).rstrip()  # whose hashes are others
-    assert str(ROOT) not in text
 
 
 def test_each_parameter_is_there_with_its_numbers(known):
@@ -101,15 +80,6 @@ def test_the_layout_of_the_interpreter_is_that_of_its_records(known):
     assert layout["tablesAt"] * 8 >= MIDI.itemsize
 
 
-def test_each_preset_is_there(known, tmp_path):
-    presets = Presets(tmp_path)
-    assert list(known["presets"]["shipped"]) == presets.names()
-    for name, settings in known["presets"]["shipped"].items():
-        preset = presets.load(name)
-        assert settings["values"] == dict(preset.values)
-        assert (settings["about"], settings["program"]) == (preset.about, preset.program)
-
-
 def test_each_tuning_is_there_on_every_shipped_map_of_keys(known):
     assert known["tunings"]["equal"]["keys"] is None
     for name, settings in known["tunings"].items():
@@ -118,20 +88,6 @@ def test_each_tuning_is_there_on_every_shipped_map_of_keys(known):
             assert settings["keys"] == [tuning.pitch(key, 440.0) for key in range(128)]
     maps = {file.stem for file in (ROOT / "tunings").glob("*.kbm")}
     assert {name.partition(", ")[2] for name in known["tunings"]} == maps | {""}
-
-
-def test_a_scale_is_offered_on_the_maps_that_take_it_only(tmp_path, monkeypatch):
-    (tmp_path / "one.scl").write_text("no note but the first\n0\n")
-    (tmp_path / "five.scl").write_text("five\n5\n240.\n480.\n720.\n960.\n2/1\n")
-    head = "2\n0\n127\n60\n"
-    (tmp_path / "second.kbm").write_text(f"{head}61\n300.\n5\n0\n1\n")
-    (tmp_path / "first.kbm").write_text(f"{head}60\n300.\n5\n0\n1\n")
-    monkeypatch.setattr("yehu_server.live.page.facts.shipped_folder", lambda _: tmp_path)
-    with pytest.raises(ParameterError, match="not mapped"):  # it has no degree 1
-        read_tuning(tmp_path / "one.scl", tmp_path / "second.kbm")
-    assert list(tunings()) == [
-        "equal", "five", "five, first", "five, second", "one",
-    ]  # fmt: skip
 
 
 def test_each_example_has_its_events():

@@ -17,7 +17,7 @@ from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live import limits
 from yehu_server.live.page import guests as admitting
 from yehu_server.live.page import sockets as serving
-from yehu_server.live.page.guests import DIGITS, Admission, Guests, new_pin
+from yehu_server.live.page.guests import Admission, Guests
 from yehu_server.live.page.players import permitted
 from yehu_server.live.page.sockets import NO_PIN, PageSockets
 
@@ -25,12 +25,6 @@ HOST, ELSEWHERE = "127.0.0.1", "192.0.2.7"
 
 
 # ---------------------------------------------------------------- the PIN
-
-
-def test_each_server_has_a_pin_of_its_own() -> None:
-    pins = {new_pin() for _ in range(50)}
-    assert len(pins) > 45
-    assert all(len(pin) == DIGITS and pin.isdecimal() for pin in pins)
 
 
 def test_another_machine_needs_the_pin_and_has_to_wait_if_it_guesses(monkeypatch) -> None:

@@ -32,12 +32,6 @@ def test_a_knob_that_moves_is_bound_over_the_whole_range_and_one_that_trembles_i
     assert found["followed"] == [[VIBRATO, param.hi]]
 
 
-def test_the_ends_of_a_bind_are_written_by_keys(found) -> None:
-    assert found["focused"] == "Vibrato, at its upper end"
-    assert found["ends"] == ["40", "5"]
-    assert found["spanned"] == [[VIBRATO, 40], [VIBRATO, 5]]
-
-
 def test_a_button_beside_each_parameter_teaches_too_by_all_kinds_of_controls(found) -> None:
     assert found["asked"] == {"text": "now move a control", "pressed": "true"}
     assert found["text"] == "Aftertouch moves it"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import re
 from ipaddress import IPv4Interface
 
 import pytest
@@ -12,10 +10,9 @@ import segno
 from yehu_server import cli
 from yehu_server.cli import serve_options
 from yehu_server.cli.config import parse
-from yehu_server.cli.page import BLACK_ON_WHITE, PLAIN, QUIET, drawn, show
-from yehu_server.cli.report import page_for_phones, page_lines
+from yehu_server.cli.page import BLACK_ON_WHITE, PLAIN, QUIET, drawn
+from yehu_server.cli.report import page_for_phones
 from yehu_server.cli.serve_options import options_of
-from yehu_server.errors import ParameterError
 from yehu_server.live.page.guests import ROLES, Guests
 
 ALL, HERE, LAN = "0.0.0.0", "127.0.0.1", "192.168.1.5"  # noqa: S104 - nothing is bound
@@ -45,13 +42,6 @@ def test_the_page_is_beside_oscquery_or_where_it_is_requested() -> None:
         assert (page.address, page.is_required) == (address, is_required), words
 
 
-def test_there_may_be_no_page_which_cannot_be_opened() -> None:
-    assert page_of("--no-panel") is page_of("--no-http") is None
-    for words in ("--no-panel --lan", "--no-panel --open"):
-        with pytest.raises(ParameterError, match="no page"):
-            page_of(words)
-
-
 def test_the_lan_is_this_machines_network_and_nobody_else() -> None:
     assert list(page_of("--lan").networks) == ["192.168.0.0/22", "127.0.0.0/8", "::1"]
     assert list(page_of("--http-allow 10.0.0.0/8").networks) == ["10.0.0.0/8"]
@@ -74,24 +64,6 @@ def test_guests_are_what_the_option_says_or_a_config_file(tmp_path, capsys) -> N
     assert err.count("\n") == 1
 
 
-def test_what_is_said_says_who_may_play() -> None:
-    page = page_of("--lan")
-    assert page_lines(*page.address, LAN, networks=page.networks) == [
-        "the page at http://127.0.0.1:9002/",
-        "on a phone: http://192.168.1.5:9002/",
-        "anyone at 192.168.0.0/22 may play and listen, without a password",
-    ]
-    assert page_lines(LAN, 9002, LAN, networks=[]) == [
-        "the page at http://192.168.1.5:9002/",
-        "anyone on this network may play and listen, without a password",
-    ]
-    assert page_lines(HERE, 9002, LAN, networks=[])[1].endswith("yehu-server serve --lan")
-    guests = Guests("listen", "012345")
-    lines = page_lines(ALL, 9002, LAN, networks=["192.168.0.0/22"], guests=guests)
-    assert lines[0] == "the page at http://127.0.0.1:9002/"
-    assert lines[2] == "whoever at 192.168.0.0/22 has the PIN 012345 may listen"
-
-
 def test_the_address_for_phones_is_one_that_they_reach_with_the_pin() -> None:
     found = [page_for_phones(host, 9002, LAN) for host in (ALL, LAN, HERE, "::1")]
     assert found == [URL, URL, "", ""]
@@ -102,20 +74,6 @@ def test_the_address_for_phones_is_one_that_they_reach_with_the_pin() -> None:
 
 # As Unicode names them: upper half, lower half, full block.
 SHOWN = {" ": (0, 0), "\u2580": (1, 0), "\u2584": (0, 1), "\u2588": (1, 1)}
-
-
-class Stream(io.StringIO):
-    def __init__(self, encoding: str, *, is_terminal: bool) -> None:
-        super().__init__()
-        self._encoding = encoding
-        self._is_terminal = is_terminal
-
-    @property
-    def encoding(self) -> str:
-        return self._encoding
-
-    def isatty(self) -> bool:
-        return self._is_terminal
 
 
 def modules(lines: list[str]) -> list[list[int]]:
@@ -134,24 +92,3 @@ def test_its_modules_are_those_of_the_code_within_a_quiet_zone() -> None:
     assert not any(map(any, found[len(expected) :]))
     assert not any(map(any, found[:QUIET]))
     assert not any(row[0] or row[QUIET - 1] or row[-1] or row[-QUIET] for row in found)
-
-
-def test_it_is_small_and_black_on_white_whatever_the_terminals_colours() -> None:
-    lines = drawn(URL)
-    assert len(lines) <= 18
-    assert {len(line) - len(BLACK_ON_WHITE + PLAIN) for line in lines} == {33}
-    for line in lines:
-        colours = re.findall(r"\x1b\[([\d;]*)m", line)
-        assert colours == ["38;5;16;48;5;231", "0"]
-        assert line.startswith("\x1b")
-        assert line.endswith("\x1b[0m")
-
-
-def test_only_a_terminal_that_shows_it_gets_it() -> None:
-    file = Stream("utf-8", is_terminal=False)
-    old = Stream("iso-8859-1", is_terminal=True)
-    terminal = Stream("UTF-8", is_terminal=True)
-    for stream in (file, old, terminal):
-        show(URL, stream)
-    assert file.getvalue() == old.getvalue() == ""
-    assert terminal.getvalue().splitlines() == drawn(URL)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-import mido
 import numpy as np
 import pytest
-from midi_input import receive
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.player.commands import (
@@ -15,16 +13,12 @@ from yehu_server.core.player.commands import (
     DRAW,
     END,
     EXPRESS,
-    HOLD,
     LIFT,
-    RELEASE,
-    STOP,
     WRITE,
 )
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.core.player.record import MOST_HELD
 from yehu_server.live.page.players import PagePlayers
-from yehu_server.params.table import FINGERS
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import player_of
@@ -96,23 +90,6 @@ def test_values_for_a_note_come_before_it_are_known_and_its_pitch_is_as_the_page
     assert player.value(VELOCITY) == 0.25
 
 
-def test_keys_that_end_together_do_so_also_here(player, pages) -> None:
-    for key in (65.0, 69.0, 72.0):
-        command(pages, 0, BEGIN, 0, key, key)
-    requested(player)
-    fingers = [player.instrument.target(f"/finger/{number}/position") for number in FINGERS]
-    command(pages, 0, END, 0, 72.0, 1.0)
-    command(pages, 0, END, 0, 69.0, 1.0)
-    ended = requested(player)
-    assert [player.instrument.target(f"/finger/{n}/position") for n in FINGERS] == fingers
-    command(pages, 0, END, 0, 65.0, 0.0)
-    assert [(value, other) for _, _, value, other in ended + requested(player)] == [
-        (72.0, 1.0), (69.0, 1.0), (65.0, 0.0),
-    ]  # fmt: skip
-    assert not player.held()
-    assert player.instrument.target("/bow/speed") == 0.0
-
-
 def test_a_page_that_leaves_holds_nothing_and_draws_no_bow(player, pages) -> None:
     command(pages, 0, BEGIN, 0, 69.0, 69.0)
     command(pages, 0, DRAW, 0, 0.2, 0.5)
@@ -121,36 +98,6 @@ def test_a_page_that_leaves_holds_nothing_and_draws_no_bow(player, pages) -> Non
     assert [kind for kind, *_ in requested(player)] == [END, LIFT]
     pages.leave(0, 0)
     assert requested(player) == []
-
-
-def test_what_it_sets_all_know(player, pages) -> None:
-    command(pages, 0, WRITE, INDEX[PRESSURE], 0.25)
-    assert player.value(PRESSURE) == 0.25
-    command(pages, 0, HOLD, INDEX[PRESSURE], 0.75)
-    player.set(PRESSURE, 0.5, frame=player.instrument.frame)
-    assert player.value(PRESSURE) == 0.75
-    command(pages, 0, RELEASE)
-    player.set(PRESSURE, 0.5, frame=player.instrument.frame)
-    assert player.value(PRESSURE) == 0.5
-
-
-def test_what_it_moves_slowly_the_next_note_keeps(player, pages) -> None:
-    moved = mido.Message("control_change", control=16, value=10)
-    receive(player, moved, frame=player.instrument.frame, port=0)
-    requested(player)
-    command(pages, 0, WRITE, INDEX[SPEED], 0.25, 40.0)
-    assert requested(player) == [(WRITE, INDEX[SPEED], 0.25, 40.0)]
-    note = mido.Message("note_on", note=69)
-    receive(player, note, frame=player.instrument.frame, port=0)
-    assert player.value(SPEED) == 0.25
-
-
-def test_a_panic_ends_what_others_hold(player, pages) -> None:
-    player.key_on(69.0, 90.0, frame=player.instrument.frame)
-    command(pages, 0, STOP, 0, 0.0)
-    assert player.held()
-    command(pages, 0, STOP, 0, 1.0)
-    assert not player.held()
 
 
 def test_a_note_asked_for_ahead_ends_though_the_page_has_left(player, pages) -> None:

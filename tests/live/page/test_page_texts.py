@@ -58,17 +58,3 @@ def test_every_key_that_the_page_names_is_there(texts) -> None:
     keys = {one or other for file in sources for one, other in named.findall(file.read_text())}
     assert len(keys) > 50
     assert keys - set(texts["en"]) == set()
-
-
-def test_every_choice_has_its_words(texts) -> None:
-    """Their keys are made of a prefix and each name of a list in the same file."""
-    made = re.compile(r"makeChoice\(words\([^)]+\), (\w+), \"(\w+)\"")
-    keys = set()
-    for file in (WEB / "views").glob("*.js"):
-        text = file.read_text()
-        for names, prefix in made.findall(text):
-            listed = re.search(rf"const {names} =[^\[]*\[([^\]]+)\]", text)
-            assert listed is not None, file
-            keys |= {f"{prefix}.{name}" for name in re.findall(r'"(\w+)"', listed[1])}
-    assert {key.split(".")[0] for key in keys} == {"view", "lies", "way"}
-    assert keys - set(texts["en"]) == set()

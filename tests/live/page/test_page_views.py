@@ -10,7 +10,6 @@ import pytest
 from live.page.browser import ROOT, drive
 
 from yehu_server.params.table import TABLE
-from yehu_server.playing.preset_folders import Presets
 
 INDEX = {param.address: index for index, param in enumerate(TABLE)}
 # What every language writes with Latin letters, or that is no word.
@@ -66,26 +65,6 @@ def test_the_diagram_places_the_bow_until_it_is_let_go(found) -> None:
     assert found["corner"] == pytest.approx([0.5, 10.0])  # the greatest of both
 
 
-def test_the_tuner_measures_from_the_notes_of_the_tuning(found) -> None:
-    note, cents = re.fullmatch(r"Tuner: (\S+), (-?\d+) cents", found["tuner"]).groups()
-    assert note == "A4"
-    assert abs(int(cents)) <= 5  # as far as the imitation is out of tune
-
-
-def test_presets_and_parameters_write_their_values(found) -> None:
-    third = sorted(Presets().all()[0], key=lambda preset: preset.program or 0)[2]
-    assert {row: value for _kind, row, value, *_ in found["preset"]} == {
-        INDEX[address]: value for address, value in third.values.items()
-    }
-    assert {"/bow/speed", "/playing/speed"} <= set(found["search"])
-    assert "/output/gain" not in found["search"]
-    # A number beyond the range becomes its end; a button brings back the default.
-    for name, value in (("clamped", 500), ("reset", 40)):
-        assert found[name]["shown"] == str(value)
-        commands = [command[:3] for command in found[name]["commands"]]
-        assert commands == [["WRITE", INDEX["/playing/attack"], value]]
-
-
 def test_what_was_kept_is_played_again_and_what_is_no_performance_is_refused(found) -> None:
     def notes(commands: list[list[Any]]) -> list[list[Any]]:
         return [command[:4] for command in commands if command[0] in ("BEGIN", "END")]
@@ -116,13 +95,6 @@ def test_a_tune_plays_waits_for_whoever_plays_along_and_stops(found) -> None:
     assert found["listening"] == "Listen: Shi Bei Jiu"  # to screen readers
     assert found["stopping"] == "Stop: Shi Bei Jiu"
     assert found["alongEnded"]  # by Escape
-
-
-def test_the_theme_is_remembered_and_the_page_speaks_chinese(found) -> None:
-    assert found["theme"] == found["language"]["theme"] == "dark"
-    assert found["language"]["lang"] == "zh-Hans"
-    assert found["language"]["start"] == "静音"  # it goes on sounding
-    assert found["language"]["bare"] == []
 
 
 @pytest.mark.slow

@@ -137,18 +137,6 @@ def of_three() -> tuple[Any, dict[str, list[int]]]:
     return found, holding
 
 
-def test_a_page_shows_its_part_and_offers_the_others(of_three) -> None:
-    found, _ = of_three
-    for page, part in ("second", 2), ("third", 3), ("none", 1):
-        assert found[page]["isThere"]
-        assert found[page]["chosen"] == str(part)
-        assert found[page]["options"] == [f"Part {one}/3" for one in (1, 2, 3)]
-        assert found[page]["title"] == f"Yehu {part}"
-    assert found["third"]["address"] == "?part=3"
-    assert found["narrow"]["isThere"]  # on a phone, too
-    assert found["narrow"]["over"] <= 0
-
-
 def test_a_finger_plays_the_part_of_its_page_alone_and_the_room_is_one_for_all(of_three) -> None:
     found, holding = of_three
     assert holding == {f"holds in {part}": [part] for part in (2, 3, 1)}

@@ -14,7 +14,6 @@ from live.page.browser import drive
 
 from yehu_server.ahead import build
 from yehu_server.ahead.build_hash import build_hash, with_section
-from yehu_server.errors import YehuError
 from yehu_server.live.page import module_process, site
 from yehu_server.live.page.site import Site, write_page
 
@@ -71,30 +70,9 @@ def test_a_shipped_module_of_these_sources_goes_with_the_page_of_now(
     assert not caplog.records
 
 
-def test_without_any_page_the_error_says_what_would_help(shipped, tmp_path) -> None:
-    (shipped / "yehu.wasm").unlink()
-    with pytest.raises(YehuError, match="Debian's lld"):
-        write_page(tmp_path / "page")
-    assert not (tmp_path / "page").exists()
-
-
-@pytest.mark.usefixtures("shipped")
-def test_a_server_offers_no_module_of_other_sources(monkeypatch) -> None:
-    events = reported(monkeypatch)
-    assert [event["event"] for event in events if event["event"] != "beginning"] == ["none"]
-    assert "Debian's lld" in events[-1]["reason"]
-
-
 def test_a_server_offers_a_shipped_module_of_these_sources(shipped, monkeypatch) -> None:
     (shipped / "yehu.wasm").write_bytes(with_section(EMPTY, f"9.9 {build_hash()}"))
     assert reported(monkeypatch)[-1] == {"event": "module", "path": str(shipped / "yehu.wasm")}
-
-
-@pytest.mark.usefixtures("shipped")
-def test_a_servers_page_reads_looks_by_the_facts_of_the_server() -> None:
-    answer = Site().answer(SimpleNamespace(path="/facts.js", headers={}))
-    assert build_hash().encode() in answer.body
-    assert b"of then" not in answer.body
 
 
 # ---------------------------------------------------------------- while it is made

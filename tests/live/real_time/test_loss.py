@@ -132,25 +132,6 @@ def test_an_audio_server_that_hangs_is_left_and_taken_up_again(jackd, serve, tmp
     np.testing.assert_array_equal(again, recorded)
 
 
-@pytest.mark.slow
-def test_a_server_that_starts_before_its_audio_server_takes_it_up_when_it_comes(
-    jackd, serve, tmp_path
-):
-    jackd.start()
-    jackd.stop()
-    server = serve("--midi-api", "none", "--capture", tmp_path / "take.jsonl")
-    osc = server.osc()
-    server.said("playing on a silent clock")
-    osc.send("/note", 67, 90)
-    wait_for_frames(osc, 4_000)
-    jackd.restart()
-    server.said(f"playing on {DEVICE}", 10.0)
-    status = wait_for_frames(osc, 4_000)
-    assert status["note"] > 0
-    assert status["device_losses"] == 0
-    assert server.end() == 0
-
-
 # ---------------------------------------------------------------- killed while it played
 
 
@@ -332,17 +313,6 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
 
 def open_files() -> set[str]:
     return {entry.name for entry in Path("/proc/self/fd").iterdir()}
-
-
-def test_a_helper_process_that_is_ended_or_crashes_leaves_no_pipe_open(until):
-    before = open_files()
-    Child("yehu_server.live.midi.input_process", lambda _event: None).stop()
-    until(lambda: open_files() <= before, "its pipes to be closed", 2.0)
-    events = []
-    helper = Child("yehu_server.live.midi.input_process", events.append)
-    helper._process.kill()
-    until(lambda: {"event": "gone"} in events, "its end", 2.0)
-    until(lambda: open_files() <= before, "its pipes to be closed", 2.0)
 
 
 @pytest.mark.parametrize("started", [0, 1])

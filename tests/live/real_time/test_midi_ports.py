@@ -51,31 +51,6 @@ for line in sys.stdin:
 os._exit(0)
 """
 
-# One client with two ports whose names differ in a number only; "close" closes the first.
-ALIKE = """
-import os, sys, jack
-client = jack.Client("twins", no_start_server=True)
-ports = [client.midi_outports.register(f"midi {number}") for number in (1, 2)]
-data = []
-
-@client.set_process_callback
-def process(frames):
-    for port in list(ports):
-        port.clear_buffer()
-    if data:
-        ports[-1].write_midi_event(0, data.pop())
-
-client.activate()
-for line in sys.stdin:
-    order, *words = line.split()
-    if order == "close":
-        ports.pop(0).unregister()
-    elif order == "send":
-        data.append(bytes.fromhex("".join(words)))
-    print("done", flush=True)
-os._exit(0)
-"""
-
 
 class Program:
     """Another program that sends MIDI."""
@@ -299,36 +274,6 @@ def test_a_program_that_dies_takes_its_notes_with_it_and_no_other_ones(keys, jac
     heard.hears("MIDI: pads:out is gone")
     heard.comes_to(69.0)
     assert heard.server.midi.connected == ["keyboard:out"]
-
-
-def test_only_the_ports_asked_for_are_opened_and_one_of_our_own_is_there(
-    witness, sender, jackd, until
-):
-    heard = witness(patterns=["piano"], virtual="yehu in")
-    sender.send("open drums out")
-    sender.send("open piano out")
-    heard.hears("MIDI: piano:out is connected")
-    time.sleep(0.6)
-    assert sorted(heard.server.midi.connected) == ["piano:out", "yehu in"]
-    until(lambda: any("yehu in" in port for port in jackd.ports()), "our own port", 2.0)
-    sender.send("send drums 90 45 60")
-    heard.plays(67.0, sender, "send piano 90 43 60")
-
-
-def test_of_two_ports_with_one_name_the_one_that_stays_is_heard(listening, jackd):
-    heard = listening
-
-    twins = Program(ALIKE, jackd.environment)
-    try:
-        heard.hears("MIDI: twins:midi #2 is connected")
-        heard.plays(69.0, twins, "send 90 45 60")  # the second
-        heard.forget()
-        twins.send("close")
-        heard.hears("is gone")
-        time.sleep(1.2)
-        heard.plays(67.0, twins, "send 90 43 60")
-    finally:
-        twins.kill()
 
 
 # ---------------------------------------------------------------- bytes of any kind

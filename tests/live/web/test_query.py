@@ -11,7 +11,6 @@ import pytest
 from web_client import walk
 
 from yehu_server.live.osc.all_calls import CALLS
-from yehu_server.live.osc.call import Argument, Call
 from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
 from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, Snapshot, find, node_at
 from yehu_server.params.table import TABLE
@@ -62,13 +61,6 @@ def test_every_parameter_is_described_as_the_table_has_it(subtests, root):
             assert (unit["TYPE"], unit["ACCESS"]) == ("f", 3)
 
 
-def test_every_value_can_be_listened_to(still):
-    for address in LISTENABLE:
-        still.handler.clients.listen(still.peer, address)
-    still.pass_time(0.5)
-    assert {heard.address for heard in still.peer.received()} == {"/yehu" + at for at in LISTENABLE}
-
-
 def test_every_call_can_be_called_with_arguments_of_their_own_ranges(root):
     for call in CALLS:
         node = find(root, "/yehu" + call.address)
@@ -78,21 +70,6 @@ def test_every_call_can_be_called_with_arguments_of_their_own_ranges(root):
     assert find(root, "/yehu/note")["RANGE"] == [{"MIN": 0.0, "MAX": 127.0}] * 2
     assert find(root, "/yehu/note")["UNIT"] == ["time.midinote", "1"]
     assert "RANGE" not in find(root, "/yehu/record/start")
-
-
-def test_calls_may_come_from_elsewhere():
-    words = Argument("name", "s", choices=("wind", "mpe"))
-    more = [
-        Call("/yehu/elsewhere/load", "Loads one.", (words,), print),
-        Call("/my/own", "Anything.", (), print),
-    ]
-    root = tree(Snapshot(VALUES, STANDING), more)
-    node = find(root, "/yehu/elsewhere/load")
-    assert (node["ACCESS"], node["TYPE"]) == (2, "s")
-    assert node["RANGE"] == [{"VALS": ["wind", "mpe"]}]
-    assert find(root, "/my/own")["TYPE"] == "N"
-    assert find(root, "/yehu/elsewhere")["ACCESS"] == 0
-    assert find(tree(Snapshot(VALUES, STANDING)), "/yehu/elsewhere") is None
 
 
 def test_a_number_that_json_cannot_say_is_null_and_long_counts_are_floats():

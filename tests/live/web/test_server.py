@@ -62,16 +62,6 @@ def test_a_value_set_over_osc_is_read(shared_web, port):
     client.sync()
 
 
-def test_the_status_has_the_names_of_its_table_and_is_read(shared_web, port):
-    status = shared_web.server.status()
-    assert list(status) == [row.name for row in STATUS]
-    for row in STATUS:
-        assert isinstance(status[row.name], str) == (row.kind is Kind.TEXT), row.name
-    assert ask(port, "/yehu/status/device?VALUE").json == {"VALUE": ["silent clock"]}
-    first, second = (ask(port, "/yehu/status/http_requests?VALUE").json for _ in range(2))
-    assert second["VALUE"] == [first["VALUE"][0] + 1]
-
-
 # ---------------------------------------------------------------- queries
 
 
@@ -110,40 +100,7 @@ def test_the_proposals_status_codes(port):
     assert (answer.status, answer.body) == (200, b"")
 
 
-def test_what_the_host_is(shared_web, port):
-    info = ask(port, "/anywhere?HOST_INFO").json
-    assert info["NAME"] == "yehu-server"
-    assert (info["OSC_IP"], info["OSC_PORT"]) == (HOST, shared_web.ports.port)
-    assert info["OSC_TRANSPORT"] == "UDP"
-    assert (info["WS_IP"], info["WS_PORT"]) == (HOST, port)
-    known = "ACCESS VALUE RANGE DESCRIPTION UNIT CLIPMODE LISTEN PATH_CHANGED"
-    assert info["EXTENSIONS"] == dict.fromkeys(known.split(), True)
-
-
-def test_the_host_is_reported_as_it_was_reached(make_live):
-    live = make_live(osc=("0.0.0.0", 0), http=WebOptions(("0.0.0.0", 0)), announce=False)  # noqa: S104
-    info = ask(live.server.web.port, "/?HOST_INFO").json
-    assert (info["OSC_IP"], info["WS_IP"]) == (HOST, HOST)
-
-
-def test_answers_are_json_and_no_answer_is_kept_or_taken_for_another_type(port):
-    assert ask(port, "/").headers["Content-Type"] == "application/json"
-    answers = [ask(port, "/"), ask(port, "/yehu/nothing"), ask(port, "/", Host="evil.example")]
-    assert [answer.status for answer in answers] == [200, 404, 403]
-    for answer in answers:
-        assert answer.headers["Cache-Control"] == "no-store"
-        assert answer.headers["X-Content-Type-Options"] == "nosniff"
-
-
 # ---------------------------------------------------------------- pages
-
-
-def test_a_browser_gets_a_page_with_links(port):
-    answer = ask(port, "/", Accept="text/html,application/xhtml+xml")
-    assert answer.headers["Content-Type"].startswith("text/html")
-    for link in ("/metrics", "?HOST_INFO", f"/{PARAMETERS}"):
-        assert f'"{link}"' in answer.body.decode() or f'"/{link}"' in answer.body.decode()
-    assert ask(port, "/?HOST_INFO", Accept="text/html").json["NAME"] == "yehu-server"
 
 
 def test_the_page_of_parameters_is_served_where_there_is_one(
@@ -180,16 +137,6 @@ def test_every_number_of_the_status_is_a_metric(port):
     assert set(values) == set(names)
     assert float(values["yehu_rate"]) == 48000.0
     assert float(values["yehu_frame_total"]) > 0.0
-
-
-def test_metrics_come_in_the_open_format_too_and_whatever_a_client_accepts(port):
-    answer = ask(port, "/metrics", Accept="application/openmetrics-text; version=1.0.0")
-    assert answer.headers["Content-Type"].startswith("application/openmetrics-text")
-    assert answer.body.endswith(b"# EOF\n")
-    for accept in "application/openmetrics-text;version=a", "text/plain;version=;escaping=", ";,=;":
-        answer = ask(port, "/metrics", Accept=accept)
-        assert answer.status == 200
-        assert b"yehu_rate 48000.0" in answer.body
 
 
 # ---------------------------------------------------------------- who is not answered

@@ -9,7 +9,7 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from web_client import BINARY, CLOSE, TEXT, Refused, WebSocket, ask
+from web_client import BINARY, TEXT, Refused, WebSocket, ask
 from wire import Message, Wire
 
 from yehu_server.live import limits
@@ -88,19 +88,6 @@ def test_a_listener_is_sent_the_value_at_once_and_then_each_change(web, shared_w
         assert type(value) is kind
 
 
-def test_who_ignores_is_sent_no_more(web, shared_web):
-    place = "/yehu/bow/position"
-    for path in (FORCE, place):
-        web.listen(path)
-        assert web.next().address == path
-    web.ignore(FORCE)
-    web.sync()
-    shared_web.client().send("/bow/force", 2.0)
-    shared_web.client().send("/bow/position", 0.2)
-    assert web.next() == Message(place, [pytest.approx(0.2)])
-    assert web.next(QUIET_S) is None
-
-
 def test_what_is_no_command_or_has_no_value_is_answered_with_an_error(web, subtests):
     for path in [
         *("/yehu/bow", "/", "/yehu/note", "/bow/force", "/yehu/nothing", "", FORCE + "/"),
@@ -146,15 +133,6 @@ def test_text_that_is_none_or_a_frame_that_is_too_long_ends_the_one_who_sent_it(
         with pytest.raises(ConnectionError, match=code):
             web.next()
     connect().sync()
-
-
-def test_all_are_told_that_the_tree_changed(connect, shared_web):
-    here = [connect() for _ in range(3)]
-    for web in here:
-        web.sync()
-    shared_web.server.web.tree_changed("/yehu/preset")
-    for web in here:
-        assert web.next() == {"COMMAND": "PATH_CHANGED", "DATA": "/yehu/preset"}
 
 
 # ---------------------------------------------------------------- who is not let in
@@ -249,18 +227,6 @@ def test_one_who_vanishes_is_forgotten_with_all_it_asked_for(shared_web, port, u
     assert shared_web.server.status()["osc_subscribers"] == 1
     web.vanish()
     until(lambda: not shared_web.handler.clients._clients, "nobody is left")
-
-
-def test_what_one_said_last_is_done_before_it_is_forgotten(shared_web, connect, until):
-    clients = shared_web.handler.clients
-    web = connect()
-    web.sync()
-    shared_web.ports.call_soon(lambda: time.sleep(0.3))  # all of it comes at once
-    web.message("/yehu/subscribe", 3600.0)
-    web.message(FORCE, 4.0)
-    web.send(CLOSE, b"\x03\xe8")
-    until(lambda: shared_web.player.value("/bow/force") == 4.0, "it is done")
-    until(lambda: not clients._clients, "nobody is left")
 
 
 @pytest.mark.slow
